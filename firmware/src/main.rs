@@ -1,0 +1,2 @@
+//! The touchdown monitor on an STM32F405.
+fn main() {}

@@ -1,0 +1,224 @@
+//! What a simulated drop did: impacts, phases, regime. Filled in the same way by the model under
+//! test and by the reference.
+
+use serde::Serialize;
+
+/// The rotor at one moment, SI; time since release.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RotorState {
+    /// s.
+    pub time: f64,
+    /// From the bearing's centre, x right and y up, m.
+    pub position: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+    /// Counter-clockwise positive, rad/s.
+    pub spin: f64,
+    /// Signed turns round the retainer since the present contact began; 0 in flight.
+    pub turns_in_contact: f64,
+}
+
+/// One impact; the state is the one just after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// State just after.
+    pub state: RotorState,
+    /// Speed into the wall just before, m/s.
+    pub normal_speed: f64,
+    /// N s.
+    pub normal_impulse: f64,
+}
+
+/// A change of motion, in the order of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Happening {
+    /// The rotor hit the retainer.
+    Impact(Impact),
+    /// Permanent contact began at this time, s (0 for a start on the wall), sliding or rolling.
+    ContactStart {
+        /// s.
+        time: f64,
+        /// Without slip from the start.
+        rolling: bool,
+    },
+    /// Slip came to an end within a contact, at this time, s.
+    RollingStart(f64),
+    /// Slip began again within a contact, at this time, s.
+    SlidingStart(f64),
+    /// Permanent contact ended at this time, s.
+    LiftOff(f64),
+}
+
+/// Kind of a phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PhaseKind {
+    /// Held by the magnetic bearings.
+    Levitated,
+    /// In flight and not between impacts of a series.
+    FreeFall,
+    /// The bounce series, from its first impact to permanent contact.
+    Impact,
+    /// Permanent contact with slip.
+    Sliding,
+    /// Permanent contact without slip.
+    Rolling,
+}
+
+/// One phase.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Phase {
+    /// Its kind.
+    pub phase: PhaseKind,
+    /// s.
+    pub start_s: f64,
+    /// s.
+    pub end_s: f64,
+}
+
+/// How the run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Regime {
+    /// In contact and still.
+    Rest,
+    /// In contact at the bottom, moving.
+    Pendulum,
+    /// One full turn or more in the present contact, with the spin.
+    ForwardWhirl,
+    /// One full turn or more in the present contact, against the spin.
+    BackwardWhirl,
+    /// Four lift-offs or more without whirl.
+    Intermittent,
+    /// Not in permanent contact.
+    Bouncing,
+}
+
+/// A drop as it went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// In the order of time.
+    pub impacts: Vec<Impact>,
+    /// Gapless from the first to the end.
+    pub phases: Vec<Phase>,
+    /// Starts of permanent contact, s.
+    pub contact_starts: Vec<f64>,
+    /// s.
+    pub lift_offs: Vec<f64>,
+    /// s.
+    pub rolling_starts: Vec<f64>,
+    /// At the end of the run.
+    pub regime: Regime,
+    /// At the end of the run.
+    pub end: RotorState,
+}
+
+/// Collects happenings into a history.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder {
+    impacts: Vec<Impact>,
+    phases: Vec<Phase>,
+    contact_starts: Vec<f64>,
+    lift_offs: Vec<f64>,
+    rolling_starts: Vec<f64>,
+    current: Option<(PhaseKind, f64)>,
+}
+
+impl Recorder {
+    /// Starts in flight at time 0, after `levitated` seconds held at the start position (0: none).
+    pub fn new(levitated: f64) -> Self {
+        let mut recorder = Self::default();
+        if levitated > 0.0 {
+            recorder.phases.push(Phase {
+                phase: PhaseKind::Levitated,
+                start_s: -levitated,
+                end_s: 0.0,
+            });
+        }
+        recorder.current = Some((PhaseKind::FreeFall, 0.0));
+        recorder
+    }
+
+    fn change(&mut self, phase: PhaseKind, time: f64) {
+        if let Some((kind, start_s)) = self.current {
+            if kind == phase {
+                return;
+            }
+            if time > start_s {
+                self.phases.push(Phase {
+                    phase: kind,
+                    start_s,
+                    end_s: time,
+                });
+            }
+        }
+        self.current = Some((phase, time));
+    }
+
+    /// Takes the next happening.
+    pub fn take(&mut self, happening: Happening) {
+        match happening {
+            Happening::Impact(impact) => {
+                self.change(PhaseKind::Impact, impact.state.time);
+                self.impacts.push(impact);
+            }
+            Happening::ContactStart { time, rolling } => {
+                self.contact_starts.push(time);
+                if rolling {
+                    self.rolling_starts.push(time);
+                    self.change(PhaseKind::Rolling, time);
+                } else {
+                    self.change(PhaseKind::Sliding, time);
+                }
+            }
+            Happening::RollingStart(time) => {
+                self.rolling_starts.push(time);
+                self.change(PhaseKind::Rolling, time);
+            }
+            Happening::SlidingStart(time) => self.change(PhaseKind::Sliding, time),
+            Happening::LiftOff(time) => {
+                self.lift_offs.push(time);
+                self.change(PhaseKind::FreeFall, time);
+            }
+        }
+    }
+
+    /// Closes the run. `still_speed` (m/s) is the speed below which a rotor in contact is at rest.
+    pub fn finish(mut self, end: RotorState, still_speed: f64) -> History {
+        let in_contact = matches!(
+            self.current,
+            Some((PhaseKind::Sliding | PhaseKind::Rolling, _))
+        );
+        if let Some((phase, start_s)) = self.current {
+            self.phases.push(Phase {
+                phase,
+                start_s,
+                end_s: end.time,
+            });
+        }
+        let whirls = in_contact && end.turns_in_contact.abs() >= 1.0;
+        let speed = f64::hypot(end.velocity[0], end.velocity[1]);
+        let regime = if whirls && end.turns_in_contact * end.spin >= 0.0 {
+            Regime::ForwardWhirl
+        } else if whirls {
+            Regime::BackwardWhirl
+        } else if self.lift_offs.len() >= 4 {
+            Regime::Intermittent
+        } else if !in_contact {
+            Regime::Bouncing
+        } else if speed <= still_speed {
+            Regime::Rest
+        } else {
+            Regime::Pendulum
+        };
+        History {
+            impacts: self.impacts,
+            phases: self.phases,
+            contact_starts: self.contact_starts,
+            lift_offs: self.lift_offs,
+            rolling_starts: self.rolling_starts,
+            regime,
+            end,
+        }
+    }
+}

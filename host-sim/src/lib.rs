@@ -1,0 +1,4 @@
+//! Desktop simulator, replay and report of the touchdown monitor.
+
+pub mod history;
+pub mod outcome;

@@ -1,0 +1,2 @@
+//! The touchdown simulator.
+fn main() {}

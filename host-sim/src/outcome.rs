@@ -1,0 +1,64 @@
+//! What a drop gives: the model's history, the reference's, what the sensors saw and what the
+//! detector said.
+
+use crate::history::{History, PhaseKind, RotorState};
+use serde::Serialize;
+use touchdown_core::event::EventKind;
+
+/// An event of the detector, with times in seconds since the release (or since the stream's zero).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DetectedEvent {
+    /// What.
+    pub event: EventKind,
+    /// Estimated physical instant, s.
+    pub onset_s: f64,
+    /// Time stamp of the sample whose tick declared it, s.
+    pub declared_s: f64,
+    /// Free fall only, s.
+    pub confirmed_s: Option<f64>,
+    /// Free fall only, s.
+    pub withdrawn_s: Option<f64>,
+    /// Index of the declaring sample.
+    pub sample: u64,
+    /// `a`, `b` or `both`.
+    pub plane: &'static str,
+    /// Speed into the wall, impacts only, m/s.
+    pub normal_speed_m_s: Option<f64>,
+}
+
+/// What the detector said over a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detection {
+    /// In the order of declaration.
+    pub events: Vec<DetectedEvent>,
+    /// Samples seen.
+    pub samples: u64,
+    /// Channel values that were unusable.
+    pub faults: u64,
+    /// Fingerprint of the detector's state over all ticks.
+    pub state_hash: u32,
+}
+
+/// A point of the true motion, for drawing.
+#[derive(Clone, Copy, Debug)]
+pub struct TracePoint {
+    /// The rotor.
+    pub state: RotorState,
+    /// The true phase.
+    pub phase: PhaseKind,
+    /// What the sensors of plane a read, m; `None` where unusable.
+    pub sensed: Option<[f64; 2]>,
+}
+
+/// A drop, complete.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The model under test.
+    pub model: History,
+    /// The independent reference.
+    pub truth: History,
+    /// The true motion, thinned to a few thousand points: all of it in the interesting part.
+    pub trace: Vec<TracePoint>,
+    /// The detector.
+    pub detection: Detection,
+}

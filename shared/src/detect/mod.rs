@@ -1,0 +1,5 @@
+//! The phase detector: motion estimate, hypotheses, phase ladder.
+
+mod config;
+
+pub use config::{DetectorConfig, MachineConfig, Tuning};

@@ -1,0 +1,120 @@
+//! What the detector reports.
+
+/// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Moment(pub i64);
+
+impl Moment {
+    /// The moment of a whole sample.
+    pub const fn of_sample(sample: u64) -> Self {
+        Self((sample as i64) << 8)
+    }
+
+    /// Samples and their fraction since sample 0.
+    pub fn samples(self) -> f64 {
+        self.0 as f64 / 256.0
+    }
+}
+
+/// What happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum EventKind {
+    /// The rotor is unsupported.
+    FreeFall = 0,
+    /// It hit the retainer.
+    Impact = 1,
+    /// Permanent contact, with slip.
+    Sliding = 2,
+    /// Permanent contact, without slip.
+    Rolling = 3,
+    /// It swings at the bottom of the retainer.
+    Pendulum = 4,
+    /// One full turn round the retainer with the spin.
+    ForwardWhirl = 5,
+    /// One full turn round the retainer against the spin.
+    BackwardWhirl = 6,
+    /// Permanent contact ended.
+    LiftOff = 7,
+    /// In contact and still.
+    Rest = 8,
+    /// Floating, under control.
+    Levitated = 9,
+    /// A channel delivers no usable value.
+    SensorFault = 10,
+}
+
+impl EventKind {
+    /// All kinds, in the order of their codes.
+    pub const ALL: [Self; 11] = [
+        Self::FreeFall,
+        Self::Impact,
+        Self::Sliding,
+        Self::Rolling,
+        Self::Pendulum,
+        Self::ForwardWhirl,
+        Self::BackwardWhirl,
+        Self::LiftOff,
+        Self::Rest,
+        Self::Levitated,
+        Self::SensorFault,
+    ];
+}
+
+/// Where it happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Plane {
+    /// Sensor plane a.
+    A = 0,
+    /// Sensor plane b.
+    B = 1,
+    /// Judged from both planes together.
+    Both = 2,
+}
+
+/// One event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Counts up from 0 within a run.
+    pub number: u16,
+    /// What happened.
+    pub kind: EventKind,
+    /// Estimated physical instant.
+    pub onset: Moment,
+    /// The sample whose tick declared it.
+    pub declared: u64,
+    /// Where.
+    pub plane: Plane,
+    /// Speed into the wall just before an impact, m/s; 0 for other kinds.
+    pub normal_speed: f32,
+}
+
+/// What a tick says: a new event, or the fate of an earlier free fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Notice {
+    /// Statistically certain.
+    Declared(Event),
+    /// No disturbance within the configured limits explains event `number`.
+    Confirmed {
+        /// The event's number.
+        number: u16,
+        /// The sample whose tick confirmed it.
+        sample: u64,
+    },
+    /// The rotor was caught: event `number` was a disturbance.
+    Withdrawn {
+        /// The event's number.
+        number: u16,
+        /// The sample whose tick withdrew it.
+        sample: u64,
+    },
+}
+
+/// Most notices that one tick can give.
+pub const NOTICES_PER_TICK: usize = 6;
+
+/// The notices of one tick.
+pub type Notices = heapless::Vec<Notice, NOTICES_PER_TICK>;

@@ -1,0 +1,17 @@
+#![no_std]
+#![forbid(unsafe_code)]
+//! Touchdown of a rotor on active magnetic bearings: the impact model and the phase detector that
+//! run on the microcontroller and, with the same bits, on the desktop.
+//!
+//! Everything that runs per sample comes as three types: `XConfig` (SI units, public, validated),
+//! `X` (coefficients) and `XState`. Building an `X` can fail; the per-sample call cannot: it is
+//! bounded, allocates nothing and never panics.
+
+pub mod detect;
+pub mod error;
+pub mod event;
+pub mod monitor;
+pub mod real;
+pub mod sample;
+pub mod sensing;
+pub mod wire;

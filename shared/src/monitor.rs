@@ -1,0 +1,101 @@
+//! The whole tick: sensing, then the detector.
+
+use crc::{CRC_32_ISO_HDLC, Crc, Digest};
+
+use crate::detect::DetectorConfig;
+use crate::error::ConfigError;
+use crate::event::Notices;
+use crate::sample::Sample;
+use crate::sensing::{Sensing, SensingConfig};
+use crate::wire::Summary;
+
+/// All that the monitor is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MonitorConfig {
+    /// Bit i is set if channel i is fitted.
+    pub fitted: u8,
+    /// Counts to displacement.
+    pub sensing: SensingConfig,
+    /// Displacement to events.
+    pub detector: DetectorConfig,
+}
+
+/// Coefficients of the tick.
+#[derive(Clone, Debug)]
+pub struct Monitor {
+    fitted: u8,
+    sensing: Sensing,
+}
+
+/// What the tick carries from sample to sample.
+#[derive(Clone, Debug, Default)]
+pub struct MonitorState {
+    samples: u64,
+    faults: u64,
+}
+
+impl Monitor {
+    /// Checks `config` and prepares the tick.
+    pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+        Ok(Self {
+            fitted: config.fitted,
+            sensing: Sensing::try_new(&config.sensing)?,
+        })
+    }
+
+    /// The state before the first sample.
+    pub fn start(&self) -> MonitorState {
+        MonitorState::default()
+    }
+
+    /// One tick. Bounded; cannot fail.
+    pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
+        let reading = self.sensing.convert(sample, self.fitted);
+        state.samples += 1;
+        state.faults += u64::from(reading.unusable.count_ones());
+        Notices::new()
+    }
+}
+
+impl MonitorState {
+    /// Samples seen.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Channel values that were unusable.
+    pub fn faults(&self) -> u64 {
+        self.faults
+    }
+}
+
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// Fingerprint of the state over a run: equal on two machines only if every tick left the same
+/// bits. Not part of the tick.
+#[derive(Clone)]
+pub struct Fingerprint(Digest<'static, u32>);
+
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self(CRC.digest())
+    }
+}
+
+impl Fingerprint {
+    /// Takes in the state after a tick.
+    pub fn take(&mut self, state: &MonitorState) {
+        self.0.update(&state.samples.to_le_bytes());
+        self.0.update(&state.faults.to_le_bytes());
+    }
+
+    /// What the run added up to.
+    pub fn summary(self, state: &MonitorState) -> Summary {
+        Summary {
+            samples: state.samples,
+            faults: state.faults,
+            state_hash: self.0.finalize(),
+        }
+    }
+}

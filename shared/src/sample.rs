@@ -1,0 +1,24 @@
+//! One sample of all sensors, as the converter delivers it.
+
+/// Position channels: plane a x, plane a y, plane b x, plane b y.
+pub const CHANNELS: usize = 4;
+
+/// What one tick gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Converter codes, in the order of [`CHANNELS`]; meaningless where `valid` has no bit.
+    pub counts: [u16; CHANNELS],
+    /// Bit i is set if channel i delivered a value. A channel that is not fitted is never valid.
+    pub valid: u8,
+    /// Spin, rad/s, counter-clockwise positive, where it is measured.
+    pub spin: Option<f32>,
+    /// Whether the magnetic bearings are commanded on, where that is wired.
+    pub levitated: Option<bool>,
+}
+
+impl Sample {
+    /// Whether channel `channel` delivered a value.
+    pub const fn is_valid(&self, channel: usize) -> bool {
+        channel < CHANNELS && self.valid & (1 << channel) != 0
+    }
+}

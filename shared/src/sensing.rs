@@ -1,0 +1,110 @@
+//! Counts to displacement: what the converter delivers becomes the rotor's position in the scene's
+//! axes.
+
+use crate::error::ConfigError;
+use crate::real::Real;
+use crate::sample::Sample;
+
+/// Sensor planes.
+pub const PLANES: usize = 2;
+
+/// How counts relate to displacement; the same for all channels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SensingConfig {
+    /// Displacement of one count, m.
+    pub resolution: f32,
+    /// Count at the bearing's centre.
+    pub zero_count: f32,
+    /// Highest count; it and 0 mean that the channel is saturated.
+    pub full_scale: u16,
+    /// Angle from the scene's x axis to each plane's first axis, counter-clockwise, rad.
+    pub mounting_angle: [f32; PLANES],
+}
+
+/// Where the rotor is, by plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Displacement of each plane from the bearing's centre, x right and y up, m; `None` where a
+    /// channel of the plane is missing or saturated.
+    pub planes: [Option<[f32; 2]>; PLANES],
+    /// Bit i is set if fitted channel i delivered no usable value.
+    pub unusable: u8,
+}
+
+impl Reading {
+    /// Mean over the usable planes, m, and how many they are.
+    pub fn mean(&self) -> Option<([f32; 2], u8)> {
+        match self.planes {
+            [Some(a), Some(b)] => Some(([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], 2)),
+            [Some(one), None] | [None, Some(one)] => Some((one, 1)),
+            [None, None] => None,
+        }
+    }
+}
+
+/// Coefficients of the conversion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensing {
+    resolution: f32,
+    zero_count: f32,
+    full_scale: u16,
+    /// Sine and cosine of the mounting angles.
+    rotation: [[f32; 2]; PLANES],
+}
+
+impl Sensing {
+    /// Checks `config` and prepares the conversion.
+    pub fn try_new(config: &SensingConfig) -> Result<Self, ConfigError> {
+        if !config.resolution.is_finite() {
+            return Err(ConfigError::NotFinite("resolution"));
+        }
+        if config.resolution <= 0.0 {
+            return Err(ConfigError::NotPositive("resolution"));
+        }
+        if config.full_scale < 3 {
+            return Err(ConfigError::OutOfRange("full_scale", "3 counts or more"));
+        }
+        if !(config.zero_count > 0.0 && config.zero_count < f32::from(config.full_scale)) {
+            return Err(ConfigError::OutOfRange(
+                "zero_count",
+                "between 0 and full_scale",
+            ));
+        }
+        if config.mounting_angle.iter().any(|angle| !angle.is_finite()) {
+            return Err(ConfigError::NotFinite("mounting_angle"));
+        }
+        Ok(Self {
+            resolution: config.resolution,
+            zero_count: config.zero_count,
+            full_scale: config.full_scale,
+            rotation: config.mounting_angle.map(|angle| {
+                let (sin, cos) = Real::sin_cos(angle);
+                [sin, cos]
+            }),
+        })
+    }
+
+    /// Converts one sample. Channels of `fitted` (one bit each) that are invalid, at 0 or at full
+    /// scale come out as unusable.
+    pub fn convert(&self, sample: &Sample, fitted: u8) -> Reading {
+        let mut reading = Reading::default();
+        let channel = |index: usize| {
+            let count = sample.counts.get(index).copied().unwrap_or(0);
+            let usable = sample.is_valid(index) && count > 0 && count < self.full_scale;
+            usable.then(|| (f32::from(count) - self.zero_count) * self.resolution)
+        };
+        for (plane, [sin, cos]) in self.rotation.into_iter().enumerate() {
+            let (first, second) = (channel(2 * plane), channel(2 * plane + 1));
+            for (index, value) in [(2 * plane, first), (2 * plane + 1, second)] {
+                if value.is_none() {
+                    reading.unusable |= fitted & (1 << index);
+                }
+            }
+            if let (Some(u), Some(v), Some(slot)) = (first, second, reading.planes.get_mut(plane)) {
+                *slot = Some([cos * u - sin * v, sin * u + cos * v]);
+            }
+        }
+        reading
+    }
+}

@@ -1,0 +1,142 @@
+//! The bytes of samples and notices, little-endian, as they pass between desktop and target.
+//!
+//! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
+//! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, and last the one of [`Summary`].
+
+use crate::event::{Event, EventKind, Moment, Notice, Plane};
+use crate::sample::{CHANNELS, Sample};
+
+/// First bytes of a replay file; the last is the version.
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x01";
+/// First bytes of an answer; the last is the version.
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x01";
+/// Bytes of a sample record.
+pub const SAMPLE_BYTES: usize = 16;
+/// Bytes of a notice record.
+pub const NOTICE_BYTES: usize = 32;
+
+const SPIN_PRESENT: u8 = 1 << 4;
+const LEVITATED_PRESENT: u8 = 1 << 5;
+const LEVITATED_ON: u8 = 1 << 6;
+
+/// Sample to bytes: four u16 counts, flags, three zero bytes, spin (f32).
+pub fn encode_sample(sample: &Sample) -> [u8; SAMPLE_BYTES] {
+    let mut bytes = [0; SAMPLE_BYTES];
+    for (pair, count) in bytes.chunks_exact_mut(2).zip(sample.counts) {
+        pair.copy_from_slice(&count.to_le_bytes());
+    }
+    let mut flags = sample.valid & 0x0f;
+    if sample.spin.is_some() {
+        flags |= SPIN_PRESENT;
+    }
+    if let Some(on) = sample.levitated {
+        flags |= LEVITATED_PRESENT | if on { LEVITATED_ON } else { 0 };
+    }
+    bytes[8] = flags;
+    bytes[12..16].copy_from_slice(&sample.spin.unwrap_or(0.0).to_le_bytes());
+    bytes
+}
+
+/// Bytes to sample.
+pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
+    let mut counts = [0; CHANNELS];
+    for (count, pair) in counts.iter_mut().zip(bytes.chunks_exact(2)) {
+        *count = u16::from_le_bytes([pair[0], pair[1]]);
+    }
+    let flags = bytes[8];
+    let spin = f32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]);
+    Sample {
+        counts,
+        valid: flags & 0x0f,
+        spin: (flags & SPIN_PRESENT != 0).then_some(spin),
+        levitated: (flags & LEVITATED_PRESENT != 0).then_some(flags & LEVITATED_ON != 0),
+    }
+}
+
+/// What a whole run adds up to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Samples seen.
+    pub samples: u64,
+    /// Channel values that were unusable.
+    pub faults: u64,
+    /// Fingerprint of the detector's state over all ticks.
+    pub state_hash: u32,
+}
+
+/// A record of an answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Record {
+    /// A notice, as it was given.
+    Notice(Notice),
+    /// The last record.
+    Summary(Summary),
+}
+
+const DECLARED: u8 = 1;
+const CONFIRMED: u8 = 2;
+const WITHDRAWN: u8 = 3;
+const SUMMARY: u8 = 4;
+
+/// Record to bytes: tag, kind, plane, zero, number (u16), two zero bytes, then three 8-byte fields.
+pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
+    let mut bytes = [0; NOTICE_BYTES];
+    let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
+    match *record {
+        Record::Notice(Notice::Declared(event)) => {
+            put(0, &[DECLARED, event.kind as u8, event.plane as u8]);
+            put(4, &event.number.to_le_bytes());
+            put(8, &event.onset.0.to_le_bytes());
+            put(16, &event.declared.to_le_bytes());
+            put(24, &event.normal_speed.to_le_bytes());
+        }
+        Record::Notice(Notice::Confirmed { number, sample }) => {
+            put(0, &[CONFIRMED]);
+            put(4, &number.to_le_bytes());
+            put(16, &sample.to_le_bytes());
+        }
+        Record::Notice(Notice::Withdrawn { number, sample }) => {
+            put(0, &[WITHDRAWN]);
+            put(4, &number.to_le_bytes());
+            put(16, &sample.to_le_bytes());
+        }
+        Record::Summary(summary) => {
+            put(0, &[SUMMARY]);
+            put(8, &summary.samples.to_le_bytes());
+            put(16, &summary.faults.to_le_bytes());
+            put(24, &summary.state_hash.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+/// Bytes to record; `None` for an unknown tag, kind or plane.
+pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
+    let eight = |at: usize| {
+        let mut field = [0; 8];
+        field.copy_from_slice(&bytes[at..at + 8]);
+        field
+    };
+    let four = [bytes[24], bytes[25], bytes[26], bytes[27]];
+    let number = u16::from_le_bytes([bytes[4], bytes[5]]);
+    let sample = u64::from_le_bytes(eight(16));
+    Some(match bytes[0] {
+        DECLARED => Record::Notice(Notice::Declared(Event {
+            number,
+            kind: *EventKind::ALL.get(usize::from(bytes[1]))?,
+            onset: Moment(i64::from_le_bytes(eight(8))),
+            declared: sample,
+            plane: *[Plane::A, Plane::B, Plane::Both].get(usize::from(bytes[2]))?,
+            normal_speed: f32::from_le_bytes(four),
+        })),
+        CONFIRMED => Record::Notice(Notice::Confirmed { number, sample }),
+        WITHDRAWN => Record::Notice(Notice::Withdrawn { number, sample }),
+        SUMMARY => Record::Summary(Summary {
+            samples: u64::from_le_bytes(eight(8)),
+            faults: sample,
+            state_hash: u32::from_le_bytes(four),
+        }),
+        _ => return None,
+    })
+}
