@@ -2,7 +2,7 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
 
-use crate::detect::DetectorConfig;
+use crate::detect::{Detector, DetectorConfig, DetectorState, Phase};
 use crate::error::ConfigError;
 use crate::event::Notices;
 use crate::sample::Sample;
@@ -26,6 +26,7 @@ pub struct MonitorConfig {
 pub struct Monitor {
     fitted: u8,
     sensing: Sensing,
+    detector: Detector,
 }
 
 /// What the tick carries from sample to sample.
@@ -33,6 +34,7 @@ pub struct Monitor {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
+    detector: DetectorState,
 }
 
 impl Monitor {
@@ -41,6 +43,7 @@ impl Monitor {
         Ok(Self {
             fitted: config.fitted,
             sensing: Sensing::try_new(&config.sensing)?,
+            detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
         })
     }
 
@@ -54,7 +57,15 @@ impl Monitor {
         let reading = self.sensing.convert(sample, self.fitted);
         state.samples += 1;
         state.faults += u64::from(reading.unusable.count_ones());
-        Notices::new()
+        let mut notices = Notices::new();
+        self.detector.update(
+            &mut state.detector,
+            &reading,
+            sample.spin,
+            sample.levitated,
+            &mut notices,
+        );
+        notices
     }
 }
 
@@ -67,6 +78,16 @@ impl MonitorState {
     /// Channel values that were unusable.
     pub fn faults(&self) -> u64 {
         self.faults
+    }
+
+    /// The present phase.
+    pub fn phase(&self) -> Phase {
+        self.detector.phase()
+    }
+
+    /// Whether noise and position have been learnt.
+    pub fn is_armed(&self) -> bool {
+        self.detector.is_armed()
     }
 }
 
@@ -88,6 +109,9 @@ impl Fingerprint {
     pub fn take(&mut self, state: &MonitorState) {
         self.0.update(&state.samples.to_le_bytes());
         self.0.update(&state.faults.to_le_bytes());
+        state
+            .detector
+            .fingerprint(|word| self.0.update(&word.to_le_bytes()));
     }
 
     /// What the run added up to.

@@ -1,5 +1,8 @@
 //! What the detector must be told, and every threshold.
 
+use crate::error::ConfigError;
+use crate::scales::{not_negative, positive};
+
 /// The machine, as far as the detector needs it; SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -21,18 +24,51 @@ pub struct MachineConfig {
     pub spin: f32,
 }
 
-/// Thresholds and times; the defaults suit the rig of the source paper.
+/// Thresholds and times, SI; `docs/detector.md` derives each. The defaults suit the rig of the source
+/// paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Tuning {
-    /// Probability that one sample of quiet levitation declares something.
+    /// Probability that one sample of quiet levitation declares something, 1e-15 to 0.01. Every
+    /// likelihood ratio is compared with the logarithm of its inverse.
     pub false_alarm: f32,
+    /// Levitated time that noise and position are learnt from before the monitor is armed, s.
+    pub arming_time: f32,
+    /// Longest fall that is searched for, s. A fall is found after about
+    /// (20 d^2 sigma^2/(g^2 rate))^(1/5), 1.5 ms at 3 um and 10 kHz.
+    pub release_horizon: f32,
+    /// Longest time since a velocity jump that is searched for, s.
+    pub impact_horizon: f32,
+    /// Way from the levitated position beyond which no caught disturbance goes, m: confirms a fall.
+    pub confirm_travel: f32,
+    /// Time back within noise that withdraws a declared fall, s.
+    pub catch_time: f32,
+    /// How far the retainer's wall may seem from its nominal place, m: offset and gain error of the
+    /// sensors.
+    pub wall_tolerance: f32,
+    /// Acceleration that the equations of flight may be wrong by, m/s^2.
+    pub flight_error: f32,
+    /// Acceleration that the equations of contact may be wrong by, m/s^2.
+    pub contact_error: f32,
+    /// Time without motion that counts as levitated again or at rest, s.
+    pub still_time: f32,
 }
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { false_alarm: 1e-11 }
+        Self {
+            false_alarm: 1e-11,
+            arming_time: 0.1,
+            release_horizon: 4e-3,
+            impact_horizon: 1.5e-3,
+            confirm_travel: 5e-5,
+            catch_time: 5e-3,
+            wall_tolerance: 2e-5,
+            flight_error: 0.1,
+            contact_error: 0.15,
+            still_time: 0.05,
+        }
     }
 }
 
@@ -46,4 +82,75 @@ pub struct DetectorConfig {
     pub machine: MachineConfig,
     /// Thresholds and times.
     pub tuning: Tuning,
+}
+
+impl DetectorConfig {
+    /// Names the first parameter that breaks its rule.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        positive("sample_rate", self.sample_rate)?;
+        if !(100.0..=200_000.0).contains(&self.sample_rate) {
+            return Err(ConfigError::OutOfRange("sample_rate", "100 to 200 000 Hz"));
+        }
+        self.machine.validate()?;
+        self.tuning.validate()?;
+        if self.tuning.wall_tolerance >= self.machine.clearance {
+            return Err(ConfigError::Inconsistent(
+                "wall_tolerance",
+                "must be below the clearance",
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl MachineConfig {
+    fn validate(&self) -> Result<(), ConfigError> {
+        positive("clearance", self.clearance)?;
+        not_negative("gravity", self.gravity)?;
+        positive("rotor_radius", self.rotor_radius)?;
+        positive("inertia_ratio", self.inertia_ratio)?;
+        not_negative("friction", self.friction)?;
+        not_negative("restitution", self.restitution)?;
+        if self.restitution > 1.0 {
+            return Err(ConfigError::OutOfRange("restitution", "0 to 1"));
+        }
+        if !self.spin.is_finite() {
+            return Err(ConfigError::NotFinite("spin"));
+        }
+        Ok(())
+    }
+}
+
+impl Tuning {
+    fn validate(&self) -> Result<(), ConfigError> {
+        positive("false_alarm", self.false_alarm)?;
+        if !(1e-15..=0.01).contains(&self.false_alarm) {
+            return Err(ConfigError::OutOfRange("false_alarm", "1e-15 to 0.01"));
+        }
+        for (name, value) in [
+            ("arming_time", self.arming_time),
+            ("release_horizon", self.release_horizon),
+            ("impact_horizon", self.impact_horizon),
+            ("confirm_travel", self.confirm_travel),
+            ("catch_time", self.catch_time),
+            ("wall_tolerance", self.wall_tolerance),
+            ("flight_error", self.flight_error),
+            ("contact_error", self.contact_error),
+            ("still_time", self.still_time),
+        ] {
+            positive(name, value)?;
+        }
+        for (name, value) in [
+            ("arming_time", self.arming_time),
+            ("release_horizon", self.release_horizon),
+            ("impact_horizon", self.impact_horizon),
+            ("catch_time", self.catch_time),
+            ("still_time", self.still_time),
+        ] {
+            if value > 10.0 {
+                return Err(ConfigError::OutOfRange(name, "10 s or less"));
+            }
+        }
+        Ok(())
+    }
 }

@@ -82,10 +82,10 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize) -> [R; DEGREE] {
             reach(c, degree, low)
         };
         let (at_low, at_high) = (evaluate(c, low).0, evaluate(c, high).0);
-        if (at_low < R::ZERO && at_high > R::ZERO) || (at_low > R::ZERO && at_high < R::ZERO) {
-            if let Some(slot) = slots.next() {
-                *slot = bracketed(c, low, high, low + (high - low) * R::HALF);
-            }
+        let changes =
+            (at_low < R::ZERO && at_high > R::ZERO) || (at_low > R::ZERO && at_high < R::ZERO);
+        if changes && let Some(slot) = slots.next() {
+            *slot = bracketed(c, low, high, low + (high - low) * R::HALF);
         }
         if !turn.is_finite() {
             break;

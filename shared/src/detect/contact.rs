@@ -1,0 +1,247 @@
+//! On the wall: slides or rolls, swings, whirls, rests, lifts off.
+
+use core::f32::consts::TAU;
+
+use crate::detect::config::{DetectorConfig, MachineConfig};
+use crate::detect::flight::{Fix, direction};
+use crate::detect::lift_off::LiftOff;
+use crate::detect::still::Still;
+use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+
+/// Slip, m/s, that a speed sensor resolves.
+const SLIP_RESOLUTION: f32 = 0.02;
+/// Way back from the last turning point, in standard deviations of the position, that makes a swing.
+const CLEAR_SWING: f32 = 12.0;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactTest {
+    filter: WallFilter,
+    machine: MachineConfig,
+    period: f32,
+    threshold: f32,
+    still_samples: u32,
+}
+
+/// Sliding or rolling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sliding,
+    Rolling,
+}
+
+/// What the contact is known to have become.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Regime {
+    #[default]
+    Unknown,
+    Rest,
+    Pendulum,
+    ForwardWhirl,
+    BackwardWhirl,
+}
+
+/// A contact under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Touching {
+    /// Angle and rate.
+    pub(crate) track: WallTrack,
+    lift: LiftOff,
+    still: Still,
+    /// Sliding or rolling, once known.
+    pub(crate) kind: Option<Kind>,
+    regime: Regime,
+    /// Samples since the contact began.
+    age: u32,
+    /// Farthest angle turned in the present direction, rad, samples since, and the direction.
+    turning: Turning,
+    /// Slip that friction cannot have used up yet, m/s.
+    slip_left: f32,
+    slow: u32,
+}
+
+/// The last turning point of a swing.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turning {
+    angle: f32,
+    age: u32,
+    direction: f32,
+}
+
+impl Turning {
+    /// Follows the angle (rad); true where it has come back by `clear` from a turning point.
+    fn take(&mut self, angle: f32, clear: f32) -> bool {
+        self.age = self.age.saturating_add(1);
+        if self.direction == 0.0 {
+            if (angle - self.angle).abs() > clear {
+                self.direction = angle - self.angle;
+                self.angle = angle;
+                self.age = 0;
+            }
+            return false;
+        }
+        if (angle - self.angle) * self.direction >= 0.0 {
+            self.angle = angle;
+            self.age = 0;
+            return false;
+        }
+        (angle - self.angle).abs() > clear
+    }
+}
+
+/// What a sample showed. Ages in samples.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Finding {
+    Kind(Kind, f32),
+    Regime(Regime, f32),
+    LiftOff(f32),
+}
+
+/// What a tick can find in a contact: kind and regime are told apart.
+pub(crate) type Findings = [Option<Finding>; 2];
+
+impl ContactTest {
+    pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
+        Self {
+            filter: WallFilter::new(&config.machine, &config.tuning, config.sample_rate),
+            machine: config.machine,
+            period: 1.0 / config.sample_rate,
+            threshold,
+            still_samples: (config.tuning.still_time * config.sample_rate).max(16.0) as u32,
+        }
+    }
+
+    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`; `slip_left` is
+    /// the slip (m/s) that is certainly left.
+    pub(crate) fn start(
+        &self,
+        fix: &Fix,
+        velocity: [f32; 2],
+        spread: f32,
+        age: f32,
+        slip_left: f32,
+    ) -> Touching {
+        let (outward, radius) = direction(fix.position);
+        let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
+        Touching {
+            track: self.filter.start(outward, speed, spread),
+            lift: LiftOff::new(radius),
+            age: age as u32,
+            slip_left,
+            ..Touching::default()
+        }
+    }
+
+    /// Takes the next sample, or its absence, and the spin (rad/s) where measured.
+    pub(crate) fn take(
+        &self,
+        state: &mut Touching,
+        fix: Option<&Fix>,
+        spin: Option<f32>,
+    ) -> Findings {
+        state.age = state.age.saturating_add(1);
+        let rate = state.swing().rate;
+        let surface = self.machine.rotor_radius * spin.unwrap_or(self.machine.spin);
+        let slip = surface + rate * self.machine.clearance;
+        let sample = fix.map(|fix| (fix.position, fix.variance));
+        self.filter.take(&mut state.track, sample, slip);
+        if let Some(age) = fix.and_then(|fix| self.lift_off(state, fix)) {
+            return [Some(Finding::LiftOff(age)), None];
+        }
+        let kind = self.kind(state, spin.map(|_| slip));
+        let on_wall = fix.filter(|_| state.lift.is_at_wall());
+        let regime = on_wall.and_then(|fix| self.regime(state, fix, surface));
+        [kind, regime]
+    }
+
+    fn lift_off(&self, state: &mut Touching, fix: &Fix) -> Option<f32> {
+        let (_, radius) = direction(fix.position);
+        state.lift.take(radius, fix.variance, self.threshold)
+    }
+
+    fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
+        let swing = state.swing();
+        let pressing =
+            self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos;
+        let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
+        state.slip_left -= per_impulse * pressing.max(0.0) * self.period;
+        let (found, age) = match slip {
+            Some(slip) if slip.abs() > SLIP_RESOLUTION => {
+                state.slow = 0;
+                (Some(Kind::Sliding), 0.0)
+            }
+            Some(_) => {
+                state.slow = state.slow.saturating_add(1);
+                let long = state.slow > self.still_samples / 10;
+                (long.then_some(Kind::Rolling), state.slow as f32)
+            }
+            None if state.slip_left > 0.0 => (Some(Kind::Sliding), 0.0),
+            None => self.by_likelihood(state),
+        };
+        let found = found.filter(|kind| state.kind != Some(*kind))?;
+        // The first verdict dates from the start of the contact.
+        let age = if state.kind.is_none() {
+            state.age as f32
+        } else {
+            age
+        };
+        state.kind = Some(found);
+        state.track.for_rolling = Evidence::default();
+        state.track.for_sliding = Evidence::default();
+        Some(Finding::Kind(found, age))
+    }
+
+    fn by_likelihood(&self, state: &Touching) -> (Option<Kind>, f32) {
+        let rolling = &state.track.for_rolling;
+        let sliding = &state.track.for_sliding;
+        // Where nothing moves enough to tell, and no slip is certain: what is likelier.
+        let settle = state.kind.is_none() && state.age > self.still_samples;
+        if rolling.sum > self.threshold || settle && rolling.sum >= sliding.sum {
+            (Some(Kind::Rolling), rolling.age as f32)
+        } else if sliding.sum > self.threshold || settle {
+            (Some(Kind::Sliding), sliding.age as f32)
+        } else {
+            (None, 0.0)
+        }
+    }
+
+    fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32) -> Option<Finding> {
+        let swing = *state.swing();
+        let block = state.still.take(fix.position, self.still_samples);
+        let clear = CLEAR_SWING * libm::sqrtf(fix.variance) / self.machine.clearance;
+        let turned_back = state.turning.take(swing.turned, clear);
+        let (found, age) = if swing.turned.abs() >= TAU {
+            let with_spin = swing.turned * surface >= 0.0;
+            let whirl = if with_spin {
+                Regime::ForwardWhirl
+            } else {
+                Regime::BackwardWhirl
+            };
+            (whirl, state.age as f32)
+        } else if turned_back {
+            (Regime::Pendulum, state.turning.age as f32)
+        } else if block
+            .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)
+        {
+            (Regime::Rest, self.still_samples as f32)
+        } else {
+            return None;
+        };
+        if found == state.regime {
+            return None;
+        }
+        state.regime = found;
+        Some(Finding::Regime(found, age))
+    }
+}
+
+impl Touching {
+    /// The estimate of the likelier hypothesis.
+    pub(crate) fn swing(&self) -> &Swing {
+        if self.kind == Some(Kind::Rolling) {
+            &self.track.roll
+        } else {
+            &self.track.slide
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
+
+use crate::detect::config::{DetectorConfig, MachineConfig};
+use crate::detect::jump::{Jump, JumpBank, JumpTest};
+use crate::detect::series::{Bounce, Series};
+use crate::detect::track::{Ballistic, Track};
+
+/// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
+const UNKNOWN_SPEED: f32 = 0.3;
+/// Time after the foreseen end of a series in which a missed impact would still show, s.
+const SERIES_MARGIN: f32 = 5e-4;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlightTest {
+    ballistic: Ballistic,
+    jumps: JumpTest,
+    machine: MachineConfig,
+    period: f32,
+    threshold: f32,
+    /// Radius from which on the wall is near, m.
+    near: f32,
+    /// Samples near the wall, without impact, that no bounce of that height lasts.
+    dwell: u32,
+}
+
+/// A flight under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Airborne {
+    /// Position and velocity.
+    pub(crate) track: Track,
+    bank: JumpBank,
+    /// The impacts so far.
+    pub(crate) series: Series,
+    near_wall: u32,
+}
+
+/// What a sample showed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Landing {
+    /// An impact, `age` samples ago.
+    Impact {
+        /// Samples.
+        age: f32,
+        /// Speed into the wall, m/s.
+        normal_speed: f32,
+    },
+    /// Permanent contact since `age` samples.
+    Contact {
+        /// Samples.
+        age: f32,
+    },
+}
+
+/// A position as the sensors give it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fix {
+    /// s since the first sample.
+    pub(crate) time: f64,
+    /// m.
+    pub(crate) position: [f32; 2],
+    /// Of one axis, m^2.
+    pub(crate) variance: f32,
+}
+
+impl FlightTest {
+    pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
+        let (machine, tuning) = (config.machine, &config.tuning);
+        // A bounce of height h lasts 2 sqrt(2 h/g); twice that, so that one that has just begun ends.
+        let slowest = machine.gravity.max(1.0);
+        let longest_bounce = 2.0 * libm::sqrtf(2.0 * tuning.wall_tolerance / slowest);
+        Self {
+            ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
+            jumps: JumpTest::new(tuning, config.sample_rate, threshold),
+            machine,
+            period: 1.0 / config.sample_rate,
+            threshold,
+            near: machine.clearance - tuning.wall_tolerance,
+            dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
+        }
+    }
+
+    /// A flight from `position` (m) with unknown velocity.
+    pub(crate) fn start(&self, fix: &Fix) -> Airborne {
+        Airborne {
+            track: Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED),
+            ..Airborne::default()
+        }
+    }
+
+    /// To the next sample without a usable position.
+    pub(crate) fn skip(&self, flight: &mut Airborne) {
+        self.ballistic.predict(&mut flight.track);
+    }
+
+    /// Takes the next sample.
+    pub(crate) fn take(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+        self.ballistic.predict(&mut flight.track);
+        let innovation = self
+            .ballistic
+            .correct(&mut flight.track, fix.position, fix.variance);
+        let (outward, _) = direction(flight.track.position);
+        let inward = outward.map(|n| -n);
+        let jump = self.jumps.take(&mut flight.bank, &innovation, inward);
+        if let Some(jump) = jump {
+            let impact = self.judge(flight, &jump, fix);
+            flight.track.shift(jump.change, jump.effect, jump.variance);
+            flight.bank = JumpBank::default();
+            if let Some((bounce, launch_speed)) = impact {
+                flight.series.take(bounce, launch_speed, &self.machine);
+                flight.near_wall = 0;
+                return Some(Landing::Impact {
+                    age: jump.age,
+                    normal_speed: bounce.normal_speed,
+                });
+            }
+        }
+        self.contact(flight, fix)
+    }
+
+    /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
+    /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
+    /// it finds after the time t in which a fall is found, as a jump of pressing times t.
+    fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<(Bounce, f32)> {
+        let since = jump.age * self.period;
+        let mut after = flight.track;
+        after.shift(jump.change, jump.effect, 0.0);
+        let (outward, radius) = direction(self.ballistic.position_before(&after, since));
+        let [u, v] = self.ballistic.velocity_before(&after, since);
+        let before = [u - jump.change[0], v - jump.change[1]];
+        let normal_speed = before[0] * outward[0] + before[1] * outward[1];
+        let along = v * outward[0] - u * outward[1];
+        let bounce = Bounce {
+            time: fix.time - f64::from(since),
+            normal_speed,
+            outward,
+            pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
+        };
+        if radius < self.near || normal_speed <= self.faintest(bounce.pressing, fix.variance) {
+            return None;
+        }
+        let launch_speed = flight.series.last().map_or(0.0, |last| {
+            let flown = (bounce.time - last.time) as f32;
+            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
+            -(u * last.outward[0] + v * last.outward[1])
+        });
+        Some((bounce, launch_speed))
+    }
+
+    /// Speed below which an impact cannot be told from lying on the wall, m/s.
+    fn faintest(&self, pressing: f32, variance: f32) -> f32 {
+        let a = pressing.max(0.1 * self.machine.gravity);
+        if a <= 0.0 {
+            return 0.0;
+        }
+        let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
+        a * libm::powf(fifth, 0.2)
+    }
+
+    fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+        let (_, radius) = direction(flight.track.position);
+        if radius < self.near {
+            flight.near_wall = 0;
+            return None;
+        }
+        flight.near_wall += 1;
+        let age = |since: f64| ((fix.time - since) as f32 / self.period).max(0.0);
+        if let Some(end) = flight.series.end(&self.machine) {
+            let over = fix.time >= end + f64::from(SERIES_MARGIN);
+            return over.then(|| Landing::Contact { age: age(end) });
+        }
+        (flight.near_wall > self.dwell).then_some(Landing::Contact {
+            age: flight.near_wall as f32,
+        })
+    }
+}
+
+/// Unit vector from the centre and distance, m.
+pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
+    let radius = libm::sqrtf(x * x + y * y);
+    if radius > 0.0 {
+        ([x / radius, y / radius], radius)
+    } else {
+        ([0.0, -1.0], 0.0)
+    }
+}

@@ -1,0 +1,77 @@
+//! The end of a permanent contact: a CUSUM on the distance from the wall.
+
+/// Steps of the wall's learnt place, samples.
+const MEMORY: f32 = 256.0;
+/// Distance that the test is tuned to, in standard deviations: above what noise and the waves of a
+/// sensor's error do, below what a flight soon reaches.
+const SHIFT: f32 = 4.0;
+
+/// The test.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LiftOff {
+    /// Radius at which the wall seems to be, m.
+    pub(crate) wall: f32,
+    count: u16,
+    sum: f32,
+    age: u16,
+}
+
+impl LiftOff {
+    /// Contact at a radius of about `wall`, m.
+    pub(crate) fn new(wall: f32) -> Self {
+        Self {
+            wall,
+            ..Self::default()
+        }
+    }
+
+    /// Whether the last sample was at the wall.
+    pub(crate) fn is_at_wall(&self) -> bool {
+        self.age == 0
+    }
+
+    /// Takes the distance from the centre (m), known to `variance` (m^2). Where the rotor has left the
+    /// wall: samples since.
+    pub(crate) fn take(&mut self, radius: f32, variance: f32, threshold: f32) -> Option<f32> {
+        let sigma = libm::sqrtf(variance);
+        let inward = (self.wall - radius) / sigma;
+        self.sum = (self.sum + SHIFT * (inward - 0.5 * SHIFT)).max(0.0);
+        if self.sum <= 0.0 {
+            self.age = 0;
+            self.count = self.count.saturating_add(1);
+            let gain = 1.0 / f32::from(self.count).min(MEMORY);
+            self.wall += gain * (radius - self.wall);
+            return None;
+        }
+        self.age = self.age.saturating_add(1);
+        if self.sum <= threshold {
+            return None;
+        }
+        // The gap grows with the third power of time: where it crossed half the shift tells when it
+        // began.
+        let crossed = libm::cbrtf((0.5 * SHIFT / inward).clamp(0.0, 0.9));
+        Some(f32::from(self.age) / (1.0 - crossed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flight_is_found_and_dated() {
+        let mut test = LiftOff::new(300e-6);
+        for k in 0..1_000 {
+            let noise = if k % 2 == 0 { 1e-6 } else { -1e-6 };
+            assert_eq!(test.take(300e-6 + noise, 1e-12, 25.0), None);
+        }
+        // 20 um after 40 samples, growing with the cube.
+        let found = (1..200).find_map(|k| {
+            let gap = 20e-6 * (k as f32 / 40.0).powi(3);
+            test.take(300e-6 - gap, 1e-12, 25.0)
+                .map(|age| (k as f32, age))
+        });
+        let (now, age) = found.expect("found");
+        assert!(now < 40.0 && (now - age).abs() < 8.0, "{now} {age}");
+    }
+}
