@@ -1,7 +1,7 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
 use crate::detect::config::{DetectorConfig, MachineConfig};
-use crate::detect::jump::{Jump, JumpBank, JumpTest};
+use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 
@@ -100,8 +100,14 @@ impl FlightTest {
             .ballistic
             .correct(&mut flight.track, fix.position, fix.variance);
         let (outward, _) = direction(flight.track.position);
-        let inward = outward.map(|n| -n);
-        let jump = self.jumps.take(&mut flight.bank, &innovation, inward);
+        let [u, v] = flight.track.velocity;
+        let approach = Approach {
+            outward,
+            speed: u * outward[0] + v * outward[1],
+            pull: -self.machine.gravity * outward[1],
+            restitution: flight.series.restitution(&self.machine),
+        };
+        let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, fix);
             flight.track.shift(jump.change, jump.effect, jump.variance);
@@ -164,10 +170,18 @@ impl FlightTest {
             return None;
         }
         flight.near_wall += 1;
-        let age = |since: f64| ((fix.time - since) as f32 / self.period).max(0.0);
+        let at_wall = flight.near_wall as f32 * self.period;
         if let Some(end) = flight.series.end(&self.machine) {
-            let over = fix.time >= end + f64::from(SERIES_MARGIN);
-            return over.then(|| Landing::Contact { age: age(end) });
+            let over = (fix.time - end) as f32;
+            if over < SERIES_MARGIN {
+                return None;
+            }
+            // A rotor that left the wall after the foreseen end has refuted it.
+            if at_wall >= over {
+                return Some(Landing::Contact {
+                    age: over / self.period,
+                });
+            }
         }
         (flight.near_wall > self.dwell).then_some(Landing::Contact {
             age: flight.near_wall as f32,

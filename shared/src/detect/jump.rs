@@ -51,6 +51,24 @@ pub(crate) struct Jump {
     pub(crate) effect: [f32; 2],
 }
 
+/// What an impact now would be like, along the outward normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// Outward unit vector.
+    pub(crate) outward: [f32; 2],
+    /// Outward velocity, m/s.
+    pub(crate) speed: f32,
+    /// Outward acceleration of the flight, m/s^2.
+    pub(crate) pull: f32,
+    /// Of the impact.
+    pub(crate) restitution: f32,
+}
+
+/// Part by which a jump may differ from restitution's.
+const JUMP_SPREAD: f32 = 0.2;
+/// Part of the speed into the wall that every impact takes off, for all that noise does.
+const STOPPED: f32 = 0.8;
+
 impl JumpTest {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, threshold: f32) -> Self {
         let horizon = tuning.impact_horizon * sample_rate;
@@ -61,14 +79,14 @@ impl JumpTest {
         }
     }
 
-    /// Takes the innovation of a sample; `inward` is the direction (unit vector) that a jump at the
-    /// wall has.
+    /// Takes the innovation of a sample.
     pub(crate) fn take(
         &self,
         bank: &mut JumpBank,
         innovation: &Innovation,
-        inward: [f32; 2],
+        approach: &Approach,
     ) -> Option<Jump> {
+        let inward = approach.outward.map(|n| -n);
         if bank.wait == 0 {
             bank.wait = self.stride;
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
@@ -84,11 +102,8 @@ impl JumpTest {
         bank.wait -= 1;
         let [rx, ry] = innovation.residual;
         let weight = 1.0 / innovation.variance;
-        let mut best: Option<(f32, usize)> = None;
-        for (index, candidate) in bank.candidates.iter_mut().enumerate() {
-            if !candidate.used {
-                continue;
-            }
+        bank.statistic = 0.0;
+        for candidate in bank.candidates.iter_mut().filter(|c| c.used) {
             candidate.age = candidate.age.saturating_add(1);
             candidate.effect[0] += self.period * candidate.effect[1];
             let seen = candidate.effect[0];
@@ -97,14 +112,42 @@ impl JumpTest {
             candidate.sum[1] += seen * ry * weight;
             candidate.effect[0] -= innovation.gain[0] * seen;
             candidate.effect[1] -= innovation.gain[1] * seen;
+            bank.statistic = bank.statistic.max(candidate.statistic(inward));
+        }
+        if bank.statistic <= self.threshold {
+            return None;
+        }
+        let index = self.likeliest(bank, approach, inward)?;
+        Some(self.jump(bank, index, inward))
+    }
+
+    /// The likeliest instant. Just after an impact a small jump long ago explains the first sample as
+    /// well as a large one now; what restitution makes of the speed into the wall decides. A jump that
+    /// does not even stop the rotor at the wall waits for another sample, unless it is past doubt.
+    fn likeliest(&self, bank: &JumpBank, approach: &Approach, inward: [f32; 2]) -> Option<usize> {
+        let past_doubt = bank.statistic > 2.0 * self.threshold;
+        let mut best = (f32::NEG_INFINITY, None);
+        for (index, candidate) in bank.candidates.iter().enumerate() {
             let statistic = candidate.statistic(inward);
-            if best.is_none_or(|(most, _)| statistic > most) {
-                best = Some((statistic, index));
+            if statistic <= 0.5 * bank.statistic {
+                continue;
+            }
+            let scale = 1.0 / candidate.information;
+            let along = (candidate.sum[0] * inward[0] + candidate.sum[1] * inward[1]) * scale;
+            let time = f32::from(candidate.age) * self.period;
+            let speed = approach.speed + (1.0 - candidate.effect[1]) * along - approach.pull * time;
+            if along < STOPPED * speed && !past_doubt {
+                continue;
+            }
+            let expected = (1.0 + approach.restitution) * speed.max(0.0);
+            let spread = JUMP_SPREAD * expected;
+            let off = along - expected;
+            let value = statistic - 0.5 * off * off / (scale + spread * spread);
+            if value > best.0 {
+                best = (value, Some(index));
             }
         }
-        let (statistic, index) = best?;
-        bank.statistic = statistic;
-        (statistic > self.threshold).then(|| self.jump(bank, index, inward))
+        best.1
     }
 
     fn jump(&self, bank: &JumpBank, index: usize, inward: [f32; 2]) -> Jump {

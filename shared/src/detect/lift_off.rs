@@ -49,7 +49,7 @@ impl LiftOff {
         }
         // The gap grows with the third power of time: where it crossed half the shift tells when it
         // began.
-        let crossed = libm::cbrtf((0.5 * SHIFT / inward).clamp(0.0, 0.9));
+        let crossed = libm::cbrtf((0.5 * SHIFT / inward).clamp(0.0, 0.75));
         Some(f32::from(self.age) / (1.0 - crossed))
     }
 }
