@@ -6,6 +6,10 @@ const MEMORY: f32 = 256.0;
 /// sensor's error do, below what a flight soon reaches.
 const SHIFT: f32 = 4.0;
 
+/// Part of the way from lift-off to detection at which the crossing is placed at the latest: nearer to
+/// detection the samples since say nothing of when it began.
+const LATEST_CROSSING: f32 = 0.75;
+
 /// The test.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LiftOff {
@@ -49,7 +53,7 @@ impl LiftOff {
         }
         // The gap grows with the third power of time: where it crossed half the shift tells when it
         // began.
-        let crossed = libm::cbrtf((0.5 * SHIFT / inward).clamp(0.0, 0.75));
+        let crossed = libm::cbrtf((0.5 * SHIFT / inward).max(0.0)).min(LATEST_CROSSING);
         Some(f32::from(self.age) / (1.0 - crossed))
     }
 }
