@@ -7,20 +7,20 @@ use crate::scales::{not_negative, positive};
 
 /// What the laws depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LawConfig<R> {
+pub(crate) struct LawConfig<R> {
     /// Coefficient of friction, 0 or more.
-    pub friction: R,
+    pub(crate) friction: R,
     /// Restitution, 0 to 1.
-    pub restitution: R,
+    pub(crate) restitution: R,
     /// Polar inertia over mass times radius squared; 1/2 for a solid cylinder.
-    pub inertia_ratio: R,
+    pub(crate) inertia_ratio: R,
     /// Whether there is gravity.
-    pub gravity: bool,
+    pub(crate) gravity: bool,
 }
 
 /// The laws' coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Law<R> {
+pub(crate) struct Law<R> {
     pub(crate) friction: R,
     pub(crate) restitution: R,
     pub(crate) inertia_ratio: R,
@@ -30,18 +30,18 @@ pub struct Law<R> {
 
 /// What an impact leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Collision<R> {
+pub(crate) struct Collision<R> {
     /// Speed away from the wall.
-    pub launch_speed: R,
+    pub(crate) launch_speed: R,
     /// Velocity along the wall.
-    pub tangential: R,
+    pub(crate) tangential: R,
     /// Whether friction stopped the slip.
-    pub stuck: bool,
+    pub(crate) stuck: bool,
 }
 
 impl<R: Real> Law<R> {
     /// Checks `config`.
-    pub fn try_new(config: &LawConfig<R>) -> Result<Self, ConfigError> {
+    pub(crate) fn try_new(config: &LawConfig<R>) -> Result<Self, ConfigError> {
         not_negative("friction", config.friction)?;
         not_negative("restitution", config.restitution)?;
         if config.restitution > R::ONE {

@@ -8,14 +8,20 @@
 mod clock;
 mod contact;
 mod flight;
+mod follow;
+mod kinematics;
 mod law;
 mod polynomial;
 mod precision;
 mod rigid;
+mod start;
+mod state;
 mod sum;
 mod whirl;
 
 pub use clock::Instant;
-pub use law::{Collision, Law, LawConfig};
+pub use kinematics::{Change, Happening, Kinematics, Touch};
 pub use precision::Precision;
-pub use rigid::{Change, Happening, Kinematics, Rigid, RigidConfig, RigidState, Start, Touch};
+pub use rigid::{Rigid, RigidConfig};
+pub use start::Start;
+pub use state::RigidState;

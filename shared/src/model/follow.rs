@@ -1,0 +1,254 @@
+//! From change to change: what ends a motion, and what follows it.
+
+use crate::model::clock::Instant;
+use crate::model::contact::{Contact, Ending, Mode, WallState};
+use crate::model::flight::{Flight, Landing};
+use crate::model::kinematics::{Change, Happening, Kinematics, Touch};
+use crate::model::law::Law;
+use crate::model::precision::Precision;
+use crate::model::rigid::Rigid;
+use crate::model::state::{Motion, RigidState};
+use crate::model::whirl::whirl;
+
+/// Most changes of motion followed in one step; beyond it a bounce series is ended by its limit and
+/// whirl goes on by its mean. Chosen, because a whole series at restitution 0.95 fits in.
+const CHANGES_PER_STEP: u32 = 512;
+/// Longest rest of a bounce series, in units of T, that is summed in closed form.
+const LONGEST_REST: f64 = 1e-2;
+
+impl<R: Precision> Rigid<R> {
+    /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
+    pub fn step(&self, state: &mut RigidState<R>, sink: impl FnMut(Happening<R>)) {
+        let next = state.now.tick + 1;
+        self.advance(state, Instant::at_tick(next), sink);
+    }
+
+    /// Goes to `to`, which is not before now. As bounded as a step: over more than a step or two,
+    /// the bound on changes can shorten a dense series.
+    pub fn advance(
+        &self,
+        state: &mut RigidState<R>,
+        to: Instant<R>,
+        mut sink: impl FnMut(Happening<R>),
+    ) {
+        state.now = to;
+        self.follow(state, &mut sink);
+    }
+
+    pub(crate) fn follow(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {
+        // A few more than counted, so that a shortened series still settles into contact.
+        for change in 0..CHANGES_PER_STEP + 4 {
+            if !state.ends.is_reached_at(state.now) {
+                return;
+            }
+            let hurry = change >= CHANGES_PER_STEP;
+            if change == CHANGES_PER_STEP {
+                state.shortened = state.shortened.saturating_add(1);
+            }
+            match state.motion {
+                Motion::Flight { flight, to } => self.impact(state, &flight, to, hurry, sink),
+                Motion::Settling { onto, stuck } => {
+                    state.begun = state.ends;
+                    self.enter_contact(state, onto, stuck, sink);
+                }
+                Motion::Contact(contact) if hurry => self.hurry_on(state, &contact, sink),
+                Motion::Contact(contact) => self.end_of_stretch(state, &contact, sink),
+            }
+        }
+    }
+
+    fn impact(
+        &self,
+        state: &mut RigidState<R>,
+        flight: &Flight<R>,
+        Landing { after, normal }: Landing<R>,
+        hurry: bool,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let law = &self.law;
+        let (position, velocity) = flight.at(after, law);
+        let [x, y] = position;
+        let distance = (x * x + y * y).sqrt();
+        let (sin, cos) = (x / distance, -y / distance);
+        let tangential = velocity[0] * cos + velocity[1] * sin;
+        let pressing = |tangential: R| tangential * tangential + law.gravity * cos;
+        state.begun = state.ends;
+        if normal <= R::CUTOFF_SPEED && pressing(tangential) <= R::ZERO {
+            // A graze: the wall gives no impulse and the path bends away from it.
+            self.launch(state, sin, cos, R::ZERO, tangential);
+            return;
+        }
+        let hit = law.collide(normal, tangential, &mut state.spin);
+        let pressing = pressing(hit.tangential);
+        if normal > R::CUTOFF_SPEED {
+            let launched = Flight::from_wall(sin, cos, hit.launch_speed, hit.tangential);
+            let (position, velocity) = launched.at(R::ZERO, law);
+            sink(Happening {
+                at: state.begun,
+                change: Change::Impact(normal),
+                after: Kinematics {
+                    position,
+                    velocity,
+                    spin: state.spin.value(),
+                    touch: Touch::None,
+                    turns: (0, R::ZERO),
+                },
+            });
+        }
+        let (rest, impulse) = law.rest_of_series(hit.launch_speed, pressing);
+        let ends = hit.launch_speed <= R::CUTOFF_SPEED
+            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO)
+            && rest <= R::lit(LONGEST_REST);
+        if ends || hurry {
+            self.settle(state, [sin, cos], hit.tangential, rest, impulse, hit.stuck);
+        } else {
+            self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
+        }
+    }
+
+    /// The rest of a bounce series at once: it slides (or rolls) along the wall meanwhile.
+    fn settle(
+        &self,
+        state: &mut RigidState<R>,
+        [sin, cos]: [R; 2],
+        tangential: R,
+        rest: R,
+        impulse: R,
+        stuck: bool,
+    ) {
+        let law = &self.law;
+        let rest = rest.least(R::lit(LONGEST_REST));
+        let pulled = tangential - law.gravity * sin * rest;
+        let (after, still_stuck) = if rest > R::ZERO {
+            law.rub(impulse, pulled, &mut state.spin)
+        } else {
+            (tangential, stuck)
+        };
+        let turned = R::HALF * (tangential + after) * rest;
+        let (turn_sin, turn_cos) = turned.sin_cos();
+        let onto = state.on_wall(
+            sin * turn_cos + cos * turn_sin,
+            cos * turn_cos - sin * turn_sin,
+            after,
+        );
+        state.motion = Motion::Settling {
+            onto,
+            stuck: still_stuck,
+        };
+        state.ends = state.begun.after(rest / self.step);
+    }
+
+    pub(crate) fn launch(
+        &self,
+        state: &mut RigidState<R>,
+        sin: R,
+        cos: R,
+        launch: R,
+        tangential: R,
+    ) {
+        let flight = Flight::from_wall(sin, cos, launch, tangential);
+        self.fly(state, flight, |flight, law| {
+            flight.landing_from_wall(launch, law)
+        });
+    }
+
+    pub(crate) fn fly(
+        &self,
+        state: &mut RigidState<R>,
+        flight: Flight<R>,
+        next: impl Fn(&Flight<R>, &Law<R>) -> Landing<R>,
+    ) {
+        let to = next(&flight, &self.law);
+        state.turns = (0, R::ZERO);
+        state.ends = state.begun.after(to.after / self.step);
+        state.motion = Motion::Flight { flight, to };
+    }
+
+    pub(crate) fn enter_contact(
+        &self,
+        state: &mut RigidState<R>,
+        onto: WallState<R>,
+        stuck: bool,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        state.turns = (0, R::ZERO);
+        self.touch(state, onto, stuck);
+        self.tell(state, Change::ContactStarts, sink);
+    }
+
+    /// Starts the next stretch of contact at `state.begun`.
+    fn touch(&self, state: &mut RigidState<R>, onto: WallState<R>, stuck: bool) {
+        let contact = Contact::new(onto, stuck, &self.law);
+        state.spin = onto.spin;
+        state.ends = state.begun.after(contact.span / self.step);
+        state.motion = Motion::Contact(contact);
+    }
+
+    fn end_of_stretch(
+        &self,
+        state: &mut RigidState<R>,
+        contact: &Contact<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let onto = contact.wall_state(contact.span, &self.law);
+        state.turn(contact.turned(contact.span));
+        state.begun = state.ends;
+        state.spin = onto.spin;
+        let was_rolling = contact.mode == Mode::Rolling;
+        match contact.ending {
+            Ending::LiftsOff => {
+                let (sin, cos) = (onto.sin.value(), onto.cos.value());
+                let speed = onto.tangential.value();
+                if contact.span > R::ZERO {
+                    let flight = Flight::from_wall(sin, cos, R::ZERO, speed);
+                    self.fly(state, flight, |flight, law| {
+                        flight.landing_from_lift_off(law)
+                    });
+                } else {
+                    self.launch(state, sin, cos, R::ZERO, speed);
+                }
+                self.tell(state, Change::LiftsOff, sink);
+            }
+            Ending::SlipEnds => {
+                let mut onto = onto;
+                onto.spin = onto.tangential.negative();
+                self.touch(state, onto, true);
+                if state.is_rolling() {
+                    self.tell(state, Change::RollingStarts, sink);
+                }
+            }
+            Ending::Slips => {
+                self.touch(state, onto, true);
+                self.tell(state, Change::SlidingStarts, sink);
+            }
+            Ending::Continues => self.touch(state, onto, was_rolling),
+        }
+    }
+
+    /// Goes to the end of the step by the mean motion of a whirl.
+    fn hurry_on(
+        &self,
+        state: &mut RigidState<R>,
+        contact: &Contact<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let now = state.now;
+        let time = now.since(state.begun) * self.step;
+        let (onto, angle, stuck) = whirl(&contact.base, contact.mode, time, &self.law);
+        state.turn(angle);
+        state.begun = now;
+        let was_rolling = contact.mode == Mode::Rolling;
+        self.touch(state, onto, stuck);
+        if stuck && !was_rolling && state.is_rolling() {
+            self.tell(state, Change::RollingStarts, sink);
+        }
+    }
+
+    fn tell(&self, state: &RigidState<R>, change: Change<R>, sink: &mut impl FnMut(Happening<R>)) {
+        sink(Happening {
+            at: state.begun,
+            change,
+            after: self.kinematics_after(state, R::ZERO),
+        });
+    }
+}

@@ -1,0 +1,105 @@
+//! What the model shows: the rotor at one moment, and the changes of its motion.
+
+use crate::model::clock::Instant;
+use crate::model::contact::Mode;
+use crate::model::precision::Precision;
+use crate::model::rigid::Rigid;
+use crate::model::state::{Motion, RigidState};
+use crate::model::sum::Sum;
+
+/// What changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change<R> {
+    /// An impact with this speed into the wall.
+    Impact(R),
+    /// Permanent contact began.
+    ContactStarts,
+    /// Slip ended.
+    RollingStarts,
+    /// Slip began again.
+    SlidingStarts,
+    /// Permanent contact ended.
+    LiftsOff,
+}
+
+/// A change of motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Happening<R> {
+    /// When.
+    pub at: Instant<R>,
+    /// What.
+    pub change: Change<R>,
+    /// The rotor just after it.
+    pub after: Kinematics<R>,
+}
+
+/// Contact or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// In flight.
+    None,
+    /// Permanent contact with slip.
+    Sliding,
+    /// Permanent contact without.
+    Rolling,
+}
+
+/// The rotor at one moment, in the model's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinematics<R> {
+    /// From the bearing's centre.
+    pub position: [R; 2],
+    /// Velocity.
+    pub velocity: [R; 2],
+    /// Surface speed of the spin.
+    pub spin: R,
+    /// Contact or not.
+    pub touch: Touch,
+    /// Whole turns round the retainer since the contact began, and the angle beyond them, rad.
+    pub turns: (i64, R),
+}
+
+impl<R: Precision> Rigid<R> {
+    /// The rotor now.
+    pub fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
+        let elapsed = state.now.since(state.begun);
+        self.kinematics_after(state, elapsed.least(state.steps()) * self.step)
+    }
+
+    pub(crate) fn kinematics_after(&self, state: &RigidState<R>, time: R) -> Kinematics<R> {
+        let law = &self.law;
+        let on_wall = |[sin, cos, speed, spin, angle]: [R; 5], touch, turns: i64| Kinematics {
+            position: [sin, -cos],
+            velocity: [speed * cos, speed * sin],
+            spin,
+            touch,
+            turns: (turns, angle),
+        };
+        match &state.motion {
+            Motion::Flight { flight, .. } => {
+                let (position, velocity) = flight.at(time, law);
+                Kinematics {
+                    position,
+                    velocity,
+                    spin: state.spin.value(),
+                    touch: Touch::None,
+                    turns: (0, R::ZERO),
+                }
+            }
+            Motion::Settling { onto, .. } => {
+                let [sin, cos] = [onto.sin, onto.cos].map(Sum::value);
+                let [speed, spin] = [onto.tangential, onto.spin].map(Sum::value);
+                on_wall([sin, cos, speed, spin, R::ZERO], Touch::None, 0)
+            }
+            Motion::Contact(contact) => {
+                let mut point = contact.at(time, law);
+                point[4] += state.turns.1;
+                let touch = match contact.mode {
+                    Mode::Sliding(_) => Touch::Sliding,
+                    Mode::Rolling => Touch::Rolling,
+                };
+                on_wall(point, touch, state.turns.0)
+            }
+        }
+    }
+}

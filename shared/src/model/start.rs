@@ -1,0 +1,117 @@
+//! How the rotor starts.
+
+use crate::error::ConfigError;
+use crate::model::clock::Instant;
+use crate::model::flight::{Flight, Landing};
+use crate::model::kinematics::Happening;
+use crate::model::precision::Precision;
+use crate::model::rigid::Rigid;
+use crate::model::state::{Motion, RigidState};
+use crate::model::sum::Sum;
+
+/// Distance from the wall, in units of epsilon, at which a start counts as on it.
+const ON_WALL: f64 = 64.0;
+
+/// Where the rotor starts, in the model's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start<R> {
+    /// Inside the gap.
+    Free {
+        /// From the bearing's centre.
+        position: [R; 2],
+        /// Velocity.
+        velocity: [R; 2],
+    },
+    /// In contact, by the sine and cosine of its angle from the bottom.
+    Wall {
+        /// Sine.
+        sin: R,
+        /// Cosine.
+        cos: R,
+        /// Velocity along the wall.
+        tangential: R,
+    },
+}
+
+impl<R: Precision> Rigid<R> {
+    /// The state at time 0, and what happens there; `spin` is the surface speed.
+    pub fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) -> Result<RigidState<R>, ConfigError> {
+        let mut state = RigidState {
+            now: Instant::default(),
+            motion: Motion::Flight {
+                flight: Flight::free([R::ZERO; 2], [R::ZERO; 2]),
+                to: Landing::NEVER,
+            },
+            begun: Instant::default(),
+            ends: Instant::NEVER,
+            spin: Sum::new(spin),
+            turns: (0, R::ZERO),
+            shortened: 0,
+        };
+        if !spin.is_finite() {
+            return Err(ConfigError::NotFinite("spin"));
+        }
+        match *start {
+            Start::Free { position, velocity } => {
+                if position.iter().chain(&velocity).any(|v| !v.is_finite()) {
+                    return Err(ConfigError::NotFinite("start"));
+                }
+                self.start_free(&mut state, position, velocity)?;
+            }
+            Start::Wall {
+                sin,
+                cos,
+                tangential,
+            } => {
+                if !(sin.is_finite() && cos.is_finite() && tangential.is_finite()) {
+                    return Err(ConfigError::NotFinite("start"));
+                }
+                let onto = state.on_wall(sin, cos, tangential);
+                self.enter_contact(&mut state, onto, false, &mut sink);
+            }
+        }
+        self.follow(&mut state, &mut sink);
+        Ok(state)
+    }
+
+    fn start_free(
+        &self,
+        state: &mut RigidState<R>,
+        position: [R; 2],
+        velocity: [R; 2],
+    ) -> Result<(), ConfigError> {
+        let [x, y] = position;
+        let distance = (x * x + y * y).sqrt();
+        let margin = R::lit(ON_WALL) * R::EPSILON;
+        if distance > R::ONE + margin {
+            return Err(ConfigError::OutOfRange("start", "inside the clearance"));
+        }
+        if distance < R::ONE - margin {
+            self.fly(state, Flight::free(position, velocity), |flight, law| {
+                flight.landing_from_free(law)
+            });
+            return Ok(());
+        }
+        let (sin, cos) = (x / distance, -y / distance);
+        let normal = velocity[0] * sin - velocity[1] * cos;
+        let tangential = velocity[0] * cos + velocity[1] * sin;
+        if normal >= R::ZERO {
+            state.motion = Motion::Flight {
+                flight: Flight::from_wall(sin, cos, -normal, tangential),
+                to: Landing {
+                    after: R::ZERO,
+                    normal,
+                },
+            };
+            state.ends = state.begun;
+        } else {
+            self.launch(state, sin, cos, -normal, tangential);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,68 @@
+//! The rotor's state: the present motion, from its beginning to its end.
+
+use crate::model::clock::Instant;
+use crate::model::contact::{Contact, Mode, WallState};
+use crate::model::flight::{Flight, Landing};
+use crate::model::precision::Precision;
+use crate::model::sum::Sum;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Motion<R> {
+    /// In flight, to its next contact.
+    Flight { flight: Flight<R>, to: Landing<R> },
+    /// The rest of a bounce series, summed.
+    Settling { onto: WallState<R>, stuck: bool },
+    /// Permanent contact.
+    Contact(Contact<R>),
+}
+
+/// The rotor's state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidState<R> {
+    pub(crate) now: Instant<R>,
+    pub(crate) motion: Motion<R>,
+    pub(crate) begun: Instant<R>,
+    pub(crate) ends: Instant<R>,
+    pub(crate) spin: Sum<R>,
+    pub(crate) turns: (i64, R),
+    pub(crate) shortened: u32,
+}
+
+impl<R: Precision> RigidState<R> {
+    /// Time since the release.
+    pub fn now(&self) -> Instant<R> {
+        self.now
+    }
+
+    /// Steps in which the bound on changes took effect: there the motion is the limit of its series
+    /// or the mean of its whirl.
+    pub fn shortened(&self) -> u32 {
+        self.shortened
+    }
+
+    pub(crate) fn is_rolling(&self) -> bool {
+        matches!(&self.motion, Motion::Contact(contact) if contact.mode == Mode::Rolling)
+    }
+
+    /// Length of the present motion, steps.
+    pub(crate) fn steps(&self) -> R {
+        self.ends.since(self.begun)
+    }
+
+    pub(crate) fn on_wall(&self, sin: R, cos: R, tangential: R) -> WallState<R> {
+        WallState {
+            sin: Sum::new(sin),
+            cos: Sum::new(cos),
+            tangential: Sum::new(tangential),
+            spin: self.spin,
+        }
+    }
+
+    pub(crate) fn turn(&mut self, angle: R) {
+        let full = R::lit(core::f64::consts::TAU);
+        let sum = self.turns.1 + angle;
+        let whole = (sum / full).floor();
+        self.turns.0 += whole.to_i64();
+        self.turns.1 = sum - whole * full;
+    }
+}
