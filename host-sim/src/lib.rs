@@ -1,4 +1,7 @@
 //! Desktop simulator, replay and report of the touchdown monitor.
 
 pub mod history;
+pub mod input_error;
 pub mod outcome;
+pub mod scene;
+pub mod sensors;
