@@ -5,3 +5,4 @@ pub mod input_error;
 pub mod outcome;
 pub mod scene;
 pub mod sensors;
+pub mod stream;

@@ -126,3 +126,6 @@ pub fn to_sensor_axes(position: [f64; 2], angle: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     [cos * x + sin * y, cos * y - sin * x]
 }
+
+#[cfg(test)]
+mod tests;
