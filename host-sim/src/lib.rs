@@ -3,6 +3,7 @@
 pub mod history;
 pub mod input_error;
 pub mod outcome;
+pub mod reference;
 pub mod scene;
 pub mod sensors;
 pub mod stream;
