@@ -1,4 +1,5 @@
 //! Desktop simulator, replay and report of the touchdown monitor.
 
 pub mod history;
+pub mod matching;
 pub mod outcome;
