@@ -3,3 +3,4 @@
 pub mod history;
 pub mod matching;
 pub mod outcome;
+pub mod report;
