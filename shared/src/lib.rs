@@ -10,8 +10,10 @@
 pub mod detect;
 pub mod error;
 pub mod event;
+pub mod model;
 pub mod monitor;
 pub mod real;
 pub mod sample;
+pub mod scales;
 pub mod sensing;
 pub mod wire;

@@ -50,6 +50,8 @@ pub trait Real:
     fn from_u64(value: u64) -> Self;
     /// Towards zero; saturates, NaN gives 0.
     fn to_u64(self) -> u64;
+    /// Towards zero; saturates, NaN gives 0.
+    fn to_i64(self) -> i64;
     /// For reporting on the desktop.
     fn to_f64(self) -> f64;
     /// Neither NaN nor infinite.
@@ -64,6 +66,8 @@ pub trait Real:
     fn atan2(self, other: Self) -> Self;
     /// Largest integer not above.
     fn floor(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
 
     /// The smaller; `other` if `self` is NaN.
     fn least(self, other: Self) -> Self {
@@ -80,7 +84,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:path, $sincos:path, $atan2:path, $floor:path) => {
+    ($t:ident, $sqrt:path, $sincos:path, $atan2:path, $floor:path, $ln:path) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -100,6 +104,9 @@ macro_rules! real {
             }
             fn to_u64(self) -> u64 {
                 self as u64
+            }
+            fn to_i64(self) -> i64 {
+                self as i64
             }
             fn to_f64(self) -> f64 {
                 self as f64
@@ -122,9 +129,26 @@ macro_rules! real {
             fn floor(self) -> Self {
                 $floor(self)
             }
+            fn ln(self) -> Self {
+                $ln(self)
+            }
         }
     };
 }
 
-real!(f32, libm::sqrtf, libm::sincosf, libm::atan2f, libm::floorf);
-real!(f64, libm::sqrt, libm::sincos, libm::atan2, libm::floor);
+real!(
+    f32,
+    libm::sqrtf,
+    libm::sincosf,
+    libm::atan2f,
+    libm::floorf,
+    libm::logf
+);
+real!(
+    f64,
+    libm::sqrt,
+    libm::sincos,
+    libm::atan2,
+    libm::floor,
+    libm::log
+);

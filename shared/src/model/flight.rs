@@ -1,0 +1,102 @@
+//! Free flight: a parabola from its launch to its next contact, solved for once.
+
+use crate::model::law::Law;
+use crate::model::polynomial::first_rise;
+use crate::real::Real;
+
+/// A flight, by its launch state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Flight<R> {
+    position: [R; 2],
+    velocity: [R; 2],
+}
+
+/// Where a flight ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Landing<R> {
+    /// Time since launch; infinite if there is none.
+    pub(crate) after: R,
+    /// Speed into the wall.
+    pub(crate) normal: R,
+}
+
+impl<R: Real> Landing<R> {
+    /// No contact ahead.
+    pub(crate) const NEVER: Self = Self {
+        after: R::INFINITY,
+        normal: R::ZERO,
+    };
+}
+
+impl<R: Real> Flight<R> {
+    /// From inside the gap.
+    pub(crate) fn free(position: [R; 2], velocity: [R; 2]) -> Self {
+        Self { position, velocity }
+    }
+
+    /// From the wall, at (sin, cos) of the angle, with `launch` away from it.
+    pub(crate) fn from_wall(sin: R, cos: R, launch: R, tangential: R) -> Self {
+        Self {
+            position: [sin, -cos],
+            velocity: [
+                tangential * cos - launch * sin,
+                tangential * sin + launch * cos,
+            ],
+        }
+    }
+
+    /// Position and velocity at `time` since launch.
+    pub(crate) fn at(&self, time: R, law: &Law<R>) -> ([R; 2], [R; 2]) {
+        let ([x, y], [u, v]) = (self.position, self.velocity);
+        let fall = law.gravity * time;
+        (
+            [x + u * time, y + (v - R::HALF * fall) * time],
+            [u, v - fall],
+        )
+    }
+
+    /// Rotor and wall as a polynomial in time, without its constant and linear terms:
+    /// |position|^2 - 1 = ... + c2 t^2 + c3 t^3 + c4 t^4.
+    fn curve(&self, law: &Law<R>) -> [R; 3] {
+        let ([_, y], [u, v]) = (self.position, self.velocity);
+        let g = law.gravity;
+        [u * u + v * v - g * y, -g * v, R::lit(0.25) * g]
+    }
+
+    /// Next contact of a free start.
+    pub(crate) fn landing_from_free(&self, law: &Law<R>) -> Landing<R> {
+        let ([x, y], [u, v]) = (self.position, self.velocity);
+        let [c2, c3, c4] = self.curve(law);
+        let c0 = x * x + y * y - R::ONE;
+        let (after, slope) = first_rise(&[c0, R::TWO * (x * u + y * v), c2, c3, c4]);
+        Landing {
+            after,
+            normal: R::HALF * slope,
+        }
+    }
+
+    /// Next contact of a launch from the wall with speed `launch` away from it. The launch itself is
+    /// divided out, and the speed into the wall comes from the polynomial's slope: no cancellation.
+    pub(crate) fn landing_from_wall(&self, launch: R, law: &Law<R>) -> Landing<R> {
+        let [c2, c3, c4] = self.curve(law);
+        self.resting_on(first_rise(&[-R::TWO * launch, c2, c3, c4, R::ZERO]))
+    }
+
+    /// Next contact after a lift-off, where the wall had just ceased to press: exactly 4 v_y/g.
+    pub(crate) fn landing_from_lift_off(&self, law: &Law<R>) -> Landing<R> {
+        let [_, c3, c4] = self.curve(law);
+        let (after, slope) = first_rise(&[c3, c4, R::ZERO, R::ZERO, R::ZERO]);
+        self.resting_on((after, slope * after * after))
+    }
+
+    fn resting_on(&self, (after, slope): (R, R)) -> Landing<R> {
+        Landing {
+            after,
+            normal: if after.is_finite() {
+                R::HALF * after * slope
+            } else {
+                R::ZERO
+            },
+        }
+    }
+}

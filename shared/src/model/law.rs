@@ -1,0 +1,105 @@
+//! The contact laws: restitution along the normal, Coulomb friction along the wall.
+
+use crate::error::ConfigError;
+use crate::model::sum::Sum;
+use crate::real::Real;
+use crate::scales::{not_negative, positive};
+
+/// What the laws depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawConfig<R> {
+    /// Coefficient of friction, 0 or more.
+    pub friction: R,
+    /// Restitution, 0 to 1.
+    pub restitution: R,
+    /// Polar inertia over mass times radius squared; 1/2 for a solid cylinder.
+    pub inertia_ratio: R,
+    /// Whether there is gravity.
+    pub gravity: bool,
+}
+
+/// The laws' coefficients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law<R> {
+    pub(crate) friction: R,
+    pub(crate) restitution: R,
+    pub(crate) inertia_ratio: R,
+    /// Dimensionless gravity: 1, or 0 without.
+    pub(crate) gravity: R,
+}
+
+/// What an impact leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collision<R> {
+    /// Speed away from the wall.
+    pub launch_speed: R,
+    /// Velocity along the wall.
+    pub tangential: R,
+    /// Whether friction stopped the slip.
+    pub stuck: bool,
+}
+
+impl<R: Real> Law<R> {
+    /// Checks `config`.
+    pub fn try_new(config: &LawConfig<R>) -> Result<Self, ConfigError> {
+        not_negative("friction", config.friction)?;
+        not_negative("restitution", config.restitution)?;
+        if config.restitution > R::ONE {
+            return Err(ConfigError::OutOfRange("restitution", "0 to 1"));
+        }
+        positive("inertia_ratio", config.inertia_ratio)?;
+        Ok(Self {
+            friction: config.friction,
+            restitution: config.restitution,
+            inertia_ratio: config.inertia_ratio,
+            gravity: if config.gravity { R::ONE } else { R::ZERO },
+        })
+    }
+
+    /// Impact at speed `normal` (> 0, into the wall). The tangential impulse is what stops the slip,
+    /// limited to friction times the normal impulse; it also turns the spin (as surface speed).
+    pub(crate) fn collide(&self, normal: R, tangential: R, spin: &mut Sum<R>) -> Collision<R> {
+        let impulse = (R::ONE + self.restitution) * normal;
+        let (tangential, stuck) = self.rub(impulse, tangential, spin);
+        Collision {
+            launch_speed: self.restitution * normal,
+            tangential,
+            stuck,
+        }
+    }
+
+    /// Tangential part of an impact with this normal impulse (per mass): velocity along the wall
+    /// after it, and whether the slip stopped.
+    pub(crate) fn rub(&self, impulse: R, tangential: R, spin: &mut Sum<R>) -> (R, bool) {
+        let beta = self.inertia_ratio;
+        let stick = -spin.plus(tangential) * beta / (R::ONE + beta);
+        let limit = self.friction * impulse;
+        let stuck = stick.abs() <= limit;
+        let rub = stick.within(limit);
+        let after = tangential + rub;
+        if stuck {
+            *spin = Sum::new(-after);
+        } else {
+            spin.add(rub / beta);
+        }
+        (after, stuck)
+    }
+
+    /// Friction (per mass, along the wall) that rolling needs where sin phi is `sin`.
+    pub(crate) fn rolling_friction(&self, sin: R) -> R {
+        self.inertia_ratio * self.gravity * sin / (R::ONE + self.inertia_ratio)
+    }
+
+    /// The rest of a bounce series in closed form, from launch speed `launch` where the wall presses
+    /// with `pressing`: its duration and normal impulse (per mass). Error: square of `launch`.
+    pub(crate) fn rest_of_series(&self, launch: R, pressing: R) -> (R, R) {
+        let lost = R::ONE - self.restitution;
+        if launch <= R::ZERO || lost <= R::ZERO || pressing <= R::ZERO {
+            return (R::ZERO, R::ZERO);
+        }
+        (
+            R::TWO * launch / (pressing * lost),
+            launch * (R::ONE + self.restitution) / lost,
+        )
+    }
+}

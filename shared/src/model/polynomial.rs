@@ -1,0 +1,167 @@
+//! Roots of short polynomials, by isolation between the roots of the derivative.
+
+use crate::real::Real;
+
+/// Highest degree: a free parabola against a circle.
+const DEGREE: usize = 4;
+
+/// Newton steps in one bracket; halving alone would need as many as there are binary digits.
+const ITERATIONS: usize = 64;
+
+/// Coefficients from the constant term up.
+pub(crate) type Quartic<R> = [R; DEGREE + 1];
+
+/// Value and derivative.
+fn evaluate<R: Real>(c: &Quartic<R>, t: R) -> (R, R) {
+    c.iter()
+        .rev()
+        .fold((R::ZERO, R::ZERO), |(value, slope), &k| {
+            (value * t + k, slope * t + value)
+        })
+}
+
+/// Size of the rounding error of a value at `t`.
+fn rounding<R: Real>(c: &Quartic<R>, t: R) -> R {
+    let size = c.iter().rev().fold(R::ZERO, |sum, k| sum * t + k.abs());
+    R::lit(4.0) * R::EPSILON * size
+}
+
+fn derivative<R: Real>(c: &Quartic<R>) -> Quartic<R> {
+    let mut d = [R::ZERO; DEGREE + 1];
+    for ((slot, &k), power) in d.iter_mut().zip(c.iter().skip(1)).zip(1..) {
+        *slot = k * R::from_i32(power);
+    }
+    d
+}
+
+/// The sign change in (`low`, `high`), if there is one: Newton kept inside a shrinking bracket.
+/// The polynomial is monotone there.
+fn bracketed<R: Real>(c: &Quartic<R>, mut low: R, mut high: R, guess: R) -> R {
+    let rising = evaluate(c, high).0 > R::ZERO;
+    let mut t = guess;
+    for _ in 0..ITERATIONS {
+        if !(t > low && t < high) {
+            t = low + (high - low) * R::HALF;
+        }
+        let (value, slope) = evaluate(c, t);
+        if value == R::ZERO {
+            return t;
+        }
+        if (value > R::ZERO) == rising {
+            high = t;
+        } else {
+            low = t;
+        }
+        let next = t - value / slope;
+        let close = (next - t).abs() <= R::EPSILON * t.abs();
+        if close || high - low <= R::EPSILON * high.abs() {
+            return if next >= low && next <= high { next } else { t };
+        }
+        t = next;
+    }
+    t
+}
+
+/// Ascending roots above 0 at which the sign changes; infinity fills up.
+fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize) -> [R; DEGREE] {
+    let mut found = [R::INFINITY; DEGREE];
+    if degree == 0 {
+        return found;
+    }
+    let turns = if degree == 1 {
+        found
+    } else {
+        sign_changes(&derivative(c), degree - 1)
+    };
+    let mut slots = found.iter_mut();
+    let mut low = R::ZERO;
+    for turn in turns.into_iter().chain([R::INFINITY]).take(degree) {
+        let high = if turn.is_finite() {
+            turn
+        } else {
+            reach(c, degree, low)
+        };
+        let (at_low, at_high) = (evaluate(c, low).0, evaluate(c, high).0);
+        if (at_low < R::ZERO && at_high > R::ZERO) || (at_low > R::ZERO && at_high < R::ZERO) {
+            if let Some(slot) = slots.next() {
+                *slot = bracketed(c, low, high, low + (high - low) * R::HALF);
+            }
+        }
+        if !turn.is_finite() {
+            break;
+        }
+        low = turn;
+    }
+    found
+}
+
+/// A bound above all roots (Cauchy's), and above `low`.
+fn reach<R: Real>(c: &Quartic<R>, degree: usize, low: R) -> R {
+    let lead = c.get(degree).copied().unwrap_or(R::ONE).abs();
+    let largest = c
+        .iter()
+        .take(degree)
+        .fold(R::ZERO, |most, k| most.most(k.abs()));
+    R::ONE + low + largest / lead
+}
+
+/// The first t > 0 at which a polynomial that is negative just above 0 becomes positive, and its
+/// slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over.
+/// Infinity if there is none.
+pub(crate) fn first_rise<R: Real>(c: &Quartic<R>) -> (R, R) {
+    let never = (R::INFINITY, R::ZERO);
+    let Some(degree) = c.iter().rposition(|k| *k != R::ZERO) else {
+        return never;
+    };
+    if degree == 0 {
+        return never;
+    }
+    let turns = sign_changes(&derivative(c), degree - 1);
+    let mut low = R::ZERO;
+    for turn in turns.into_iter().chain([R::INFINITY]).take(degree) {
+        let last = !turn.is_finite();
+        let high = if last { reach(c, degree, low) } else { turn };
+        if evaluate(c, high).0 > rounding(c, high) {
+            let linear = -c[0] / c[1];
+            let t = bracketed(c, low, high, linear);
+            return (t, evaluate(c, t).1);
+        }
+        if last {
+            break;
+        }
+        low = turn;
+    }
+    never
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_rise_is_the_smallest_root_where_the_sign_turns_positive() {
+        // (t - 1)(t - 2)(t - 3), negative before 1.
+        let (t, slope) = first_rise(&[-6.0, 11.0, -6.0, 1.0, 0.0]);
+        assert!((t - 1.0f64).abs() < 1e-15, "{t}");
+        assert!((slope - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_graze_is_passed_over() {
+        // (t - 1)^2 (t - 3): touches 0 at 1, rises at 3.
+        let (t, _) = first_rise(&[-3.0f32, 7.0, -5.0, 1.0, 0.0]);
+        assert!((t - 3.0).abs() < 1e-6, "{t}");
+    }
+
+    #[test]
+    fn without_gravity_the_path_is_a_line() {
+        assert_eq!(first_rise(&[-2.0f64, 4.0, 0.0, 0.0, 0.0]), (0.5, 4.0));
+        assert_eq!(first_rise(&[-2.0f64, 0.0, 0.0, 0.0, 0.0]).0, f64::INFINITY);
+    }
+
+    #[test]
+    fn a_tiny_hop_keeps_all_digits() {
+        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0]);
+        assert!((t / 2.000_000_001_2e-9 - 1.0).abs() < 1e-14, "{t}");
+    }
+}

@@ -1,0 +1,30 @@
+//! What depends on the number of digits.
+
+use crate::real::Real;
+
+/// Longest Taylor series of a contact.
+pub(crate) const SERIES_LENGTH: usize = 16;
+
+/// Constants of the model that follow the precision.
+pub trait Precision: Real {
+    /// Order of the Taylor series of a contact, at most 15. Chosen, because the cost for each unit of
+    /// time is lowest there at the truncation error of `SERIES_TOLERANCE`.
+    const SERIES_ORDER: usize;
+    /// Truncation error of a series at its end.
+    const SERIES_TOLERANCE: Self;
+    /// Launch speed, in units of V, below which the rest of a bounce series is summed in closed form;
+    /// the error is its square.
+    const CUTOFF_SPEED: Self;
+}
+
+impl Precision for f32 {
+    const SERIES_ORDER: usize = 8;
+    const SERIES_TOLERANCE: Self = 1e-8;
+    const CUTOFF_SPEED: Self = 1e-6;
+}
+
+impl Precision for f64 {
+    const SERIES_ORDER: usize = 15;
+    const SERIES_TOLERANCE: Self = 1e-16;
+    const CUTOFF_SPEED: Self = 1e-9;
+}

@@ -1,0 +1,44 @@
+//! Compensated sum: a running value that keeps what rounding takes off.
+
+use crate::real::Real;
+
+/// A value and the part of it that does not fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sum<R> {
+    value: R,
+    rest: R,
+}
+
+impl<R: Real> Sum<R> {
+    pub(crate) fn new(value: R) -> Self {
+        Self {
+            value,
+            rest: R::ZERO,
+        }
+    }
+
+    pub(crate) fn value(self) -> R {
+        self.value
+    }
+
+    /// The value plus `term`, rounded once: exact where the two nearly cancel.
+    pub(crate) fn plus(self, term: R) -> R {
+        (self.value + term) + self.rest
+    }
+
+    pub(crate) fn negative(self) -> Self {
+        Self {
+            value: -self.value,
+            rest: -self.rest,
+        }
+    }
+
+    /// Knuth's two-sum, for terms of any size.
+    pub(crate) fn add(&mut self, term: R) {
+        let term = term + self.rest;
+        let sum = self.value + term;
+        let back = sum - self.value;
+        self.rest = (self.value - (sum - back)) + (term - back);
+        self.value = sum;
+    }
+}
