@@ -16,6 +16,8 @@ use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::monitor::MonitorConfig;
 
 use crate::input_error::InputError;
+use crate::reference::Machine;
+pub use crate::reference::Start;
 use crate::sensors::SensorsConfig;
 
 /// A valid scene; SI.
@@ -65,25 +67,6 @@ pub struct Retainer {
     pub friction: f64,
     /// 0 to 1.
     pub restitution: f64,
-}
-
-/// How the rotor starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
-    /// Released in the gap.
-    Free {
-        /// From the bearing's centre, m.
-        position: [f64; 2],
-        /// m/s.
-        velocity: [f64; 2],
-    },
-    /// In contact with the retainer.
-    Wall {
-        /// From the bottom, counter-clockwise, rad.
-        angle: f64,
-        /// Speed along the wall, counter-clockwise positive, m/s.
-        tangential: f64,
-    },
 }
 
 /// How long, and how often it is sampled.
@@ -221,9 +204,26 @@ impl Scene {
         }
     }
 
-    /// Speed below which a rotor in contact is at rest, m/s: a millionth of the speed that gravity
-    /// gives over the clearance.
-    pub fn still_speed(&self) -> f64 {
-        1e-6 * (self.run.gravity.max(1e-3) * self.retainer.clearance).sqrt()
+    /// Rotor and retainer bearing, for a model.
+    pub fn machine(&self) -> Machine {
+        Machine {
+            mass: self.rotor.mass,
+            radius: self.rotor.radius,
+            polar_inertia: self.rotor.polar_inertia,
+            clearance: self.retainer.clearance,
+            friction: self.retainer.friction,
+            restitution: self.retainer.restitution,
+            gravity: self.run.gravity,
+        }
+    }
+
+    /// Time of the first sample, s since the release.
+    pub fn first_sample_time(&self) -> f64 {
+        -(self.levitated_samples() as f64) / self.run.sample_rate
+    }
+
+    /// The title, or else the name.
+    pub fn heading(&self) -> &str {
+        self.title.as_deref().unwrap_or(&self.name)
     }
 }
