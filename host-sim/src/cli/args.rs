@@ -1,0 +1,123 @@
+//! Options and arguments.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::failure::Failure;
+use crate::target::{DEFAULT_IMAGE, Target};
+
+const EXAMPLES: &str = "\
+Examples:
+  touchdown                             drop the rig of the source paper, write a report
+  touchdown drop backward-whirl         another built-in scene
+  touchdown drop my.toml --json -       all numbers, to standard output
+  touchdown drop my.toml --stream s.csv what the sensors would have recorded
+  touchdown replay s.csv --scene my.toml
+                                        a recording through the same detector
+  touchdown scene explain my.toml       what is modelled and what is left out
+
+Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
+
+/// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
+/// runs the detector over it.
+///
+/// Without a command: drops the rig of the source paper, writes touchdown-report.html to the
+/// current folder and prints the timeline.
+#[derive(Debug, Parser)]
+#[command(name = "touchdown", version, after_help = EXAMPLES)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Drop a rotor: simulate, sense, detect
+    Drop(DropArgs),
+    /// Run the detector over a recorded stream
+    Replay(ReplayArgs),
+    /// Look at scenes
+    Scene {
+        #[command(subcommand)]
+        what: SceneCommand,
+    },
+}
+
+#[derive(Args, Clone, Debug, Default)]
+pub(super) struct DropArgs {
+    /// Scene file, or name of a built-in scene (`touchdown scene list`)
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// Impacts, phases, regime and detected events as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Report as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    /// What the sensors read, as CSV that `replay` takes
+    #[arg(long, value_name = "FILE")]
+    pub stream: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ReplayArgs {
+    /// Recorded stream: CSV with the header
+    /// time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], one row a sample, constant rate
+    pub stream: String,
+    /// Scene with the rotor, retainer, gravity, sensors and detector
+    #[arg(long)]
+    pub scene: String,
+    /// Detected events as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Report as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Say what a scene models, what it leaves out, and the numbers that decide how it goes
+    Explain {
+        /// Scene file, or name of a built-in scene
+        scene: String,
+    },
+    /// List the built-in scenes
+    List,
+}
+
+#[derive(Args, Clone, Debug, Default)]
+pub(super) struct Place {
+    /// Where the detector runs
+    #[arg(long, value_enum, default_value_t)]
+    on: On,
+    /// Firmware image for `--on qemu`, in place of the one that `cargo xtask firmware` builds
+    #[arg(long, value_name = "FILE")]
+    image: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum On {
+    /// In this process
+    #[default]
+    Host,
+    /// The firmware image, in the emulator
+    Qemu,
+}
+
+impl Place {
+    pub fn target(&self) -> Result<Target, Failure> {
+        match (self.on, &self.image) {
+            (On::Host, None) => Ok(Target::Host),
+            (On::Host, Some(_)) => Err(Failure::Usage("--image needs --on qemu".to_owned())),
+            (On::Qemu, image) => Ok(Target::Qemu {
+                image: image.clone().unwrap_or_else(|| DEFAULT_IMAGE.into()),
+            }),
+        }
+    }
+}

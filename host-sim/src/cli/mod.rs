@@ -1,0 +1,164 @@
+//! The command line.
+
+mod args;
+mod subject;
+
+pub use args::Cli;
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+use args::{Command, DropArgs, Place, ReplayArgs, SceneCommand};
+
+use crate::failure::Failure;
+use crate::json;
+use crate::output::{Output, STDOUT};
+use crate::paint::Paint;
+use crate::scene::{BUILT_IN, Scene, explain};
+use crate::target::Target;
+use crate::{drop, replay, report, timeline};
+
+/// Where the report goes when nothing is asked for.
+const DEFAULT_REPORT: &str = "touchdown-report.html";
+
+/// Does what the command line asks.
+pub fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => drop_scene(&DropArgs {
+            scene: BUILT_IN[0].name.to_owned(),
+            report: Some(DEFAULT_REPORT.to_owned()),
+            ..DropArgs::default()
+        }),
+        Some(Command::Drop(args)) => drop_scene(&args),
+        Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Scene { what }) => {
+            match what {
+                SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
+                SceneCommand::List => say(&[], &list()?),
+            }
+            Ok(())
+        }
+    }
+}
+
+fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
+    let names = [&args.json, &args.report, &args.stream];
+    one_standard_output(&names)?;
+    let scene = load(&args.scene)?;
+    let target = target(&args.place)?;
+    let [json_out, report_out, stream_out] = names.map(open);
+    let (mut json_out, mut report_out) = (json_out?, report_out?);
+    let (outcome, stream) = drop::run(&scene, &target, stream_out?)?;
+    let stream_out = stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
+    if let Some(out) = &mut json_out {
+        let text = json::drop(&scene, &outcome).map_err(io::Error::from);
+        out.put(&text.map_err(Failure::output(out.name()))?)?;
+    }
+    if let Some(out) = &mut report_out {
+        out.put(&report::render(&subject::subject(&scene), &outcome))?;
+    }
+    let written = [json_out, report_out, stream_out];
+    let mut files = String::new();
+    for out in written.into_iter().flatten() {
+        if out.name() != STDOUT {
+            files += &format!("wrote {}\n", out.name());
+        }
+        out.commit()?;
+    }
+    let text = timeline::drop(&scene, &outcome, Paint::for_stdout());
+    say(&names, &(text + &files));
+    Ok(())
+}
+
+fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
+    let names = [&args.json, &args.report];
+    one_standard_output(&names)?;
+    let scene = load(&args.scene)?;
+    let target = target(&args.place)?;
+    let [json_out, report_out] = names.map(open);
+    let (mut json_out, mut report_out) = (json_out?, report_out?);
+    let detection = replay::run(Path::new(&args.stream), &scene, &target)?;
+    if let Some(out) = &mut json_out {
+        let text = json::replay(&detection).map_err(io::Error::from);
+        out.put(&text.map_err(Failure::output(out.name()))?)?;
+    }
+    if let Some(out) = &mut report_out {
+        out.put(&subject::replay_page(&args.stream, &scene, &detection))?;
+    }
+    for out in [json_out, report_out].into_iter().flatten() {
+        out.commit()?;
+    }
+    say(&names, &timeline::replay(&args.stream, &detection));
+    Ok(())
+}
+
+fn load(name: &str) -> Result<Scene, Failure> {
+    let scene = Scene::load(name)?;
+    for warning in scene.warnings() {
+        eprintln!("warning: {warning}");
+    }
+    Ok(scene)
+}
+
+fn target(place: &Place) -> Result<Target, Failure> {
+    let target = place.target()?;
+    target.check()?;
+    Ok(target)
+}
+
+fn open(name: &Option<String>) -> Result<Option<Output>, Failure> {
+    name.as_deref().map(Output::create).transpose()
+}
+
+fn one_standard_output(names: &[&Option<String>]) -> Result<(), Failure> {
+    let given: Vec<_> = names.iter().copied().flatten().collect();
+    for (index, name) in given.iter().enumerate() {
+        if given[..index].contains(name) {
+            let what = if *name == STDOUT {
+                "standard output"
+            } else {
+                name
+            };
+            return Err(Failure::Usage(format!("two outputs go to {what}")));
+        }
+    }
+    Ok(())
+}
+
+fn list() -> Result<String, Failure> {
+    let mut text = String::new();
+    for built_in in BUILT_IN {
+        let scene = Scene::parse(built_in.name, built_in.text)?;
+        text += &format!("{:<16} {}\n", built_in.name, scene.heading());
+    }
+    Ok(text)
+}
+
+/// Text for people: on standard output, or on standard error where a file has taken that. A reader
+/// that has gone away is no failure.
+fn say(names: &[&Option<String>], text: &str) {
+    let taken = names.iter().any(|name| name.as_deref() == Some(STDOUT));
+    let _ = if taken {
+        io::stderr().lock().write_all(text.as_bytes())
+    } else {
+        io::stdout().lock().write_all(text.as_bytes())
+    };
+}
+
+/// Shows why a command failed.
+pub fn complain(failure: &Failure) {
+    let colour = io::stderr().is_terminal() && Paint::wanted();
+    let theme = if colour {
+        miette::GraphicalTheme::unicode()
+    } else {
+        miette::GraphicalTheme::none()
+    };
+    let handler = miette::GraphicalReportHandler::new_themed(theme)
+        .with_wrap_lines(false)
+        .with_context_lines(1);
+    let mut text = String::new();
+    if handler.render_report(&mut text, failure).is_err() {
+        text = failure.to_string();
+    }
+    eprintln!("error:\n{}", text.trim_end());
+}

@@ -1,0 +1,53 @@
+//! What the report is told of a scene.
+
+use maud::{DOCTYPE, html};
+
+use crate::outcome::Detection;
+use crate::report::Subject;
+use crate::scene::{Precision, Scene};
+use crate::timeline;
+
+pub(super) fn subject(scene: &Scene) -> Subject {
+    Subject {
+        title: scene.heading().to_owned(),
+        source: scene.source.clone().unwrap_or_else(|| scene.name.clone()),
+        mass: scene.rotor.mass,
+        radius: scene.rotor.radius,
+        polar_inertia: scene.rotor.polar_inertia,
+        clearance: scene.retainer.clearance,
+        friction: scene.retainer.friction,
+        restitution: scene.retainer.restitution,
+        gravity: scene.run.gravity,
+        spin: scene.rotor.spin,
+        duration: scene.run.duration,
+        sample_rate: scene.run.sample_rate,
+        precision: match scene.model.precision {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        }
+        .to_owned(),
+        step: scene.model.step,
+        seed: scene.run.seed,
+        noise: scene.sensors.noise,
+        versions: vec![("touchdown".to_owned(), env!("CARGO_PKG_VERSION").to_owned())],
+    }
+}
+
+/// A replay has no truth to draw: its page is the list of events.
+pub(super) fn replay_page(stream: &str, scene: &Scene, detection: &Detection) -> String {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { "Replay of " (stream) }
+            }
+            body {
+                h1 { "Replay of " (stream) }
+                p { "Scene: " (scene.heading()) }
+                pre { (timeline::replay(stream, detection)) }
+            }
+        }
+    }
+    .into_string()
+}

@@ -1,0 +1,135 @@
+//! From the monitor's notices, on the sample clock, to events in seconds.
+
+use touchdown_core::event::{EventKind, Notice, Plane};
+
+use crate::monitor_run::Answer;
+use crate::outcome::{DetectedEvent, Detection};
+
+/// Places samples in time.
+#[derive(Clone, Copy, Debug)]
+pub struct Timebase {
+    /// Time of sample 0, in samples.
+    first: f64,
+    rate: f64,
+}
+
+impl Timebase {
+    /// Sample 0 at `start` (s), then `rate` samples a second. A start that is a whole number of
+    /// samples but for rounding is taken as one, so that stamps are exactly k/rate.
+    pub fn new(start: f64, rate: f64) -> Self {
+        let first = start * rate;
+        let whole = first.round();
+        let near = (first - whole).abs() <= 1e-6;
+        Self {
+            first: if near { whole } else { first },
+            rate,
+        }
+    }
+
+    /// Time of sample `sample` (may have a fraction), s.
+    pub fn time(&self, sample: f64) -> f64 {
+        (self.first + sample) / self.rate
+    }
+}
+
+/// The events of `answer`; a free fall has its confirmation or withdrawal with it.
+pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
+    let mut events: Vec<DetectedEvent> = Vec::new();
+    let mut numbers = Vec::new();
+    for notice in &answer.notices {
+        match *notice {
+            Notice::Declared(event) => {
+                numbers.push(event.number);
+                events.push(DetectedEvent {
+                    event: event.kind,
+                    onset_s: timebase.time(event.onset.samples()),
+                    declared_s: timebase.time(event.declared as f64),
+                    confirmed_s: None,
+                    withdrawn_s: None,
+                    sample: event.declared,
+                    plane: match event.plane {
+                        Plane::A => "a",
+                        Plane::B => "b",
+                        Plane::Both => "both",
+                    },
+                    normal_speed_m_s: (event.kind == EventKind::Impact)
+                        .then_some(f64::from(event.normal_speed)),
+                });
+            }
+            Notice::Confirmed { number, sample } => {
+                // From the end: numbers wrap round in a long run.
+                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
+                    events[index].confirmed_s = Some(timebase.time(sample as f64));
+                }
+            }
+            Notice::Withdrawn { number, sample } => {
+                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
+                    events[index].withdrawn_s = Some(timebase.time(sample as f64));
+                }
+            }
+        }
+    }
+    Detection {
+        events,
+        samples: answer.summary.samples,
+        faults: answer.summary.faults,
+        state_hash: answer.summary.state_hash,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_core::event::{Event, Moment};
+    use touchdown_core::wire::Summary;
+
+    #[test]
+    fn stamps_are_whole_samples() {
+        let timebase = Timebase::new(-0.2, 30_000.0);
+        assert_eq!(timebase.time(6000.0), 0.0);
+        assert_eq!(timebase.time(6001.0), 1.0 / 30_000.0);
+        assert_eq!(Timebase::new(0.123_456_7, 20_000.0).time(0.0), 0.123_456_7);
+    }
+
+    #[test]
+    fn a_free_fall_carries_its_fate() {
+        let fall = |number, sample| {
+            Notice::Declared(Event {
+                number,
+                kind: EventKind::FreeFall,
+                onset: Moment::of_sample(sample - 10),
+                declared: sample,
+                plane: Plane::Both,
+                normal_speed: 0.0,
+            })
+        };
+        let answer = Answer {
+            notices: vec![
+                fall(0, 100),
+                Notice::Withdrawn {
+                    number: 0,
+                    sample: 140,
+                },
+                fall(1, 300),
+                Notice::Confirmed {
+                    number: 1,
+                    sample: 350,
+                },
+            ],
+            summary: Summary {
+                samples: 1000,
+                faults: 2,
+                state_hash: 0,
+            },
+            log: Vec::new(),
+        };
+        let detection = detection(&answer, Timebase::new(0.0, 1000.0));
+        let fates: Vec<_> = detection
+            .events
+            .iter()
+            .map(|event| (event.onset_s, event.confirmed_s, event.withdrawn_s))
+            .collect();
+        assert_eq!(fates, [(0.09, None, Some(0.14)), (0.29, Some(0.35), None)]);
+        assert_eq!(detection.events[0].normal_speed_m_s, None);
+    }
+}

@@ -1,0 +1,112 @@
+//! What is wrong with an input file: the file, the line and the rule.
+
+use std::fmt;
+use std::path::Path;
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+
+/// A flaw in a scene or a recorded stream.
+#[derive(Debug)]
+pub struct InputError {
+    file: String,
+    line: Option<u64>,
+    rule: String,
+    excerpt: Option<(NamedSource<String>, SourceSpan)>,
+}
+
+impl InputError {
+    /// A flaw of the file as a whole.
+    pub fn of_file(file: &str, rule: impl Into<String>) -> Self {
+        Self {
+            file: file.to_owned(),
+            line: None,
+            rule: rule.into(),
+            excerpt: None,
+        }
+    }
+
+    /// A flaw of one line, counted from 1.
+    pub fn at_line(file: &str, line: u64, rule: impl Into<String>) -> Self {
+        Self {
+            line: Some(line),
+            ..Self::of_file(file, rule)
+        }
+    }
+
+    /// A flaw of the bytes `span` of `text`; the excerpt is shown.
+    pub fn at_span(
+        file: &str,
+        text: &str,
+        span: std::ops::Range<usize>,
+        rule: impl Into<String>,
+    ) -> Self {
+        let start = span.start.min(text.len());
+        let line = 1 + text.as_bytes()[..start]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count();
+        let source = NamedSource::new(file, text.to_owned()).with_language("toml");
+        Self {
+            excerpt: Some((source, (start..span.end.min(text.len())).into())),
+            ..Self::at_line(file, line as u64, rule)
+        }
+    }
+
+    /// The whole text of a file.
+    pub fn read(path: &Path) -> Result<String, Self> {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            return Err(Self::of_file(&file, "is a folder, not a file"));
+        }
+        let bytes = std::fs::read(path).map_err(|error| Self::of_file(&file, reason(&error)))?;
+        String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let before = &error.as_bytes()[..valid];
+            let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+            Self::at_line(&file, line as u64, "the text is not UTF-8")
+        })
+    }
+
+    /// The rule that is broken.
+    pub fn rule(&self) -> &str {
+        &self.rule
+    }
+
+    /// The line, counted from 1.
+    pub fn line(&self) -> Option<u64> {
+        self.line
+    }
+}
+
+/// Why a file cannot be opened, read or written, without the number of the system's error.
+pub fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            Some(line) => write!(f, "{}:{line}: {}", self.file, self.rule),
+            None => write!(f, "{}: {}", self.file, self.rule),
+        }
+    }
+}
+
+impl std::error::Error for InputError {}
+
+impl Diagnostic for InputError {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        let (source, _) = self.excerpt.as_ref()?;
+        Some(source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let (_, span) = self.excerpt.as_ref()?;
+        let label = LabeledSpan::new_with_span(None, *span);
+        Some(Box::new(std::iter::once(label)))
+    }
+}

@@ -1,0 +1,64 @@
+//! Progress of a long run, on the terminal.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A run shorter than this shows nothing.
+const QUIET: Duration = Duration::from_secs(2);
+/// Samples between two looks at the clock.
+const LOOK: u64 = 16_384;
+
+/// Shows how far a run is; nothing where standard error is no terminal.
+pub struct Progress {
+    what: &'static str,
+    /// Samples in all; 0 if not known.
+    total: u64,
+    start: Instant,
+    bar: Option<ProgressBar>,
+    terminal: bool,
+}
+
+impl Progress {
+    /// Starts the clock.
+    pub fn new(what: &'static str, total: u64) -> Self {
+        Self {
+            what,
+            total,
+            start: Instant::now(),
+            bar: None,
+            terminal: std::io::stderr().is_terminal(),
+        }
+    }
+
+    /// `done` samples are through.
+    pub fn at(&mut self, done: u64) {
+        if !self.terminal || !done.is_multiple_of(LOOK) {
+            return;
+        }
+        if self.bar.is_none() && self.start.elapsed() > QUIET {
+            self.bar = Some(bar(self.what, self.total));
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+}
+
+fn bar(what: &'static str, total: u64) -> ProgressBar {
+    if total == 0 {
+        return ProgressBar::new_spinner().with_message(what);
+    }
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(total).with_style(style).with_message(what)
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

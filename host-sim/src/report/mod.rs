@@ -1,0 +1,129 @@
+//! One self-contained HTML page for a drop: no script, nothing loaded from outside.
+
+mod accuracy;
+mod chart;
+mod displacement;
+mod orbit;
+mod parameters;
+mod phase_plane;
+mod tables;
+mod text;
+mod timeline;
+mod verdict;
+mod window;
+
+#[cfg(test)]
+mod fixture;
+#[cfg(test)]
+mod tests;
+
+use crate::matching::match_events;
+use crate::outcome::Outcome;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use window::Window;
+
+/// What was dropped and how; SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// Heading.
+    pub title: String,
+    /// Where the scene comes from.
+    pub source: String,
+    /// kg.
+    pub mass: f64,
+    /// Of the rotor at the retainer, m.
+    pub radius: f64,
+    /// kg m2.
+    pub polar_inertia: f64,
+    /// Radial, m.
+    pub clearance: f64,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Coefficient of restitution.
+    pub restitution: f64,
+    /// Downwards, m/s2.
+    pub gravity: f64,
+    /// At the release, counter-clockwise positive, rad/s.
+    pub spin: f64,
+    /// From the release, s.
+    pub duration: f64,
+    /// Of the sensors, Hz.
+    pub sample_rate: f64,
+    /// Number type of the model, `f64` or `f32`.
+    pub precision: String,
+    /// Output interval of the model, s.
+    pub step: f64,
+    /// Of the sensors' noise.
+    pub seed: u64,
+    /// Of a sensor, standard deviation, m.
+    pub noise: f64,
+    /// Component and version.
+    pub versions: Vec<(String, String)>,
+}
+
+/// Writes the page.
+pub fn render(subject: &Subject, outcome: &Outcome) -> String {
+    let matches = match_events(&outcome.truth, &outcome.detection);
+    let whole = Window::whole(&outcome.truth);
+    let window = Window::interesting(&outcome.truth, subject);
+    let zoomed = window != whole;
+    let body = html! {
+        (verdict::verdict(subject, outcome, &matches))
+        section {
+            h2 { "Timeline" }
+            (timeline::legend())
+            @if zoomed {
+                h3 { "From the release until contact has settled" }
+                (timeline::timeline("Timeline, first part", window, outcome))
+                h3 { "Whole run" }
+            }
+            (timeline::timeline("Timeline, whole run", whole, outcome))
+            p.note { "Short strokes in the bars are impacts. Labels below the bars stand at the time of declaration." }
+        }
+        div.pair {
+            section {
+                h2 { "Orbit" }
+                (orbit::orbit(subject, outcome))
+                p.note { "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts." }
+            }
+            section {
+                h2 { "Phase plane at the wall" }
+                (phase_plane::phase_plane(subject, outcome))
+                p.note { "True motion where the rotor is beyond 80 % of the clearance. Between the dashed curves the wall cannot hold the rotor: contact ends there. Dots: more than a quarter turn between two points." }
+            }
+        }
+        section {
+            h2 { "Displacement" }
+            (displacement::displacement(window, subject, outcome))
+            @if zoomed {
+                details {
+                    summary { "Displacement over the whole run" }
+                    (displacement::displacement(whole, subject, outcome))
+                }
+            }
+        }
+        section { h2 { "Detector" } (tables::events(outcome, &matches)) }
+        section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
+        section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
+        section { h2 { "Parameters" } (parameters::parameters(subject)) }
+        section { h2 { "Not modelled" } (parameters::limits()) }
+        section { h2 { "Versions" } (parameters::versions(subject)) }
+    };
+    page(subject, &body).into_string()
+}
+
+fn page(subject: &Subject, body: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (subject.title) " \u{2013} touchdown report" }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body { main { (body) } }
+        }
+    }
+}

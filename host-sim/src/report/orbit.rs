@@ -1,0 +1,110 @@
+//! The path of the rotor's centre inside the clearance circle.
+
+use super::Subject;
+use super::chart::{Axis, coordinate};
+use super::phase_plane::runs;
+use super::text::{phase_class, significant};
+use crate::history::PhaseKind;
+use crate::outcome::{Outcome, TracePoint};
+use maud::{Markup, html};
+use std::fmt::Write;
+
+/// Radius of the clearance circle in drawing units; the drawing is 2 x 230 of them wide.
+const RADIUS: f64 = 180.0;
+
+/// Draws the whole run with equal axes.
+pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
+    let scale = RADIUS / subject.clearance;
+    let micro = 1.25 * subject.clearance * 1e6;
+    let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
+    let place = |value: f64| coordinate(value * 1e-6 * scale);
+    html! {
+        svg.orbit role="img" viewBox="-236 -226 472 472" {
+            title { "Orbit" }
+            desc {
+                "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
+                "circle; rings mark impacts, the outer arrow the direction of spin."
+            }
+            @for (value, text) in axis.ticks() {
+                line.grid x1=(place(value)) x2=(place(value)) y1="-205" y2="205" {}
+                line.grid y1=(place(value)) y2=(place(value)) x1="-205" x2="205" {}
+                text.tick x=(place(value)) y="220" text-anchor="middle" { (text) }
+                text.tick x="-208" y=(place(-value)) dy="4" text-anchor="end" { (text) }
+            }
+            text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
+            circle.clearance r=(RADIUS) {}
+            @for run in runs(&outcome.trace) {
+                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, scale)) {}
+            }
+            @for (x, y) in hits(outcome, scale) {
+                circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
+            }
+            (spin_arrow(subject))
+        }
+    }
+}
+
+fn place(point: &TracePoint, scale: f64) -> (f64, f64) {
+    let [x, y] = point.state.position;
+    (x * scale, -y * scale)
+}
+
+/// In contact the points are joined by arcs, so that a whirl with few points a turn is still round.
+fn path(run: &[TracePoint], scale: f64) -> String {
+    let mut path = String::new();
+    let mut last: Option<(f64, f64)> = None;
+    for point in run {
+        let to = place(point, scale);
+        if !(to.0.is_finite() && to.1.is_finite()) {
+            continue;
+        }
+        let (x, y) = (coordinate(to.0), coordinate(to.1));
+        let _ = match last {
+            None => write!(path, "M{x} {y}"),
+            Some(from) if f64::hypot(to.0 - from.0, to.1 - from.1) < 0.4 => continue,
+            Some(_) if matches!(point.phase, PhaseKind::Sliding | PhaseKind::Rolling) => {
+                let [px, py] = point.state.position;
+                let [vx, vy] = point.state.velocity;
+                let sweep = u8::from(px * vy - py * vx < 0.0);
+                write!(path, "A{RADIUS} {RADIUS} 0 0 {sweep} {x} {y}")
+            }
+            Some(_) => write!(path, "L{x} {y}"),
+        };
+        last = Some(to);
+    }
+    path
+}
+
+fn hits(outcome: &Outcome, scale: f64) -> Vec<(f64, f64)> {
+    let mut places: Vec<(f64, f64)> = Vec::new();
+    for impact in &outcome.truth.impacts {
+        let [x, y] = impact.state.position;
+        let at = (x * scale, -y * scale);
+        if places
+            .iter()
+            .all(|it| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5)
+        {
+            places.push(at);
+        }
+    }
+    places
+}
+
+fn spin_arrow(subject: &Subject) -> Markup {
+    let rpm = significant(subject.spin.abs() * 30.0 / std::f64::consts::PI, 5);
+    let (path, turn) = match subject.spin.total_cmp(&0.0) {
+        _ if subject.spin == 0.0 => ("", "no spin".to_owned()),
+        std::cmp::Ordering::Greater => (
+            "M194 -70A206 206 0 0 0 150 -141M150 -141l1 12M150 -141l11 5",
+            format!("spin {rpm} rpm \u{21ba}"),
+        ),
+        _ => (
+            "M150 -141A206 206 0 0 1 194 -70M194 -70l1 -12M194 -70l-10 -7",
+            format!("spin {rpm} rpm \u{21bb}"),
+        ),
+    };
+    html! {
+        path.arrow d=(path) {}
+        text.label x="232" y="-196" text-anchor="end" { (turn) }
+    }
+}

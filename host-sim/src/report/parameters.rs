@@ -1,0 +1,123 @@
+//! What was assumed: parameters, limits of the model, versions.
+
+use super::Subject;
+use super::text::{si, significant};
+use maud::{Markup, html};
+use std::f64::consts::PI;
+
+/// Physical and dimensionless parameters and those of the run.
+pub fn parameters(subject: &Subject) -> Markup {
+    let rpm = significant(subject.spin * 30.0 / PI, 6);
+    let turn = match subject.spin.total_cmp(&0.0) {
+        _ if subject.spin == 0.0 => "",
+        std::cmp::Ordering::Greater => ", counter-clockwise",
+        _ => ", clockwise",
+    };
+    let physical = [
+        ("Mass", si(subject.mass, "kg")),
+        ("Rotor radius at the retainer", si(subject.radius, "m")),
+        (
+            "Polar inertia",
+            format!(
+                "{}\u{a0}kg\u{a0}m\u{b2}",
+                significant(subject.polar_inertia, 5)
+            ),
+        ),
+        (
+            "Radial clearance \u{3c1}\u{2080}",
+            si(subject.clearance, "m"),
+        ),
+        ("Spin at the release", format!("{rpm}\u{a0}rpm{turn}")),
+        (
+            "Gravity",
+            format!("{}\u{a0}m/s\u{b2}", significant(subject.gravity, 5)),
+        ),
+    ];
+    let run = [
+        ("Duration", si(subject.duration, "s")),
+        ("Sample rate", si(subject.sample_rate, "Hz")),
+        ("Sensor noise, standard deviation", si(subject.noise, "m")),
+        ("Noise seed", subject.seed.to_string()),
+        ("Model precision", subject.precision.clone()),
+        ("Model output interval", si(subject.step, "s")),
+    ];
+    html! {
+        div.pair {
+            div { (list("Rotor and retainer", &physical)) }
+            div { (list("Dimensionless numbers and scales", &scales(subject))) (list("Run", &run)) }
+        }
+    }
+}
+
+fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
+    let beta = subject.polar_inertia / (subject.mass * subject.radius * subject.radius);
+    let time = (subject.clearance / subject.gravity).sqrt();
+    let speed = (subject.clearance * subject.gravity).sqrt();
+    let mut scales = vec![
+        ("Friction \u{b5}", significant(subject.friction, 4)),
+        ("Restitution \u{3b5}", significant(subject.restitution, 4)),
+        ("Inertia \u{3b2} = J/(m r\u{b2})", significant(beta, 4)),
+    ];
+    if subject.gravity > 0.0 {
+        scales.extend([
+            (
+                "Spin W\u{2080} = r \u{3c9}\u{2080}/V",
+                significant(subject.radius * subject.spin / speed, 5),
+            ),
+            ("Time T = \u{221a}(\u{3c1}\u{2080}/g)", si(time, "s")),
+            ("Speed V = \u{221a}(g \u{3c1}\u{2080})", si(speed, "m/s")),
+            (
+                "Whirl keeps contact from, at the bottom",
+                si(whirl_speed(subject), "rad/s"),
+            ),
+        ]);
+    }
+    scales
+}
+
+/// Least angular speed at the bottom from which a rotor driven by friction keeps contact for a turn.
+fn whirl_speed(subject: &Subject) -> f64 {
+    let friction = subject.friction;
+    let drive = 3.0 * (1.0 + (-2.0 * PI * friction).exp()) / (1.0 + 4.0 * friction * friction);
+    (subject.gravity / subject.clearance * (drive - 1.0)).sqrt()
+}
+
+fn list(name: &str, rows: &[(&str, String)]) -> Markup {
+    html! {
+        h3 { (name) }
+        table.list { tbody { @for (name, value) in rows { tr { th scope="row" { (name) } td.number { (value) } } } } }
+    }
+}
+
+/// What the rigid model leaves out.
+pub fn limits() -> Markup {
+    html! {
+        ul {
+            li { "The retainer is rigid and fixed: no compliance or damping of its support, no inner ring that spins up, no heat." }
+            li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
+            li { "An impact takes no time: impulses are given, contact forces and contact durations are not." }
+            li { "Motion is planar, for a rigid rotor: no conical motion, no bending, no unbalance or magnetic force after the release." }
+            li { "Friction is Coulomb's, with one constant coefficient; restitution does not depend on speed." }
+            li { "Truth here is the reference solution of the same equations, not a measurement." }
+        }
+    }
+}
+
+/// Components and versions.
+pub fn versions(subject: &Subject) -> Markup {
+    html! {
+        dl.versions { @for (component, version) in &subject.versions { div { dt { (component) } dd { (version) } } } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    #[test]
+    fn whirl_speed_of_the_rig() {
+        let speed = whirl_speed(&fixture::subject());
+        assert!((speed - 334.59).abs() < 0.01, "{speed}");
+    }
+}

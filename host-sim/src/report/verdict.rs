@@ -1,0 +1,166 @@
+//! The head of the page: what happened, in a line and a few figures.
+
+use super::Subject;
+use super::text::{ms, regime_name, si, significant};
+use crate::history::{History, PhaseKind, Regime};
+use crate::matching::{Match, Matches, regime_event};
+use crate::outcome::Outcome;
+use maud::{Markup, html};
+use touchdown_core::event::EventKind;
+
+/// Draws the title, the verdict and the key figures.
+pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Markup {
+    let truth = &outcome.truth;
+    let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
+    html! {
+        header {
+            p.kind { "Touchdown report" }
+            h1 { (subject.title) }
+            @if !subject.source.is_empty() { p.note { (subject.source) } }
+            p class=(if whirls { "verdict alarm" } else { "verdict" }) {
+                (motion(truth)) " " (detection(outcome, matches))
+            }
+            dl.figures {
+                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
+                (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
+                (figure("First contact", &first_contact(truth), "after the release"))
+                (fall_figure(outcome, matches))
+                (regime_figure(outcome, matches))
+            }
+        }
+    }
+}
+
+fn figure(name: &str, value: &str, remark: &str) -> Markup {
+    html! { div { dt { (name) } dd { (value) } dd.note { (remark) } } }
+}
+
+fn motion(truth: &History) -> String {
+    let end = si(truth.end.time, "s");
+    match truth.regime {
+        Regime::ForwardWhirl => {
+            format!("The rotor whirls round the retainer with its spin after {end}.")
+        }
+        Regime::BackwardWhirl => {
+            format!("The rotor is driven into backward whirl round the retainer within {end}.")
+        }
+        Regime::Pendulum => {
+            format!("No whirl: the rotor swings at the bottom of the retainer after {end}.")
+        }
+        Regime::Rest => format!("No whirl: the rotor lies still on the retainer after {end}."),
+        Regime::Intermittent => {
+            format!(
+                "No whirl: the rotor keeps lifting off and falling back, {} times in {end}.",
+                truth.lift_offs.len()
+            )
+        }
+        Regime::Bouncing => format!("The rotor is not in permanent contact after {end}."),
+    }
+}
+
+fn detection(outcome: &Outcome, matches: &Matches) -> String {
+    let falls = matches.of_kind(EventKind::FreeFall).next();
+    let first = outcome
+        .truth
+        .impacts
+        .first()
+        .map(|impact| impact.state.time);
+    let mut text = match falls.map(|fall| (fall.latency_s, first)) {
+        None => String::new(),
+        Some((None, _)) => "The detector missed the free fall.".to_owned(),
+        Some((Some(latency), Some(first))) if latency < first => {
+            let lead = si(first - latency, "s");
+            format!(
+                "The detector declared the free fall {} after the release, {lead} before the first contact.",
+                si(latency, "s")
+            )
+        }
+        Some((Some(latency), Some(first))) => {
+            let late = si(latency - first, "s");
+            format!(
+                "The detector declared the free fall {} after the release, {late} after the first contact.",
+                si(latency, "s")
+            )
+        }
+        Some((Some(latency), None)) => {
+            format!(
+                "The detector declared the free fall {} after the release.",
+                si(latency, "s")
+            )
+        }
+    };
+    match matches.false_events.len() {
+        0 => {}
+        1 => text.push_str(" One of its events is false."),
+        count => text.push_str(&format!(" {count} of its events are false.")),
+    }
+    text
+}
+
+fn whirl(truth: &History) -> String {
+    match truth.regime {
+        Regime::ForwardWhirl | Regime::BackwardWhirl => {
+            format!(
+                "whirl: yes, {} turns",
+                significant(truth.end.turns_in_contact.abs(), 3)
+            )
+        }
+        _ => "whirl: no".to_owned(),
+    }
+}
+
+fn peak(truth: &History) -> String {
+    let speeds = truth.impacts.iter().map(|impact| impact.normal_speed);
+    let peak = speeds.reduce(f64::max);
+    peak.map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
+}
+
+fn impact_count(truth: &History) -> String {
+    match truth.impacts.len() {
+        0 => "no impacts".to_owned(),
+        1 => "1 impact, into the wall".to_owned(),
+        count => format!("{count} impacts, into the wall"),
+    }
+}
+
+fn first_contact(truth: &History) -> String {
+    let impact = truth.impacts.first().map(|impact| impact.state.time);
+    let contact = truth.contact_starts.first().copied();
+    match impact.into_iter().chain(contact).reduce(f64::min) {
+        Some(time) => format!("{}\u{a0}ms", ms(time)),
+        None => "none".to_owned(),
+    }
+}
+
+fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
+    let fall = matches.of_kind(EventKind::FreeFall).next();
+    let levitated =
+        outcome.truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
+    let remark = match fall.and_then(|fall| fall.detected) {
+        None if levitated => "never declared".to_owned(),
+        None => "starts on the retainer".to_owned(),
+        Some(index) => match outcome.detection.events[index].confirmed_s {
+            Some(time) => format!("confirmed at {}\u{a0}ms", ms(time)),
+            None => "declared, never confirmed".to_owned(),
+        },
+    };
+    figure("Free fall: latency", &latency(fall), &remark)
+}
+
+fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
+    let kind = regime_event(outcome.truth.regime);
+    let regime = kind.and_then(|kind| matches.of_kind(kind).next());
+    let remark = match regime {
+        Some(found) if found.detected.is_some() => "from the start of the last contact",
+        Some(_) => "never declared",
+        None => "no event names this regime",
+    };
+    figure("Regime: latency", &latency(regime), remark)
+}
+
+fn latency(found: Option<&Match>) -> String {
+    let latency = found.and_then(|found| found.latency_s);
+    latency.map_or("\u{2013}".to_owned(), |time| {
+        format!("{}\u{a0}ms", ms(time))
+    })
+}

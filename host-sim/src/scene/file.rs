@@ -1,0 +1,120 @@
+//! The scene file as it is written: one struct a table, in the file's units.
+
+use serde::Deserialize;
+use touchdown_core::detect::Tuning;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub title: Option<String>,
+    pub source: Option<String>,
+    pub rotor: RotorTable,
+    pub retainer: RetainerTable,
+    #[serde(default)]
+    pub start: StartTable,
+    pub run: RunTable,
+    #[serde(default)]
+    pub model: ModelTable,
+    #[serde(default)]
+    pub sensors: SensorsTable,
+    #[serde(default)]
+    pub detector: Tuning,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RotorTable {
+    pub mass_kg: f64,
+    pub radius_mm: f64,
+    pub polar_inertia_kg_m2: Option<f64>,
+    pub speed_rpm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RetainerTable {
+    pub clearance_mm: f64,
+    pub friction: f64,
+    pub restitution: f64,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StartTable {
+    pub x_mm: Option<f64>,
+    pub y_mm: Option<f64>,
+    pub vx_mm_s: Option<f64>,
+    pub vy_mm_s: Option<f64>,
+    pub angle_deg: Option<f64>,
+    pub tangential_mm_s: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RunTable {
+    pub duration_s: f64,
+    #[serde(default = "standard_gravity")]
+    pub gravity_m_s2: f64,
+    #[serde(default = "default_rate")]
+    pub sample_rate_hz: f64,
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+}
+
+fn standard_gravity() -> f64 {
+    9.81
+}
+
+fn default_rate() -> f64 {
+    20_000.0
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    pub rung: Option<String>,
+    pub precision: Option<String>,
+    pub step_us: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SensorsTable {
+    pub planes: u8,
+    pub bits: u32,
+    pub range_um: f64,
+    pub noise_um: f64,
+    pub bandwidth_hz: Option<f64>,
+    pub mounting_deg: [f64; 2],
+    pub offset_um: [f64; 4],
+    pub gain_error_percent: [f64; 4],
+    pub nonlinearity_percent: f64,
+    pub runout_um: f64,
+    pub runout_harmonic: u32,
+    pub speed: bool,
+    pub levitation_signal: bool,
+}
+
+impl Default for SensorsTable {
+    fn default() -> Self {
+        Self {
+            planes: 2,
+            bits: 12,
+            range_um: 1000.0,
+            noise_um: 1.0,
+            bandwidth_hz: None,
+            mounting_deg: [0.0; 2],
+            offset_um: [0.0; 4],
+            gain_error_percent: [0.0; 4],
+            nonlinearity_percent: 0.0,
+            runout_um: 0.0,
+            runout_harmonic: 1,
+            speed: false,
+            levitation_signal: false,
+        }
+    }
+}

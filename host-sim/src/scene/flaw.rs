@@ -1,0 +1,66 @@
+//! A broken rule of a scene, and where in the text it stands.
+
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+
+/// A key that breaks a rule.
+#[derive(Debug)]
+pub(super) struct Flaw {
+    pub table: &'static str,
+    pub key: &'static str,
+    pub rule: String,
+}
+
+impl Flaw {
+    pub fn new(table: &'static str, key: &'static str, rule: impl Into<String>) -> Self {
+        Self {
+            table,
+            key,
+            rule: rule.into(),
+        }
+    }
+
+    /// Where the key stands; its table, or the start of the text, where it is not written.
+    pub fn span(&self, text: &str) -> Range<usize> {
+        let Ok(root) = DeTable::parse(text) else {
+            return 0..0;
+        };
+        let Some((_, table)) = root.get_ref().get_key_value(self.table) else {
+            return 0..0;
+        };
+        let key = table.get_ref().as_table().and_then(|t| {
+            let (key, value) = t.get_key_value(self.key)?;
+            Some(key.span().start..value.span().end)
+        });
+        key.unwrap_or_else(|| table.span())
+    }
+}
+
+/// The first number of the text that is not finite.
+pub(super) fn not_finite(text: &str) -> Option<Range<usize>> {
+    let root = DeTable::parse(text).ok()?;
+    in_table(root.get_ref())
+}
+
+fn in_table(table: &DeTable<'_>) -> Option<Range<usize>> {
+    let mut values: Vec<_> = table.values().collect();
+    values.sort_by_key(|value| value.span().start);
+    values
+        .into_iter()
+        .find_map(|value| in_value(value.get_ref(), value.span()))
+}
+
+fn in_value(value: &DeValue<'_>, span: Range<usize>) -> Option<Range<usize>> {
+    match value {
+        DeValue::Float(number) => {
+            let finite = number.as_str().parse().is_ok_and(f64::is_finite);
+            (!finite).then_some(span)
+        }
+        DeValue::Array(items) => items
+            .iter()
+            .find_map(|item| in_value(item.get_ref(), item.span())),
+        DeValue::Table(table) => in_table(table),
+        _ => None,
+    }
+}

@@ -1,0 +1,229 @@
+//! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
+
+mod builtin;
+mod check;
+mod explain;
+mod file;
+mod flaw;
+
+pub use builtin::{BUILT_IN, BuiltIn};
+pub use explain::explain;
+
+use std::path::Path;
+
+use serde::Serialize;
+use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::monitor::MonitorConfig;
+
+use crate::input_error::InputError;
+use crate::reference::Machine;
+pub use crate::reference::Start;
+use crate::sensors::SensorsConfig;
+
+/// A valid scene; SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The file, or the name of a built-in scene.
+    pub name: String,
+    /// One line.
+    pub title: Option<String>,
+    /// Where the numbers come from.
+    pub source: Option<String>,
+    /// The rotor.
+    pub rotor: Rotor,
+    /// The retainer bearing.
+    pub retainer: Retainer,
+    /// How it starts.
+    pub start: Start,
+    /// How long, and how often it is sampled.
+    pub run: Run,
+    /// What is modelled.
+    pub model: Model,
+    /// The sensor chain.
+    pub sensors: SensorsConfig,
+    /// The detector's thresholds and times.
+    pub tuning: Tuning,
+}
+
+/// The rotor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor {
+    /// kg.
+    pub mass: f64,
+    /// At the retainer, m.
+    pub radius: f64,
+    /// kg m^2.
+    pub polar_inertia: f64,
+    /// At the start, counter-clockwise positive, rad/s.
+    pub spin: f64,
+}
+
+/// The retainer bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Retainer {
+    /// Radial, m.
+    pub clearance: f64,
+    /// Coulomb coefficient.
+    pub friction: f64,
+    /// 0 to 1.
+    pub restitution: f64,
+}
+
+/// How long, and how often it is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// From the release, s.
+    pub duration: f64,
+    /// Downwards, m/s^2.
+    pub gravity: f64,
+    /// Of the sensors, Hz.
+    pub sample_rate: f64,
+    /// Of everything random.
+    pub seed: u64,
+}
+
+/// Rung of the ladder of models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rung {
+    /// Restitution and Coulomb friction on a rigid ring.
+    Rigid,
+}
+
+/// Number format of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Single.
+    F32,
+    /// Double.
+    F64,
+}
+
+/// What is modelled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// The rung.
+    pub rung: Rung,
+    /// Its number format.
+    pub precision: Precision,
+    /// Output interval, s.
+    pub step: f64,
+}
+
+/// Time held by the magnetic bearings before the release of a free start, s.
+pub const LEVITATED_BEFORE: f64 = 0.2;
+
+impl Scene {
+    /// Reads the scene file at `name`, or else takes the built-in scene of that name.
+    pub fn load(name: &str) -> Result<Self, InputError> {
+        if Path::new(name).exists() {
+            return Self::parse(name, &InputError::read(Path::new(name))?);
+        }
+        match BUILT_IN.iter().find(|scene| scene.name == name) {
+            Some(scene) => Self::parse(name, scene.text),
+            None => {
+                let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
+                let rule = format!(
+                    "no such file, and no built-in scene of this name; built in: {}",
+                    names.join(", ")
+                );
+                Err(InputError::of_file(name, rule))
+            }
+        }
+    }
+
+    /// Reads the scene `text`; errors name it `name`.
+    pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
+        let file = toml::from_str(text).map_err(|error| {
+            let rule = error
+                .message()
+                .replacen("missing field", "missing required key", 1)
+                .replacen("unknown field", "unknown key", 1);
+            InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
+        })?;
+        if let Some(span) = flaw::not_finite(text) {
+            return Err(InputError::at_span(
+                name,
+                text,
+                span,
+                "must be a finite number",
+            ));
+        }
+        check::scene(name, file)
+            .map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))
+    }
+
+    /// What is valid but worth knowing.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.retainer.clearance > self.sensors.range {
+            warnings.push(format!(
+                "{}: clearance_mm is {}, beyond the sensors' range of {} um: they saturate before \
+                 the rotor touches",
+                self.name,
+                self.retainer.clearance * 1e3,
+                self.sensors.range * 1e6
+            ));
+        }
+        warnings
+    }
+
+    /// What the monitor is told of this scene.
+    pub fn monitor_config(&self) -> MonitorConfig {
+        let Rotor {
+            mass,
+            radius,
+            polar_inertia,
+            spin,
+        } = self.rotor;
+        MonitorConfig {
+            fitted: self.sensors.fitted(),
+            sensing: self.sensors.sensing(),
+            detector: DetectorConfig {
+                sample_rate: self.run.sample_rate as f32,
+                machine: MachineConfig {
+                    clearance: self.retainer.clearance as f32,
+                    gravity: self.run.gravity as f32,
+                    rotor_radius: radius as f32,
+                    inertia_ratio: (polar_inertia / (mass * radius * radius)) as f32,
+                    friction: self.retainer.friction as f32,
+                    restitution: self.retainer.restitution as f32,
+                    spin: spin as f32,
+                },
+                tuning: self.tuning,
+            },
+        }
+    }
+
+    /// Samples before the release.
+    pub fn levitated_samples(&self) -> u64 {
+        match self.start {
+            Start::Free { .. } => (LEVITATED_BEFORE * self.run.sample_rate).round() as u64,
+            Start::Wall { .. } => 0,
+        }
+    }
+
+    /// Rotor and retainer bearing, for a model.
+    pub fn machine(&self) -> Machine {
+        Machine {
+            mass: self.rotor.mass,
+            radius: self.rotor.radius,
+            polar_inertia: self.rotor.polar_inertia,
+            clearance: self.retainer.clearance,
+            friction: self.retainer.friction,
+            restitution: self.retainer.restitution,
+            gravity: self.run.gravity,
+        }
+    }
+
+    /// Time of the first sample, s since the release.
+    pub fn first_sample_time(&self) -> f64 {
+        -(self.levitated_samples() as f64) / self.run.sample_rate
+    }
+
+    /// The title, or else the name.
+    pub fn heading(&self) -> &str {
+        self.title.as_deref().unwrap_or(&self.name)
+    }
+}

@@ -1,0 +1,261 @@
+//! Reads a recorded stream, strictly: a row that breaks a rule ends it.
+
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::io::{BufReader, Read};
+use std::path::Path;
+use std::rc::Rc;
+
+use csv::StringRecord;
+use touchdown_core::sample::CHANNELS;
+
+use super::Columns;
+use super::clock::{Clock, LOOK_AHEAD, Stamp};
+use crate::input_error::{InputError, reason};
+
+const RPM: f64 = std::f64::consts::TAU / 60.0;
+const MICRO: f64 = 1e-6;
+
+/// One row; SI.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// s.
+    pub time: f64,
+    /// Displacement by channel, in the scene's axes, m; NaN where there is none.
+    pub positions: [f64; CHANNELS],
+    /// rad/s; `None` without the column or where it is NaN.
+    pub spin: Option<f64>,
+    /// `None` without the column.
+    pub levitated: Option<bool>,
+}
+
+/// A stream being read. The rate is that of the first [`LOOK_AHEAD`] rows; all later rows are held
+/// to it.
+pub struct StreamReader<R> {
+    file: String,
+    records: csv::Reader<LastByte<R>>,
+    ends_in_newline: Rc<Cell<bool>>,
+    columns: Columns,
+    clock: Clock,
+    ahead: VecDeque<Row>,
+    rate: f64,
+    finished: bool,
+}
+
+impl StreamReader<BufReader<std::fs::File>> {
+    /// Opens the stream at `path`.
+    pub fn open(path: &Path) -> Result<Self, InputError> {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            return Err(InputError::of_file(&file, "is a folder, not a file"));
+        }
+        let bytes = std::fs::File::open(path)
+            .map_err(|error| InputError::of_file(&file, reason(&error)))?;
+        Self::new(&file, BufReader::new(bytes))
+    }
+}
+
+impl<R: Read> StreamReader<R> {
+    /// Reads the header and the first rows of `bytes`; errors name the stream `file`.
+    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
+        let ends_in_newline = Rc::new(Cell::new(true));
+        let mut records = csv::ReaderBuilder::new()
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(LastByte {
+                bytes,
+                is_newline: Rc::clone(&ends_in_newline),
+            });
+        let header = records.headers().map_err(|error| csv_error(file, &error))?;
+        let names: Vec<_> = header.iter().collect();
+        let Some(columns) = Columns::of_header(&names) else {
+            let rule = format!(
+                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], is \
+                 {:?}",
+                names.join(",")
+            );
+            return Err(InputError::at_line(file, 1, rule));
+        };
+        let mut record = StringRecord::new();
+        let read = records.read_record(&mut record);
+        if !read.map_err(|error| csv_error(file, &error))? {
+            return Err(InputError::at_line(
+                file,
+                1,
+                "there are no rows after the header",
+            ));
+        }
+        let (stamp, row) = parse(file, &record, columns)?;
+        let mut reader = Self {
+            file: file.to_owned(),
+            records,
+            ends_in_newline,
+            columns,
+            clock: Clock::new(stamp),
+            ahead: VecDeque::from([row]),
+            rate: 0.0,
+            finished: false,
+        };
+        while reader.ahead.len() < LOOK_AHEAD {
+            let Some(row) = reader.read_row()? else {
+                break;
+            };
+            reader.ahead.push_back(row);
+        }
+        let Some(rate) = reader.clock.rate() else {
+            return Err(InputError::at_line(
+                file,
+                2,
+                "one row alone has no sample rate",
+            ));
+        };
+        if !(100.0 * (1.0 - 1e-6)..=200_000.0 * (1.0 + 1e-6)).contains(&rate) {
+            let rule = format!("the sample rate must be 100 to 200000 Hz, is {rate} Hz");
+            return Err(InputError::at_line(file, 3, rule));
+        }
+        reader.rate = rate;
+        Ok(reader)
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> Columns {
+        self.columns
+    }
+
+    /// Samples per second, Hz.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Time of the first row, s.
+    pub fn start(&self) -> f64 {
+        self.clock.start()
+    }
+
+    fn read_row(&mut self) -> Result<Option<Row>, InputError> {
+        if self.finished {
+            return Ok(None);
+        }
+        let mut record = StringRecord::new();
+        let read = self.records.read_record(&mut record);
+        if !read.map_err(|error| csv_error(&self.file, &error))? {
+            self.finished = true;
+            return self.check_end();
+        }
+        let (stamp, row) = parse(&self.file, &record, self.columns)?;
+        self.clock
+            .take(stamp)
+            .map_err(|rule| InputError::at_line(&self.file, line(&record), rule))?;
+        Ok(Some(row))
+    }
+
+    /// A number that lost its last digits is still a number: only the newline shows that the last
+    /// row is whole.
+    fn check_end(&self) -> Result<Option<Row>, InputError> {
+        if self.ends_in_newline.get() {
+            return Ok(None);
+        }
+        let last = self.records.position().line();
+        let rule = "the last line is cut off: it does not end with a newline";
+        Err(InputError::at_line(&self.file, last, rule))
+    }
+}
+
+impl<R: Read> Iterator for StreamReader<R> {
+    type Item = Result<Row, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match self.ahead.pop_front() {
+            Some(row) => Some(Ok(row)),
+            None => {
+                let row = self.read_row();
+                self.finished |= row.is_err();
+                row.transpose()
+            }
+        }
+    }
+}
+
+fn line(record: &StringRecord) -> u64 {
+    record.position().map_or(1, csv::Position::line)
+}
+
+fn csv_error(file: &str, error: &csv::Error) -> InputError {
+    let line = error.position().map(csv::Position::line);
+    match (error.kind(), line) {
+        (csv::ErrorKind::Utf8 { .. }, Some(line)) => {
+            InputError::at_line(file, line, "the text is not UTF-8")
+        }
+        (csv::ErrorKind::Io(error), _) => InputError::of_file(file, reason(error)),
+        (_, Some(line)) => InputError::at_line(file, line, error.to_string()),
+        (_, None) => InputError::of_file(file, error.to_string()),
+    }
+}
+
+fn parse(file: &str, record: &StringRecord, columns: Columns) -> Result<(Stamp, Row), InputError> {
+    let fail = |rule: String| InputError::at_line(file, line(record), rule);
+    let header = columns.header();
+    if record.len() != header.len() {
+        return Err(fail(format!(
+            "a row needs {} fields, this one has {}",
+            header.len(),
+            record.len()
+        )));
+    }
+    let number = |column: usize| -> Result<f64, InputError> {
+        let text = &record[column];
+        match text.parse::<f64>() {
+            Ok(value) if !value.is_infinite() => Ok(value),
+            _ => Err(fail(format!(
+                "{} must be a finite number or NaN, is {text:?}",
+                header[column]
+            ))),
+        }
+    };
+    let stamp = Stamp::parse(&record[0]).ok_or_else(|| {
+        fail(format!(
+            "time_s must be a finite number, is {:?}",
+            &record[0]
+        ))
+    })?;
+    let channels = 2 * usize::from(columns.planes);
+    let mut positions = [f64::NAN; CHANNELS];
+    for (channel, position) in positions[..channels].iter_mut().enumerate() {
+        *position = MICRO * number(1 + channel)?;
+    }
+    let mut spin = None;
+    if columns.speed {
+        spin = Some(RPM * number(1 + channels)?).filter(|spin| !spin.is_nan());
+    }
+    let mut levitated = None;
+    if columns.levitated {
+        levitated = Some(match &record[header.len() - 1] {
+            "0" => false,
+            "1" => true,
+            other => return Err(fail(format!("levitated must be 0 or 1, is {other:?}"))),
+        });
+    }
+    let row = Row {
+        time: stamp.time,
+        positions,
+        spin,
+        levitated,
+    };
+    Ok((stamp, row))
+}
+
+/// Remembers whether the last byte that passed was a newline.
+struct LastByte<R> {
+    bytes: R,
+    is_newline: Rc<Cell<bool>>,
+}
+
+impl<R: Read> Read for LastByte<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.bytes.read(buffer)?;
+        if let Some(last) = buffer[..read].last() {
+            self.is_newline.set(*last == b'\n');
+        }
+        Ok(read)
+    }
+}

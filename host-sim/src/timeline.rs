@@ -1,0 +1,269 @@
+//! What the terminal shows: the true phases beside what the detector said, in 80 columns.
+
+use touchdown_core::event::EventKind;
+
+use crate::history::{Phase, PhaseKind, Regime};
+use crate::matching::{Match, Matches, match_events, regime_event};
+use crate::outcome::{DetectedEvent, Detection, Outcome};
+use crate::paint::Paint;
+use crate::scene::Scene;
+
+/// Phases and impacts that are listed before the rest is summed up.
+const LISTED: usize = 12;
+/// A phase begins with its event within this, s.
+const SAME: f64 = 1e-12;
+
+/// A drop.
+pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
+    let matches = match_events(&outcome.truth, &outcome.detection);
+    let mut text = heading(scene, paint);
+    text += &phases(outcome, &matches, paint);
+    text += &impacts(outcome, &matches, paint);
+    text += &regime(outcome, &matches, paint);
+    text += &extras(outcome, &matches, paint);
+    text
+}
+
+fn heading(scene: &Scene, paint: Paint) -> String {
+    let mut words = scene.heading().split_whitespace().peekable();
+    let mut lines = vec![words.next().unwrap_or_default().to_owned()];
+    for word in words {
+        let last = lines
+            .last_mut()
+            .filter(|line| line.len() + 1 + word.len() <= 79);
+        match last {
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    let lines: Vec<_> = lines.iter().map(|line| paint.bold(line)).collect();
+    format!(
+        "{}\n{} kg, radius {:.4} mm, {:.0} rpm; gap {:.4} mm, friction {}, restitution {}\n",
+        lines.join("\n"),
+        scene.rotor.mass,
+        scene.rotor.radius * 1e3,
+        scene.rotor.spin * 60.0 / std::f64::consts::TAU,
+        scene.retainer.clearance * 1e3,
+        scene.retainer.friction,
+        scene.retainer.restitution,
+    )
+}
+
+fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let head = format!(
+        "\n{:<12}{:>12}{:>12}  {:<10}{:>13}{:>12}",
+        "phase", "from ms", "to ms", "detected", "onset ms", "latency ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    let phases = &outcome.truth.phases;
+    for phase in phases.iter().take(LISTED) {
+        text += &format!(
+            "{:<12}{:>12}{:>12}",
+            name(phase.phase),
+            millis(phase.start_s),
+            millis(phase.end_s)
+        );
+        let begun = event_of(phase).and_then(|kind| {
+            matches
+                .of_kind(kind)
+                .find(|event| (event.onset_s - phase.start_s).abs() <= SAME)
+        });
+        if let Some(event) = begun {
+            text += &verdict(event, &outcome.detection, paint);
+        }
+        text.push('\n');
+    }
+    text + &more(phases.len(), "phases")
+}
+
+/// The event that a phase begins with.
+fn event_of(phase: &Phase) -> Option<EventKind> {
+    match phase.phase {
+        PhaseKind::Levitated => None,
+        PhaseKind::FreeFall if phase.start_s > 0.0 => Some(EventKind::LiftOff),
+        PhaseKind::FreeFall => Some(EventKind::FreeFall),
+        PhaseKind::Impact => Some(EventKind::Impact),
+        PhaseKind::Sliding => Some(EventKind::Sliding),
+        PhaseKind::Rolling => Some(EventKind::Rolling),
+    }
+}
+
+fn verdict(event: &Match, detection: &Detection, paint: Paint) -> String {
+    let Some(index) = event.detected else {
+        return format!("  {}", paint.bad("missed"));
+    };
+    let detected = &detection.events[index];
+    format!(
+        "  {}{:>13}{:>12}",
+        paint.good(&format!("{:<10}", fate(detected))),
+        millis(detected.onset_s),
+        optional(event.latency_s.map(millis)),
+    )
+}
+
+fn fate(event: &DetectedEvent) -> &'static str {
+    if event.confirmed_s.is_some() {
+        "confirmed"
+    } else if event.withdrawn_s.is_some() {
+        "withdrawn"
+    } else {
+        "declared"
+    }
+}
+
+fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let truth = &outcome.truth.impacts;
+    if truth.is_empty() {
+        return String::new();
+    }
+    let head = format!(
+        "\n{:<8}{:>12}{:>10}{:>13}{:>15}{:>10}{:>12}",
+        "impact", "at ms", "mm/s", "model off by", "onset error ms", "seen mm/s", "latency ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    let found = matches.of_kind(EventKind::Impact);
+    for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
+        let model = outcome.model.impacts.get(index);
+        let off =
+            model.map(|model| format!("{:.0e} s", (model.state.time - impact.state.time).abs()));
+        text += &format!(
+            "{:<8}{:>12}{:>10.2}{:>13}",
+            index,
+            millis(impact.state.time),
+            impact.normal_speed * 1e3,
+            optional(off),
+        );
+        let seen = event.detected.map(|index| &outcome.detection.events[index]);
+        text += &match seen {
+            Some(seen) => format!(
+                "{:>15}{:>10}{:>12}",
+                optional(event.onset_error_s.map(millis)),
+                optional(seen.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3))),
+                optional(event.latency_s.map(millis)),
+            ),
+            None => format!("{:>9}{}", "", paint.bad("missed")),
+        };
+        text.push('\n');
+    }
+    text + &more(truth.len(), "impacts")
+}
+
+fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let truth = outcome.truth.regime;
+    let mut text = format!("\n{} {}", paint.bold("regime"), regime_name(truth));
+    let Some(kind) = regime_event(truth) else {
+        return text + "\n";
+    };
+    let found = matches
+        .of_kind(kind)
+        .find_map(|event| event.detected)
+        .map(|index| &outcome.detection.events[index]);
+    text += &match found {
+        Some(event) => paint.good(&format!("; declared at {} ms", millis(event.declared_s))),
+        None => paint.bad("; not declared"),
+    };
+    text + "\n"
+}
+
+fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let mut text = String::new();
+    if outcome.model.regime != outcome.truth.regime {
+        let line = format!("the model ends as {}", regime_name(outcome.model.regime));
+        text += &(paint.bad(&line) + "\n");
+    }
+    if !matches.false_events.is_empty() {
+        let line = format!("{} events that did not happen", matches.false_events.len());
+        text += &(paint.bad(&line) + "\n");
+    }
+    let Detection {
+        samples, faults, ..
+    } = outcome.detection;
+    text + &format!("{samples} samples, {faults} unusable channel values\n")
+}
+
+/// A replay: the events as they were declared.
+pub fn replay(stream: &str, detection: &Detection) -> String {
+    let mut text = format!(
+        "{stream}: {} samples, {} unusable channel values, {} events\n",
+        detection.samples,
+        detection.faults,
+        detection.events.len()
+    );
+    if !detection.events.is_empty() {
+        text += &format!(
+            "\n{:<15}{:>16}{:>16}{:>12}{:>7}{:>12}\n",
+            "event", "onset s", "declared s", "", "plane", "speed mm/s"
+        );
+    }
+    for event in &detection.events {
+        let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
+        let line = format!(
+            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}",
+            event_name(event.event),
+            event.onset_s,
+            event.declared_s,
+            if fate(event) == "declared" {
+                ""
+            } else {
+                fate(event)
+            },
+            event.plane,
+            speed.unwrap_or_default(),
+        );
+        text += &format!("{}\n", line.trim_end());
+    }
+    text
+}
+
+fn more(count: usize, what: &str) -> String {
+    if count > LISTED {
+        format!("... {} more {what}\n", count - LISTED)
+    } else {
+        String::new()
+    }
+}
+
+fn millis(seconds: f64) -> String {
+    format!("{:.4}", seconds * 1e3)
+}
+
+fn optional(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "-".to_owned())
+}
+
+fn name(phase: PhaseKind) -> &'static str {
+    match phase {
+        PhaseKind::Levitated => "levitated",
+        PhaseKind::FreeFall => "free fall",
+        PhaseKind::Impact => "impacts",
+        PhaseKind::Sliding => "sliding",
+        PhaseKind::Rolling => "rolling",
+    }
+}
+
+fn regime_name(regime: Regime) -> &'static str {
+    match regime {
+        Regime::Rest => "rest",
+        Regime::Pendulum => "pendulum",
+        Regime::ForwardWhirl => "forward whirl",
+        Regime::BackwardWhirl => "backward whirl",
+        Regime::Intermittent => "intermittent",
+        Regime::Bouncing => "bouncing",
+    }
+}
+
+fn event_name(event: EventKind) -> &'static str {
+    match event {
+        EventKind::FreeFall => "free fall",
+        EventKind::Impact => "impact",
+        EventKind::Sliding => "sliding",
+        EventKind::Rolling => "rolling",
+        EventKind::Pendulum => "pendulum",
+        EventKind::ForwardWhirl => "forward whirl",
+        EventKind::BackwardWhirl => "backward whirl",
+        EventKind::LiftOff => "lift-off",
+        EventKind::Rest => "rest",
+        EventKind::Levitated => "levitated",
+        EventKind::SensorFault => "sensor fault",
+    }
+}
