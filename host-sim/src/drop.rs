@@ -26,13 +26,14 @@ pub fn run<W: Write>(
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let mut feed = Feed::new(scene, stream)
-        .map_err(|error| Failure::Usage(format!("{}: {error}", scene.name)))?;
+    let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
+    let model = model_run::simulate(scene).map_err(refused)?;
+    let mut feed = Feed::new(scene, stream).map_err(refused)?;
     let answer = target.run(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
     let (truth, trace, stream) = feed.finish();
     let outcome = Outcome {
-        model: model_run::simulate(scene),
+        model,
         truth,
         trace,
         detection: detection(&answer, timebase),
