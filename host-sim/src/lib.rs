@@ -3,4 +3,5 @@
 pub mod history;
 pub mod matching;
 pub mod outcome;
+pub mod reference;
 pub mod report;
