@@ -57,9 +57,11 @@ fn plane(
     } else {
         (1.0, "rad/s")
     };
-    let reach = if widest < 80.0 { 90.0 } else { 180.0 };
+    let spans = [(30.0, 10.0), (90.0, 30.0), (180.0, 45.0)];
+    let fitting = spans.into_iter().find(|span| 1.1 * widest < span.0);
+    let (reach, step) = fitting.unwrap_or(spans[2]);
     let mut x = Axis::new(-reach, reach, "\u{3b8} from the bottom, degrees", 8.0);
-    x.step = reach / 4.0;
+    x.step = step;
     let margin = 0.06 * (high - low);
     let (low, high) = ((low - margin) * factor, (high + margin) * factor);
     let y = Axis::new(low, high, &format!("d\u{3b8}/dt, {unit}"), 6.0);

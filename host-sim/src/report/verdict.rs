@@ -47,12 +47,16 @@ fn motion(truth: &History) -> String {
             format!("The rotor is driven into backward whirl round the retainer within {end}.")
         }
         Regime::Pendulum => {
-            format!("No whirl: the rotor swings at the bottom of the retainer after {end}.")
+            format!(
+                "No whirl at the end: the rotor swings at the bottom of the retainer after {end}."
+            )
         }
-        Regime::Rest => format!("No whirl: the rotor lies still on the retainer after {end}."),
+        Regime::Rest => {
+            format!("No whirl at the end: the rotor lies still on the retainer after {end}.")
+        }
         Regime::Intermittent => {
             format!(
-                "No whirl: the rotor keeps lifting off and falling back, {} times in {end}.",
+                "No whirl at the end: the rotor keeps lifting off and falling back, {} times in {end}.",
                 truth.lift_offs.len()
             )
         }
@@ -120,12 +124,12 @@ fn whirl(truth: &History, clearance: f64) -> String {
             let [vx, vy] = truth.end.velocity;
             let rate = f64::hypot(vx, vy) / (TAU * clearance);
             format!(
-                "whirl: yes, {} turns, at the end {} (rigid model: upper bound)",
+                "{} turns in this contact, at the end {} (rigid model: upper bound)",
                 significant(truth.end.turns_in_contact.abs(), 3),
                 si(rate, "Hz")
             )
         }
-        _ => "whirl: no".to_owned(),
+        _ => "no whirl at the end of the run".to_owned(),
     }
 }
 
