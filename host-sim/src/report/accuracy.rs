@@ -2,7 +2,7 @@
 
 use super::Subject;
 use super::tables::table;
-use super::text::{error, ms, regime_name, significant};
+use super::text::{error, ms, regime_name, si, significant};
 use crate::history::History;
 use crate::outcome::Outcome;
 use maud::{Markup, html};
@@ -21,12 +21,16 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
         time_row("First impact, ms", first_impact(model), first_impact(truth)),
         speed_row(peak(model), peak(truth)),
     ];
-    for (name, times) in [
-        ("Permanent contact", of(|it| &it.contact_starts)),
-        ("Rolling", of(|it| &it.rolling_starts)),
-        ("Lift-off", of(|it| &it.lift_offs)),
-    ] {
-        let (ours, theirs) = (times(model), times(truth));
+    let starts = [
+        (
+            "Permanent contact",
+            &model.contact_starts,
+            &truth.contact_starts,
+        ),
+        ("Rolling", &model.rolling_starts, &truth.rolling_starts),
+        ("Lift-off", &model.lift_offs, &truth.lift_offs),
+    ];
+    for (name, ours, theirs) in starts {
         if ours.len().max(theirs.len()) > 0 {
             let name = format!("{name}, first, ms");
             rows.push(time_row(
@@ -50,14 +54,10 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     html! {
         p {
             "The model ran in " (subject.precision) " with an output interval of "
-            (super::text::si(subject.step, "s")) ". The reference is an independent solver in f64."
+            (si(subject.step, "s")) ". The reference is an independent solver in f64."
         }
         (table("Model against reference", &head, rows.into_iter()))
     }
-}
-
-fn of(times: fn(&History) -> &Vec<f64>) -> fn(&History) -> &Vec<f64> {
-    times
 }
 
 fn first_impact(history: &History) -> Option<f64> {

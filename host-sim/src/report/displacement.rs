@@ -2,6 +2,7 @@
 
 use super::Subject;
 use super::chart::{Axis, Chart};
+use super::stretch::far;
 use super::text::phase_class;
 use super::timeline::{percent, strokes, visible};
 use super::window::Window;
@@ -42,9 +43,15 @@ fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> M
     };
     let mut motion = chart.pen();
     let mut sensed = chart.pen();
+    let mut last: Option<&TracePoint> = None;
     for point in shown(&outcome.trace, window) {
         let time = point.state.time * factor;
-        motion.line_to(time, point.state.position[axis] * MICRO);
+        let position = point.state.position[axis] * MICRO;
+        match last {
+            Some(from) if far(from, point, subject.clearance) => motion.dot(time, position),
+            _ => motion.line_to(time, position),
+        }
+        last = Some(point);
         if let Some(position) = point.sensed {
             sensed.dot(time, position[axis] * MICRO);
         }

@@ -1,19 +1,20 @@
-//! A drop in closed form: straight down from the centre, a bounce series, then a slow swing.
+//! Drops of the reference, with a detector that knows the truth but for small errors.
 
 use super::Subject;
-use crate::history::{Happening, Impact, PhaseKind, Recorder, RotorState};
+use crate::history::{History, PhaseKind, Recorder, RotorState};
+use crate::matching::regime_event;
 use crate::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
+use crate::reference::{Machine, Reference, Start};
 use touchdown_core::event::EventKind;
 
 const RATE: f64 = 50e3;
-const DURATION: f64 = 0.3;
 const LEAD: f64 = 0.2;
 
 /// The rig of the paper.
 pub fn subject() -> Subject {
     Subject {
-        title: "Paper rig, 0.3 mm".to_owned(),
-        source: "closed-form fixture".to_owned(),
+        title: "Rotor drop, paper rig".to_owned(),
+        source: "section 4 of the paper".to_owned(),
         mass: 3.42,
         radius: 0.024,
         polar_inertia: 9.8496e-4,
@@ -22,7 +23,7 @@ pub fn subject() -> Subject {
         restitution: 0.8,
         gravity: 9.81,
         spin: -3141.592653589793,
-        duration: DURATION,
+        duration: 0.3,
         sample_rate: RATE,
         precision: "f64".to_owned(),
         step: 20e-6,
@@ -32,100 +33,70 @@ pub fn subject() -> Subject {
     }
 }
 
-/// A drop with detections of the release, the hard impacts, the contact and the regime.
-pub fn outcome(subject: &Subject) -> Outcome {
-    let gravity = subject.gravity;
-    let mut recorder = Recorder::new(LEAD);
-    let mut speed = (2.0 * gravity * subject.clearance).sqrt();
-    let mut time = speed / gravity;
-    let mut flights = Vec::new();
-    while speed > 1e-6 {
-        let rebound = subject.restitution * speed;
-        let impact = Impact {
-            state: RotorState {
-                time,
-                position: [0.0, -subject.clearance],
-                velocity: [0.0, rebound],
-                spin: subject.spin,
-                turns_in_contact: 0.0,
-            },
-            normal_speed: speed,
-            normal_impulse: subject.mass * (speed + rebound),
-        };
-        recorder.take(Happening::Impact(impact));
-        flights.push((time, rebound));
-        time += 2.0 * rebound / gravity;
-        speed = rebound;
+/// The free start of the paper's drop.
+pub fn start() -> Start {
+    Start::Free {
+        position: [20e-6, 0.0],
+        velocity: [0.0, 0.0],
     }
-    recorder.take(Happening::ContactStart {
-        time,
-        rolling: false,
-    });
-    let contact = time;
-    let state = |time: f64| state(subject, &flights, contact, time);
-    let truth = recorder.finish(state(DURATION), 1e-9);
-    let points = ((LEAD + DURATION) * RATE) as usize;
-    let trace = (0..points).step_by(3).map(|number| {
-        let state = state(number as f64 / RATE - LEAD);
+}
+
+/// A drop; the model is as good as the reference.
+pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
+    let machine = Machine {
+        mass: subject.mass,
+        radius: subject.radius,
+        polar_inertia: subject.polar_inertia,
+        clearance: subject.clearance,
+        friction: subject.friction,
+        restitution: subject.restitution,
+        gravity: subject.gravity,
+    };
+    let mut reference = Reference::new(&machine, start, subject.spin);
+    let (lead, held) = match *start {
+        Start::Free { position, .. } => (LEAD, position),
+        Start::Wall { .. } => (0.0, [0.0; 2]),
+    };
+    let mut recorder = Recorder::new(lead);
+    let points = ((lead + subject.duration) * RATE) as usize;
+    let mut trace = Vec::new();
+    for number in (0..points).step_by(points.div_ceil(6000)) {
+        let time = number as f64 / RATE - lead;
+        let (state, phase) = if time < 0.0 {
+            let position = held;
+            let spin = subject.spin;
+            let state = RotorState {
+                time,
+                position,
+                spin,
+                ..RotorState::default()
+            };
+            (state, PhaseKind::Levitated)
+        } else {
+            let state = reference.advance(time, &mut |it| recorder.take(it));
+            (state, reference.phase())
+        };
+        let jitter = |step: f64| 1.5 * subject.noise * (number as f64 * step).sin();
         let [x, y] = state.position;
-        let jitter = |step: f64| subject.noise * (number as f64 * step).sin() * 1.5;
-        TracePoint {
+        let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
+        trace.push(TracePoint {
             state,
-            phase: phase(&truth.phases, state.time),
-            sensed: (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]),
-        }
-    });
-    let trace = trace.collect();
-    let detection = detection(&truth.impacts, contact);
+            phase,
+            sensed,
+        });
+    }
+    let end = reference.advance(subject.duration, &mut |it| recorder.take(it));
+    let truth = recorder.finish(end, reference.still_speed());
     Outcome {
         model: truth.clone(),
+        detection: detection(&truth),
         truth,
         trace,
-        detection,
     }
 }
 
-fn state(subject: &Subject, flights: &[(f64, f64)], contact: f64, time: f64) -> RotorState {
-    let gravity = subject.gravity;
-    let (position, velocity) = if time < 0.0 {
-        ([0.0, 0.0], [0.0, 0.0])
-    } else if time < flights[0].0 {
-        ([0.0, -0.5 * gravity * time * time], [0.0, -gravity * time])
-    } else if time < contact {
-        let flight = flights.partition_point(|flight| flight.0 <= time) - 1;
-        let (start, speed) = flights[flight];
-        let since = time - start;
-        let height = speed * since - 0.5 * gravity * since * since;
-        (
-            [0.0, height - subject.clearance],
-            [0.0, speed - gravity * since],
-        )
-    } else {
-        let rate = (gravity / subject.clearance).sqrt();
-        let angle = 0.4 * (rate * (time - contact)).sin();
-        let turning = 0.4 * rate * (rate * (time - contact)).cos();
-        let (sin, cos) = angle.sin_cos();
-        let speed = subject.clearance * turning;
-        (
-            [subject.clearance * sin, -subject.clearance * cos],
-            [speed * cos, speed * sin],
-        )
-    };
-    RotorState {
-        time,
-        position,
-        velocity,
-        spin: subject.spin,
-        turns_in_contact: 0.0,
-    }
-}
-
-fn phase(phases: &[crate::history::Phase], time: f64) -> PhaseKind {
-    let found = phases.iter().rev().find(|phase| phase.start_s <= time);
-    found.map_or(PhaseKind::Levitated, |phase| phase.phase)
-}
-
-fn detection(impacts: &[Impact], contact: f64) -> Detection {
+/// Finds everything but the softest impacts, and one lift-off too many.
+fn detection(truth: &History) -> Detection {
     let event = |event, onset_s: f64, latency: f64| DetectedEvent {
         event,
         onset_s,
@@ -136,19 +107,32 @@ fn detection(impacts: &[Impact], contact: f64) -> Detection {
         plane: "both",
         normal_speed_m_s: None,
     };
-    let mut events = vec![event(EventKind::Levitated, -0.15, 0.1)];
-    events.push(DetectedEvent {
-        confirmed_s: Some(0.0034),
-        ..event(EventKind::FreeFall, 0.1e-3, 1.2e-3)
+    let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
+        PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
+        PhaseKind::FreeFall if phase.start_s == 0.0 => Some(DetectedEvent {
+            confirmed_s: Some(0.0034),
+            ..event(EventKind::FreeFall, 0.1e-3, 1.2e-3)
+        }),
+        PhaseKind::FreeFall => Some(event(EventKind::LiftOff, phase.start_s, 0.9e-3)),
+        PhaseKind::Impact => None,
+        PhaseKind::Sliding => Some(event(EventKind::Sliding, phase.start_s - 0.4e-3, 2.5e-3)),
+        PhaseKind::Rolling => Some(event(EventKind::Rolling, phase.start_s + 2e-3, 4e-3)),
     });
-    let hard = impacts.iter().filter(|impact| impact.normal_speed > 8e-3);
-    events.extend(hard.map(|impact| DetectedEvent {
+    let hard = truth
+        .impacts
+        .iter()
+        .filter(|impact| impact.normal_speed > 8e-3);
+    let impacts = hard.map(|impact| DetectedEvent {
         normal_speed_m_s: Some(0.98 * impact.normal_speed),
         ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
-    }));
-    events.push(event(EventKind::Sliding, contact - 0.4e-3, 2.1e-3));
-    events.push(event(EventKind::Pendulum, contact, 18e-3));
-    events.push(event(EventKind::LiftOff, 0.21, 1e-3));
+    });
+    let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();
+    events.push(event(EventKind::LiftOff, 0.9 * truth.end.time, 1e-3));
+    if let (Some(kind), Some(&contact)) = (regime_event(truth.regime), truth.contact_starts.last())
+    {
+        events.push(event(kind, contact, 18e-3));
+    }
+    events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
         samples: 25_000,

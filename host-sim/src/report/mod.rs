@@ -6,11 +6,12 @@ mod displacement;
 mod orbit;
 mod parameters;
 mod phase_plane;
+mod stretch;
 mod tables;
 mod text;
 mod timeline;
 mod verdict;
-mod window;
+pub mod window;
 
 #[cfg(test)]
 mod fixture;
@@ -65,7 +66,7 @@ pub struct Subject {
 pub fn render(subject: &Subject, outcome: &Outcome) -> String {
     let matches = match_events(&outcome.truth, &outcome.detection);
     let whole = Window::whole(&outcome.truth);
-    let window = Window::interesting(&outcome.truth, subject);
+    let window = Window::interesting(&outcome.truth, subject.clearance, subject.gravity);
     let zoomed = window != whole;
     let body = html! {
         (verdict::verdict(subject, outcome, &matches))
@@ -73,7 +74,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             h2 { "Timeline" }
             (timeline::legend())
             @if zoomed {
-                h3 { "From the release until contact has settled" }
+                h3 { "First part" }
                 (timeline::timeline("Timeline, first part", window, outcome))
                 h3 { "Whole run" }
             }
@@ -84,12 +85,12 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             section {
                 h2 { "Orbit" }
                 (orbit::orbit(subject, outcome))
-                p.note { "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts." }
+                p.note { "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts. Here and below, dots stand alone where the points of the trace are too far apart to be joined." }
             }
             section {
                 h2 { "Phase plane at the wall" }
                 (phase_plane::phase_plane(subject, outcome))
-                p.note { "True motion where the rotor is beyond 80 % of the clearance. Between the dashed curves the wall cannot hold the rotor: contact ends there. Dots: more than a quarter turn between two points." }
+                p.note { "True motion where the rotor is beyond 80 % of the clearance. Inside a dashed curve the wall cannot hold the rotor: contact ends there." }
             }
         }
         section {

@@ -2,14 +2,15 @@
 
 use super::Subject;
 use super::chart::{Axis, coordinate};
-use super::phase_plane::runs;
+use super::stretch::{far, runs};
 use super::text::{phase_class, significant};
 use crate::history::PhaseKind;
 use crate::outcome::{Outcome, TracePoint};
 use maud::{Markup, html};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
-/// Radius of the clearance circle in drawing units; the drawing is 2 x 230 of them wide.
+/// Radius of the clearance circle in drawing units; the drawing is 488 of them wide.
 const RADIUS: f64 = 180.0;
 
 /// Draws the whole run with equal axes.
@@ -19,7 +20,7 @@ pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
-        svg.orbit role="img" viewBox="-236 -226 472 472" {
+        svg.orbit role="img" viewBox="-252 -226 488 472" {
             title { "Orbit" }
             desc {
                 "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
@@ -34,7 +35,7 @@ pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
             @for run in runs(&outcome.trace) {
-                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, scale)) {}
+                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, subject, scale)) {}
             }
             @for (x, y) in hits(outcome, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
@@ -50,9 +51,9 @@ fn place(point: &TracePoint, scale: f64) -> (f64, f64) {
 }
 
 /// In contact the points are joined by arcs, so that a whirl with few points a turn is still round.
-fn path(run: &[TracePoint], scale: f64) -> String {
+fn path(run: &[TracePoint], subject: &Subject, scale: f64) -> String {
     let mut path = String::new();
-    let mut last: Option<(f64, f64)> = None;
+    let mut last: Option<((f64, f64), &TracePoint)> = None;
     for point in run {
         let to = place(point, scale);
         if !(to.0.is_finite() && to.1.is_finite()) {
@@ -61,18 +62,36 @@ fn path(run: &[TracePoint], scale: f64) -> String {
         let (x, y) = (coordinate(to.0), coordinate(to.1));
         let _ = match last {
             None => write!(path, "M{x} {y}"),
-            Some(from) if f64::hypot(to.0 - from.0, to.1 - from.1) < 0.4 => continue,
-            Some(_) if matches!(point.phase, PhaseKind::Sliding | PhaseKind::Rolling) => {
-                let [px, py] = point.state.position;
-                let [vx, vy] = point.state.velocity;
-                let sweep = u8::from(px * vy - py * vx < 0.0);
-                write!(path, "A{RADIUS} {RADIUS} 0 0 {sweep} {x} {y}")
+            Some((from, _)) if f64::hypot(to.0 - from.0, to.1 - from.1) < 0.4 => {
+                last = Some((from, point));
+                continue;
             }
+            Some((_, from)) if matches!(point.phase, PhaseKind::Sliding | PhaseKind::Rolling) => {
+                let turn = turn(from, point);
+                let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
+                write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
+            }
+            Some((_, from)) if far(from, point, subject.clearance) => write!(path, "M{x} {y}h0"),
             Some(_) => write!(path, "L{x} {y}"),
         };
-        last = Some(to);
+        last = Some((to, point));
     }
     path
+}
+
+/// Angle between two points, rad, counter-clockwise: the short way, but with the motion where that is
+/// fast enough to have gone round the other way.
+fn turn(from: &TracePoint, to: &TracePoint) -> f64 {
+    let angle = |point: &TracePoint| point.state.position[1].atan2(point.state.position[0]);
+    let ([x, y], [vx, vy]) = (to.state.position, to.state.velocity);
+    let rate = (x * vy - y * vx) / (x * x + y * y);
+    let short = (angle(to) - angle(from) + PI).rem_euclid(TAU) - PI;
+    let fast = (rate * (to.state.time - from.state.time)).abs() > FRAC_PI_2;
+    if fast && short * rate < 0.0 {
+        short + TAU.copysign(rate)
+    } else {
+        short
+    }
 }
 
 fn hits(outcome: &Outcome, scale: f64) -> Vec<(f64, f64)> {
@@ -91,7 +110,7 @@ fn hits(outcome: &Outcome, scale: f64) -> Vec<(f64, f64)> {
 }
 
 fn spin_arrow(subject: &Subject) -> Markup {
-    let rpm = significant(subject.spin.abs() * 30.0 / std::f64::consts::PI, 5);
+    let rpm = significant(subject.spin.abs() * 30.0 / PI, 5);
     let (path, turn) = match subject.spin.total_cmp(&0.0) {
         _ if subject.spin == 0.0 => ("", "no spin".to_owned()),
         std::cmp::Ordering::Greater => (

@@ -2,6 +2,7 @@
 
 use super::Subject;
 use super::chart::{Axis, Chart, Pen};
+use super::stretch::{far, runs};
 use super::text::phase_class;
 use crate::history::RotorState;
 use crate::outcome::{Outcome, TracePoint};
@@ -10,60 +11,73 @@ use maud::{Markup, html};
 /// Part of the clearance beyond which the rotor counts as near the wall.
 const NEAR: f64 = 0.8;
 
-const HEIGHT: f64 = 360.0;
+/// Range of the slow part in `sqrt(g/clearance)`: a turn without friction takes `sqrt(5)` at the bottom.
+const BEGINNING: f64 = 5.0;
 
-/// Draws theta-dot against theta, theta from the bottom, counter-clockwise.
+const HEIGHT: f64 = 330.0;
+
+/// Draws theta-dot against theta, theta from the bottom, counter-clockwise; of a fast whirl also its
+/// beginning.
 pub fn phase_plane(subject: &Subject, outcome: &Outcome) -> Markup {
-    let fastest = outcome
+    let motion = outcome
         .trace
         .iter()
-        .filter_map(|point| at_wall(&point.state, subject))
-        .map(|(_, speed)| speed.abs())
-        .fold(0.0, f64::max);
-    if fastest == 0.0 {
+        .filter_map(|point| at_wall(&point.state, subject));
+    let (widest, low, high) = motion.fold((0.0, 0.0, 0.0), |(widest, low, high), (angle, rate)| {
+        (
+            f64::max(widest, angle.abs()),
+            f64::min(low, rate),
+            f64::max(high, rate),
+        )
+    });
+    if low == high {
         return html! { p.note { "The rotor did not move along the wall." } };
     }
-    let (factor, unit) = if fastest > 1e4 {
+    let slow = BEGINNING * (subject.gravity / subject.clearance).sqrt();
+    let beginning = slow > 0.0 && high.max(-low) > 3.0 * slow;
+    html! {
+        @if beginning {
+            (plane("Phase plane, slow part", widest, low.max(-slow), high.min(slow), subject, outcome))
+        }
+        (plane("Phase plane", widest, low, high, subject, outcome))
+    }
+}
+
+fn plane(
+    title: &str,
+    widest: f64,
+    low: f64,
+    high: f64,
+    subject: &Subject,
+    outcome: &Outcome,
+) -> Markup {
+    let fast = high.max(-low) > 1e4;
+    let (factor, unit) = if fast {
         (1e-3, "krad/s")
     } else {
         (1.0, "rad/s")
     };
-    let widest = outcome
-        .trace
-        .iter()
-        .filter_map(|point| at_wall(&point.state, subject));
-    let widest = widest.map(|(angle, _)| angle.abs()).fold(0.0, f64::max);
-    let mut x = Axis::new(-180.0, 180.0, "\u{3b8} from the bottom, degrees", 8.0);
-    x.step = 45.0;
-    if widest < 80.0 {
-        x = Axis::new(-90.0, 90.0, &x.label, 6.0);
-        x.step = 30.0;
-    }
-    let reach = 1.08 * fastest * factor;
-    let y = Axis::new(-reach, reach, &format!("d\u{3b8}/dt, {unit}"), 6.0);
+    let spans = [(30.0, 10.0), (90.0, 30.0), (180.0, 45.0)];
+    let fitting = spans.into_iter().find(|span| 1.1 * widest < span.0);
+    let (reach, step) = fitting.unwrap_or(spans[2]);
+    let mut x = Axis::new(-reach, reach, "\u{3b8} from the bottom, degrees", 8.0);
+    x.step = step;
+    let margin = 0.06 * (high - low);
+    let (low, high) = ((low - margin) * factor, (high + margin) * factor);
+    let y = Axis::new(low, high, &format!("d\u{3b8}/dt, {unit}"), 6.0);
     let chart = Chart {
-        title: "Phase plane",
+        title,
         description: "Angular speed against angle from the bottom while the rotor is at the wall, \
-                      coloured by phase; inside the dashed curve the wall cannot hold the rotor.",
+                      coloured by phase; inside a dashed curve the wall cannot hold the rotor.",
         x: &x,
         y: &y,
         height: HEIGHT,
     };
     let curves = html! {
-        (contact_limit(subject, chart.pen(), factor))
+        @if reach > 90.0 { (contact_limit(subject, chart.pen(), factor)) }
         @for run in runs(&outcome.trace) { (curve(run, subject, chart.pen(), factor)) }
     };
     chart.draw(&html! {}, &curves, &html! {})
-}
-
-/// The stretches of one phase, each from the last point of the one before.
-pub fn runs(trace: &[TracePoint]) -> impl Iterator<Item = &[TracePoint]> {
-    let mut end = 0;
-    trace.chunk_by(|a, b| a.phase == b.phase).map(move |run| {
-        let start = end;
-        end += run.len();
-        &trace[usize::saturating_sub(start, 1)..end]
-    })
 }
 
 /// Angle in degrees and its rate in rad/s, if the rotor is near the wall.
@@ -79,30 +93,28 @@ fn at_wall(state: &RotorState, subject: &Subject) -> Option<(f64, f64)> {
     })
 }
 
-/// Where the angle wraps, the curve runs out at one side and in at the other; where it turns too far
-/// between two points to be followed, there are dots.
+/// Where the angle wraps, the curve runs out at one side and in at the other.
 fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
-    let mut last: Option<(f64, f64, f64)> = None;
+    let mut last: Option<(f64, f64, &TracePoint)> = None;
     for point in run {
-        let Some((angle, speed)) = at_wall(&point.state, subject) else {
+        let Some((angle, rate)) = at_wall(&point.state, subject) else {
             pen.lift();
             last = None;
             continue;
         };
-        let (time, speed) = (point.state.time, speed * factor);
-        let turned = |since: f64| (speed / factor * (time - since)).to_degrees();
+        let rate = rate * factor;
         match last {
-            Some((_, _, since)) if turned(since).abs() > 90.0 => pen.dot(angle, speed),
+            Some((_, _, from)) if far(from, point, subject.clearance) => pen.dot(angle, rate),
             Some((before, slower, _)) if (angle - before).abs() > 180.0 => {
                 let turn = 360f64.copysign(before);
-                pen.line_to(angle + turn, speed);
+                pen.line_to(angle + turn, rate);
                 pen.lift();
                 pen.line_to(before - turn, slower);
-                pen.line_to(angle, speed);
+                pen.line_to(angle, rate);
             }
-            _ => pen.line_to(angle, speed),
+            _ => pen.line_to(angle, rate),
         }
-        last = Some((angle, speed, time));
+        last = Some((angle, rate, point));
     }
     pen.finish(phase_class(run[run.len() - 1].phase))
 }

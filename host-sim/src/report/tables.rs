@@ -1,7 +1,7 @@
 //! The detector's events and the impacts, as tables.
 
 use super::Subject;
-use super::text::{error, event_name, ms, ms_or_dash, si, significant};
+use super::text::{column, error, event_name, ms, ms_or_dash, si};
 use crate::history::Impact;
 use crate::matching::{Match, Matches};
 use crate::outcome::{DetectedEvent, Outcome};
@@ -61,20 +61,24 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
         th { "Plane" }
         th { "Against the truth" }
     };
-    let row = |(index, event)| {
-        event_row(
-            event,
-            matches.of_detected(index),
-            matches.false_events.contains(&index),
-        )
+    let row = |&(index, event): &(usize, &DetectedEvent)| {
+        let is_false = matches.false_events.contains(&index);
+        event_row(event, matches.of_detected(index), is_false)
     };
-    let rows = detection.events.iter().enumerate().map(row);
+    let all = detection.events.iter().enumerate();
+    let (hits, changes): (Vec<_>, Vec<_>) = all.partition(|it| it.1.event == EventKind::Impact);
     html! {
         p {
             (detection.events.len()) " events in " (detection.samples) " samples, "
             (matches.false_events.len()) " false, " (detection.faults) " unusable channel values."
         }
-        @if !detection.events.is_empty() { (table("Events of the detector", &head, rows)) }
+        @if !changes.is_empty() { (table("Events of the detector", &head, changes.iter().map(row))) }
+        @if !hits.is_empty() {
+            details {
+                summary { "Detected impacts: " (hits.len()) }
+                (table("Detected impacts", &head, hits.iter().map(row)))
+            }
+        }
         @for missed in missed.iter().take(OPEN) {
             p.missed { "Missed: " (event_name(missed.kind)) " at " (ms(missed.onset_s)) "\u{a0}ms" }
         }
@@ -160,8 +164,8 @@ fn impact_row(index: usize, truth: &Impact, model: Option<&Impact>, found: &Matc
     html! {
         td.number { (index) }
         td.number { (ms(truth.state.time)) }
-        td.number { (significant(truth.normal_speed * 1e3, 4)) }
-        td.number { (significant(truth.normal_impulse * 1e3, 4)) }
+        td.number { (column(truth.normal_speed * 1e3)) }
+        td.number { (column(truth.normal_impulse * 1e3)) }
         td { (if found.detected.is_some() { "yes" } else { "no" }) }
         td.number { (ms_or_dash(found.latency_s)) }
         td.number { (ms_or_dash(found.onset_error_s)) }

@@ -3,6 +3,8 @@
 use super::{Subject, fixture, render};
 use crate::history::{Recorder, RotorState};
 use crate::outcome::{Detection, Outcome};
+use crate::reference::Start;
+use std::path::Path;
 
 /// Every element is closed by its own end tag, in order; `path` and the like must be, inside `svg`.
 fn assert_closed(page: &str) {
@@ -49,16 +51,84 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     }
 }
 
-#[test]
-fn a_drop_renders() {
-    let subject = fixture::subject();
-    let page = render(&subject, &fixture::outcome(&subject));
-    assert_sound(&page);
-    assert!(page.contains("76.72\u{a0}mm/s"));
-    assert!(page.contains("1.300\u{a0}ms"), "latency of the free fall");
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/tmp");
+/// Leaves the page where it can be looked at.
+fn keep(name: &str, page: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/tmp");
     std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("report.html"), page).unwrap();
+    std::fs::write(folder.join(format!("report-{name}.html")), page).unwrap();
+}
+
+#[test]
+fn the_drop_of_the_paper() {
+    let subject = fixture::subject();
+    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    keep("paper", &page);
+    assert_sound(&page);
+    assert!(page.contains("No whirl at the end: the rotor swings"));
+    assert!(page.contains("1.300\u{a0}ms"), "latency of the free fall");
+}
+
+#[test]
+fn slow_spin_ends_in_rolling() {
+    let subject = Subject {
+        friction: 0.15,
+        spin: -31.415_926_535_897_93,
+        duration: 0.8,
+        ..fixture::subject()
+    };
+    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    keep("rolling", &page);
+    assert_sound(&page);
+    assert!(page.contains("Rolling, first, ms"));
+}
+
+#[test]
+fn lift_offs_from_the_wall() {
+    let subject = Subject {
+        spin: 3141.592653589793,
+        duration: 0.1437,
+        ..fixture::subject()
+    };
+    let start = Start::Wall {
+        angle: 0.2,
+        tangential: 0.09,
+    };
+    let page = render(&subject, &fixture::outcome(&subject, &start));
+    keep("lift-off", &page);
+    assert_sound(&page);
+    assert!(page.contains("starts on the retainer"));
+}
+
+#[test]
+fn backward_whirl_grows_without_bound() {
+    let start = Start::Wall {
+        angle: 0.0,
+        tangential: 0.10047681387,
+    };
+    for (name, duration) in [("whirl", 0.04498), ("fast-whirl", 0.2)] {
+        let subject = Subject {
+            duration,
+            ..fixture::subject()
+        };
+        let page = render(&subject, &fixture::outcome(&subject, &start));
+        keep(name, &page);
+        assert_sound(&page);
+        assert!(page.contains("driven into backward whirl"));
+    }
+}
+
+#[test]
+fn minutes_of_bouncing_stay_small() {
+    let subject = Subject {
+        friction: 0.0,
+        restitution: 1.0,
+        duration: 600.0,
+        ..fixture::subject()
+    };
+    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    keep("bouncing", &page);
+    assert_sound(&page);
+    assert!(page.contains("in the JSON output only"));
 }
 
 #[test]
@@ -76,14 +146,14 @@ fn without_gravity_renders() {
         spin: 0.0,
         ..fixture::subject()
     };
-    let falling = fixture::outcome(&fixture::subject());
+    let falling = fixture::outcome(&fixture::subject(), &fixture::start());
     assert_sound(&render(&subject, &falling));
 }
 
 #[test]
 fn unusable_points_are_left_out() {
     let subject = fixture::subject();
-    let mut outcome = fixture::outcome(&subject);
+    let mut outcome = fixture::outcome(&subject, &fixture::start());
     for point in outcome.trace.iter_mut().step_by(7) {
         point.state.position = [f64::NAN, f64::INFINITY];
     }
@@ -96,7 +166,7 @@ fn titles_are_escaped() {
         title: "<b>5 & 6</b>".to_owned(),
         ..fixture::subject()
     };
-    let page = render(&subject, &fixture::outcome(&subject));
+    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
     assert!(page.contains("&lt;b&gt;5 &amp; 6&lt;/b&gt;"));
     assert!(!page.contains("<b>"));
 }

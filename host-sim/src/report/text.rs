@@ -105,6 +105,15 @@ pub fn ms_or_dash(seconds: Option<f64>) -> String {
     seconds.map_or("\u{2013}".to_owned(), ms)
 }
 
+/// A positive quantity in a column: three decimals, powers of ten where they would all be zero.
+pub fn column(value: f64) -> String {
+    if value >= 1e-3 {
+        format!("{value:.3}")
+    } else {
+        error(value)
+    }
+}
+
 /// A small error, in powers of ten.
 pub fn error(value: f64) -> String {
     if value == 0.0 {

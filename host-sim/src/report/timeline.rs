@@ -65,7 +65,8 @@ pub fn timeline(title: &str, window: Window, outcome: &Outcome) -> Markup {
                     text.row x="0" y=(top - 6.0) { (name) }
                     (bar(phases, hits, &x, factor, top))
                 }
-                @for label in &labels { (label.draw(bars)) }
+                @for label in &labels { (label.line(bars)) }
+                @for label in &labels { (label.text(bars)) }
             }
         }
     }
@@ -178,17 +179,23 @@ struct Label {
 }
 
 impl Label {
-    fn draw(&self, bars: f64) -> Markup {
+    fn foot(&self, bars: f64) -> f64 {
+        bars + self.lane as f64 * LANE + 14.0
+    }
+
+    fn line(&self, bars: f64) -> Markup {
         let x = percent(self.at);
-        let y = bars + self.lane as f64 * LANE + 14.0;
+        html! { line.mark x1=(x) x2=(x) y1=(bars - ROW + 20.0) y2=(self.foot(bars)) {} }
+    }
+
+    fn text(&self, bars: f64) -> Markup {
         let (anchor, dx) = if self.at > 0.6 {
             ("end", "-5")
         } else {
             ("start", "5")
         };
         html! {
-            line.mark x1=(x) x2=(x) y1=(2.0 * ROW + 20.0) y2=(y) {}
-            text.label x=(x) y=(y) dx=(dx) text-anchor=(anchor) { (self.text) }
+            text.label x=(percent(self.at)) y=(self.foot(bars)) dx=(dx) text-anchor=(anchor) { (self.text) }
         }
     }
 

@@ -6,11 +6,13 @@ use crate::history::{History, PhaseKind, Regime};
 use crate::matching::{Match, Matches, regime_event};
 use crate::outcome::Outcome;
 use maud::{Markup, html};
+use std::f64::consts::TAU;
 use touchdown_core::event::EventKind;
 
 /// Draws the title, the verdict and the key figures.
 pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Markup {
     let truth = &outcome.truth;
+    let contact = first_contact(truth);
     let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
     html! {
         header {
@@ -21,9 +23,9 @@ pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
                 (motion(truth)) " " (detection(outcome, matches))
             }
             dl.figures {
-                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
+                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth, subject.clearance)))
                 (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
-                (figure("First contact", &first_contact(truth), "after the release"))
+                (figure("First contact", &contact.0, contact.1))
                 (fall_figure(outcome, matches))
                 (regime_figure(outcome, matches))
             }
@@ -45,12 +47,16 @@ fn motion(truth: &History) -> String {
             format!("The rotor is driven into backward whirl round the retainer within {end}.")
         }
         Regime::Pendulum => {
-            format!("No whirl: the rotor swings at the bottom of the retainer after {end}.")
+            format!(
+                "No whirl at the end: the rotor swings at the bottom of the retainer after {end}."
+            )
         }
-        Regime::Rest => format!("No whirl: the rotor lies still on the retainer after {end}."),
+        Regime::Rest => {
+            format!("No whirl at the end: the rotor lies still on the retainer after {end}.")
+        }
         Regime::Intermittent => {
             format!(
-                "No whirl: the rotor keeps lifting off and falling back, {} times in {end}.",
+                "No whirl at the end: the rotor keeps lifting off and falling back, {} times in {end}.",
                 truth.lift_offs.len()
             )
         }
@@ -89,23 +95,41 @@ fn detection(outcome: &Outcome, matches: &Matches) -> String {
             )
         }
     };
+    let whirl = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
+    for regime in whirl
+        .iter()
+        .filter_map(|&kind| matches.of_kind(kind).next())
+    {
+        match regime.latency_s {
+            Some(latency) => {
+                let latency = si(latency, "s");
+                text.push_str(&format!(
+                    " The detector named the whirl {latency} after that contact began."
+                ));
+            }
+            None => text.push_str(" The detector did not name the whirl."),
+        }
+    }
     match matches.false_events.len() {
         0 => {}
-        1 => text.push_str(" One of its events is false."),
-        count => text.push_str(&format!(" {count} of its events are false.")),
+        1 => text.push_str(" One of the detector's events is false."),
+        count => text.push_str(&format!(" {count} of the detector's events are false.")),
     }
     text
 }
 
-fn whirl(truth: &History) -> String {
+fn whirl(truth: &History, clearance: f64) -> String {
     match truth.regime {
         Regime::ForwardWhirl | Regime::BackwardWhirl => {
+            let [vx, vy] = truth.end.velocity;
+            let rate = f64::hypot(vx, vy) / (TAU * clearance);
             format!(
-                "whirl: yes, {} turns",
-                significant(truth.end.turns_in_contact.abs(), 3)
+                "{} turns in this contact, at the end {} (rigid model: upper bound)",
+                significant(truth.end.turns_in_contact.abs(), 3),
+                si(rate, "Hz")
             )
         }
-        _ => "whirl: no".to_owned(),
+        _ => "no whirl at the end of the run".to_owned(),
     }
 }
 
@@ -123,12 +147,13 @@ fn impact_count(truth: &History) -> String {
     }
 }
 
-fn first_contact(truth: &History) -> String {
+fn first_contact(truth: &History) -> (String, &'static str) {
     let impact = truth.impacts.first().map(|impact| impact.state.time);
     let contact = truth.contact_starts.first().copied();
     match impact.into_iter().chain(contact).reduce(f64::min) {
-        Some(time) => format!("{}\u{a0}ms", ms(time)),
-        None => "none".to_owned(),
+        Some(0.0) => ("at the start".to_owned(), "starts on the retainer"),
+        Some(time) => (format!("{}\u{a0}ms", ms(time)), "after the release"),
+        None => ("none".to_owned(), "in this run"),
     }
 }
 
@@ -138,7 +163,7 @@ fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
         outcome.truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
     let remark = match fall.and_then(|fall| fall.detected) {
         None if levitated => "never declared".to_owned(),
-        None => "starts on the retainer".to_owned(),
+        None => "no release in this run".to_owned(),
         Some(index) => match outcome.detection.events[index].confirmed_s {
             Some(time) => format!("confirmed at {}\u{a0}ms", ms(time)),
             None => "declared, never confirmed".to_owned(),

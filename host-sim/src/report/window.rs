@@ -1,6 +1,5 @@
-//! The stretch of time that a chart shows.
+//! The stretch of time that a chart shows; a trace should have all its points in the interesting one.
 
-use super::Subject;
 use super::chart::Axis;
 use crate::history::{History, PhaseKind};
 
@@ -28,8 +27,9 @@ impl Window {
     }
 
     /// From the release to shortly after permanent contact; for a start on the wall, to shortly after
-    /// the last change of contact. The whole run where that is not much longer.
-    pub fn interesting(truth: &History, subject: &Subject) -> Self {
+    /// the last change of contact. The whole run where that is not much longer. Clearance in m, gravity
+    /// in m/s2.
+    pub fn interesting(truth: &History, clearance: f64, gravity: f64) -> Self {
         let whole = Self::whole(truth);
         let first = truth.contact_starts.first().copied();
         let settled = first.filter(|&time| time > 0.0).or_else(|| {
@@ -40,7 +40,7 @@ impl Window {
         let Some(settled) = settled.filter(|&time| time > 0.0) else {
             return whole;
         };
-        let natural = (subject.clearance / subject.gravity).sqrt();
+        let natural = (clearance / gravity).sqrt();
         let longest = if natural.is_finite() {
             LONGEST * natural
         } else {
