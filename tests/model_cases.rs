@@ -1,0 +1,214 @@
+//! The model under test against the 40-digit values of `data/cases`, at every step and precision.
+
+use touchdown_sim::history::{History, Impact, Regime};
+use touchdown_sim::model_run::simulate;
+use touchdown_sim::scene::{Precision, Scene};
+use touchdown_tests::cases::{Case, open_case, open_cases};
+
+const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
+
+fn run(case: &Case, precision: Precision, step: f64) -> History {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    let machine = case.machine();
+    scene.rotor.mass = machine.mass;
+    scene.rotor.radius = machine.radius;
+    scene.rotor.polar_inertia = machine.polar_inertia;
+    scene.rotor.spin = case.initial.omega;
+    scene.retainer.clearance = machine.clearance;
+    scene.retainer.friction = machine.friction;
+    scene.retainer.restitution = machine.restitution;
+    scene.run.gravity = machine.gravity;
+    scene.run.duration = case.result.t_end;
+    scene.start = case.start();
+    scene.model.precision = precision;
+    scene.model.step = step;
+    simulate(&scene).expect("valid case")
+}
+
+fn runs(case: &Case) -> Vec<(String, Precision, History)> {
+    let mut all = Vec::new();
+    for precision in PRECISIONS {
+        for step in STEPS {
+            let name = format!("{} {precision:?} {step:e} s", case.name);
+            all.push((name, precision, run(case, precision, step)));
+        }
+    }
+    all
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    f64::hypot(a[0] - b[0], a[1] - b[1])
+}
+
+/// Largest of the errors of time, position and velocity, in the units of the case.
+fn impact_error(case: &Case, k: usize, impact: &Impact) -> f64 {
+    let (want, unit) = (&case.result.impacts[k], &case.nondimensional);
+    let time = (impact.state.time - want.t).abs() / unit.T_s;
+    let position = distance(impact.state.position, [want.x, want.y]) / case.parameters.rho0_m;
+    let velocity = distance(impact.state.velocity, [want.vx, want.vy]) / unit.V_m_s;
+    let normal = (impact.normal_speed - want.vn_minus).abs() / unit.V_m_s;
+    time.max(position).max(velocity).max(normal)
+}
+
+/// Growth of a start error up to an impact.
+fn growth(case: &Case, k: usize) -> f64 {
+    let known = case.conditioning.amplification_at_impact.get(k);
+    known.copied().flatten().expect("known growth")
+}
+
+/// The target of the first series: what rounding of the start alone makes.
+fn impact_target(case: &Case, precision: Precision, k: usize) -> f64 {
+    match precision {
+        Precision::F64 => 1e-14 + 20.0 * growth(case, k) * 2.2e-16,
+        Precision::F32 => 5e-6 + 50.0 * growth(case, k) * 6e-8,
+    }
+}
+
+/// Impacts before the growth has eaten all digits; all 40 but without losses.
+fn comparable(case: &Case, precision: Precision) -> usize {
+    match precision {
+        Precision::F32 if case.name.starts_with("07") => 13,
+        _ => case.result.impacts.len(),
+    }
+}
+
+#[test]
+fn impacts_meet_the_target_at_any_step() {
+    let mut compared = 0;
+    for case in open_cases() {
+        for (name, precision, history) in runs(&case) {
+            let count = comparable(&case, precision);
+            assert!(history.impacts.len() >= count, "{name}: impacts missing");
+            let mut worst = 0.0_f64;
+            for (k, impact) in history.impacts.iter().take(count).enumerate() {
+                let ratio = impact_error(&case, k, impact) / impact_target(&case, precision, k);
+                worst = worst.max(ratio);
+                assert!(ratio <= 1.0, "{name}: impact {k} at {ratio:.2} of the target");
+                compared += 1;
+            }
+            println!("{name}: {count} impacts, worst at {worst:.3} of the target");
+        }
+    }
+    assert!(compared > 500, "{compared}");
+}
+
+#[test]
+fn the_first_impact_after_a_lift_off_meets_the_target_at_any_step() {
+    let mut compared = 0;
+    for case in open_cases() {
+        for (name, precision, history) in runs(&case) {
+            for &lift_off in &case.result.t_lift_offs {
+                let after = |t: f64| t > lift_off * (1.0 + 1e-6);
+                let Some(k) = case.result.impacts.iter().position(|impact| after(impact.t)) else {
+                    continue;
+                };
+                let target = match precision {
+                    Precision::F64 => 1e-6,
+                    Precision::F32 => 4e-5,
+                } * (growth(&case, k) / 10.0).max(1.0);
+                let error = impact_error(&case, k, &history.impacts[k]);
+                println!("{name}: {error:.1e} of {target:.0e}");
+                assert!(error <= target, "{name}: {error:e}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 8, "{compared}");
+}
+
+#[test]
+fn permanent_contact_meets_the_target_at_any_step() {
+    let mut compared = 0;
+    for case in open_cases() {
+        for (name, precision, history) in runs(&case) {
+            let (Some(&found), Some(&want)) = (
+                history.contact_starts.first(),
+                case.result.t_permanent_contacts.first(),
+            ) else {
+                assert!(case.result.t_permanent_contacts.is_empty(), "{name}");
+                continue;
+            };
+            let error = (found - want).abs() / case.nondimensional.T_s;
+            let target = match precision {
+                Precision::F64 => 1e-11,
+                Precision::F32 => 1e-5,
+            };
+            println!("{name}: {error:.1e}");
+            assert!(error <= target, "{name}: {error:e}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 40, "{compared}");
+}
+
+#[test]
+fn the_result_does_not_depend_on_the_step() {
+    for case in open_cases() {
+        for (precision, spread) in [(Precision::F64, 1e-13), (Precision::F32, 1e-6)] {
+            let fine = run(&case, precision, STEPS[0]);
+            for step in &STEPS[1..] {
+                let coarse = run(&case, precision, *step);
+                // Rounding of the moments themselves grows as any start error does.
+                for (k, (a, b)) in fine.impacts.iter().zip(&coarse.impacts).take(10).enumerate() {
+                    let allowed = spread * growth(&case, k).max(1.0);
+                    let apart = distance(a.state.position, b.state.position)
+                        / case.parameters.rho0_m;
+                    assert!(apart <= allowed, "{} {step:e}: impact {k} {apart:e}", case.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn regimes_are_those_of_the_cases() {
+    for case in open_cases() {
+        let whirl = if case.result.turns_in_last_contact * case.initial.omega < 0.0 {
+            Regime::BackwardWhirl
+        } else {
+            Regime::ForwardWhirl
+        };
+        let want = match case.result.final_regime.as_str() {
+            "pendulum" => Regime::Pendulum,
+            "bouncing" => Regime::Bouncing,
+            "whirl" => whirl,
+            other => panic!("unknown regime {other}"),
+        };
+        for (name, _, history) in runs(&case) {
+            assert_eq!(history.regime, want, "{name}");
+        }
+    }
+}
+
+#[test]
+fn sliding_and_spin_after_0_3_s() {
+    let case = open_case("15");
+    for (name, precision, history) in runs(&case) {
+        let want = &case.result.final_state;
+        let position = distance(history.end.position, [want.x, want.y]) / case.parameters.rho0_m;
+        let spin = (history.end.spin / want.omega - 1.0).abs();
+        println!("{name}: position {position:.1e}, spin {spin:.1e}");
+        let (position_target, spin_target) = match precision {
+            Precision::F64 => (6e-9, 1e-9),
+            Precision::F32 => (1e-6, 1e-7),
+        };
+        assert!(position <= position_target && spin <= spin_target, "{name}");
+    }
+}
+
+#[test]
+fn slide_to_rolling() {
+    let case = open_case("19");
+    for (name, precision, history) in runs(&case) {
+        let want = &case.result.final_state;
+        let position = distance(history.end.position, [want.x, want.y]) / case.parameters.rho0_m;
+        println!("{name}: {position:.1e}");
+        let target = match precision {
+            Precision::F64 => 1.7e-6,
+            Precision::F32 => 2e-4,
+        };
+        assert!(position <= target, "{name}: {position:e}");
+        assert_eq!(history.rolling_starts.len(), 1, "{name}");
+    }
+}
