@@ -84,7 +84,10 @@ fn impacts_meet_the_target_at_any_step() {
             for (k, impact) in history.impacts.iter().take(count).enumerate() {
                 let ratio = impact_error(&case, k, impact) / impact_target(&case, precision, k);
                 worst = worst.max(ratio);
-                assert!(ratio <= 1.0, "{name}: impact {k} at {ratio:.2} of the target");
+                assert!(
+                    ratio <= 1.0,
+                    "{name}: impact {k} at {ratio:.2} of the target"
+                );
                 compared += 1;
             }
             println!("{name}: {count} impacts, worst at {worst:.3} of the target");
@@ -100,7 +103,12 @@ fn the_first_impact_after_a_lift_off_meets_the_target_at_any_step() {
         for (name, precision, history) in runs(&case) {
             for &lift_off in &case.result.t_lift_offs {
                 let after = |t: f64| t > lift_off * (1.0 + 1e-6);
-                let Some(k) = case.result.impacts.iter().position(|impact| after(impact.t)) else {
+                let Some(k) = case
+                    .result
+                    .impacts
+                    .iter()
+                    .position(|impact| after(impact.t))
+                else {
                     continue;
                 };
                 let target = match precision {
@@ -150,11 +158,21 @@ fn the_result_does_not_depend_on_the_step() {
             for step in &STEPS[1..] {
                 let coarse = run(&case, precision, *step);
                 // Rounding of the moments themselves grows as any start error does.
-                for (k, (a, b)) in fine.impacts.iter().zip(&coarse.impacts).take(10).enumerate() {
+                for (k, (a, b)) in fine
+                    .impacts
+                    .iter()
+                    .zip(&coarse.impacts)
+                    .take(10)
+                    .enumerate()
+                {
                     let allowed = spread * growth(&case, k).max(1.0);
-                    let apart = distance(a.state.position, b.state.position)
-                        / case.parameters.rho0_m;
-                    assert!(apart <= allowed, "{} {step:e}: impact {k} {apart:e}", case.name);
+                    let apart =
+                        distance(a.state.position, b.state.position) / case.parameters.rho0_m;
+                    assert!(
+                        apart <= allowed,
+                        "{} {step:e}: impact {k} {apart:e}",
+                        case.name
+                    );
                 }
             }
         }

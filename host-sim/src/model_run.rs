@@ -31,9 +31,13 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
     let spin = scene.rotor.spin / scales.spin;
     match (scene.model.precision, scaled(&scene.start, &scales)) {
         (scene::Precision::F64, start) => run(&model, &start, spin, scene, &scales),
-        (scene::Precision::F32, start) => {
-            run(&model.rounded(), &rounded(&start), spin as f32, scene, &scales)
-        }
+        (scene::Precision::F32, start) => run(
+            &model.rounded(),
+            &rounded(&start),
+            spin as f32,
+            scene,
+            &scales,
+        ),
     }
 }
 

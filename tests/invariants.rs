@@ -1,0 +1,156 @@
+//! What holds for the model whatever the configuration: it stays in the gap, gains no energy, stays
+//! finite, and takes a bounded number of changes a step.
+
+use proptest::prelude::*;
+use touchdown_core::model::{Change, Kinematics, Precision, Rigid, RigidConfig, Start, Touch};
+
+/// A dimensionless drop: everything that matters of gap, mass and size is in here.
+#[derive(Clone, Copy, Debug)]
+struct Drop {
+    friction: f64,
+    restitution: f64,
+    inertia_ratio: f64,
+    spin: f64,
+    gravity: bool,
+    /// In units of T.
+    step: f64,
+    start: Start<f64>,
+}
+
+fn config<R: Precision>(drop: &Drop) -> RigidConfig<R> {
+    // Gap, gravity and radius of 1 make the units those of the model.
+    let one = R::ONE;
+    RigidConfig {
+        mass: one,
+        radius: one,
+        polar_inertia: R::lit(drop.inertia_ratio),
+        clearance: one,
+        friction: R::lit(drop.friction),
+        restitution: R::lit(drop.restitution),
+        gravity: if drop.gravity { one } else { R::ZERO },
+        speed: one,
+        step: R::lit(drop.step),
+    }
+}
+
+fn start<R: Precision>(drop: &Drop) -> Start<R> {
+    match drop.start {
+        Start::Free { position, velocity } => Start::Free {
+            position: position.map(R::lit),
+            velocity: velocity.map(R::lit),
+        },
+        Start::Wall {
+            sin,
+            cos,
+            tangential,
+        } => Start::Wall {
+            sin: R::lit(sin),
+            cos: R::lit(cos),
+            tangential: R::lit(tangential),
+        },
+    }
+}
+
+/// Translation, spin and height, per mass.
+fn energy<R: Precision>(drop: &Drop, k: &Kinematics<R>) -> f64 {
+    let [u, v] = k.velocity.map(R::to_f64);
+    let spin = k.spin.to_f64();
+    let height = if drop.gravity {
+        k.position[1].to_f64()
+    } else {
+        0.0
+    };
+    0.5 * (u * u + v * v) + 0.5 * drop.inertia_ratio * spin * spin + height
+}
+
+fn check<R: Precision>(drop: &Drop, steps: u32, tolerance: f64) -> Result<(), TestCaseError> {
+    let model = Rigid::<R>::try_new(&config(drop)).expect("valid configuration");
+    let mut changes = 0_u32;
+    let mut state = model
+        .start(&start(drop), R::lit(drop.spin), |_| changes += 1)
+        .expect("valid start");
+    let first = energy(drop, &model.kinematics(&state));
+    let size = first.abs().max(1.0);
+    let mut last = first;
+    for _ in 0..steps {
+        let before = changes;
+        let mut normal_speeds_positive = true;
+        model.step(&mut state, |happening| {
+            changes += 1;
+            if let Change::Impact(normal) = happening.change {
+                normal_speeds_positive &= normal > R::ZERO;
+            }
+        });
+        let k = model.kinematics(&state);
+        let [x, y] = k.position.map(R::to_f64);
+        let now = energy(drop, &k);
+        prop_assert!(now.is_finite() && k.spin.is_finite());
+        prop_assert!(
+            x.hypot(y) <= 1.0 + tolerance,
+            "left the gap: {}",
+            x.hypot(y)
+        );
+        prop_assert!(normal_speeds_positive);
+        prop_assert!(now <= last + tolerance * size, "energy {last} -> {now}");
+        prop_assert!(
+            changes - before <= 600,
+            "{} changes in a step",
+            changes - before
+        );
+        if k.touch == Touch::Rolling {
+            let [u, v] = k.velocity.map(R::to_f64);
+            let slip = -(u * y) + v * x + k.spin.to_f64();
+            prop_assert!(
+                slip.abs() <= tolerance * size.sqrt().max(1.0),
+                "slip {slip}"
+            );
+        }
+        last = now;
+    }
+    Ok(())
+}
+
+prop_compose! {
+    fn inside()(radius in 0.0..1.0_f64, angle in 0.0..std::f64::consts::TAU,
+                speed in 0.0..3.0_f64, heading in 0.0..std::f64::consts::TAU) -> Start<f64> {
+        Start::Free {
+            position: [radius * angle.cos(), radius * angle.sin()],
+            velocity: [speed * heading.cos(), speed * heading.sin()],
+        }
+    }
+}
+
+prop_compose! {
+    fn on_wall()(angle in 0.0..std::f64::consts::TAU, tangential in -20.0..20.0_f64)
+                -> Start<f64> {
+        Start::Wall { sin: angle.sin(), cos: angle.cos(), tangential }
+    }
+}
+
+prop_compose! {
+    fn drops()(friction in prop_oneof![Just(0.0), 0.0..2.0_f64],
+               restitution in prop_oneof![Just(0.0), Just(1.0), Just(0.99), 0.0..1.0_f64],
+               inertia_ratio in 0.05..2.0_f64,
+               spin in prop_oneof![Just(0.0), -20.0..20.0_f64, -50_000.0..50_000.0_f64],
+               gravity in prop::bool::weighted(0.8),
+               step in prop_oneof![Just(1.8e-4), Just(1.8e-3), Just(0.018), Just(0.18), Just(1.0)],
+               start in prop_oneof![inside(), on_wall()]) -> Drop {
+        Drop { friction, restitution, inertia_ratio, spin, gravity, step, start }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None,
+                                        rng_seed: prop::test_runner::RngSeed::Fixed(1),
+                                        ..ProptestConfig::default() })]
+
+    #[test]
+    fn in_f64(drop in drops()) {
+        check::<f64>(&drop, 300, 1e-9)?;
+    }
+
+    #[test]
+    fn in_f32(drop in drops()) {
+        check::<f32>(&drop, 300, 1e-4)?;
+    }
+}
