@@ -202,14 +202,3 @@ pub fn open_cases() -> Vec<Case> {
     cases.sort_by(|a, b| a.name.cmp(&b.name));
     cases
 }
-
-/// A case by the start of its name.
-///
-/// # Panics
-/// If there is none.
-pub fn open_case(name: &str) -> Case {
-    let mut cases = open_cases().into_iter();
-    cases
-        .find(|case| case.name.starts_with(name))
-        .expect("known case")
-}

@@ -8,24 +8,20 @@ use super::scale::Law;
 
 /// Launch speed below which a bounce series is ended by its limit, in units of sqrt(g clearance).
 pub const CUTOFF: f64 = 1e-10;
-/// The same for a restitution above [`NEARLY_ELASTIC`].
+/// Above this restitution a series takes too many hops to end by its own decay.
+const NEARLY_ELASTIC: f64 = 1.0 - 1e-5;
+/// Hops of a nearly elastic rotor as low as this and as short as [`VANISHING_TIME`] are contact, in
+/// parts of the clearance.
 ///
-/// Such hops hardly decay. Below this height (5e-13 of the clearance) they are contact: no more
-/// than about 5e5 hops in a unit of time are flown one by one.
-pub const ELASTIC_CUTOFF: f64 = 1e-6;
-/// Where the bounces of a series decay too slowly to follow them to the common cut-off.
-pub const NEARLY_ELASTIC: f64 = 0.9999;
-/// The limit takes the pressing acceleration as constant; this is how much it may change.
-const LIMIT_CHANGE: f64 = 1e-5;
-
-/// The launch speed at which a series is ended.
-pub fn cutoff(law: &Law) -> f64 {
-    if law.restitution > NEARLY_ELASTIC {
-        ELASTIC_CUTOFF
-    } else {
-        CUTOFF
-    }
-}
+/// It bounds the hops that are flown: 1000 in a unit of time, or 220 in a turn of fast whirl.
+const VANISHING_HEIGHT: f64 = 1e-4;
+/// In units of time.
+const VANISHING_TIME: f64 = 1e-3;
+/// The limit of a series takes the pressing acceleration as constant: how much it may change over
+/// the rest of the series, relative.
+const SERIES_CHANGE: f64 = 1e-5;
+/// The same over a vanishing hop.
+const HOP_CHANGE: f64 = 1e-2;
 
 /// The wall state after a normal impulse (per mass): friction up to sticking.
 pub fn rub(law: &Law, wall: WallState, impulse: f64) -> WallState {
@@ -51,7 +47,7 @@ pub fn rub(law: &Law, wall: WallState, impulse: f64) -> WallState {
 
 /// The rest of a bounce series too low to be flown hop by hop, up to permanent contact.
 ///
-/// Its duration and its impulse are exact; between its ends the state is interpolated linearly, on
+/// Its duration and its impulse are the limits of the series; between its ends the state is interpolated linearly, on
 /// the wall.
 #[derive(Clone, Copy, Debug)]
 pub struct Settling {
@@ -76,28 +72,33 @@ impl Settling {
     /// flight has to be followed.
     pub fn after(law: &Law, wall: WallState, launch: f64) -> Option<Self> {
         let pressing = wall.pressing(law);
-        if launch >= cutoff(law) || pressing <= 0.0 {
+        if pressing <= 0.0 {
             return None;
         }
+        let change = (1.0 + wall.speed.abs()) / pressing;
         let hop = 2.0 * launch / pressing;
-        let duration = hop / (1.0 - law.restitution);
-        let turn = 1.0 + wall.speed.abs();
-        if duration * turn <= LIMIT_CHANGE * pressing {
-            let impulse = launch * (1.0 + law.restitution) / (1.0 - law.restitution);
-            let fallen = WallState {
-                speed: wall.speed - law.gravity * wall.angle.sin() * duration,
-                ..wall
-            };
-            let mut to = rub(law, fallen, impulse);
-            to.angle += 0.5 * (wall.speed + to.speed) * duration;
-            return Some(Self {
-                from: wall,
-                to,
-                duration,
-            });
+        if law.restitution > NEARLY_ELASTIC {
+            let vanishes = 0.25 * launch * hop <= VANISHING_HEIGHT
+                && hop <= VANISHING_TIME
+                && hop * change <= HOP_CHANGE;
+            return vanishes.then(|| Self::at_once(wall));
         }
-        let endless = law.restitution > NEARLY_ELASTIC && hop * turn <= LIMIT_CHANGE * pressing;
-        endless.then(|| Self::at_once(wall))
+        let duration = hop / (1.0 - law.restitution);
+        if launch >= CUTOFF || duration * change > SERIES_CHANGE {
+            return None;
+        }
+        let impulse = launch * (1.0 + law.restitution) / (1.0 - law.restitution);
+        let fallen = WallState {
+            speed: wall.speed - law.gravity * wall.angle.sin() * duration,
+            ..wall
+        };
+        let mut to = rub(law, fallen, impulse);
+        to.angle += 0.5 * (wall.speed + to.speed) * duration;
+        Some(Self {
+            from: wall,
+            to,
+            duration,
+        })
     }
 
     /// The state `elapsed` after the impact.

@@ -161,7 +161,7 @@ impl Reference {
 
     /// Launch speed below which a bounce series is ended by its limit, m/s.
     pub fn cutoff_speed(&self) -> f64 {
-        impact::cutoff(&self.law) * self.scale.speed
+        impact::CUTOFF * self.scale.speed
     }
 
     /// Speed below which a rotor in contact is still, m/s.
