@@ -3,7 +3,7 @@
 use touchdown_sim::history::{History, Impact, Regime};
 use touchdown_sim::model_run::simulate;
 use touchdown_sim::scene::{Precision, Scene};
-use touchdown_tests::cases::{Case, open_case, open_cases};
+use touchdown_tests::cases::{Case, open_cases};
 
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
@@ -24,6 +24,13 @@ fn run(case: &Case, precision: Precision, step: f64) -> History {
     scene.model.precision = precision;
     scene.model.step = step;
     simulate(&scene).expect("valid case")
+}
+
+fn open_case(name: &str) -> Case {
+    let mut cases = open_cases().into_iter();
+    cases
+        .find(|case| case.name.starts_with(name))
+        .expect("known case")
 }
 
 fn runs(case: &Case) -> Vec<(String, Precision, History)> {

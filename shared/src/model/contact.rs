@@ -1,23 +1,17 @@
-//! Permanent contact, sliding or rolling, as a Taylor series in time.
-//!
-//! Sliding obeys phi'' = -g sin phi + mu_s n with n = phi'^2 + g cos phi, rolling
-//! phi'' = -g sin phi/(1 + beta). The series of sin phi, cos phi, phi' and n follow from each other
-//! term by term. A series is used as far as its last terms stay below the tolerance; the moments at
-//! which slip, sticking or contact end are roots of the series themselves.
+//! Permanent contact, sliding or rolling: which of the two, how long a stretch of it can be followed,
+//! and what ends it. The moments at which slip, sticking or contact end are roots of the stretch's
+//! Taylor series.
 
 use crate::model::law::Law;
-use crate::model::precision::{Precision, SERIES_LENGTH};
+use crate::model::precision::Precision;
+use crate::model::series::{Series, horner};
 use crate::model::sum::Sum;
 use crate::real::Real;
 
-/// Halvings of a series' span until its last terms are small enough.
-const HALVINGS: usize = 24;
 /// Iterations of the search for an event: secant steps kept inside a bracket.
 const ITERATIONS: usize = 60;
 /// Parts of the span at whose ends an event is looked for.
 const PARTS: i32 = 2;
-
-type Series<R> = [R; SERIES_LENGTH];
 
 /// How the contact point moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +20,17 @@ pub(crate) enum Mode<R> {
     Sliding(R),
     /// Without.
     Rolling,
+}
+
+/// Whether the contact point grips the wall at the start of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grip {
+    /// As slip and friction have it.
+    Open,
+    /// Slip has just ended: it rolls, if friction suffices.
+    Caught,
+    /// Friction has just ceased to suffice: it slides.
+    Breaks,
 }
 
 /// Where the rotor is on the wall, and how fast.
@@ -60,100 +65,40 @@ pub(crate) struct Contact<R> {
     pub(crate) ending: Ending,
     /// Time from its start to its end.
     pub(crate) span: R,
-    sin: Series<R>,
-    cos: Series<R>,
-    tangential: Series<R>,
-    normal: Series<R>,
-    /// Integral of `tangential`: the angle turned.
-    angle: Series<R>,
-    /// Integral of `normal`: the wall's impulse.
-    impulse: Series<R>,
+    series: Series<R>,
 }
 
 impl<R: Precision> Contact<R> {
-    /// The stretch that starts at `base`. Slip is sliding or rolling as the laws have it; where it
-    /// has just ended, pass `stuck`.
-    pub(crate) fn new(base: WallState<R>, stuck: bool, law: &Law<R>) -> Self {
-        let mode = mode_of(&base, stuck, law);
+    /// The stretch that starts at `base`.
+    pub(crate) fn new(base: WallState<R>, grip: Grip, law: &Law<R>) -> Self {
+        let mode = mode_of(&base, grip, law);
+        let series = Series::new(&base, mode, law);
         let mut contact = Self {
             base,
             mode,
             ending: Ending::Continues,
-            span: R::ZERO,
-            sin: [R::ZERO; SERIES_LENGTH],
-            cos: [R::ZERO; SERIES_LENGTH],
-            tangential: [R::ZERO; SERIES_LENGTH],
-            normal: [R::ZERO; SERIES_LENGTH],
-            angle: [R::ZERO; SERIES_LENGTH],
-            impulse: [R::ZERO; SERIES_LENGTH],
+            span: series.accurate_span(),
+            series,
         };
-        contact.expand(law);
-        contact.span = contact.accurate_span();
         contact.find_ending(law);
+        contact.span = contact.span / series.pace;
         contact
-    }
-
-    fn expand(&mut self, law: &Law<R>) {
-        let (g, beta) = (law.gravity, law.inertia_ratio);
-        self.sin[0] = self.base.sin.value();
-        self.cos[0] = self.base.cos.value();
-        self.tangential[0] = self.base.tangential.value();
-        let mut divisor = R::ONE;
-        for k in 0..=R::SERIES_ORDER {
-            self.normal[k] = product(&self.tangential, &self.tangential, k) + g * self.cos[k];
-            if k == R::SERIES_ORDER {
-                break;
-            }
-            let acceleration = match self.mode {
-                Mode::Sliding(friction) => friction * self.normal[k] - g * self.sin[k],
-                Mode::Rolling => -g * self.sin[k] / (R::ONE + beta),
-            };
-            self.tangential[k + 1] = acceleration / divisor;
-            self.sin[k + 1] = product(&self.cos, &self.tangential, k) / divisor;
-            self.cos[k + 1] = -product(&self.sin, &self.tangential, k) / divisor;
-            self.angle[k + 1] = self.tangential[k] / divisor;
-            self.impulse[k + 1] = self.normal[k] / divisor;
-            divisor += R::ONE;
-        }
-    }
-
-    /// Time over which the last two terms stay below the tolerance. The first guess turns the rotor
-    /// by half a radian or half of the time scale.
-    fn accurate_span(&self) -> R {
-        let last = R::SERIES_ORDER;
-        let size = |k: usize| {
-            self.tangential[k]
-                .abs()
-                .most(self.sin[k].abs().most(self.cos[k].abs()))
-        };
-        let speed = self.tangential[0].abs();
-        let tolerance = R::SERIES_TOLERANCE * (R::ONE + speed);
-        let mut span = R::ONE / (R::ONE + speed);
-        for _ in 0..HALVINGS {
-            let tail = (size(last) * span + size(last - 1)) * power(span, last - 1);
-            if tail <= tolerance {
-                break;
-            }
-            span *= R::lit(0.75);
-        }
-        span
     }
 
     fn find_ending(&mut self, law: &Law<R>) {
         // Force first: where the wall stops pressing, friction stops as well.
-        self.cut_at(Ending::LiftsOff, |contact, time| {
-            horner(&contact.normal, time)
-        });
+        self.cut_at(Ending::LiftsOff, |series, at| horner(&series.normal, at));
         match self.mode {
             Mode::Sliding(friction) if friction != R::ZERO => {
-                let start = self.base.spin.plus(self.tangential[0]);
+                let start_speed = self.series.tangential[0];
+                let start = self.base.spin.plus(start_speed);
                 let sign = if start != R::ZERO { start } else { -friction };
                 let per_force = friction / law.inertia_ratio;
-                self.cut_at(Ending::SlipEnds, |contact, time| {
-                    let (speed, rate) = horner(&contact.tangential, time);
-                    let (impulse, force) = horner(&contact.impulse, time);
+                self.cut_at(Ending::SlipEnds, |series, at| {
+                    let (speed, rate) = horner(&series.tangential, at);
+                    let (impulse, force) = horner(&series.impulse, at);
                     let turned = per_force * impulse;
-                    let slip = start + ((speed - contact.tangential[0]) + turned);
+                    let slip = start + ((speed - start_speed) + turned);
                     let slope = rate + per_force * force;
                     if sign > R::ZERO {
                         (slip, slope)
@@ -166,9 +111,9 @@ impl<R: Precision> Contact<R> {
             Mode::Rolling => {
                 for side in [R::ONE, -R::ONE] {
                     let needed = side * law.rolling_friction(R::ONE);
-                    self.cut_at(Ending::Slips, |contact, time| {
-                        let (force, force_rate) = horner(&contact.normal, time);
-                        let (sin, sin_rate) = horner(&contact.sin, time);
+                    self.cut_at(Ending::Slips, |series, at| {
+                        let (force, force_rate) = horner(&series.normal, at);
+                        let (sin, sin_rate) = horner(&series.sin, at);
                         (
                             law.friction * force - needed * sin,
                             law.friction * force_rate - needed * sin_rate,
@@ -181,28 +126,31 @@ impl<R: Precision> Contact<R> {
 
     /// Shortens the span to where `margin` (value and slope; not negative at the start) falls below
     /// zero, if it does.
-    fn cut_at(&mut self, ending: Ending, margin: impl Fn(&Self, R) -> (R, R)) {
+    fn cut_at(&mut self, ending: Ending, margin: impl Fn(&Series<R>, R) -> (R, R)) {
+        let series = &self.series;
         let part = self.span / R::from_i32(PARTS);
         let mut low = R::ZERO;
-        let (start, mut slope) = margin(self, R::ZERO);
-        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO) {
+        let (start, mut slope) = margin(series, R::ZERO);
+        // Slip grows from zero with its second derivative only: its sign at the start says nothing.
+        let grows = ending == Ending::SlipEnds && start == R::ZERO;
+        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO && !grows) {
             self.span = R::ZERO;
             self.ending = ending;
             return;
         }
         for index in 1..=PARTS {
             let high = part * R::from_i32(index);
-            let (value, next_slope) = margin(self, high);
+            let (value, next_slope) = margin(series, high);
             let bottom = if value < R::ZERO {
                 Some(high)
             } else if slope < R::ZERO && next_slope > R::ZERO {
-                let lowest = bisect(low, high, |time| -margin(self, time).1);
-                (margin(self, lowest).0 < R::ZERO).then_some(lowest)
+                let lowest = bisect(low, high, |at| -margin(series, at).1);
+                (margin(series, lowest).0 < R::ZERO).then_some(lowest)
             } else {
                 None
             };
             if let Some(bottom) = bottom {
-                self.span = bisect(low, bottom, |time| margin(self, time).0);
+                self.span = bisect(low, bottom, |at| margin(series, at).0);
                 self.ending = ending;
                 return;
             }
@@ -212,7 +160,7 @@ impl<R: Precision> Contact<R> {
 
     /// Angle turned since the start of the stretch, rad.
     pub(crate) fn turned(&self, time: R) -> R {
-        horner(&self.angle, time).0
+        horner(&self.series.angle, time * self.series.pace).0
     }
 
     /// Sine, cosine, velocity along the wall, surface speed of the spin and angle turned at `time` in
@@ -248,61 +196,34 @@ impl<R: Precision> Contact<R> {
 
     /// What `time` adds to sine, cosine, velocity, spin and angle.
     fn rise(&self, time: R, law: &Law<R>) -> [R; 5] {
-        let mut rise = [R::ZERO; 5];
-        let [sin, cos, speed, impulse, angle] = &mut rise;
-        for k in (1..=R::SERIES_ORDER).rev() {
-            *sin = (*sin + self.sin[k]) * time;
-            *cos = (*cos + self.cos[k]) * time;
-            *speed = (*speed + self.tangential[k]) * time;
-            *impulse = (*impulse + self.impulse[k]) * time;
-            *angle = (*angle + self.angle[k]) * time;
-        }
-        *impulse = match self.mode {
-            Mode::Sliding(friction) => friction / law.inertia_ratio * *impulse,
-            Mode::Rolling => -*speed,
+        let [sin, cos, speed, impulse, angle] = self.series.rise(time * self.series.pace);
+        let spin = match self.mode {
+            Mode::Sliding(friction) => friction / law.inertia_ratio * impulse,
+            Mode::Rolling => -speed,
         };
-        rise
+        [sin, cos, speed, spin, angle]
     }
 }
 
-fn mode_of<R: Real>(base: &WallState<R>, stuck: bool, law: &Law<R>) -> Mode<R> {
+fn mode_of<R: Real>(base: &WallState<R>, grip: Grip, law: &Law<R>) -> Mode<R> {
     let slip = base.spin.plus(base.tangential.value());
     let speed = base.tangential.value();
     let force = speed * speed + law.gravity * base.cos.value();
     let needed = law.rolling_friction(base.sin.value());
-    if !stuck && slip != R::ZERO {
+    if grip == Grip::Open && slip != R::ZERO {
         return Mode::Sliding(if slip > R::ZERO {
             -law.friction
         } else {
             law.friction
         });
     }
-    if needed.abs() <= law.friction * force {
+    if grip != Grip::Breaks && needed.abs() <= law.friction * force {
         Mode::Rolling
     } else if needed > R::ZERO {
         Mode::Sliding(law.friction)
     } else {
         Mode::Sliding(-law.friction)
     }
-}
-
-/// Term `k` of the product of two series.
-fn product<R: Real>(a: &Series<R>, b: &Series<R>, k: usize) -> R {
-    a.iter()
-        .zip(b.iter().take(k + 1).rev())
-        .fold(R::ZERO, |sum, (&x, &y)| sum + x * y)
-}
-
-fn power<R: Real>(base: R, exponent: usize) -> R {
-    (0..exponent).fold(R::ONE, |product, _| product * base)
-}
-
-/// Value and slope.
-fn horner<R: Precision>(c: &Series<R>, time: R) -> (R, R) {
-    let terms = c.iter().take(R::SERIES_ORDER + 1).rev();
-    terms.fold((R::ZERO, R::ZERO), |(value, slope), &k| {
-        (value * time + k, slope * time + value)
-    })
 }
 
 /// Where `f` falls below zero between `low` (not negative) and `high` (negative): false position with

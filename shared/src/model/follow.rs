@@ -1,7 +1,7 @@
 //! From change to change: what ends a motion, and what follows it.
 
 use crate::model::clock::Instant;
-use crate::model::contact::{Contact, Ending, Mode, WallState};
+use crate::model::contact::{Contact, Ending, Grip, Mode, WallState};
 use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::{Change, Happening, Kinematics, Touch};
 use crate::model::law::Law;
@@ -10,9 +10,16 @@ use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState};
 use crate::model::whirl::whirl;
 
-/// Most changes of motion followed in one step; beyond it a bounce series is ended by its limit and
-/// whirl goes on by its mean. Chosen, because a whole series at restitution 0.95 fits in.
-const CHANGES_PER_STEP: u32 = 512;
+/// Most impacts followed in one step; beyond it a bounce series is ended by its limit. Chosen, because a
+/// whole series at restitution 0.95 fits in.
+const IMPACTS_PER_STEP: u32 = 512;
+/// Most stretches of contact followed in one step; beyond it whirl goes on by its mean. Chosen, because
+/// 20 turns fit in.
+const STRETCHES_PER_STEP: u32 = 256;
+/// Most of both: forced contacts can lift off again, and grazes are no impacts.
+const CHANGES_PER_STEP: u32 = IMPACTS_PER_STEP + STRETCHES_PER_STEP;
+/// Square of the speed, in units of V, from which on whirl has a mean.
+const WHIRL: f64 = 16.0;
 /// Longest rest of a bounce series, in units of T, that is summed in closed form.
 const LONGEST_REST: f64 = 1e-2;
 
@@ -36,24 +43,30 @@ impl<R: Precision> Rigid<R> {
     }
 
     pub(crate) fn follow(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {
-        // A few more than counted, so that a shortened series still settles into contact.
-        for change in 0..CHANGES_PER_STEP + 4 {
-            if !state.ends.is_reached_at(state.now) {
-                return;
-            }
-            let hurry = change >= CHANGES_PER_STEP;
-            if change == CHANGES_PER_STEP {
-                state.shortened = state.shortened.saturating_add(1);
-            }
+        let (mut impacts, mut stretches) = (0, 0);
+        while state.ends.is_reached_at(state.now) && impacts < CHANGES_PER_STEP {
             match state.motion {
-                Motion::Flight { flight, to } => self.impact(state, &flight, to, hurry, sink),
+                Motion::Flight { flight, to } => {
+                    impacts += 1;
+                    let hurry = impacts > IMPACTS_PER_STEP;
+                    self.impact(state, &flight, to, hurry, sink);
+                }
                 Motion::Settling { onto, stuck } => {
                     state.begun = state.ends;
-                    self.enter_contact(state, onto, stuck, sink);
+                    self.enter_contact(state, onto, grip(stuck), sink);
                 }
-                Motion::Contact(contact) if hurry => self.hurry_on(state, &contact, sink),
-                Motion::Contact(contact) => self.end_of_stretch(state, &contact, sink),
+                Motion::Contact(contact) if stretches < STRETCHES_PER_STEP => {
+                    stretches += 1;
+                    self.end_of_stretch(state, &contact, sink);
+                }
+                Motion::Contact(contact) => {
+                    self.hurry_on(state, &contact, sink);
+                    break;
+                }
             }
+        }
+        if impacts > IMPACTS_PER_STEP || stretches >= STRETCHES_PER_STEP {
+            state.shortened = state.shortened.saturating_add(1);
         }
     }
 
@@ -168,17 +181,17 @@ impl<R: Precision> Rigid<R> {
         &self,
         state: &mut RigidState<R>,
         onto: WallState<R>,
-        stuck: bool,
+        grip: Grip,
         sink: &mut impl FnMut(Happening<R>),
     ) {
         state.turns = (0, R::ZERO);
-        self.touch(state, onto, stuck);
+        self.touch(state, onto, grip);
         self.tell(state, Change::ContactStarts, sink);
     }
 
     /// Starts the next stretch of contact at `state.begun`.
-    fn touch(&self, state: &mut RigidState<R>, onto: WallState<R>, stuck: bool) {
-        let contact = Contact::new(onto, stuck, &self.law);
+    fn touch(&self, state: &mut RigidState<R>, onto: WallState<R>, grip: Grip) {
+        let contact = Contact::new(onto, grip, &self.law);
         state.spin = onto.spin;
         state.ends = state.begun.after(contact.span / self.step);
         state.motion = Motion::Contact(contact);
@@ -212,33 +225,38 @@ impl<R: Precision> Rigid<R> {
             Ending::SlipEnds => {
                 let mut onto = onto;
                 onto.spin = onto.tangential.negative();
-                self.touch(state, onto, true);
+                self.touch(state, onto, Grip::Caught);
                 if state.is_rolling() {
                     self.tell(state, Change::RollingStarts, sink);
                 }
             }
             Ending::Slips => {
-                self.touch(state, onto, true);
+                self.touch(state, onto, Grip::Breaks);
                 self.tell(state, Change::SlidingStarts, sink);
             }
-            Ending::Continues => self.touch(state, onto, was_rolling),
+            Ending::Continues => self.touch(state, onto, grip(was_rolling)),
         }
     }
 
-    /// Goes to the end of the step by the mean motion of a whirl.
+    /// Goes to the end of the step by the mean motion of a whirl. What is no whirl waits for the next
+    /// step.
     fn hurry_on(
         &self,
         state: &mut RigidState<R>,
         contact: &Contact<R>,
         sink: &mut impl FnMut(Happening<R>),
     ) {
+        let speed = contact.base.tangential.value();
+        if speed * speed < R::lit(WHIRL) {
+            return;
+        }
         let now = state.now;
         let time = now.since(state.begun) * self.step;
         let (onto, angle, stuck) = whirl(&contact.base, contact.mode, time, &self.law);
         state.turn(angle);
         state.begun = now;
         let was_rolling = contact.mode == Mode::Rolling;
-        self.touch(state, onto, stuck);
+        self.touch(state, onto, grip(stuck));
         if stuck && !was_rolling && state.is_rolling() {
             self.tell(state, Change::RollingStarts, sink);
         }
@@ -251,4 +269,8 @@ impl<R: Precision> Rigid<R> {
             after: self.kinematics_after(state, R::ZERO),
         });
     }
+}
+
+fn grip(stuck: bool) -> Grip {
+    if stuck { Grip::Caught } else { Grip::Open }
 }

@@ -14,6 +14,7 @@ mod law;
 mod polynomial;
 mod precision;
 mod rigid;
+mod series;
 mod start;
 mod state;
 mod sum;

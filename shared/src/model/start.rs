@@ -2,6 +2,7 @@
 
 use crate::error::ConfigError;
 use crate::model::clock::Instant;
+use crate::model::contact::Grip;
 use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::Happening;
 use crate::model::precision::Precision;
@@ -72,7 +73,7 @@ impl<R: Precision> Rigid<R> {
                     return Err(ConfigError::NotFinite("start"));
                 }
                 let onto = state.on_wall(sin, cos, tangential);
-                self.enter_contact(&mut state, onto, false, &mut sink);
+                self.enter_contact(&mut state, onto, Grip::Open, &mut sink);
             }
         }
         self.follow(&mut state, &mut sink);

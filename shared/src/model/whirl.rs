@@ -1,8 +1,8 @@
 //! Whirl too fast for its turns to be followed within the bounds of a step.
 //!
-//! Gravity averages out over a turn, and v' = mu_s v^2 has a closed form: v = v0/(1 - mu_s v0 t),
-//! until slip ends at v = (v0 - beta W)/(1 + beta). Speed and spin are right to 1/v^2; the angle
-//! stays near the true one but is no longer predictable.
+//! Gravity averages out over a turn, and the mean speed obeys v' = mu_s v^2, which has a closed form:
+//! v = v0/(1 - mu_s v0 t), until slip ends at v = (v0 - beta W)/(1 + beta). Within a turn, height is
+//! paid for in speed. Speed and spin are right to 1/v^2; the angle is no longer predictable.
 
 use crate::model::contact::{Mode, WallState};
 use crate::model::law::Law;
@@ -16,33 +16,61 @@ pub(crate) fn whirl<R: Real>(
     time: R,
     law: &Law<R>,
 ) -> (WallState<R>, R, bool) {
-    let start = from.tangential.value();
-    let (speed, angle, spin, stuck) = match mode {
+    let beta = law.inertia_ratio;
+    let start = at_height(
+        from.tangential.value(),
+        -from.cos.value(),
+        mode == Mode::Rolling,
+        law,
+    );
+    let (speed, angle, stuck) = match mode {
         Mode::Sliding(friction) if friction != R::ZERO && start != R::ZERO => {
-            let beta = law.inertia_ratio;
             let last = (start - beta * from.spin.value()) / (R::ONE + beta);
             let until = (R::ONE / start - R::ONE / last) / friction;
             if last * start > R::ZERO && until >= R::ZERO && until <= time {
                 let turned = (last / start).ln() / friction + last * (time - until);
-                (last, turned, Sum::new(-last), true)
+                (last, turned, true)
             } else {
                 let shrink = R::ONE - friction * start * time;
-                let speed = start / shrink;
-                let mut spin = from.spin;
-                spin.add((speed - start) / beta);
-                (speed, -shrink.ln() / friction, spin, false)
+                (start / shrink, -shrink.ln() / friction, false)
             }
         }
-        Mode::Sliding(_) => (start, start * time, from.spin, false),
-        Mode::Rolling => (start, start * time, from.spin, true),
+        Mode::Sliding(_) => (start, start * time, false),
+        Mode::Rolling => (start, start * time, true),
     };
     let (turn_sin, turn_cos) = angle.sin_cos();
     let (sin, cos) = (from.sin.value(), from.cos.value());
+    let (sin, cos) = (
+        sin * turn_cos + cos * turn_sin,
+        cos * turn_cos - sin * turn_sin,
+    );
+    let tangential = at_height(speed, cos, stuck, law);
+    let mut spin = from.spin;
+    if stuck {
+        spin = Sum::new(-tangential);
+    } else {
+        spin.add((speed - start) / beta);
+    }
     let state = WallState {
-        sin: Sum::new(sin * turn_cos + cos * turn_sin),
-        cos: Sum::new(cos * turn_cos - sin * turn_sin),
-        tangential: Sum::new(speed),
+        sin: Sum::new(sin),
+        cos: Sum::new(cos),
+        tangential: Sum::new(tangential),
         spin,
     };
     (state, angle, stuck)
+}
+
+/// The speed with which a rotor of this speed at mid height passes a point `depth` below it.
+fn at_height<R: Real>(speed: R, depth: R, rolling: bool, law: &Law<R>) -> R {
+    let inertia = if rolling {
+        R::ONE + law.inertia_ratio
+    } else {
+        R::ONE
+    };
+    let square = (speed * speed + R::TWO * law.gravity * depth / inertia).most(R::ZERO);
+    if speed < R::ZERO {
+        -square.sqrt()
+    } else {
+        square.sqrt()
+    }
 }

@@ -1,0 +1,132 @@
+//! The motion in contact as a Taylor series.
+//!
+//! Sliding obeys phi'' = -g sin phi + mu_s n with n = phi'^2 + g cos phi, rolling
+//! phi'' = -g sin phi/(1 + beta). The series of sin phi, cos phi, phi' and n follow from each other
+//! term by term. Time is counted in units in which the rotor turns by at most a radian: at the speeds
+//! of whirl the terms would overflow in f32 otherwise.
+
+use crate::model::contact::{Mode, WallState};
+use crate::model::law::Law;
+use crate::model::precision::{Precision, SERIES_LENGTH};
+use crate::real::Real;
+
+/// Shortenings of a series' span until its last terms are small enough.
+const SHORTENINGS: usize = 24;
+/// One of them.
+const SHORTER: f64 = 0.75;
+
+/// Coefficients from the constant term up.
+pub(crate) type Terms<R> = [R; SERIES_LENGTH];
+
+/// A series, in its own unit of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Series<R> {
+    /// Units of the series in one T.
+    pub(crate) pace: R,
+    pub(crate) sin: Terms<R>,
+    pub(crate) cos: Terms<R>,
+    pub(crate) tangential: Terms<R>,
+    /// The wall's force on the rotor, per mass.
+    pub(crate) normal: Terms<R>,
+    /// Integral of `tangential`: the angle turned.
+    pub(crate) angle: Terms<R>,
+    /// Integral of `normal`: the wall's impulse.
+    pub(crate) impulse: Terms<R>,
+}
+
+impl<R: Precision> Series<R> {
+    /// Expands the motion from `base`.
+    pub(crate) fn new(base: &WallState<R>, mode: Mode<R>, law: &Law<R>) -> Self {
+        let zero = [R::ZERO; SERIES_LENGTH];
+        let start = base.tangential.value();
+        let mut series = Self {
+            pace: R::ONE + start.abs(),
+            sin: zero,
+            cos: zero,
+            tangential: zero,
+            normal: zero,
+            angle: zero,
+            impulse: zero,
+        };
+        let (g, beta) = (law.gravity, law.inertia_ratio);
+        series.sin[0] = base.sin.value();
+        series.cos[0] = base.cos.value();
+        series.tangential[0] = start;
+        let mut divisor = series.pace;
+        for k in 0..=R::SERIES_ORDER {
+            let square = product(&series.tangential, &series.tangential, k);
+            series.normal[k] = square + g * series.cos[k];
+            if k == R::SERIES_ORDER {
+                break;
+            }
+            let acceleration = match mode {
+                Mode::Sliding(friction) => friction * series.normal[k] - g * series.sin[k],
+                Mode::Rolling => -g * series.sin[k] / (R::ONE + beta),
+            };
+            let factor = R::ONE / divisor;
+            series.tangential[k + 1] = acceleration * factor;
+            series.sin[k + 1] = product(&series.cos, &series.tangential, k) * factor;
+            series.cos[k + 1] = -product(&series.sin, &series.tangential, k) * factor;
+            series.angle[k + 1] = series.tangential[k] * factor;
+            series.impulse[k + 1] = series.normal[k] * factor;
+            divisor += series.pace;
+        }
+        series
+    }
+
+    /// Length over which the last two terms stay below the tolerance, in the series' unit.
+    pub(crate) fn accurate_span(&self) -> R {
+        let last = R::SERIES_ORDER;
+        let size = |k: usize| {
+            let angle = self.sin[k].abs().most(self.cos[k].abs());
+            self.tangential[k].abs().most(angle * self.pace)
+        };
+        let tolerance = R::SERIES_TOLERANCE * self.pace;
+        let mut span = R::ONE;
+        let mut power = R::ONE;
+        let shorter = R::lit(SHORTER);
+        let shrink = (0..last - 1).fold(R::ONE, |product, _| product * shorter);
+        for _ in 0..SHORTENINGS {
+            if (size(last) * span + size(last - 1)) * power <= tolerance {
+                break;
+            }
+            span *= shorter;
+            power *= shrink;
+        }
+        span
+    }
+
+    /// What `at` (in the series' unit) adds to sine, cosine, velocity, the wall's impulse and the angle
+    /// turned.
+    pub(crate) fn rise(&self, at: R) -> [R; 5] {
+        let mut rise = [R::ZERO; 5];
+        for k in (1..=R::SERIES_ORDER).rev() {
+            let terms = [
+                self.sin[k],
+                self.cos[k],
+                self.tangential[k],
+                self.impulse[k],
+                self.angle[k],
+            ];
+            for (value, term) in rise.iter_mut().zip(terms) {
+                *value = (*value + term) * at;
+            }
+        }
+        rise
+    }
+}
+
+/// Term `k` of the product of two series.
+fn product<R: Real>(a: &Terms<R>, b: &Terms<R>, k: usize) -> R {
+    a.iter()
+        .zip(b.iter().take(k + 1).rev())
+        .fold(R::ZERO, |sum, (&x, &y)| sum + x * y)
+}
+
+/// Value and slope, in the series' unit.
+pub(crate) fn horner<R: Precision>(c: &Terms<R>, at: R) -> (R, R) {
+    let terms = c.iter().take(R::SERIES_ORDER + 1).rev();
+    terms.fold((R::ZERO, R::ZERO), |(value, slope), &k| {
+        (value * at + k, slope * at + value)
+    })
+}
