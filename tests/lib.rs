@@ -1,1 +1,3 @@
 //! What the tests share: reference cases and their tolerances.
+
+pub mod binary;
