@@ -11,7 +11,7 @@ pub struct InputError {
     file: String,
     line: Option<u64>,
     rule: String,
-    excerpt: Option<(NamedSource<String>, SourceSpan)>,
+    excerpt: Option<Box<(NamedSource<String>, SourceSpan)>>,
 }
 
 impl InputError {
@@ -47,7 +47,7 @@ impl InputError {
             .count();
         let source = NamedSource::new(file, text.to_owned()).with_language("toml");
         Self {
-            excerpt: Some((source, (start..span.end.min(text.len())).into())),
+            excerpt: Some(Box::new((source, (start..span.end.min(text.len())).into()))),
             ..Self::at_line(file, line as u64, rule)
         }
     }
@@ -100,12 +100,12 @@ impl std::error::Error for InputError {}
 
 impl Diagnostic for InputError {
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        let (source, _) = self.excerpt.as_ref()?;
+        let (source, _) = self.excerpt.as_deref()?;
         Some(source)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, span) = self.excerpt.as_ref()?;
+        let (_, span) = self.excerpt.as_deref()?;
         let label = LabeledSpan::new_with_span(None, *span);
         Some(Box::new(std::iter::once(label)))
     }

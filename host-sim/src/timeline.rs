@@ -38,12 +38,12 @@ fn heading(scene: &Scene, paint: Paint) -> String {
     }
     let lines: Vec<_> = lines.iter().map(|line| paint.bold(line)).collect();
     format!(
-        "{}\n{} kg, radius {:.4} mm, {:.0} rpm; gap {:.4} mm, friction {}, restitution {}\n",
+        "{}\n{} kg, radius {} mm, {} rpm; gap {} mm, friction {}, restitution {}\n",
         lines.join("\n"),
         scene.rotor.mass,
-        scene.rotor.radius * 1e3,
-        scene.rotor.spin * 60.0 / std::f64::consts::TAU,
-        scene.retainer.clearance * 1e3,
+        short(scene.rotor.radius * 1e3),
+        short(scene.rotor.spin * 60.0 / std::f64::consts::TAU),
+        short(scene.retainer.clearance * 1e3),
         scene.retainer.friction,
         scene.retainer.restitution,
     )
@@ -124,8 +124,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let found = matches.of_kind(EventKind::Impact);
     for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
         let model = outcome.model.impacts.get(index);
-        let off =
-            model.map(|model| format!("{:.0e} s", (model.state.time - impact.state.time).abs()));
+        let off = model.map(|model| seconds(model.state.time - impact.state.time));
         text += &format!(
             "{:<8}{:>12}{:>10.2}{:>13}",
             index,
@@ -225,6 +224,19 @@ fn more(count: usize, what: &str) -> String {
 
 fn millis(seconds: f64) -> String {
     format!("{:.4}", seconds * 1e3)
+}
+
+/// To six decimals, without trailing zeros.
+fn short(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn seconds(difference: f64) -> String {
+    if difference == 0.0 {
+        "0 s".to_owned()
+    } else {
+        format!("{:.0e} s", difference.abs())
+    }
 }
 
 fn optional(text: Option<String>) -> String {

@@ -37,30 +37,31 @@ impl Flaw {
     }
 }
 
-/// The first number of the text that is not finite.
-pub(super) fn not_finite(text: &str) -> Option<Range<usize>> {
+/// The first number of the text that is not finite: its key and its place.
+pub(super) fn not_finite(text: &str) -> Option<(String, Range<usize>)> {
     let root = DeTable::parse(text).ok()?;
     in_table(root.get_ref())
 }
 
-fn in_table(table: &DeTable<'_>) -> Option<Range<usize>> {
-    let mut values: Vec<_> = table.values().collect();
-    values.sort_by_key(|value| value.span().start);
-    values
-        .into_iter()
-        .find_map(|value| in_value(value.get_ref(), value.span()))
+fn in_table(table: &DeTable<'_>) -> Option<(String, Range<usize>)> {
+    let found = table.iter().filter_map(|(key, value)| {
+        let (inner, span) = in_value(value.get_ref(), value.span())?;
+        Some((inner.unwrap_or_else(|| key.get_ref().to_string()), span))
+    });
+    found.min_by_key(|(_, span)| span.start)
 }
 
-fn in_value(value: &DeValue<'_>, span: Range<usize>) -> Option<Range<usize>> {
+/// With the key where the number stands in a table of its own.
+fn in_value(value: &DeValue<'_>, span: Range<usize>) -> Option<(Option<String>, Range<usize>)> {
     match value {
         DeValue::Float(number) => {
             let finite = number.as_str().parse().is_ok_and(f64::is_finite);
-            (!finite).then_some(span)
+            (!finite).then_some((None, span))
         }
         DeValue::Array(items) => items
             .iter()
             .find_map(|item| in_value(item.get_ref(), item.span())),
-        DeValue::Table(table) => in_table(table),
+        DeValue::Table(table) => in_table(table).map(|(key, span)| (Some(key), span)),
         _ => None,
     }
 }

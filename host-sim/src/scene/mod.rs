@@ -142,13 +142,9 @@ impl Scene {
                 .replacen("unknown field", "unknown key", 1);
             InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
         })?;
-        if let Some(span) = flaw::not_finite(text) {
-            return Err(InputError::at_span(
-                name,
-                text,
-                span,
-                "must be a finite number",
-            ));
+        if let Some((key, span)) = flaw::not_finite(text) {
+            let rule = format!("{key} must be a finite number");
+            return Err(InputError::at_span(name, text, span, rule));
         }
         check::scene(name, file)
             .map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))

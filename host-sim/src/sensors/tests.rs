@@ -66,21 +66,26 @@ fn noise_is_white_and_as_strong_as_asked() {
     };
     let sensors = Sensors::try_new(&config, 20_000.0).unwrap();
     let mut state = sensors.start(7);
-    let readings: Vec<[f64; CHANNELS]> = (0..100_000)
-        .map(|_| sensors.read(&mut state, &at([0.0; 2])).counts)
-        .map(|counts| counts.map(|count| displacement(&config, count)))
-        .collect();
-    let mean_of = |f: &dyn Fn(usize) -> f64, n: usize| (0..n).map(f).sum::<f64>() / n as f64;
-    let n = readings.len();
-    for channel in 0..CHANNELS {
-        let mean = mean_of(&|k| readings[k][channel], n);
-        let variance = mean_of(&|k| readings[k][channel].powi(2), n);
-        let lag = mean_of(&|k| readings[k][channel] * readings[k + 1][channel], n - 1);
+    let mut readings = [const { Vec::new() }; CHANNELS];
+    for _ in 0..100_000 {
+        let counts = sensors.read(&mut state, &at([0.0; 2])).counts;
+        for (readings, count) in readings.iter_mut().zip(counts) {
+            readings.push(displacement(&config, count));
+        }
+    }
+    let mean_product = |a: &[f64], b: &[f64]| {
+        let products = a.iter().zip(b).map(|(a, b)| a * b);
+        products.sum::<f64>() / a.len().min(b.len()) as f64
+    };
+    for channel in &readings {
+        let mean = channel.iter().sum::<f64>() / channel.len() as f64;
+        let variance = mean_product(channel, channel);
+        let lag = mean_product(channel, &channel[1..]);
         assert!(mean.abs() < 2e-8, "{mean}");
         assert!((variance.sqrt() / 1e-6 - 1.0).abs() < 0.01, "{variance}");
         assert!((lag / variance).abs() < 0.015, "{lag}");
     }
-    let cross = mean_of(&|k| readings[k][0] * readings[k][2], n);
+    let cross = mean_product(&readings[0], &readings[2]);
     assert!(cross.abs() < 1.5e-14, "{cross}");
 }
 

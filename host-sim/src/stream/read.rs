@@ -76,32 +76,21 @@ impl<R: Read> StreamReader<R> {
             );
             return Err(InputError::at_line(file, 1, rule));
         };
-        let mut record = StringRecord::new();
-        let read = records.read_record(&mut record);
-        if !read.map_err(|error| csv_error(file, &error))? {
-            return Err(InputError::at_line(
-                file,
-                1,
-                "there are no rows after the header",
-            ));
-        }
-        let (stamp, row) = parse(file, &record, columns)?;
+        let Some((first, row, _)) = next(file, &mut records, columns)? else {
+            let rule = "there are no rows after the header";
+            return Err(InputError::at_line(file, 1, rule));
+        };
         let mut reader = Self {
             file: file.to_owned(),
             records,
             ends_in_newline,
             columns,
-            clock: Clock::new(stamp),
+            clock: Clock::new(first),
             ahead: VecDeque::from([row]),
             rate: 0.0,
             finished: false,
         };
-        while reader.ahead.len() < LOOK_AHEAD {
-            let Some(row) = reader.read_row()? else {
-                break;
-            };
-            reader.ahead.push_back(row);
-        }
+        reader.look_ahead()?;
         let Some(rate) = reader.clock.rate() else {
             return Err(InputError::at_line(
                 file,
@@ -132,28 +121,53 @@ impl<R: Read> StreamReader<R> {
         self.clock.start()
     }
 
+    /// Reads the first rows. Their stamps together show how they are rounded.
+    fn look_ahead(&mut self) -> Result<(), InputError> {
+        let mut stamps = Vec::new();
+        while stamps.len() + 1 < LOOK_AHEAD {
+            let Some((stamp, row, line)) = next(&self.file, &mut self.records, self.columns)?
+            else {
+                self.finished = true;
+                break;
+            };
+            self.clock.learn(stamp);
+            self.ahead.push_back(row);
+            stamps.push((stamp, line));
+        }
+        for (stamp, line) in stamps {
+            self.take(stamp, line)?;
+        }
+        if self.finished {
+            self.check_end()
+        } else {
+            Ok(())
+        }
+    }
+
+    fn take(&mut self, stamp: Stamp, line: u64) -> Result<(), InputError> {
+        self.clock
+            .take(stamp)
+            .map_err(|rule| InputError::at_line(&self.file, line, rule))
+    }
+
     fn read_row(&mut self) -> Result<Option<Row>, InputError> {
         if self.finished {
             return Ok(None);
         }
-        let mut record = StringRecord::new();
-        let read = self.records.read_record(&mut record);
-        if !read.map_err(|error| csv_error(&self.file, &error))? {
+        let Some((stamp, row, line)) = next(&self.file, &mut self.records, self.columns)? else {
             self.finished = true;
-            return self.check_end();
-        }
-        let (stamp, row) = parse(&self.file, &record, self.columns)?;
-        self.clock
-            .take(stamp)
-            .map_err(|rule| InputError::at_line(&self.file, line(&record), rule))?;
+            self.check_end()?;
+            return Ok(None);
+        };
+        self.take(stamp, line)?;
         Ok(Some(row))
     }
 
     /// A number that lost its last digits is still a number: only the newline shows that the last
     /// row is whole.
-    fn check_end(&self) -> Result<Option<Row>, InputError> {
+    fn check_end(&self) -> Result<(), InputError> {
         if self.ends_in_newline.get() {
-            return Ok(None);
+            return Ok(());
         }
         let last = self.records.position().line();
         let rule = "the last line is cut off: it does not end with a newline";
@@ -190,6 +204,21 @@ fn csv_error(file: &str, error: &csv::Error) -> InputError {
         (_, Some(line)) => InputError::at_line(file, line, error.to_string()),
         (_, None) => InputError::of_file(file, error.to_string()),
     }
+}
+
+/// The next row with its stamp and line; `None` at the end.
+fn next<R: Read>(
+    file: &str,
+    records: &mut csv::Reader<R>,
+    columns: Columns,
+) -> Result<Option<(Stamp, Row, u64)>, InputError> {
+    let mut record = StringRecord::new();
+    let read = records.read_record(&mut record);
+    if !read.map_err(|error| csv_error(file, &error))? {
+        return Ok(None);
+    }
+    let (stamp, row) = parse(file, &record, columns)?;
+    Ok(Some((stamp, row, line(&record))))
 }
 
 fn parse(file: &str, record: &StringRecord, columns: Columns) -> Result<(Stamp, Row), InputError> {

@@ -1,0 +1,47 @@
+//! The program itself, built once for all tests of a target.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// The program, in an empty folder of its own choice.
+pub fn touchdown(folder: &Path) -> assert_cmd::Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    let mut command = assert_cmd::Command::new(PROGRAM.get_or_init(build));
+    command.current_dir(folder).env("NO_COLOR", "1");
+    command
+}
+
+/// Cargo gives a test only the programs of its own package, so the test builds the other one, beside
+/// itself: `target/<profile>/deps/<test>`.
+fn build() -> PathBuf {
+    let test = std::env::current_exe().expect("the test has a path");
+    let profile = test
+        .ancestors()
+        .nth(2)
+        .expect("deps is in a profile's folder");
+    let target = profile.parent().expect("the profile's folder is in target");
+    let name = match profile.file_name().and_then(|name| name.to_str()) {
+        Some("debug") | None => "dev",
+        Some(other) => other,
+    };
+    let built = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args([
+            "build",
+            "--quiet",
+            "--package",
+            "touchdown-sim",
+            "--bin",
+            "touchdown",
+        ])
+        .args(["--profile", name])
+        .arg("--target-dir")
+        .arg(target)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .status()
+        .expect("cargo runs");
+    assert!(built.success(), "the program does not build");
+    profile
+        .join("touchdown")
+        .with_extension(std::env::consts::EXE_EXTENSION)
+}
