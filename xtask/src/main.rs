@@ -1,2 +1,56 @@
-//! Set-up and tests.
-fn main() {}
+//! `cargo xtask`: set-up, firmware build and tests.
+
+mod firmware;
+mod machine;
+mod setup;
+mod tally;
+mod test;
+mod toolchain;
+
+use std::path::Path;
+
+use clap::{Parser, Subcommand};
+
+/// What cargo alone cannot do.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install what the firmware and its emulator need, where it is missing
+    Setup {
+        /// Do not ask
+        #[arg(long)]
+        yes: bool,
+    },
+    /// Build both images, for silicon and for the emulator
+    Firmware,
+    /// Set up what is missing, build both images, and run every test
+    Test {
+        /// Do not ask
+        #[arg(long)]
+        yes: bool,
+    },
+}
+
+fn main() -> anyhow::Result<()> {
+    match Arguments::parse().task {
+        Task::Setup { yes } => setup::run(yes),
+        Task::Firmware => firmware::build(),
+        Task::Test { yes } => {
+            setup::run(yes)?;
+            firmware::build()?;
+            test::run()
+        }
+    }
+}
+
+fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("this package is a folder of the workspace")
+}

@@ -1,0 +1,20 @@
+//! Puts the memory map where the linker looks, and names the linker scripts, for the target only.
+
+use std::env;
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed=../memory.x");
+    if env::var("CARGO_CFG_TARGET_OS")? != "none" {
+        return Ok(());
+    }
+    // The linker runs in the workspace's root or elsewhere, as cargo likes.
+    let out = env::var("OUT_DIR")?;
+    fs::copy("../memory.x", Path::new(&out).join("memory.x"))?;
+    println!("cargo::rustc-link-search={out}");
+    println!("cargo::rustc-link-arg-bins=-Tlink.x");
+    println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+    Ok(())
+}

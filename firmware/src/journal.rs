@@ -1,0 +1,51 @@
+//! What the images log.
+
+use defmt::{Str, info, intern, warn};
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::monitor::MonitorConfig;
+
+/// The configuration in force.
+pub fn config(config: &MonitorConfig) {
+    let detector = &config.detector;
+    info!(
+        "config: channels {=u8:04b}, {=f32} Hz, {=f32} um a count, clearance {=f32} um",
+        config.fitted,
+        detector.sample_rate,
+        config.sensing.resolution * 1e6,
+        detector.machine.clearance * 1e6,
+    );
+}
+
+/// A notice.
+pub fn notice(notice: &Notice) {
+    match *notice {
+        Notice::Declared(event) => info!(
+            "event {=u16}: {=istr}, declared at sample {=u64}",
+            event.number,
+            name(event.kind),
+            event.declared
+        ),
+        Notice::Confirmed { number, sample } => {
+            warn!("event {=u16}: confirmed at sample {=u64}", number, sample);
+        }
+        Notice::Withdrawn { number, sample } => {
+            info!("event {=u16}: withdrawn at sample {=u64}", number, sample);
+        }
+    }
+}
+
+fn name(kind: EventKind) -> Str {
+    match kind {
+        EventKind::FreeFall => intern!("free fall"),
+        EventKind::Impact => intern!("impact"),
+        EventKind::Sliding => intern!("sliding"),
+        EventKind::Rolling => intern!("rolling"),
+        EventKind::Pendulum => intern!("pendulum"),
+        EventKind::ForwardWhirl => intern!("forward whirl"),
+        EventKind::BackwardWhirl => intern!("backward whirl"),
+        EventKind::LiftOff => intern!("lift-off"),
+        EventKind::Rest => intern!("rest"),
+        EventKind::Levitated => intern!("levitated"),
+        EventKind::SensorFault => intern!("sensor fault"),
+    }
+}

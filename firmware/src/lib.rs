@@ -1,0 +1,12 @@
+#![cfg_attr(target_os = "none", no_std)]
+//! The touchdown monitor next to the controller of the magnetic bearings: one application over a
+//! small board trait, and the boards.
+//!
+//! The images are the package's two binaries. For the desktop the library holds the application
+//! and its tests only; the boards are for the target.
+
+pub mod app;
+pub mod board;
+#[cfg(target_os = "none")]
+mod journal;
+pub mod overrun;

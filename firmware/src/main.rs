@@ -1,2 +1,0 @@
-//! The touchdown monitor on an STM32F405.
-fn main() {}

@@ -1,0 +1,255 @@
+//! The firmware's image in QEMU: the same monitor, compiled for the microcontroller, over the same
+//! samples.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use defmt_decoder::{DecodeError, Table};
+use touchdown_core::event::Notice;
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::Sample;
+use touchdown_core::wire::{self, Record};
+
+use crate::monitor_run::Answer;
+
+const QEMU: &str = "qemu-system-arm";
+/// An STM32F405; what of it is emulated is in docs/firmware.md.
+const MACHINE: &str = "netduinoplus2";
+const IMAGE: &str = "thumbv7em-none-eabihf/release/touchdown-qemu";
+
+/// Longest time for the start of QEMU, and for each sample: far more than they take.
+const START_LIMIT: Duration = Duration::from_secs(30);
+const SAMPLE_LIMIT_MS: u64 = 1;
+
+/// Why the image gave no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulatorError {
+    /// The image is not there.
+    #[error("no firmware image at {}: build it with `cargo xtask firmware`", .0.display())]
+    ImageMissing(PathBuf),
+    /// QEMU is not there.
+    #[error("{QEMU} is not installed: `cargo xtask setup` installs it")]
+    QemuMissing,
+    /// A file or a process of the desktop failed.
+    #[error("cannot {0}")]
+    Io(&'static str, #[source] io::Error),
+    /// The image has no log table, or one that cannot be read.
+    #[error("{} is not an image of this firmware: {reason}", image.display())]
+    NotAnImage {
+        /// The file.
+        image: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// It was still running after this time.
+    #[error("the image did not finish within {} s", .0.as_secs())]
+    Timeout(Duration),
+    /// It ended with an error.
+    #[error("the image failed ({status}): {}{qemu}", log.join("; "))]
+    Failed {
+        /// As QEMU gave it.
+        status: ExitStatus,
+        /// What the image logged.
+        log: Vec<String>,
+        /// What QEMU said.
+        qemu: String,
+    },
+    /// Its answer is not what [`wire`] describes.
+    #[error("the image's answer is damaged")]
+    Damaged,
+}
+
+/// An image and the means to run it.
+#[derive(Clone, Debug)]
+pub struct Emulator {
+    image: PathBuf,
+}
+
+impl Emulator {
+    /// Looks for the image, by default the one that `cargo xtask firmware` builds, and for QEMU.
+    pub fn find(image: Option<&Path>) -> Result<Self, EmulatorError> {
+        let image = image.map_or_else(|| target_directory().join(IMAGE), Path::to_path_buf);
+        let Ok(image) = image.canonicalize() else {
+            return Err(EmulatorError::ImageMissing(image));
+        };
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        if !std::env::split_paths(&path).any(|folder| folder.join(QEMU).is_file()) {
+            return Err(EmulatorError::QemuMissing);
+        }
+        Ok(Self { image })
+    }
+
+    /// Runs the image over `samples`.
+    pub fn run(
+        &self,
+        config: &MonitorConfig,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<Answer, EmulatorError> {
+        let elf = fs::read(&self.image).map_err(|e| EmulatorError::Io("read the image", e))?;
+        let folder = tempfile::tempdir().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let replay = folder.path().join("replay");
+        let count = write_replay(&replay, config, samples)
+            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+
+        let (out, err) = (folder.path().join("out"), folder.path().join("err"));
+        let child = self
+            .start(folder.path(), &out, &err)
+            .map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+        let status = wait(child, limit)?;
+
+        let read = |path: &Path| fs::read(path).map_err(|e| EmulatorError::Io("read", e));
+        let log = self.decode_log(&elf, &read(&out)?)?;
+        if !status.success() {
+            let qemu = String::from_utf8_lossy(&read(&err)?).trim().to_owned();
+            return Err(EmulatorError::Failed { status, log, qemu });
+        }
+        let (notices, summary) =
+            decode_answer(&read(&folder.path().join("answer"))?).ok_or(EmulatorError::Damaged)?;
+        Ok(Answer {
+            notices,
+            summary,
+            log,
+        })
+    }
+
+    fn start(&self, folder: &Path, out: &Path, err: &Path) -> io::Result<Child> {
+        Command::new(QEMU)
+            .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
+            .args(["-serial", "none", "-semihosting-config"])
+            .arg("enable=on,target=native,arg=replay,arg=answer")
+            .arg("-kernel")
+            .arg(&self.image)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(File::create(out)?)
+            .stderr(File::create(err)?)
+            .spawn()
+    }
+
+    fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
+        let reject = |reason: String| EmulatorError::NotAnImage {
+            image: self.image.clone(),
+            reason,
+        };
+        let table = Table::parse(elf)
+            .map_err(|e| reject(e.to_string()))?
+            .ok_or_else(|| reject("it has no log table".into()))?;
+        let mut decoder = table.new_stream_decoder();
+        decoder.received(bytes);
+        let mut lines = Vec::new();
+        loop {
+            match decoder.decode() {
+                Ok(frame) => lines.push(frame.display_message().to_string()),
+                Err(DecodeError::UnexpectedEof) => return Ok(lines),
+                Err(DecodeError::Malformed) => lines.push("(damaged line)".into()),
+            }
+        }
+    }
+}
+
+fn target_directory() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../target"),
+        PathBuf::from,
+    )
+}
+
+fn write_replay(
+    path: &Path,
+    config: &MonitorConfig,
+    samples: impl Iterator<Item = Sample>,
+) -> io::Result<u64> {
+    let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
+    let mut file = BufWriter::new(File::create(path)?);
+    file.write_all(&wire::REPLAY_MAGIC)?;
+    file.write_all(&(config.len() as u32).to_le_bytes())?;
+    file.write_all(&config)?;
+    let mut count = 0;
+    for sample in samples {
+        file.write_all(&wire::encode_sample(&sample))?;
+        count += 1;
+    }
+    file.flush()?;
+    Ok(count)
+}
+
+fn decode_answer(bytes: &[u8]) -> Option<(Vec<Notice>, wire::Summary)> {
+    let (records, []) = bytes
+        .strip_prefix(&wire::ANSWER_MAGIC)?
+        .as_chunks::<{ wire::NOTICE_BYTES }>()
+    else {
+        return None;
+    };
+    let (last, records) = records.split_last()?;
+    let Some(Record::Summary(summary)) = wire::decode_record(last) else {
+        return None;
+    };
+    let notices = records
+        .iter()
+        .map(|record| match wire::decode_record(record)? {
+            Record::Notice(notice) => Some(notice),
+            Record::Summary(_) => None,
+        })
+        .collect::<Option<_>>()?;
+    Some((notices, summary))
+}
+
+fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {
+    let failed = |e| EmulatorError::Io("wait for QEMU", e);
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().map_err(failed)? {
+            return Ok(status);
+        }
+        if start.elapsed() > limit {
+            child.kill().map_err(failed)?;
+            child.wait().map_err(failed)?;
+            return Err(EmulatorError::Timeout(limit));
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_image_names_the_command_that_builds_it() {
+        let error = Emulator::find(Some(Path::new("no/such/image"))).unwrap_err();
+        assert!(error.to_string().contains("cargo xtask firmware"));
+    }
+
+    #[test]
+    fn process_that_hangs_is_ended_and_reported() {
+        let child = Command::new("sleep").arg("60").spawn().unwrap();
+        let error = wait(child, Duration::from_millis(20)).unwrap_err();
+        assert!(matches!(error, EmulatorError::Timeout(_)));
+    }
+
+    #[test]
+    fn answer_without_a_summary_is_damaged() {
+        let mut bytes = wire::ANSWER_MAGIC.to_vec();
+        assert_eq!(decode_answer(&bytes), None);
+        let notice = Notice::Withdrawn {
+            number: 3,
+            sample: 7,
+        };
+        bytes.extend(wire::encode_record(&Record::Notice(notice)));
+        assert_eq!(decode_answer(&bytes), None);
+        let summary = wire::Summary {
+            samples: 9,
+            faults: 0,
+            state_hash: 5,
+        };
+        bytes.extend(wire::encode_record(&Record::Summary(summary)));
+        assert_eq!(decode_answer(&bytes), Some((vec![notice], summary)));
+        bytes.pop();
+        assert_eq!(decode_answer(&bytes), None);
+    }
+}

@@ -1,0 +1,144 @@
+//! The image in the emulator and the library on the desktop say the same, and leave the same bits.
+
+use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::{CHANNELS, Sample};
+use touchdown_core::sensing::SensingConfig;
+use touchdown_sim::emulator::{Emulator, EmulatorError};
+use touchdown_sim::monitor_run;
+
+const SAMPLES: u64 = 20_000;
+const SAMPLE_RATE: f32 = 20_000.0;
+const ZERO_COUNT: f32 = 2_048.0;
+const COUNTS_PER_METRE: f32 = 4_096.0 / 2_000e-6;
+const CLEARANCE: f32 = 0.3e-3;
+
+fn config() -> MonitorConfig {
+    MonitorConfig {
+        fitted: 0b1111,
+        sensing: SensingConfig {
+            resolution: 1.0 / COUNTS_PER_METRE,
+            zero_count: ZERO_COUNT,
+            full_scale: 4_095,
+            mounting_angle: [0.3, -0.7],
+        },
+        detector: DetectorConfig {
+            sample_rate: SAMPLE_RATE,
+            machine: MachineConfig {
+                clearance: CLEARANCE,
+                gravity: 9.81,
+                rotor_radius: 24e-3,
+                inertia_ratio: 0.5,
+                friction: 0.1,
+                restitution: 0.8,
+                spin: 3_141.6,
+            },
+            tuning: Tuning::default(),
+        },
+    }
+}
+
+/// SplitMix64.
+fn noise(seed: u64) -> u64 {
+    let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Any counts, flags and spin, usable or not.
+fn noise_on_every_input(index: u64) -> Sample {
+    let bits = noise(index);
+    Sample {
+        counts: std::array::from_fn(|channel| (bits >> (12 * channel)) as u16 & 0x0fff),
+        valid: (bits >> 48) as u8 & 0x0f,
+        spin: (bits >> 52 & 1 == 0).then_some((bits >> 56) as f32 * 40.0 - 5_000.0),
+        levitated: (bits >> 53 & 1 == 0).then_some(bits >> 54 & 1 == 0),
+    }
+}
+
+/// A quarter of the run levitated, then a fall to the retainer and no bounce, with one count of
+/// noise on every channel.
+fn drop_of_the_rotor(index: u64) -> Sample {
+    let time = index.saturating_sub(SAMPLES / 4) as f32 / SAMPLE_RATE;
+    let height = -(0.5 * 9.81 * time * time).min(CLEARANCE);
+    let axes = [0.0, height, 0.0, height];
+    Sample {
+        counts: std::array::from_fn(|channel| {
+            let jitter = noise(index * CHANNELS as u64 + channel as u64) % 3;
+            (ZERO_COUNT + axes[channel] * COUNTS_PER_METRE) as u16 + jitter as u16
+        }),
+        valid: 0b1111,
+        spin: Some(3_141.6),
+        levitated: None,
+    }
+}
+
+fn emulator() -> Emulator {
+    Emulator::find(None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn assert_same_on_both(stream: fn(u64) -> Sample) {
+    let samples = || (0..SAMPLES).map(stream);
+    let desktop = monitor_run::run(&config(), samples()).unwrap();
+    let target = emulator().run(&config(), samples()).unwrap();
+    assert_eq!(target.notices, desktop.notices);
+    assert_eq!(target.summary, desktop.summary);
+    assert_eq!(target.summary.samples, SAMPLES);
+}
+
+#[test]
+fn same_bits_for_a_drop() {
+    assert_same_on_both(drop_of_the_rotor);
+}
+
+#[test]
+fn same_bits_for_noise_on_every_input() {
+    assert_same_on_both(noise_on_every_input);
+}
+
+#[test]
+fn one_flipped_count_changes_the_fingerprint() {
+    let flipped = |index| {
+        let mut sample = drop_of_the_rotor(index);
+        if index == SAMPLES / 2 {
+            // Full scale: the smallest change that even a monitor without events must notice.
+            sample.counts[2] = 4_095;
+        }
+        sample
+    };
+    let desktop = monitor_run::run(&config(), (0..SAMPLES).map(drop_of_the_rotor)).unwrap();
+    let target = emulator()
+        .run(&config(), (0..SAMPLES).map(flipped))
+        .unwrap();
+    assert_ne!(target.summary.state_hash, desktop.summary.state_hash);
+}
+
+#[test]
+fn image_logs_start_configuration_and_end() {
+    let log = emulator()
+        .run(&config(), (0..10).map(drop_of_the_rotor))
+        .unwrap()
+        .log;
+    let [start, configuration, .., end] = &log[..] else {
+        panic!("{log:?}");
+    };
+    assert!(start.starts_with("touchdown "), "{log:?}");
+    assert!(configuration.contains("20000"), "{log:?}");
+    assert!(end.starts_with("end: 10 samples"), "{log:?}");
+}
+
+#[test]
+fn impossible_configuration_is_refused_with_its_reason() {
+    let mut config = config();
+    config.sensing.resolution = -1.0;
+    let error = emulator()
+        .run(&config, (0..10).map(drop_of_the_rotor))
+        .unwrap_err();
+    let EmulatorError::Failed { status, log, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!(!status.success());
+    let log = log.join("\n");
+    assert!(log.contains("resolution must be above 0"), "{log}");
+}

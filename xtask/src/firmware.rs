@@ -1,0 +1,61 @@
+//! Builds the images, and says how much of the chip they take.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, ensure};
+use object::{Object, ObjectSection, SectionFlags, elf};
+
+use crate::machine::Machine;
+use crate::toolchain::TARGET;
+use crate::workspace;
+
+const IMAGES: [&str; 2] = ["touchdown-firmware", "touchdown-qemu"];
+const RAM_START: u64 = 0x2000_0000;
+
+/// Builds both images.
+pub fn build() -> anyhow::Result<()> {
+    println!("Firmware: building for {TARGET}");
+    let status = Machine::look()
+        .toolchain
+        .build()
+        .args(["--quiet", "--release", "--package", "touchdown-firmware"])
+        .current_dir(workspace())
+        .status()
+        .context("cannot start cargo for the firmware: `cargo xtask setup` installs it")?;
+    ensure!(status.success(), "the firmware does not build ({status})");
+    for name in IMAGES {
+        let image = target_directory().join(TARGET).join("release").join(name);
+        let (flash, ram) = size(&image)?;
+        println!(
+            "  {}: {flash} bytes of flash, {ram} bytes of RAM and the stack",
+            image.display()
+        );
+    }
+    Ok(())
+}
+
+fn target_directory() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
+}
+
+/// Flash and RAM that an image takes, bytes.
+fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
+    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let file = object::File::parse(&*bytes)?;
+    let (mut flash, mut ram) = (0, 0);
+    for section in file.sections() {
+        let SectionFlags::Elf { sh_flags } = section.flags() else {
+            continue;
+        };
+        if sh_flags & u64::from(elf::SHF_ALLOC) == 0 {
+            continue;
+        }
+        let in_ram = section.address() >= RAM_START;
+        let in_flash = !in_ram || section.kind() == object::SectionKind::Data;
+        ram += if in_ram { section.size() } else { 0 };
+        flash += if in_flash { section.size() } else { 0 };
+    }
+    Ok((flash, ram))
+}

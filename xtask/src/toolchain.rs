@@ -1,0 +1,92 @@
+//! Which compiler builds for the target: docs/decisions/0002-target-toolchain.md.
+//!
+//! All that depends on a version or a vendor of compiler and emulator is here, a function each.
+
+use std::env;
+use std::process::Command;
+
+/// The microcontroller: Cortex-M4 with a single-precision floating-point unit.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// A compiler for the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Toolchain {
+    /// The one that builds the desktop's crates, with the target added to it.
+    Default,
+    /// Debian's, which has no libraries for the target but their source.
+    Debian,
+}
+
+impl Toolchain {
+    /// The default one, unless it lacks the target and may not download it.
+    pub fn choose(target_installed: bool, rustup_may_download: bool) -> Self {
+        if target_installed || rustup_may_download {
+            Self::Default
+        } else {
+            Self::Debian
+        }
+    }
+
+    /// Debian packages that it needs.
+    pub fn packages(self) -> &'static [&'static str] {
+        match self {
+            Self::Default => &[],
+            Self::Debian => &["rustc-web", "cargo-web", "rust-web-src", "lld"],
+        }
+    }
+
+    /// `cargo build` for the target, still without a package.
+    pub fn build(self) -> Command {
+        match self {
+            Self::Default => {
+                let mut cargo = default_cargo();
+                cargo.args(["build", "--target", TARGET]);
+                cargo
+            }
+            Self::Debian => debian_build(),
+        }
+    }
+}
+
+/// Debian packages of the emulator.
+pub fn emulator_packages() -> &'static [&'static str] {
+    &["qemu-system-arm"]
+}
+
+/// Cargo for the desktop's crates: the one that runs this program.
+pub fn default_cargo() -> Command {
+    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+fn debian_build() -> Command {
+    let mut cargo = Command::new("/usr/bin/cargo");
+    // rustup's cargo left these for its own compiler.
+    for name in ["CARGO", "RUSTUP_TOOLCHAIN", "LD_LIBRARY_PATH"] {
+        cargo.env_remove(name);
+    }
+    cargo
+        .env("RUSTC", "/usr/bin/rustc")
+        // -Zbuild-std is for nightly compilers; this one is stable.
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld")
+        .args(["build", "--target", TARGET])
+        .arg("-Zbuild-std=core,compiler_builtins");
+    cargo
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn installed_target_is_used_whatever_rustup_may_do() {
+        assert_eq!(Toolchain::choose(true, false), Toolchain::Default);
+        assert_eq!(Toolchain::choose(true, true), Toolchain::Default);
+    }
+
+    #[test]
+    fn debian_builds_only_where_rustup_must_not_download() {
+        assert_eq!(Toolchain::choose(false, true), Toolchain::Default);
+        assert_eq!(Toolchain::choose(false, false), Toolchain::Debian);
+    }
+}
