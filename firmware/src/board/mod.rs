@@ -53,6 +53,6 @@ pub const DEFAULT_CONFIG: MonitorConfig = MonitorConfig {
             // 30 000 rpm.
             spin: 3_141.592_7,
         },
-        tuning: Tuning { false_alarm: 1e-11 },
+        tuning: Tuning::DEFAULT,
     },
 };
