@@ -52,7 +52,7 @@ mod tests {
     use touchdown_core::sample::CHANNELS;
 
     use super::*;
-    use crate::board::DEFAULT_CONFIG;
+    use crate::board::default_config;
 
     #[derive(Default)]
     struct Bench {
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn output_is_driven_every_tick() {
         let mut bench = Bench::default();
-        let mut app = App::try_new(&DEFAULT_CONFIG).unwrap();
+        let mut app = App::try_new(&default_config()).unwrap();
         for _ in 0..3 {
             app.tick(&mut bench, &CENTRE);
         }
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn trip_is_for_good() {
         let mut bench = Bench::default();
-        let mut app = App::try_new(&DEFAULT_CONFIG).unwrap();
+        let mut app = App::try_new(&default_config()).unwrap();
         app.trip();
         app.tick(&mut bench, &CENTRE);
         app.tick(&mut bench, &CENTRE);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn impossible_configuration_is_refused() {
-        let mut config = DEFAULT_CONFIG;
+        let mut config = default_config();
         config.sensing.resolution = 0.0;
         assert_eq!(
             App::try_new(&config).err(),

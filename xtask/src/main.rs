@@ -8,6 +8,7 @@ mod test;
 mod toolchain;
 
 use std::path::Path;
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -37,14 +38,19 @@ enum Task {
     },
 }
 
-fn main() -> anyhow::Result<()> {
-    match Arguments::parse().task {
+fn main() -> ExitCode {
+    let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware => firmware::build(),
-        Task::Test { yes } => {
-            setup::run(yes)?;
-            firmware::build()?;
-            test::run()
+        Task::Test { yes } => setup::run(yes)
+            .and_then(|()| firmware::build())
+            .and_then(|()| test::run()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
         }
     }
 }

@@ -7,13 +7,13 @@ mod image {
     use defmt_rtt as _;
     use panic_probe as _;
     use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::board::DEFAULT_CONFIG;
+    use touchdown_firmware::board::default_config;
     use touchdown_firmware::board::f405::{self, Outbox};
 
     #[entry]
     fn main() -> ! {
         static mut OUTBOX: Outbox = Outbox::new();
-        f405::main(&DEFAULT_CONFIG, OUTBOX)
+        f405::main(&default_config(), OUTBOX)
     }
 
     #[interrupt]

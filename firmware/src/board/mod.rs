@@ -33,26 +33,28 @@ pub const SAMPLE_RATE_HZ: u32 = 20_000;
 
 /// Configuration of the silicon image: the rig of the source paper, four channels of 12 bit over
 /// +-1000 um.
-pub const DEFAULT_CONFIG: MonitorConfig = MonitorConfig {
-    fitted: 0b1111,
-    sensing: SensingConfig {
-        resolution: 2_000e-6 / 4_096.0,
-        zero_count: 2_048.0,
-        full_scale: 4_095,
-        mounting_angle: [0.0; 2],
-    },
-    detector: DetectorConfig {
-        sample_rate: SAMPLE_RATE_HZ as f32,
-        machine: MachineConfig {
-            clearance: 0.3e-3,
-            gravity: 9.81,
-            rotor_radius: 24e-3,
-            inertia_ratio: 0.5,
-            friction: 0.1,
-            restitution: 0.8,
-            // 30 000 rpm.
-            spin: 3_141.592_7,
+pub fn default_config() -> MonitorConfig {
+    MonitorConfig {
+        fitted: 0b1111,
+        sensing: SensingConfig {
+            resolution: 2_000e-6 / 4_096.0,
+            zero_count: 2_048.0,
+            full_scale: 4_095,
+            mounting_angle: [0.0; 2],
         },
-        tuning: Tuning::DEFAULT,
-    },
-};
+        detector: DetectorConfig {
+            sample_rate: SAMPLE_RATE_HZ as f32,
+            machine: MachineConfig {
+                clearance: 0.3e-3,
+                gravity: 9.81,
+                rotor_radius: 24e-3,
+                inertia_ratio: 0.5,
+                friction: 0.1,
+                restitution: 0.8,
+                // 30 000 rpm, clockwise.
+                spin: -3_141.592_7,
+            },
+            tuning: Tuning::default(),
+        },
+    }
+}

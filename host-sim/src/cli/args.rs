@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::emulator::Emulator;
 use crate::failure::Failure;
-use crate::target::{DEFAULT_IMAGE, Target};
+use crate::target::Target;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -115,9 +116,7 @@ impl Place {
         match (self.on, &self.image) {
             (On::Host, None) => Ok(Target::Host),
             (On::Host, Some(_)) => Err(Failure::Usage("--image needs --on qemu".to_owned())),
-            (On::Qemu, image) => Ok(Target::Qemu {
-                image: image.clone().unwrap_or_else(|| DEFAULT_IMAGE.into()),
-            }),
+            (On::Qemu, image) => Ok(Target::Qemu(Emulator::find(image.as_deref())?)),
         }
     }
 }

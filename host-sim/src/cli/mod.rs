@@ -8,14 +8,13 @@ pub use args::Cli;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use args::{Command, DropArgs, Place, ReplayArgs, SceneCommand};
+use args::{Command, DropArgs, ReplayArgs, SceneCommand};
 
 use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
 use crate::scene::{BUILT_IN, Scene, explain};
-use crate::target::Target;
 use crate::{drop, replay, report, timeline};
 
 /// Where the report goes when nothing is asked for.
@@ -45,7 +44,7 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     let names = [&args.json, &args.report, &args.stream];
     one_standard_output(&names)?;
     let scene = load(&args.scene)?;
-    let target = target(&args.place)?;
+    let target = args.place.target()?;
     let [json_out, report_out, stream_out] = names.map(open);
     let (mut json_out, mut report_out) = (json_out?, report_out?);
     let (outcome, stream) = drop::run(&scene, &target, stream_out?)?;
@@ -74,7 +73,7 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     let names = [&args.json, &args.report];
     one_standard_output(&names)?;
     let scene = load(&args.scene)?;
-    let target = target(&args.place)?;
+    let target = args.place.target()?;
     let [json_out, report_out] = names.map(open);
     let (mut json_out, mut report_out) = (json_out?, report_out?);
     let detection = replay::run(Path::new(&args.stream), &scene, &target)?;
@@ -98,12 +97,6 @@ fn load(name: &str) -> Result<Scene, Failure> {
         eprintln!("warning: {warning}");
     }
     Ok(scene)
-}
-
-fn target(place: &Place) -> Result<Target, Failure> {
-    let target = place.target()?;
-    target.check()?;
-    Ok(target)
 }
 
 fn open(name: &Option<String>) -> Result<Option<Output>, Failure> {

@@ -55,25 +55,20 @@ pub struct Tuning {
     pub still_time: f32,
 }
 
-impl Tuning {
-    /// The defaults.
-    pub const DEFAULT: Self = Self {
-        false_alarm: 1e-11,
-        arming_time: 0.1,
-        release_horizon: 4e-3,
-        impact_horizon: 1.5e-3,
-        confirm_travel: 5e-5,
-        catch_time: 5e-3,
-        wall_tolerance: 2e-5,
-        flight_error: 0.1,
-        contact_error: 0.15,
-        still_time: 0.05,
-    };
-}
-
 impl Default for Tuning {
     fn default() -> Self {
-        Self::DEFAULT
+        Self {
+            false_alarm: 1e-11,
+            arming_time: 0.1,
+            release_horizon: 4e-3,
+            impact_horizon: 1.5e-3,
+            confirm_travel: 5e-5,
+            catch_time: 5e-3,
+            wall_tolerance: 2e-5,
+            flight_error: 0.1,
+            contact_error: 0.15,
+            still_time: 0.05,
+        }
     }
 }
 

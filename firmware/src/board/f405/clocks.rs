@@ -17,13 +17,13 @@ pub fn start(rcc: &RCC, flash: &FLASH) {
 
     // Crystal / M = 1 MHz, times N = 336 MHz, / P = 168 MHz; Q makes 48 MHz.
     rcc.pllcfgr().write(|w| {
-        // SAFETY: M, N and Q are inside their ranges of RM0090, section 7.3.2.
+        // SAFETY: M, N and Q are inside their ranges of RM0090, RCC_PLLCFGR.
         unsafe { w.pllm().bits(CRYSTAL_MHZ).plln().bits(336).pllq().bits(7) };
         w.pllsrc().hse().pllp().div2()
     });
     rcc.cr().modify(|_, w| w.pllon().on());
 
-    // Five wait states above 150 MHz at 2.7 to 3.6 V: RM0090, table 10.
+    // Five wait states above 150 MHz at 2.7 to 3.6 V: RM0090, flash wait states.
     flash.acr().modify(|_, w| {
         w.latency().ws5();
         w.prften().enabled().icen().enabled().dcen().enabled()

@@ -30,7 +30,7 @@ impl Converter {
             w.moder6().analog().moder7().analog()
         });
 
-        // 84 MHz / 4 = 21 MHz; 36 MHz is the limit (DS8626, table 67).
+        // 84 MHz / 4 = 21 MHz; 36 MHz is the limit (DS8626, 12-bit ADC characteristics).
         common.ccr().modify(|_, w| w.adcpre().div4());
         adc.cr1()
             .write(|w| w.scan().enabled().jeocie().enabled().res().twelve_bit());

@@ -27,7 +27,7 @@ impl TripPin {
 }
 
 /// Resets the core, and so de-energises the trip output, when ticks stay away for 2 ms (1.3 to 3.8
-/// ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, table 34).
+/// ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
 pub struct Watchdog(IWDG);
 
 impl Watchdog {
