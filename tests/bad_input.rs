@@ -314,7 +314,7 @@ fn outputs_that_cannot_be_written() {
         (&["--image", "x"], "--image needs --on qemu"),
         (
             &["--on", "qemu", "--image", "x"],
-            "x: no firmware image at x: build it with `cargo xtask firmware`",
+            "no firmware image at x: build it with `cargo xtask firmware`",
         ),
         (&["--on", "moon"], "invalid value 'moon'"),
         (&["--fast"], "unexpected argument '--fast'"),

@@ -174,19 +174,23 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         let line = format!("{} events that did not happen", matches.false_events.len());
         text += &(paint.bad(&line) + "\n");
     }
-    let Detection {
-        samples, faults, ..
-    } = outcome.detection;
-    text + &format!("{samples} samples, {faults} unusable channel values\n")
+    text + &samples_line(&outcome.detection)
+}
+
+/// What the detector was fed, and the fingerprint by which two machines are compared.
+fn samples_line(detection: &Detection) -> String {
+    format!(
+        "{} samples, {} unusable channel values; detector state {:08x}\n",
+        detection.samples, detection.faults, detection.state_hash
+    )
 }
 
 /// A replay: the events as they were declared.
 pub fn replay(stream: &str, detection: &Detection) -> String {
     let mut text = format!(
-        "{stream}: {} samples, {} unusable channel values, {} events\n",
-        detection.samples,
-        detection.faults,
-        detection.events.len()
+        "{stream}: {} events\n{}",
+        detection.events.len(),
+        samples_line(detection)
     );
     if !detection.events.is_empty() {
         text += &format!(

@@ -1,0 +1,74 @@
+//! What a healthy machine does, and must not set the detector off.
+
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_sim::monitor_run;
+use touchdown_sim::scene::Scene;
+use touchdown_sim::sensors::{Motion, Sensors};
+
+const CLEARANCE: f64 = 0.3e-3;
+
+/// Runs a motion (position in m by time in s) through the default sensors and the monitor.
+fn watched(seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
+    let scene = Scene::load("rig").expect("built-in scene");
+    let rate = scene.run.sample_rate;
+    let config: MonitorConfig = scene.monitor_config();
+    let sensors = Sensors::try_new(&scene.sensors, rate).expect("default sensors");
+    let mut state = sensors.start(7);
+    let samples = (0..(seconds * rate) as u64).map(|k| {
+        let motion = Motion {
+            planes: [position(k as f64 / rate); 2],
+            spin: scene.rotor.spin,
+            levitated: true,
+        };
+        sensors.read(&mut state, &motion)
+    });
+    monitor_run::run(&config, samples).expect("valid").notices
+}
+
+fn kinds(notices: &[Notice]) -> Vec<EventKind> {
+    let declared = |notice: &Notice| match notice {
+        Notice::Declared(event) => Some(event.kind),
+        _ => None,
+    };
+    notices.iter().filter_map(declared).collect()
+}
+
+/// From 0 to 1 with no jump of acceleration.
+fn smooth(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
+}
+
+#[test]
+fn nothing_in_five_minutes_of_levitation() {
+    for place in [[0.0, 0.0], [20e-6, -60e-6], [0.0, -0.5 * CLEARANCE]] {
+        let notices = watched(100.0, |_| place);
+        assert!(notices.is_empty(), "{place:?}: {notices:?}");
+    }
+}
+
+#[test]
+fn lifted_from_rest_on_the_bearing() {
+    // At rest for 0.5 s, then lifted to the centre within 0.2 s, then floating.
+    let notices = watched(1.5, |t| [0.0, -CLEARANCE * (1.0 - smooth((t - 0.5) / 0.2))]);
+    let kinds = kinds(&notices);
+    println!("{kinds:?}");
+    assert!(kinds.contains(&EventKind::LiftOff), "{kinds:?}");
+    assert_eq!(kinds.last(), Some(&EventKind::Levitated), "{kinds:?}");
+    for cry in [EventKind::FreeFall, EventKind::Impact] {
+        assert!(!kinds.contains(&cry), "{kinds:?}");
+    }
+}
+
+#[test]
+fn a_drop_after_being_lifted_is_found() {
+    let fall = |t: f64| 0.5 * 9.81 * t * t;
+    let notices = watched(1.5, |t| {
+        let lifted = -CLEARANCE * (1.0 - smooth((t - 0.2) / 0.2));
+        let fallen = if t > 1.2 { fall(t - 1.2) } else { 0.0 };
+        [0.0, (lifted - fallen).max(-CLEARANCE)]
+    });
+    let kinds = kinds(&notices);
+    assert!(kinds.contains(&EventKind::FreeFall), "{kinds:?}");
+}
