@@ -1,4 +1,4 @@
 //! What the tests share: reference cases and their tolerances.
 
-pub mod cases;
 pub mod binary;
+pub mod cases;
