@@ -29,7 +29,7 @@ const SAMPLE_LIMIT_MS: u64 = 1;
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatorError {
     /// The image is not there.
-    #[error("no firmware image at {}: build it with `cargo xtask firmware`", .0.display())]
+    #[error("{}: no firmware image here; `cargo xtask firmware` builds it", .0.display())]
     ImageMissing(PathBuf),
     /// QEMU is not there.
     #[error("{QEMU} is not installed: `cargo xtask setup` installs it")]
