@@ -236,6 +236,11 @@ impl ContactTest {
 }
 
 impl Touching {
+    /// Radius at which the wall seems to be, m.
+    pub(crate) fn wall(&self) -> f32 {
+        self.lift.wall
+    }
+
     /// The estimate of the likelier hypothesis.
     pub(crate) fn swing(&self) -> &Swing {
         if self.kind == Some(Kind::Rolling) {

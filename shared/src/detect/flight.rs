@@ -10,6 +10,9 @@ const UNKNOWN_SPEED: f32 = 0.3;
 /// Time after the foreseen end of a series in which a missed impact would still show, s.
 const SERIES_MARGIN: f32 = 5e-4;
 
+/// Standard deviations by which a rotor is clear of the wall where it lay before.
+const CLEAR_OF_WALL: f32 = 3.0;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightTest {
@@ -33,6 +36,10 @@ pub(crate) struct Airborne {
     /// The impacts so far.
     pub(crate) series: Series,
     near_wall: u32,
+    /// Radius from which on the rotor may lie on the wall, m.
+    lies: f32,
+    /// Samples that it has.
+    lying: u32,
 }
 
 /// What a sample showed.
@@ -80,10 +87,13 @@ impl FlightTest {
         }
     }
 
-    /// A flight from `position` (m) with unknown velocity.
-    pub(crate) fn start(&self, fix: &Fix) -> Airborne {
+    /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
+    /// (m) at which it lay: what is clearly inside of it is no contact, however near.
+    pub(crate) fn start(&self, fix: &Fix, wall: Option<f32>) -> Airborne {
+        let clear = CLEAR_OF_WALL * libm::sqrtf(fix.variance);
         Airborne {
             track: Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED),
+            lies: wall.map_or(self.near, |wall| wall - clear),
             ..Airborne::default()
         }
     }
@@ -115,6 +125,7 @@ impl FlightTest {
             if let Some((bounce, launch_speed)) = impact {
                 flight.series.take(bounce, launch_speed, &self.machine);
                 flight.near_wall = 0;
+                flight.lying = 0;
                 return Some(Landing::Impact {
                     age: jump.age,
                     normal_speed: bounce.normal_speed,
@@ -167,6 +178,7 @@ impl FlightTest {
         let (_, radius) = direction(flight.track.position);
         if radius < self.near {
             flight.near_wall = 0;
+            flight.lying = 0;
             return None;
         }
         flight.near_wall += 1;
@@ -183,8 +195,13 @@ impl FlightTest {
                 });
             }
         }
-        (flight.near_wall > self.dwell).then_some(Landing::Contact {
-            age: flight.near_wall as f32,
+        if radius < flight.lies {
+            flight.lying = 0;
+            return None;
+        }
+        flight.lying += 1;
+        (flight.lying > self.dwell).then_some(Landing::Contact {
+            age: flight.lying as f32,
         })
     }
 }

@@ -252,7 +252,7 @@ impl Detector {
         let Some(age) = self.release.take(&mut state.release, residual, variance) else {
             return;
         };
-        state.flight = self.flight.start(fix);
+        state.flight = self.flight.start(fix, None);
         state.phase = Phase::FreeFall;
         state.still = Still::default();
         let number = teller.tell(EventKind::FreeFall, f32::from(age), 0.0);
@@ -369,7 +369,7 @@ impl Detector {
                 },
                 Finding::LiftOff(age) => {
                     if let Some(fix) = fix {
-                        state.flight = self.flight.start(fix);
+                        state.flight = self.flight.start(fix, Some(state.contact.wall()));
                     }
                     state.phase = Phase::FreeFall;
                     state.still = Still::default();
