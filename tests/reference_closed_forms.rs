@@ -458,6 +458,10 @@ fn elastic_hopping_is_bounded() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None,
+                                        rng_seed: prop::test_runner::RngSeed::Fixed(1),
+                                        ..ProptestConfig::default() })]
+
     #[test]
     fn laws_hold_everywhere(
         friction in prop_oneof![Just(0.0), 0.0..1.5_f64],
