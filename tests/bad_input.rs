@@ -120,6 +120,15 @@ fn impossible_values_name_line_and_rule() {
             "scene.toml:4: speed_rpm must be a finite number",
         ),
         (4, "speed_rpm = 1e999", "scene.toml:4: "),
+        (2, "mass_kg = 1e-300", "scene.toml:2: mass_kg must be"),
+        (3, "radius_mm = 1e300", "scene.toml:3: radius_mm must be"),
+        (4, "speed_rpm = 1e300", "scene.toml:4: speed_rpm must be"),
+        (
+            6,
+            "clearance_mm = 1e-300",
+            "scene.toml:6: clearance_mm must be",
+        ),
+        (7, "friction = 1e300", "scene.toml:7: friction must be"),
     ] {
         refuse(replaced(line, with), message);
     }
@@ -208,6 +217,11 @@ fn optional_keys_are_checked_too() {
         (
             "[start]\nx_mm = 0.2\ny_mm = -0.25",
             "scene.toml:13: the start is outside the gap",
+        ),
+        ("[start]\nvx_mm_s = 1e300", "scene.toml:12: vx_mm_s must be"),
+        (
+            "[start]\ntangential_mm_s = 1e300",
+            "scene.toml:12: tangential_mm_s must be",
         ),
         (
             "[start]\nx_mm = 0.31",
@@ -314,7 +328,7 @@ fn outputs_that_cannot_be_written() {
         (&["--image", "x"], "--image needs --on qemu"),
         (
             &["--on", "qemu", "--image", "x"],
-            "no firmware image at x: build it with `cargo xtask firmware`",
+            "x: no firmware image here; `cargo xtask firmware`",
         ),
         (&["--on", "moon"], "invalid value 'moon'"),
         (&["--fast"], "unexpected argument '--fast'"),

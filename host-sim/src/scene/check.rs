@@ -7,6 +7,7 @@ use super::file::{
     ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
 };
 use super::flaw::Flaw;
+use super::limits;
 use super::{Model, Precision, Retainer, Rotor, Run, Rung, Scene, Start};
 use crate::sensors::SensorsConfig;
 
@@ -76,23 +77,41 @@ fn between(
 
 fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
     let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
-    let radius = MILLI * above_zero("rotor", "radius_mm", table.radius_mm)?;
+    let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
+    let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
+    let radius = MILLI * between("rotor", "radius_mm", radius, limits::RADIUS_MM)?;
+    let solid = 0.5 * mass * radius * radius;
     let polar_inertia = match table.polar_inertia_kg_m2 {
-        Some(inertia) => above_zero("rotor", "polar_inertia_kg_m2", inertia)?,
-        None => 0.5 * mass * radius * radius,
+        Some(inertia) => {
+            let inertia = above_zero("rotor", "polar_inertia_kg_m2", inertia)?;
+            let ratio = inertia / solid;
+            if !limits::INERTIA_RATIO.contains(&ratio) {
+                let (low, high) = limits::INERTIA_RATIO.into_inner();
+                let rule = format!(
+                    "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
+                     ({solid:.3e}), is {inertia}"
+                );
+                return Err(Flaw::new("rotor", "polar_inertia_kg_m2", rule));
+            }
+            inertia
+        }
+        None => solid,
     };
+    let speed = between("rotor", "speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
     Ok(Rotor {
         mass,
         radius,
         polar_inertia,
-        spin: RPM * table.speed_rpm,
+        spin: RPM * speed,
     })
 }
 
 fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
+    let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
+    let friction = zero_or_more("retainer", "friction", table.friction)?;
     Ok(Retainer {
-        clearance: MILLI * above_zero("retainer", "clearance_mm", table.clearance_mm)?,
-        friction: zero_or_more("retainer", "friction", table.friction)?,
+        clearance: MILLI * between("retainer", "clearance_mm", clearance, limits::CLEARANCE_MM)?,
+        friction: between("retainer", "friction", friction, limits::FRICTION)?,
         restitution: between("retainer", "restitution", table.restitution, 0.0..=1.0)?,
     })
 }
@@ -120,10 +139,17 @@ fn start(table: &StartTable, retainer: &Retainer) -> Result<Start, Flaw> {
             );
             return Err(Flaw::new("start", wall_key, rule));
         }
+        let angle = table.angle_deg.unwrap_or(0.0);
+        let angle = between("start", "angle_deg", angle, limits::ANGLE_DEG)?;
+        let speed = table.tangential_mm_s.unwrap_or(0.0);
+        let speed = between("start", "tangential_mm_s", speed, limits::SPEED_MM_S)?;
         return Ok(Start::Wall {
-            angle: table.angle_deg.unwrap_or(0.0).to_radians(),
-            tangential: MILLI * table.tangential_mm_s.unwrap_or(0.0),
+            angle: angle.to_radians(),
+            tangential: MILLI * speed,
         });
+    }
+    for (key, speed) in &free[2..] {
+        between("start", key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
     }
     let [x, y, vx, vy] = free.map(|(_, value)| MILLI * value.unwrap_or(0.0));
     let distance = x.hypot(y);
@@ -149,9 +175,10 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
         return Err(Flaw::new("run", "duration_s", rule));
     }
     let rate = table.sample_rate_hz;
+    let gravity = zero_or_more("run", "gravity_m_s2", table.gravity_m_s2)?;
     Ok(Run {
         duration,
-        gravity: zero_or_more("run", "gravity_m_s2", table.gravity_m_s2)?,
+        gravity: between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)?,
         sample_rate: between("run", "sample_rate_hz", rate, 100.0..=200_000.0)?,
         seed: table.seed,
     })

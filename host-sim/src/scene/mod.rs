@@ -5,6 +5,7 @@ mod check;
 mod explain;
 mod file;
 mod flaw;
+mod limits;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;

@@ -40,12 +40,13 @@ pub struct Tuning {
     pub release_horizon: f32,
     /// Longest time since a velocity jump that is searched for, s.
     pub impact_horizon: f32,
-    /// Way from the levitated position beyond which no caught disturbance goes, m: confirms a fall.
+    /// Way from the levitated position beyond which no caught disturbance goes, as a part of the
+    /// clearance: confirms a fall.
     pub confirm_travel: f32,
     /// Time back within noise that withdraws a declared fall, s.
     pub catch_time: f32,
-    /// How far the retainer's wall may seem from its nominal place, m: offset and gain error of the
-    /// sensors.
+    /// How far the retainer's wall may seem from its nominal place, as a part of the clearance:
+    /// offset and gain error of the sensors.
     pub wall_tolerance: f32,
     /// Acceleration that the equations of flight may be wrong by, m/s^2.
     pub flight_error: f32,
@@ -62,9 +63,9 @@ impl Default for Tuning {
             arming_time: 0.1,
             release_horizon: 4e-3,
             impact_horizon: 1.5e-3,
-            confirm_travel: 5e-5,
+            confirm_travel: 0.17,
             catch_time: 5e-3,
-            wall_tolerance: 2e-5,
+            wall_tolerance: 0.07,
             flight_error: 0.1,
             contact_error: 0.15,
             still_time: 0.05,
@@ -93,12 +94,6 @@ impl DetectorConfig {
         }
         self.machine.validate()?;
         self.tuning.validate()?;
-        if self.tuning.wall_tolerance >= self.machine.clearance {
-            return Err(ConfigError::Inconsistent(
-                "wall_tolerance",
-                "must be below the clearance",
-            ));
-        }
         Ok(())
     }
 }
@@ -139,6 +134,14 @@ impl Tuning {
             ("still_time", self.still_time),
         ] {
             positive(name, value)?;
+        }
+        for (name, part) in [
+            ("confirm_travel", self.confirm_travel),
+            ("wall_tolerance", self.wall_tolerance),
+        ] {
+            if part > 0.5 {
+                return Err(ConfigError::OutOfRange(name, "0.5 or less"));
+            }
         }
         for (name, value) in [
             ("arming_time", self.arming_time),

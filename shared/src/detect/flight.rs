@@ -75,14 +75,15 @@ impl FlightTest {
         let (machine, tuning) = (config.machine, &config.tuning);
         // A bounce of height h lasts 2 sqrt(2 h/g); twice that, so that one that has just begun ends.
         let slowest = machine.gravity.max(1.0);
-        let longest_bounce = 2.0 * libm::sqrtf(2.0 * tuning.wall_tolerance / slowest);
+        let tolerance = tuning.wall_tolerance * machine.clearance;
+        let longest_bounce = 2.0 * libm::sqrtf(2.0 * tolerance / slowest);
         Self {
             ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
             machine,
             period: 1.0 / config.sample_rate,
             threshold,
-            near: machine.clearance - tuning.wall_tolerance,
+            near: machine.clearance - tolerance,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
         }
     }

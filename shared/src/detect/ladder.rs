@@ -43,6 +43,8 @@ pub enum Phase {
 pub struct Detector {
     config: DetectorConfig,
     resolution: f32,
+    /// Radius from which on the rotor may be at the wall, m.
+    near: f32,
     learning: Learning,
     release: Release,
     flight: FlightTest,
@@ -128,6 +130,7 @@ impl Detector {
         Ok(Self {
             config: *config,
             resolution,
+            near: config.machine.clearance * (1.0 - tuning.wall_tolerance),
             learning: Learning::new(tuning, rate),
             release: Release::new(tuning, rate, config.machine.gravity, threshold),
             flight: FlightTest::new(config, threshold),
@@ -216,7 +219,7 @@ impl Detector {
     fn starting(&self, state: &mut DetectorState, fix: &Fix) {
         let (outward, radius) = direction(fix.position);
         let machine = &self.config.machine;
-        state.off_wall |= radius < machine.clearance - self.config.tuning.wall_tolerance;
+        state.off_wall |= radius < self.near;
         self.learning.take(&mut state.levitation, fix.position);
         let origin = *state.origin.get_or_insert(fix.position);
         let moved = square(fix.position, origin) > MOVED * MOVED * fix.variance;
@@ -290,7 +293,7 @@ impl Detector {
         let clearance = self.config.machine.clearance;
         let quiet = block.filter(|block| {
             let (_, radius) = direction(block.mean);
-            radius < clearance - self.config.tuning.wall_tolerance
+            radius < self.near
                 && block.variance < 0.0625 * clearance * clearance
                 && block.moved < 0.02 * clearance
         });
@@ -308,7 +311,7 @@ impl Detector {
         let Some(pending) = &mut state.pending else {
             return;
         };
-        let travel = self.config.tuning.confirm_travel;
+        let travel = self.config.tuning.confirm_travel * self.config.machine.clearance;
         let home = state.levitation.mean;
         if square(state.flight.track.position, home) > travel * travel {
             teller.close(&mut state.pending, true);
