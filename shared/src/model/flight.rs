@@ -68,7 +68,8 @@ impl<R: Real> Flight<R> {
         let ([x, y], [u, v]) = (self.position, self.velocity);
         let [c2, c3, c4] = self.curve(law);
         let c0 = x * x + y * y - R::ONE;
-        let (after, slope) = first_rise(&[c0, R::TWO * (x * u + y * v), c2, c3, c4]);
+        let c = [c0, R::TWO * (x * u + y * v), c2, c3, c4];
+        let (after, slope) = first_rise(&c, [R::ONE, R::ZERO]);
         Landing {
             after,
             normal: R::HALF * slope,
@@ -79,13 +80,15 @@ impl<R: Real> Flight<R> {
     /// divided out, and the speed into the wall comes from the polynomial's slope: no cancellation.
     pub(crate) fn landing_from_wall(&self, launch: R, law: &Law<R>) -> Landing<R> {
         let [c2, c3, c4] = self.curve(law);
-        self.resting_on(first_rise(&[-R::TWO * launch, c2, c3, c4, R::ZERO]))
+        let [u, v] = self.velocity;
+        let c = [-R::TWO * launch, c2, c3, c4, R::ZERO];
+        self.resting_on(first_rise(&c, [R::ZERO, u * u + v * v]))
     }
 
     /// Next contact after a lift-off, where the wall had just ceased to press: exactly 4 v_y/g.
     pub(crate) fn landing_from_lift_off(&self, law: &Law<R>) -> Landing<R> {
         let [_, c3, c4] = self.curve(law);
-        let (after, slope) = first_rise(&[c3, c4, R::ZERO, R::ZERO, R::ZERO]);
+        let (after, slope) = first_rise(&[c3, c4, R::ZERO, R::ZERO, R::ZERO], [R::ZERO; 2]);
         self.resting_on((after, slope * after * after))
     }
 

@@ -20,10 +20,11 @@ fn evaluate<R: Real>(c: &Quartic<R>, t: R) -> (R, R) {
         })
 }
 
-/// Size of the rounding error of a value at `t`.
-fn rounding<R: Real>(c: &Quartic<R>, t: R) -> R {
+/// Size of the rounding error of a value at `t`; `lost` are the sizes of what cancelled in the
+/// constant and the linear coefficient.
+fn rounding<R: Real>(c: &Quartic<R>, lost: [R; 2], t: R) -> R {
     let size = c.iter().rev().fold(R::ZERO, |sum, k| sum * t + k.abs());
-    R::lit(4.0) * R::EPSILON * size
+    R::lit(4.0) * R::EPSILON * (size + lost[0] + lost[1] * t)
 }
 
 fn derivative<R: Real>(c: &Quartic<R>) -> Quartic<R> {
@@ -106,9 +107,10 @@ fn reach<R: Real>(c: &Quartic<R>, degree: usize, low: R) -> R {
 }
 
 /// The first t > 0 at which a polynomial that is negative just above 0 becomes positive, and its
-/// slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over.
-/// Infinity if there is none.
-pub(crate) fn first_rise<R: Real>(c: &Quartic<R>) -> (R, R) {
+/// slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over;
+/// `lost` are the sizes of what cancelled in the constant and the linear coefficient. Infinity if
+/// there is none.
+pub(crate) fn first_rise<R: Real>(c: &Quartic<R>, lost: [R; 2]) -> (R, R) {
     let never = (R::INFINITY, R::ZERO);
     let Some(degree) = c.iter().rposition(|k| *k != R::ZERO) else {
         return never;
@@ -121,7 +123,7 @@ pub(crate) fn first_rise<R: Real>(c: &Quartic<R>) -> (R, R) {
     for turn in turns.into_iter().chain([R::INFINITY]).take(degree) {
         let last = !turn.is_finite();
         let high = if last { reach(c, degree, low) } else { turn };
-        if evaluate(c, high).0 > rounding(c, high) {
+        if evaluate(c, high).0 > rounding(c, lost, high) {
             let linear = -c[0] / c[1];
             let t = bracketed(c, low, high, linear);
             return (t, evaluate(c, t).1);
@@ -141,7 +143,7 @@ mod tests {
     #[test]
     fn first_rise_is_the_smallest_root_where_the_sign_turns_positive() {
         // (t - 1)(t - 2)(t - 3), negative before 1.
-        let (t, slope) = first_rise(&[-6.0, 11.0, -6.0, 1.0, 0.0]);
+        let (t, slope) = first_rise(&[-6.0, 11.0, -6.0, 1.0, 0.0], [0.0; 2]);
         assert!((t - 1.0f64).abs() < 1e-15, "{t}");
         assert!((slope - 2.0).abs() < 1e-14);
     }
@@ -149,19 +151,25 @@ mod tests {
     #[test]
     fn a_graze_is_passed_over() {
         // (t - 1)^2 (t - 3): touches 0 at 1, rises at 3.
-        let (t, _) = first_rise(&[-3.0f32, 7.0, -5.0, 1.0, 0.0]);
+        let (t, _) = first_rise(&[-3.0f32, 7.0, -5.0, 1.0, 0.0], [0.0; 2]);
         assert!((t - 3.0).abs() < 1e-6, "{t}");
     }
 
     #[test]
     fn without_gravity_the_path_is_a_line() {
-        assert_eq!(first_rise(&[-2.0f64, 4.0, 0.0, 0.0, 0.0]), (0.5, 4.0));
-        assert_eq!(first_rise(&[-2.0f64, 0.0, 0.0, 0.0, 0.0]).0, f64::INFINITY);
+        assert_eq!(
+            first_rise(&[-2.0f64, 4.0, 0.0, 0.0, 0.0], [0.0; 2]),
+            (0.5, 4.0)
+        );
+        assert_eq!(
+            first_rise(&[-2.0f64, 0.0, 0.0, 0.0, 0.0], [0.0; 2]).0,
+            f64::INFINITY
+        );
     }
 
     #[test]
     fn a_tiny_hop_keeps_all_digits() {
-        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0]);
+        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0], [0.0; 2]);
         assert!((t / 2.000_000_001_2e-9 - 1.0).abs() < 1e-14, "{t}");
     }
 }
