@@ -11,6 +11,7 @@ pub mod json;
 pub mod matching;
 pub mod model_run;
 pub mod monitor_run;
+pub mod names;
 pub mod outcome;
 pub mod output;
 pub mod paint;

@@ -2,8 +2,9 @@
 
 use touchdown_core::event::EventKind;
 
-use crate::history::{Phase, PhaseKind, Regime};
+use crate::history::{Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
+use crate::names::{event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::paint::Paint;
 use crate::scene::Scene;
@@ -59,7 +60,7 @@ fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     for phase in phases.iter().take(LISTED) {
         text += &format!(
             "{:<12}{:>12}{:>12}",
-            name(phase.phase),
+            phase_name(phase.phase),
             millis(phase.start_s),
             millis(phase.end_s)
         );
@@ -245,41 +246,4 @@ fn seconds(difference: f64) -> String {
 
 fn optional(text: Option<String>) -> String {
     text.unwrap_or_else(|| "-".to_owned())
-}
-
-fn name(phase: PhaseKind) -> &'static str {
-    match phase {
-        PhaseKind::Levitated => "levitated",
-        PhaseKind::FreeFall => "free fall",
-        PhaseKind::Impact => "impacts",
-        PhaseKind::Sliding => "sliding",
-        PhaseKind::Rolling => "rolling",
-    }
-}
-
-fn regime_name(regime: Regime) -> &'static str {
-    match regime {
-        Regime::Rest => "rest",
-        Regime::Pendulum => "pendulum",
-        Regime::ForwardWhirl => "forward whirl",
-        Regime::BackwardWhirl => "backward whirl",
-        Regime::Intermittent => "intermittent",
-        Regime::Bouncing => "bouncing",
-    }
-}
-
-fn event_name(event: EventKind) -> &'static str {
-    match event {
-        EventKind::FreeFall => "free fall",
-        EventKind::Impact => "impact",
-        EventKind::Sliding => "sliding",
-        EventKind::Rolling => "rolling",
-        EventKind::Pendulum => "pendulum",
-        EventKind::ForwardWhirl => "forward whirl",
-        EventKind::BackwardWhirl => "backward whirl",
-        EventKind::LiftOff => "lift-off",
-        EventKind::Rest => "rest",
-        EventKind::Levitated => "levitated",
-        EventKind::SensorFault => "sensor fault",
-    }
 }

@@ -2,8 +2,9 @@
 
 use super::Subject;
 use super::tables::table;
-use super::text::{error, ms, regime_name, si, significant};
+use super::text::{error, ms, si, significant};
 use crate::history::History;
+use crate::names::regime_name;
 use crate::outcome::Outcome;
 use maud::{Markup, html};
 

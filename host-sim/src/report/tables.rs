@@ -1,9 +1,10 @@
 //! The detector's events and the impacts, as tables.
 
 use super::Subject;
-use super::text::{column, error, event_name, ms, ms_or_dash, si};
+use super::text::{column, error, ms, ms_or_dash, si};
 use crate::history::Impact;
 use crate::matching::{Match, Matches};
+use crate::names::event_name;
 use crate::outcome::{DetectedEvent, Outcome};
 use maud::{Markup, html};
 use touchdown_core::event::EventKind;

@@ -1,8 +1,7 @@
 //! Words and numbers of the report.
 
 use super::chart::minus;
-use crate::history::{PhaseKind, Regime};
-use touchdown_core::event::EventKind;
+use crate::history::PhaseKind;
 
 /// All phases, in the order of the legend.
 pub const PHASES: [PhaseKind; 5] = [
@@ -21,46 +20,6 @@ pub fn phase_class(phase: PhaseKind) -> &'static str {
         PhaseKind::Impact => "impact",
         PhaseKind::Sliding => "sliding",
         PhaseKind::Rolling => "rolling",
-    }
-}
-
-/// Name of a phase.
-pub fn phase_name(phase: PhaseKind) -> &'static str {
-    match phase {
-        PhaseKind::Levitated => "levitated",
-        PhaseKind::FreeFall => "free fall",
-        PhaseKind::Impact => "impacts",
-        PhaseKind::Sliding => "sliding",
-        PhaseKind::Rolling => "rolling",
-    }
-}
-
-/// Name of an event.
-pub fn event_name(event: EventKind) -> &'static str {
-    match event {
-        EventKind::FreeFall => "free fall",
-        EventKind::Impact => "impact",
-        EventKind::Sliding => "sliding",
-        EventKind::Rolling => "rolling",
-        EventKind::Pendulum => "pendulum",
-        EventKind::ForwardWhirl => "forward whirl",
-        EventKind::BackwardWhirl => "backward whirl",
-        EventKind::LiftOff => "lift-off",
-        EventKind::Rest => "rest",
-        EventKind::Levitated => "levitated",
-        EventKind::SensorFault => "sensor fault",
-    }
-}
-
-/// Name of a regime.
-pub fn regime_name(regime: Regime) -> &'static str {
-    match regime {
-        Regime::Rest => "rest",
-        Regime::Pendulum => "pendulum",
-        Regime::ForwardWhirl => "forward whirl",
-        Regime::BackwardWhirl => "backward whirl",
-        Regime::Intermittent => "intermittent contact",
-        Regime::Bouncing => "bouncing",
     }
 }
 

@@ -1,9 +1,10 @@
 //! Phases over time: the truth above, the detector below.
 
 use super::chart::{Axis, columns};
-use super::text::{PHASES, event_name, phase_class, phase_name};
+use super::text::{PHASES, phase_class};
 use super::window::Window;
 use crate::history::{Phase, PhaseKind};
+use crate::names::{event_name, phase_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use maud::{Markup, html};
 use touchdown_core::event::EventKind;

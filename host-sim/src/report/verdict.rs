@@ -1,9 +1,10 @@
 //! The head of the page: what happened, in a line and a few figures.
 
 use super::Subject;
-use super::text::{ms, regime_name, si, significant};
+use super::text::{ms, si, significant};
 use crate::history::{History, PhaseKind, Regime};
 use crate::matching::{Match, Matches, regime_event};
+use crate::names::regime_name;
 use crate::outcome::Outcome;
 use maud::{Markup, html};
 use std::f64::consts::TAU;

@@ -5,24 +5,13 @@ use crate::model::sum::Sum;
 use crate::real::Real;
 use crate::scales::{not_negative, positive};
 
-/// What the laws depend on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LawConfig<R> {
-    /// Coefficient of friction, 0 or more.
-    pub(crate) friction: R,
-    /// Restitution, 0 to 1.
-    pub(crate) restitution: R,
-    /// Polar inertia over mass times radius squared; 1/2 for a solid cylinder.
-    pub(crate) inertia_ratio: R,
-    /// Whether there is gravity.
-    pub(crate) gravity: bool,
-}
-
 /// The laws' coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Law<R> {
     pub(crate) friction: R,
+    /// 0 to 1.
     pub(crate) restitution: R,
+    /// Polar inertia over mass times radius squared; 1/2 for a solid cylinder.
     pub(crate) inertia_ratio: R,
     /// Dimensionless gravity: 1, or 0 without.
     pub(crate) gravity: R,
@@ -40,20 +29,15 @@ pub(crate) struct Collision<R> {
 }
 
 impl<R: Real> Law<R> {
-    /// Checks `config`.
-    pub(crate) fn try_new(config: &LawConfig<R>) -> Result<Self, ConfigError> {
-        not_negative("friction", config.friction)?;
-        not_negative("restitution", config.restitution)?;
-        if config.restitution > R::ONE {
+    /// Names the first coefficient that breaks its rule.
+    pub(crate) fn checked(self) -> Result<Self, ConfigError> {
+        not_negative("friction", self.friction)?;
+        not_negative("restitution", self.restitution)?;
+        if self.restitution > R::ONE {
             return Err(ConfigError::OutOfRange("restitution", "0 to 1"));
         }
-        positive("inertia_ratio", config.inertia_ratio)?;
-        Ok(Self {
-            friction: config.friction,
-            restitution: config.restitution,
-            inertia_ratio: config.inertia_ratio,
-            gravity: if config.gravity { R::ONE } else { R::ZERO },
-        })
+        positive("inertia_ratio", self.inertia_ratio)?;
+        Ok(self)
     }
 
     /// Impact at speed `normal` (> 0, into the wall). The tangential impulse is what stops the slip,

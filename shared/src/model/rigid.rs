@@ -1,7 +1,7 @@
 //! Rung `rigid`: a rigid rotor in a rigid retainer, in the plane.
 
 use crate::error::ConfigError;
-use crate::model::law::{Law, LawConfig};
+use crate::model::law::Law;
 use crate::model::precision::Precision;
 use crate::scales::{Scales, not_negative, positive};
 
@@ -49,12 +49,17 @@ impl<R: Precision> Rigid<R> {
             config.speed,
         )?;
         not_negative("gravity", config.gravity)?;
-        let law = Law::try_new(&LawConfig {
+        let law = Law {
             friction: config.friction,
             restitution: config.restitution,
             inertia_ratio: config.polar_inertia / (config.mass * config.radius * config.radius),
-            gravity: config.gravity > R::ZERO,
-        })?;
+            gravity: if config.gravity > R::ZERO {
+                R::ONE
+            } else {
+                R::ZERO
+            },
+        }
+        .checked()?;
         Ok(Self {
             law,
             step: config.step / scales.time,
