@@ -10,6 +10,26 @@ impl Moment {
         Self((sample as i64) << 8)
     }
 
+    /// So many samples (not whole) later; earlier where negative.
+    pub const fn later(self, samples: f32) -> Self {
+        Self(self.0.saturating_add((samples * 256.0) as i64))
+    }
+
+    /// Samples from `earlier` to here.
+    pub const fn since(self, earlier: Self) -> f32 {
+        // Spans of more than a few hours of samples saturate; none is compared that is so long.
+        let span = self.0.saturating_sub(earlier.0);
+        let bound = i32::MAX as i64;
+        let span = if span > bound {
+            bound
+        } else if span < -bound {
+            -bound
+        } else {
+            span
+        };
+        span as i32 as f32 / 256.0
+    }
+
     /// Samples and their fraction since sample 0.
     pub fn samples(self) -> f64 {
         self.0 as f64 / 256.0

@@ -4,6 +4,7 @@ use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
+use crate::event::Moment;
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 const UNKNOWN_SPEED: f32 = 0.3;
@@ -62,8 +63,8 @@ pub(crate) enum Landing {
 /// A position as the sensors give it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fix {
-    /// s since the first sample.
-    pub(crate) time: f64,
+    /// When.
+    pub(crate) now: Moment,
     /// m.
     pub(crate) position: [f32; 2],
     /// Of one axis, m^2.
@@ -124,7 +125,9 @@ impl FlightTest {
             flight.track.shift(jump.change, jump.effect, jump.variance);
             flight.bank = JumpBank::default();
             if let Some((bounce, launch_speed)) = impact {
-                flight.series.take(bounce, launch_speed, &self.machine);
+                flight
+                    .series
+                    .take(bounce, launch_speed, &self.machine, self.period);
                 flight.near_wall = 0;
                 flight.lying = 0;
                 return Some(Landing::Impact {
@@ -149,7 +152,7 @@ impl FlightTest {
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
         let bounce = Bounce {
-            time: fix.time - f64::from(since),
+            at: fix.now.later(-jump.age),
             normal_speed,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
@@ -158,7 +161,7 @@ impl FlightTest {
             return None;
         }
         let launch_speed = flight.series.last().map_or(0.0, |last| {
-            let flown = (bounce.time - last.time) as f32;
+            let flown = bounce.at.since(last.at) * self.period;
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             -(u * last.outward[0] + v * last.outward[1])
         });
@@ -184,8 +187,8 @@ impl FlightTest {
         }
         flight.near_wall += 1;
         let at_wall = flight.near_wall as f32 * self.period;
-        if let Some(end) = flight.series.end(&self.machine) {
-            let over = (fix.time - end) as f32;
+        if let Some(end) = flight.series.end(&self.machine, self.period) {
+            let over = fix.now.since(end) * self.period;
             if over < SERIES_MARGIN {
                 return None;
             }

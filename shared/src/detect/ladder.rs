@@ -94,12 +94,11 @@ impl Teller<'_> {
     fn tell(&mut self, kind: EventKind, age: f32, normal_speed: f32) -> u16 {
         let number = *self.next_number;
         *self.next_number = number.wrapping_add(1);
-        let now = Moment::of_sample(self.sample);
         // A full list loses the notice, not the tick; NOTICES_PER_TICK is above what one can find.
         let _ = self.notices.push(Notice::Declared(Event {
             number,
             kind,
-            onset: Moment(now.0 - (age * 256.0) as i64),
+            onset: Moment::of_sample(self.sample).later(-age),
             declared: self.sample,
             plane: self.plane,
             normal_speed,
@@ -152,7 +151,6 @@ impl Detector {
     ) {
         let sample = state.sample;
         state.sample += 1;
-        let time = sample as f64 / f64::from(self.config.sample_rate);
         let mut next_number = state.next_number;
         let mut teller = Teller {
             sample,
@@ -168,7 +166,7 @@ impl Detector {
         let fix = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
             Fix {
-                time,
+                now: Moment::of_sample(sample),
                 position,
                 variance: state.noise.variance(planes, self.resolution),
             }
