@@ -11,7 +11,7 @@ use touchdown_sim::scene::Scene;
 use touchdown_sim::target::Target;
 
 const RATES: [f64; 2] = [20_000.0, 50_000.0];
-const SEEDS: std::ops::Range<u64> = 0..25;
+const SEEDS: std::ops::Range<u64> = 0..50;
 
 fn dropped(name: &str, rate: f64, seed: u64) -> (Outcome, Matches) {
     let mut scene = Scene::load(name).expect("built-in scene");

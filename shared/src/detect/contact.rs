@@ -121,11 +121,10 @@ impl ContactTest {
         age: f32,
         slip_left: f32,
     ) -> Touching {
-        let (outward, radius) = direction(fix.position);
+        let (outward, _) = direction(fix.position);
         let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
         Touching {
             track: self.filter.start(outward, speed, spread),
-            lift: LiftOff::new(radius),
             age: age as u32,
             slip_left,
             ..Touching::default()

@@ -11,6 +11,8 @@ const UNKNOWN_SPEED: f32 = 0.3;
 /// Time after the foreseen end of a series in which a missed impact would still show, s.
 const SERIES_MARGIN: f32 = 5e-4;
 
+/// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
+const IMPOSSIBLE: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -122,7 +124,7 @@ impl FlightTest {
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, fix);
-            flight.track.shift(jump.change, jump.effect, jump.variance);
+            flight.track.shift(&jump);
             flight.bank = JumpBank::default();
             if let Some((bounce, launch_speed)) = impact {
                 flight
@@ -145,7 +147,7 @@ impl FlightTest {
     fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<(Bounce, f32)> {
         let since = jump.age * self.period;
         let mut after = flight.track;
-        after.shift(jump.change, jump.effect, 0.0);
+        after.shift(jump);
         let (outward, radius) = direction(self.ballistic.position_before(&after, since));
         let [u, v] = self.ballistic.velocity_before(&after, since);
         let before = [u - jump.change[0], v - jump.change[1]];
@@ -160,12 +162,29 @@ impl FlightTest {
         if radius < self.near || normal_speed <= self.faintest(bounce.pressing, fix.variance) {
             return None;
         }
+        if let Some(last) = flight.series.last()
+            && bounce.at.since(last.at) * self.period < self.shortest_flight(last, flight)
+        {
+            return None;
+        }
         let launch_speed = flight.series.last().map_or(0.0, |last| {
             let flown = bounce.at.since(last.at) * self.period;
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             -(u * last.outward[0] + v * last.outward[1])
         });
         Some((bounce, launch_speed))
+    }
+
+    /// Part of the flight after an impact in which another is impossible, s: it leaves the wall with
+    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall.
+    fn shortest_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
+        let launch = flight.series.restitution(&self.machine) * last.normal_speed;
+        let back = last.pressing + launch * launch / self.machine.clearance;
+        if back > 0.0 {
+            IMPOSSIBLE * 2.0 * launch / back
+        } else {
+            0.0
+        }
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.

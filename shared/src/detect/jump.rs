@@ -7,6 +7,8 @@
 use crate::detect::config::Tuning;
 use crate::detect::track::Innovation;
 
+/// Standard deviation of a value that lies anywhere in a span of 1.
+const UNIFORM: f32 = 0.288_675_13;
 /// Instants in the bank.
 const CANDIDATES: usize = 32;
 
@@ -49,6 +51,8 @@ pub(crate) struct Jump {
     pub(crate) variance: f32,
     /// What a unit of it has left in the filter.
     pub(crate) effect: [f32; 2],
+    /// Standard deviation of `age`, s.
+    pub(crate) timing: f32,
 }
 
 /// What an impact now would be like, along the outward normal.
@@ -177,6 +181,8 @@ impl JumpTest {
             change: found.sum.map(|sum| sum * scale),
             variance: scale,
             effect: found.effect,
+            // Evenly anywhere between two instants of the bank.
+            timing: f32::from(self.stride) * self.period * UNIFORM,
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
-/// Steps of the wall's learnt place, samples.
+/// Samples that the wall's place is learnt from before it is trusted.
+const WARM_UP: u16 = 16;
+/// Samples that the wall's learnt place remembers.
 const MEMORY: f32 = 256.0;
 /// Distance that the test is tuned to, in standard deviations: above what noise and the waves of a
 /// sensor's error do, below what a flight soon reaches.
@@ -21,14 +23,6 @@ pub(crate) struct LiftOff {
 }
 
 impl LiftOff {
-    /// Contact at a radius of about `wall`, m.
-    pub(crate) fn new(wall: f32) -> Self {
-        Self {
-            wall,
-            ..Self::default()
-        }
-    }
-
     /// Whether the last sample was at the wall.
     pub(crate) fn is_at_wall(&self) -> bool {
         self.age == 0
@@ -40,6 +34,9 @@ impl LiftOff {
         let sigma = libm::sqrtf(variance);
         let inward = (self.wall - radius) / sigma;
         self.sum = (self.sum + SHIFT * (inward - 0.5 * SHIFT)).max(0.0);
+        if self.count < WARM_UP {
+            self.sum = 0.0;
+        }
         if self.sum <= 0.0 {
             self.age = 0;
             self.count = self.count.saturating_add(1);
@@ -64,7 +61,7 @@ mod tests {
 
     #[test]
     fn a_flight_is_found_and_dated() {
-        let mut test = LiftOff::new(300e-6);
+        let mut test = LiftOff::default();
         for k in 0..1_000 {
             let noise = if k % 2 == 0 { 1e-6 } else { -1e-6 };
             assert_eq!(test.take(300e-6 + noise, 1e-12, 25.0), None);

@@ -35,7 +35,7 @@ pub(crate) struct Series {
     /// Sum of the impulses along the normal, per mass, m/s.
     impulse: f32,
     last: Option<Bounce>,
-    /// Speed into the wall at the last impact as the time flown before it has it, m/s.
+    /// Speed into the wall at the last impact with what the time flown before it says, m/s.
     timed_speed: Option<f32>,
 }
 
@@ -89,13 +89,13 @@ impl Series {
     }
 }
 
-/// A short flight under a pressing a takes 2 v/a: moments are known better than speeds. `None` where
-/// the flight is so long that the curved wall spoils the rule.
+/// A short flight under a pressing a takes 2 v/a, which says of the speed into the wall as much as the
+/// filter does: their mean. `None` where the flight is so long that the curved wall spoils the rule.
 fn timed_speed(last: &Bounce, next: &Bounce, period: f32) -> Option<f32> {
     let pressing = 0.5 * (last.pressing + next.pressing);
     let timed = 0.5 * pressing * next.at.since(last.at) * period;
     let ratio = timed / next.normal_speed;
-    ((1.0 - ratio).abs() < FLAT).then_some(timed)
+    ((1.0 - ratio).abs() < FLAT).then_some(0.5 * (timed + next.normal_speed))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Position and velocity in flight: a Kalman filter of a ballistic path, the same for both axes.
 
+use crate::detect::jump::Jump;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ballistic {
@@ -104,16 +106,23 @@ impl Track {
         }
     }
 
-    /// Moves the estimate by `jump` times `effect` (of a unit jump on position and velocity), a
-    /// correction that is itself known to `variance`.
-    pub(crate) fn shift(&mut self, jump: [f32; 2], effect: [f32; 2], variance: f32) {
+    /// Takes a velocity jump in.
+    pub(crate) fn shift(&mut self, jump: &Jump) {
+        let Jump {
+            change,
+            variance,
+            effect,
+            ..
+        } = *jump;
         for ((position, velocity), d) in
-            (self.position.iter_mut().zip(&mut self.velocity)).zip(jump)
+            (self.position.iter_mut().zip(&mut self.velocity)).zip(change)
         {
             *position += effect[0] * d;
             *velocity += effect[1] * d;
         }
-        self.covariance[0] += effect[0] * effect[0] * variance;
+        let [u, v] = change;
+        let misplaced = (u * u + v * v) * jump.timing * jump.timing;
+        self.covariance[0] += effect[0] * effect[0] * variance + misplaced;
         self.covariance[1] += effect[0] * effect[1] * variance;
         self.covariance[2] += effect[1] * effect[1] * variance;
     }
