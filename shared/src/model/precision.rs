@@ -26,5 +26,5 @@ impl Precision for f32 {
 impl Precision for f64 {
     const SERIES_ORDER: usize = 15;
     const SERIES_TOLERANCE: Self = 1e-16;
-    const CUTOFF_SPEED: Self = 1e-9;
+    const CUTOFF_SPEED: Self = 1e-10;
 }
