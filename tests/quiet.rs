@@ -11,6 +11,10 @@ const CLEARANCE: f64 = 0.3e-3;
 /// Runs a motion (position in m by time in s) through the default sensors and the monitor.
 fn watched(seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
     let scene = Scene::load("rig").expect("built-in scene");
+    watched_in(&scene, seconds, position)
+}
+
+fn watched_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
     let rate = scene.run.sample_rate;
     let config: MonitorConfig = scene.monitor_config();
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("default sensors");
@@ -61,6 +65,14 @@ fn lifted_from_rest_on_the_bearing() {
         EventKind::Levitated,
     ];
     assert_eq!(kinds, expected);
+}
+
+#[test]
+fn a_rotor_that_lies_still_without_spin_rolls_and_rests() {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    scene.rotor.spin = 0.0;
+    let kinds = kinds(&watched_in(&scene, 1.0, |_| [0.0, -CLEARANCE]));
+    assert_eq!(kinds, [EventKind::Rolling, EventKind::Rest]);
 }
 
 #[test]
