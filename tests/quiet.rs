@@ -112,3 +112,48 @@ fn a_drop_after_being_lifted_is_found() {
     let kinds = kinds(&notices);
     assert!(kinds.contains(&EventKind::FreeFall), "{kinds:?}");
 }
+
+/// Unbalance: the rotor's centre on a circle.
+fn orbit(frequency: f64, radius: f64) -> impl Fn(f64) -> [f64; 2] {
+    move |t| {
+        let (sin, cos) = (std::f64::consts::TAU * frequency * t).sin_cos();
+        [radius * cos, radius * sin]
+    }
+}
+
+#[test]
+fn an_unbalance_orbit_is_no_fall() {
+    for (frequency, radius) in [
+        (10.0, 30e-6),
+        (20.0, 2e-6),
+        (50.0, 1e-6),
+        (50.0, 30e-6),
+        (100.0, 5e-6),
+        (150.0, 30e-6),
+        (500.0, 30e-6),
+    ] {
+        let notices = watched(10.0, orbit(frequency, radius));
+        assert!(
+            notices.is_empty(),
+            "{frequency} Hz {radius:e} m: {notices:?}"
+        );
+    }
+}
+
+#[test]
+fn a_fall_from_an_orbit_is_found_before_the_wall() {
+    for (frequency, radius) in [(50.0, 5e-6), (150.0, 30e-6), (500.0, 30e-6)] {
+        let circle = orbit(frequency, radius);
+        let notices = watched(1.02, |t| {
+            let [x, y] = circle(t);
+            [x, y + straight_drop(t - 1.0) - CLEARANCE]
+        });
+        let declared = notices.iter().find_map(|notice| match notice {
+            Notice::Declared(event) if event.kind == EventKind::FreeFall => Some(event.declared),
+            _ => None,
+        });
+        let latency = declared.expect("declared") as f64 / 20_000.0 - 1.0;
+        println!("{frequency} Hz {radius:e} m: {:.2} ms", latency * 1e3);
+        assert!(latency > 0.0 && latency < 7e-3, "{latency}");
+    }
+}

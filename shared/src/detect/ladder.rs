@@ -244,6 +244,14 @@ impl Detector {
         teller: &mut Teller,
     ) {
         self.learning.take(&mut state.levitation, fix.position);
+        let [x, y] = state.levitation.mean;
+        let residual = [fix.position[0] - x, fix.position[1] - y];
+        let variance = state.levitation.variance.max(fix.variance);
+        let released = self
+            .learning
+            .has_position(&state.levitation)
+            .then(|| self.release.take(&mut state.release, residual, variance))
+            .flatten();
         if !state.levitation.is_armed() {
             // Fell before anything was learnt: the wall shows it.
             let (_, radius) = direction(fix.position);
@@ -254,10 +262,7 @@ impl Detector {
             }
             return;
         }
-        let [x, y] = state.levitation.mean;
-        let residual = [fix.position[0] - x, fix.position[1] - y];
-        let variance = state.levitation.variance.max(fix.variance);
-        let Some(age) = self.release.take(&mut state.release, residual, variance) else {
+        let Some(age) = released else {
             return;
         };
         state.flight = self.flight.start(fix, None);
@@ -330,7 +335,7 @@ impl Detector {
         pending.back += 1;
         if pending.back >= self.catch_samples {
             teller.close(&mut state.pending, false);
-            state.release = ReleaseBank::default();
+            state.release.restart();
             state.phase = Phase::Levitated;
         }
     }

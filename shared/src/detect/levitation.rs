@@ -32,6 +32,11 @@ impl Learning {
         }
     }
 
+    /// Whether the position has been learnt well enough for residuals from it.
+    pub(crate) fn has_position(&self, state: &Levitation) -> bool {
+        state.armed || 2 * state.count > self.arming_samples
+    }
+
     /// Takes a position, m; true on the sample that arms. Where the rotor still moves, learning starts
     /// again.
     pub(crate) fn take(&self, state: &mut Levitation, [x, y]: [f32; 2]) -> bool {

@@ -3,11 +3,19 @@
 //!
 //! Residuals r from the learnt position, a signature w = t^2: with A = sum r w and E = sum w^2 the
 //! statistic is |A|^2/(2 sigma^2 E), which needs neither direction nor size of the acceleration.
+//!
+//! What a healthy machine does is no white noise: an unbalance orbit, runout or hum raise the statistic
+//! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
 
 use crate::detect::config::Tuning;
 
 /// Instants in the bank.
 const CANDIDATES: usize = 32;
+
+/// Mean of the largest statistic of the bank in white noise, as the test below measures it.
+const WHITE_LEVEL: f32 = 1.8;
+/// Seconds over which the mean is learnt.
+const LEVEL_TIME: f32 = 0.5;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +24,7 @@ pub(crate) struct Release {
     stride: u16,
     threshold: f32,
     gravity: f32,
+    memory: f32,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,6 +43,19 @@ pub(crate) struct ReleaseBank {
     wait: u16,
     /// Largest statistic of the last sample.
     pub(crate) statistic: f32,
+    level: f32,
+    count: f32,
+}
+
+impl ReleaseBank {
+    /// Forgets what was under way, not what was learnt.
+    pub(crate) fn restart(&mut self) {
+        *self = Self {
+            level: self.level,
+            count: self.count,
+            ..Self::default()
+        };
+    }
 }
 
 impl Release {
@@ -44,6 +66,7 @@ impl Release {
             stride: (horizon / CANDIDATES as f32).max(1.0) as u16,
             threshold,
             gravity,
+            memory: LEVEL_TIME * sample_rate,
         }
     }
 
@@ -87,11 +110,79 @@ impl Release {
             }
         }
         bank.statistic = best.0;
-        if best.0 <= self.threshold {
+        let threshold = self.threshold * (bank.level / WHITE_LEVEL).max(1.0);
+        bank.count = (bank.count + 1.0).min(self.memory);
+        bank.level += (best.0 - bank.level) / bank.count;
+        if best.0 <= threshold {
             return None;
         }
         // With gravity known, the instant follows from the fall's shape far better.
         let is_a_fall = falls.0 > 0.5 * self.threshold * variance;
         Some(if is_a_fall { falls.1 } else { best.1 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sum of twelve even numbers: mean 0, variance 1.
+    fn noise(state: &mut u64) -> f32 {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            *state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            sum += (*state >> 40) as f32 / (1u64 << 24) as f32;
+        }
+        sum
+    }
+
+    fn level(sample_rate: f32) -> f32 {
+        let release = Release::new(&Tuning::default(), sample_rate, 9.81, 25.3);
+        let (mut bank, mut seed) = (ReleaseBank::default(), 1);
+        let mut sum = 0.0;
+        for _ in 0..200_000 {
+            let residual = [1e-6 * noise(&mut seed), 1e-6 * noise(&mut seed)];
+            assert_eq!(release.take(&mut bank, residual, 1e-12), None);
+            sum += f64::from(bank.statistic);
+        }
+        (sum / 200_000.0) as f32
+    }
+
+    #[test]
+    fn the_level_of_white_noise() {
+        for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
+            let level = level(sample_rate);
+            assert!(
+                (level / WHITE_LEVEL - 1.0).abs() < 0.1,
+                "{sample_rate} {level}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_orbit_raises_the_threshold_and_a_fall_passes_it() {
+        let release = Release::new(&Tuning::default(), 20_000.0, 9.81, 25.3);
+        let (mut bank, mut seed) = (ReleaseBank::default(), 1);
+        let orbit = |k: u32| {
+            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * 50.0 * k as f32 / 20_000.0);
+            [30e-6 * cos, 30e-6 * sin]
+        };
+        let variance = 450e-12;
+        for k in 0..40_000 {
+            let [x, y] = orbit(k);
+            let residual = [x + 1e-6 * noise(&mut seed), y + 1e-6 * noise(&mut seed)];
+            // The first samples teach the level.
+            let found = release.take(&mut bank, residual, variance);
+            assert!(k < 1_000 || found.is_none(), "{k}");
+        }
+        let found = (1..160).find(|&k| {
+            let [x, y] = orbit(k);
+            let time = k as f32 / 20_000.0;
+            let residual = [x, y - 0.5 * 9.81 * time * time];
+            release.take(&mut bank, residual, variance).is_some()
+        });
+        assert!(found.is_some(), "a fall of 0.3 mm in 7.8 ms");
     }
 }
