@@ -149,6 +149,10 @@ fn optional_keys_are_checked_too() {
             "scene.toml:11: gravity_m_s2 must be 0 or more, is -1",
         ),
         (
+            "gravity_m_s2 = 5e-324",
+            "scene.toml:11: gravity_m_s2 must be 0, or 1e-6 or more",
+        ),
+        (
             "sample_rate_hz = 99",
             "scene.toml:11: sample_rate_hz must be 100 to 200000, is 99",
         ),

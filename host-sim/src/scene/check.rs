@@ -176,6 +176,13 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
     }
     let rate = table.sample_rate_hz;
     let gravity = zero_or_more("run", "gravity_m_s2", table.gravity_m_s2)?;
+    if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
+        let rule = format!(
+            "gravity_m_s2 must be 0, or {:e} or more, is {gravity:e}",
+            limits::LEAST_GRAVITY_M_S2
+        );
+        return Err(Flaw::new("run", "gravity_m_s2", rule));
+    }
     Ok(Run {
         duration,
         gravity: between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)?,

@@ -13,3 +13,5 @@ pub(super) const ANGLE_DEG: RangeInclusive<f64> = -36e3..=36e3;
 /// Speed of a start.
 pub(super) const SPEED_MM_S: RangeInclusive<f64> = -1e6..=1e6;
 pub(super) const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;
+/// Below it, what is not 0 sets a time scale longer than any run.
+pub(super) const LEAST_GRAVITY_M_S2: f64 = 1e-6;
