@@ -9,7 +9,7 @@ pub(super) const INERTIA_RATIO: RangeInclusive<f64> = 1e-3..=1e3;
 pub(super) const SPEED_RPM: RangeInclusive<f64> = -1e7..=1e7;
 pub(super) const CLEARANCE_MM: RangeInclusive<f64> = 1e-3..=100.0;
 pub(super) const FRICTION: RangeInclusive<f64> = 0.0..=100.0;
-pub(super) const ANGLE_DEG: RangeInclusive<f64> = -360.0..=360.0;
+pub(super) const ANGLE_DEG: RangeInclusive<f64> = -36e3..=36e3;
 /// Speed of a start.
 pub(super) const SPEED_MM_S: RangeInclusive<f64> = -1e6..=1e6;
 pub(super) const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;

@@ -156,6 +156,7 @@ impl FlightTest {
         let bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
+            along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
@@ -206,7 +207,7 @@ impl FlightTest {
         }
         flight.near_wall += 1;
         let at_wall = flight.near_wall as f32 * self.period;
-        if let Some(end) = flight.series.end(&self.machine, self.period) {
+        if let Some(end) = flight.series.end() {
             let over = fix.now.since(end) * self.period;
             if over < SERIES_MARGIN {
                 return None;

@@ -21,10 +21,62 @@ pub(crate) struct Bounce {
     pub(crate) at: Moment,
     /// Speed into the wall, m/s.
     pub(crate) normal_speed: f32,
+    /// Velocity along the wall after it, counter-clockwise, m/s.
+    pub(crate) along: f32,
     /// Outward unit vector at the contact.
     pub(crate) outward: [f32; 2],
     /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
     pub(crate) pressing: f32,
+}
+
+/// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
+/// times as many are gone.
+const REST_STEPS: u8 = 8;
+
+impl Bounce {
+    /// Time, s, from a launch with speed `launch` to the end of the series. The launch speed falls by
+    /// (1 - restitution)/2 times what the wall presses, whatever the bounces; meanwhile the rotor
+    /// slides along the wall as if it lay on it. `None` where the wall ceases to press.
+    fn rest(&self, launch: f32, restitution: f32, machine: &MachineConfig) -> Option<f32> {
+        let loss = 0.5 * (1.0 - restitution);
+        if loss <= 0.0 || self.pressing <= 0.0 {
+            return None;
+        }
+        let against = if machine.spin != 0.0 {
+            machine.spin
+        } else {
+            self.along
+        };
+        let friction = if against > 0.0 {
+            -machine.friction
+        } else {
+            machine.friction
+        };
+        let step = launch / (loss * self.pressing * f32::from(REST_STEPS));
+        let [mut sin, minus_cos] = self.outward;
+        let (mut cos, mut along, mut pressing) = (-minus_cos, self.along, self.pressing);
+        let (mut left, mut time) = (launch, 0.0);
+        for _ in 0..3 * REST_STEPS {
+            let taken = loss * pressing * step;
+            if taken >= left {
+                return Some(time + step * left / taken);
+            }
+            left -= taken;
+            time += step;
+            let before = along;
+            along += (friction * pressing - machine.gravity * sin) * step;
+            let turn = 0.5 * (before + along) * step / machine.clearance;
+            (sin, cos) = (sin + cos * turn, cos - sin * turn);
+            let norm = 1.5 - 0.5 * (sin * sin + cos * cos);
+            (sin, cos) = (sin * norm, cos * norm);
+            let next = along * along / machine.clearance + machine.gravity * cos;
+            if next <= 0.0 {
+                return None;
+            }
+            pressing = next;
+        }
+        None
+    }
 }
 
 /// The series so far.
@@ -35,8 +87,7 @@ pub(crate) struct Series {
     /// Sum of the impulses along the normal, per mass, m/s.
     impulse: f32,
     last: Option<Bounce>,
-    /// Speed into the wall at the last impact with what the time flown before it says, m/s.
-    timed_speed: Option<f32>,
+    ends: Option<Moment>,
 }
 
 impl Series {
@@ -60,26 +111,25 @@ impl Series {
         machine: &MachineConfig,
         period: f32,
     ) {
+        let mut speed = bounce.normal_speed;
         if let Some(last) = &self.last {
             let ratio = (launch_speed / last.normal_speed).clamp(0.0, 1.0);
             let clearness = last.normal_speed / CLEAR_SPEED;
             let weight = (clearness * clearness).min(4.0);
             self.seen[0] += weight * ratio;
             self.seen[1] += weight;
-            self.timed_speed = timed_speed(last, &bounce, period);
+            speed = timed_speed(last, &bounce, period).unwrap_or(speed);
         }
-        self.impulse += (1.0 + self.restitution(machine)) * bounce.normal_speed;
+        let restitution = self.restitution(machine);
+        let rest = bounce.rest(restitution * speed, restitution, machine);
+        self.ends = rest.map(|time| bounce.at.later(time / period));
+        self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
     }
 
-    /// End of the series; `period` is that of a sample, s. `None` where the wall does not press or the
-    /// series does not end.
-    pub(crate) fn end(&self, machine: &MachineConfig, period: f32) -> Option<Moment> {
-        let last = self.last?;
-        let restitution = self.restitution(machine);
-        let loss = last.pressing * (1.0 - restitution);
-        let rest = 2.0 * restitution * self.timed_speed.unwrap_or(last.normal_speed) / loss;
-        (loss > 0.0).then(|| last.at.later(rest / period))
+    /// End of the series; `None` where the wall does not press on, or the series does not end.
+    pub(crate) fn end(&self) -> Option<Moment> {
+        self.ends
     }
 
     /// Slip, m/s, that friction cannot have used up in the impacts so far, from a nominal one.
@@ -119,6 +169,7 @@ mod tests {
         Bounce {
             at: Moment::default().later(samples),
             normal_speed,
+            along: 0.0,
             outward: [0.0, -1.0],
             pressing: 9.81,
         }
@@ -128,9 +179,13 @@ mod tests {
     fn the_end_of_a_straight_drop() {
         // PHYSICS section 3: a straight drop of 0.3 mm ends at (V/g)(1 + eps)/(1 - eps) = 70.386 ms,
         // with V = 76.72 mm/s after 7.82 ms.
+        let smooth = MachineConfig {
+            friction: 0.0,
+            ..MACHINE
+        };
         let mut series = Series::default();
-        series.take(bounce(782.062, 0.076_720), 0.0, &MACHINE, PERIOD);
-        let end = series.end(&MACHINE, PERIOD).expect("the wall presses");
+        series.take(bounce(782.062, 0.076_720), 0.0, &smooth, PERIOD);
+        let end = series.end().expect("the wall presses");
         assert!((end.samples() - 7038.56).abs() < 0.2, "{end:?}");
     }
 
