@@ -11,6 +11,10 @@ const CLEARANCE: f64 = 0.3e-3;
 /// Runs a motion (position in m by time in s) through the default sensors and the monitor.
 fn watched(seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
     let scene = Scene::load("rig").expect("built-in scene");
+    watched_in(&scene, seconds, position)
+}
+
+fn watched_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
     let rate = scene.run.sample_rate;
     let config: MonitorConfig = scene.monitor_config();
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("default sensors");
@@ -61,6 +65,40 @@ fn lifted_from_rest_on_the_bearing() {
         EventKind::Levitated,
     ];
     assert_eq!(kinds, expected);
+}
+
+/// Height above the bottom of the wall, m, of a straight drop with restitution 0.8, s after release.
+fn straight_drop(mut time: f64) -> f64 {
+    let mut fall = (2.0 * CLEARANCE / 9.81).sqrt();
+    if time <= fall {
+        return CLEARANCE - 0.5 * 9.81 * time * time.max(0.0);
+    }
+    time -= fall;
+    for _ in 0..60 {
+        fall *= 0.8;
+        if time < 2.0 * fall {
+            return 9.81 * time * (fall - 0.5 * time);
+        }
+        time -= 2.0 * fall;
+    }
+    0.0
+}
+
+#[test]
+fn a_drop_before_arming_is_followed_from_the_wall() {
+    let notices = watched(0.5, |t| [0.0, straight_drop(t - 0.02) - CLEARANCE]);
+    let kinds = kinds(&notices);
+    assert!(!kinds.contains(&EventKind::FreeFall), "{kinds:?}");
+    assert!(kinds.contains(&EventKind::Impact), "{kinds:?}");
+    assert!(kinds.contains(&EventKind::Sliding), "{kinds:?}");
+}
+
+#[test]
+fn a_rotor_that_lies_still_without_spin_rolls_and_rests() {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    scene.rotor.spin = 0.0;
+    let kinds = kinds(&watched_in(&scene, 1.0, |_| [0.0, -CLEARANCE]));
+    assert_eq!(kinds, [EventKind::Rolling, EventKind::Rest]);
 }
 
 #[test]

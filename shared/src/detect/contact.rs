@@ -193,12 +193,14 @@ impl ContactTest {
     fn by_likelihood(&self, state: &Touching) -> (Option<Kind>, f32) {
         let rolling = &state.track.for_rolling;
         let sliding = &state.track.for_sliding;
-        // Where nothing moves enough to tell, and no slip is certain: what is likelier.
+        // Where nothing moves enough to tell, and no slip is certain, there is none.
         let settle = state.kind.is_none() && state.age > self.still_samples;
-        if rolling.sum > self.threshold || settle && rolling.sum >= sliding.sum {
+        if rolling.sum > self.threshold {
             (Some(Kind::Rolling), rolling.age as f32)
-        } else if sliding.sum > self.threshold || settle {
+        } else if sliding.sum > self.threshold {
             (Some(Kind::Sliding), sliding.age as f32)
+        } else if settle {
+            (Some(Kind::Rolling), 0.0)
         } else {
             (None, 0.0)
         }

@@ -245,6 +245,13 @@ impl Detector {
     ) {
         self.learning.take(&mut state.levitation, fix.position);
         if !state.levitation.is_armed() {
+            // Fell before anything was learnt: the wall shows it.
+            let (_, radius) = direction(fix.position);
+            if state.off_wall && radius >= self.near {
+                state.flight = self.flight.start(fix, None);
+                state.phase = Phase::FreeFall;
+                state.still = Still::default();
+            }
             return;
         }
         let [x, y] = state.levitation.mean;
