@@ -30,8 +30,8 @@ pub struct MachineConfig {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Tuning {
-    /// Probability that one sample of quiet levitation declares something, 1e-15 to 0.01. Every
-    /// likelihood ratio is compared with the logarithm of its inverse.
+    /// Probability with which one instant of a test's bank declares something in one sample of white
+    /// noise, 1e-15 to 0.01. Every likelihood ratio is compared with the logarithm of its inverse.
     pub false_alarm: f32,
     /// Levitated time that noise and position are learnt from before the monitor is armed, s.
     pub arming_time: f32,

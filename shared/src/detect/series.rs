@@ -177,8 +177,8 @@ mod tests {
 
     #[test]
     fn the_end_of_a_straight_drop() {
-        // PHYSICS section 3: a straight drop of 0.3 mm ends at (V/g)(1 + eps)/(1 - eps) = 70.386 ms,
-        // with V = 76.72 mm/s after 7.82 ms.
+        // A straight drop of 0.3 mm hits at V = 76.72 mm/s after 7.82 ms and ends at
+        // (V/g)(1 + eps)/(1 - eps) = 70.386 ms: `docs/model.md`.
         let smooth = MachineConfig {
             friction: 0.0,
             ..MACHINE

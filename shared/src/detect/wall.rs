@@ -9,6 +9,9 @@ use crate::detect::config::{MachineConfig, Tuning};
 /// Time over which an error of the equations keeps its sign, s.
 const ERROR_TIME: f32 = 1e-3;
 
+/// Most that one sample can say for a hypothesis: a lost track or a spike decides nothing alone.
+const LOUDEST: f32 = 3.0;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallFilter {
@@ -134,6 +137,7 @@ impl WallFilter {
         let slide = track.slide.correct(position, scale, gain);
         let roll = track.roll.correct(position, scale, gain);
         let for_rolling = 0.5 * (slide * slide - roll * roll) / total;
+        let for_rolling = for_rolling.clamp(-LOUDEST, LOUDEST);
         track.for_rolling.add(for_rolling);
         track.for_sliding.add(-for_rolling);
     }
