@@ -17,7 +17,11 @@ fn dropped(name: &str, rate: f64, seed: u64) -> (Outcome, Matches) {
     let mut scene = Scene::load(name).expect("built-in scene");
     scene.run.sample_rate = rate;
     scene.run.seed = seed;
-    let (outcome, _) = drop::run::<Sink>(&scene, &Target::Host, None).expect("a valid scene drops");
+    watched(&scene)
+}
+
+fn watched(scene: &Scene) -> (Outcome, Matches) {
+    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
     let matches = match_events(&outcome.truth, &outcome.detection);
     (outcome, matches)
 }
@@ -110,7 +114,7 @@ fn impacts_are_found_dated_and_measured() {
 
 #[test]
 fn nothing_is_declared_that_did_not_happen() {
-    for name in ["rig", "rig-wide-gap", "rolling"] {
+    for name in ["rig", "rig-wide-gap", "rolling", "backward-whirl", "lift-off"] {
         for (rate, outcome, matches) in campaign(name) {
             let invented: Vec<_> = matches
                 .false_events
@@ -119,6 +123,41 @@ fn nothing_is_declared_that_did_not_happen() {
                 .collect();
             assert!(invented.is_empty(), "{name} {rate} Hz: {invented:?}");
         }
+    }
+}
+
+#[test]
+fn runout_delays_the_verdicts_but_invents_none() {
+    for (runout, fall_within, contact_within) in [
+        (1e-6, 1.2e-3, 2e-3),
+        (2e-6, 1.7e-3, 3e-3),
+        (5e-6, 2.5e-3, 6e-3),
+    ] {
+        let (mut falls, mut contacts) = (Vec::new(), Vec::new());
+        for seed in 0..20 {
+            let mut scene = Scene::load("rig").expect("built-in scene");
+            scene.sensors.runout = runout;
+            scene.run.seed = seed;
+            let (outcome, matches) = watched(&scene);
+            let invented = matches.false_events.len();
+            assert_eq!(invented, 0, "{runout:e} m: {:?}", outcome.detection.events);
+            let latency = |kind| {
+                let found = matches.of_kind(kind).next().expect("happens");
+                found.latency_s.expect("declared")
+            };
+            falls.push(latency(EventKind::FreeFall));
+            contacts.push(latency(EventKind::Sliding));
+        }
+        let (fall, contact) = (median(falls), median(contacts));
+        println!(
+            "{runout:e} m: fall {:.2} ms, contact {:.2} ms",
+            fall * 1e3,
+            contact * 1e3
+        );
+        assert!(
+            fall < fall_within && contact < contact_within,
+            "{runout:e} m"
+        );
     }
 }
 

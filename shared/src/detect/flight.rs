@@ -16,11 +16,18 @@ const IMPOSSIBLE: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
+/// Mean of the impact test's statistic in white noise, as the test below measures it.
+const WHITE_LEVEL: f32 = 0.6;
+/// From this ratio to it on, the sensors are louder than white noise.
+const LOUD: f32 = 1.5;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
+    /// The filter of a rotor that floats.
+    calm: Ballistic,
     machine: MachineConfig,
     period: f32,
     threshold: f32,
@@ -43,6 +50,24 @@ pub(crate) struct Airborne {
     lies: f32,
     /// Samples that it has.
     lying: u32,
+}
+
+/// How loud the impact test is while the rotor floats.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Listener {
+    track: Track,
+    bank: JumpBank,
+    level: f32,
+    count: f32,
+}
+
+impl Listener {
+    /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
+    /// clearly louder counts.
+    pub(crate) fn loudness(&self) -> f32 {
+        let ratio = self.level / WHITE_LEVEL;
+        if ratio > LOUD { ratio } else { 1.0 }
+    }
 }
 
 /// What a sample showed.
@@ -83,6 +108,7 @@ impl FlightTest {
         Self {
             ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
+            calm: Ballistic::new(config.sample_rate, 0.0, tuning.flight_error),
             machine,
             period: 1.0 / config.sample_rate,
             threshold,
@@ -93,13 +119,30 @@ impl FlightTest {
 
     /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
     /// (m) at which it lay: what is clearly inside of it is no contact, however near.
-    pub(crate) fn start(&self, fix: &Fix, wall: Option<f32>) -> Airborne {
+    pub(crate) fn start(&self, fix: &Fix, wall: Option<f32>, loudness: f32) -> Airborne {
         let clear = CLEAR_OF_WALL * libm::sqrtf(fix.variance);
         Airborne {
             track: Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED),
+            bank: JumpBank::new(loudness),
             lies: wall.map_or(self.near, |wall| wall - clear),
             ..Airborne::default()
         }
+    }
+
+    /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
+    /// much so is learnt.
+    pub(crate) fn listen(&self, listener: &mut Listener, fix: &Fix) {
+        if listener.count == 0.0 {
+            listener.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+        }
+        self.calm.predict(&mut listener.track);
+        let innovation = self
+            .calm
+            .correct(&mut listener.track, fix.position, fix.variance);
+        self.jumps
+            .update(&mut listener.bank, &innovation, [0.0, 1.0]);
+        listener.count += 1.0;
+        listener.level += (listener.bank.statistic - listener.level) / listener.count;
     }
 
     /// To the next sample without a usable position.
@@ -125,7 +168,7 @@ impl FlightTest {
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, fix);
             flight.track.shift(&jump);
-            flight.bank = JumpBank::default();
+            flight.bank.restart();
             if let Some((bounce, launch_speed)) = impact {
                 flight
                     .series
@@ -160,7 +203,8 @@ impl FlightTest {
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
-        if radius < self.near || normal_speed <= self.faintest(bounce.pressing, fix.variance) {
+        let faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        if radius < self.near || normal_speed <= faintest {
             return None;
         }
         if let Some(last) = flight.series.last()
@@ -237,5 +281,61 @@ pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
         ([x / radius, y / radius], radius)
     } else {
         ([0.0, -1.0], 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::config::{MachineConfig, Tuning};
+    use crate::detect::noise::white;
+
+    fn level(sample_rate: f32, runout: f32) -> f32 {
+        let test = FlightTest::new(
+            &DetectorConfig {
+                sample_rate,
+                machine: MachineConfig {
+                    clearance: 3e-4,
+                    gravity: 9.81,
+                    rotor_radius: 0.024,
+                    inertia_ratio: 0.5,
+                    friction: 0.1,
+                    restitution: 0.8,
+                    spin: 3141.6,
+                },
+                tuning: Tuning::default(),
+            },
+            25.3,
+        );
+        let (mut listener, mut seed) = (Listener::default(), 1);
+        for k in 0..50_000_u16 {
+            let (sin, cos) = libm::sincosf(3141.6 * f32::from(k) / sample_rate);
+            let fix = Fix {
+                now: Moment::default(),
+                position: [
+                    1e-6 * white(&mut seed) + runout * cos,
+                    1e-6 * white(&mut seed) + runout * sin,
+                ],
+                variance: 1e-12,
+            };
+            test.listen(&mut listener, &fix);
+        }
+        listener.level
+    }
+
+    #[test]
+    fn the_level_of_white_noise() {
+        for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
+            let level = level(sample_rate, 0.0);
+            assert!(
+                (level / WHITE_LEVEL - 1.0).abs() < 0.2,
+                "{sample_rate} {level}"
+            );
+        }
+    }
+
+    #[test]
+    fn runout_is_louder() {
+        assert!(level(20_000.0, 3e-6) > 4.0 * WHITE_LEVEL);
     }
 }

@@ -38,6 +38,28 @@ pub(crate) struct JumpBank {
     wait: u16,
     /// Largest statistic of the last sample.
     pub(crate) statistic: f32,
+    /// Factor on the threshold: how much louder than white noise the sensors are.
+    loudness: f32,
+}
+
+impl JumpBank {
+    /// An empty bank.
+    pub(crate) fn new(loudness: f32) -> Self {
+        Self {
+            loudness,
+            ..Self::default()
+        }
+    }
+
+    /// Factor on the threshold.
+    pub(crate) fn loudness(&self) -> f32 {
+        self.loudness
+    }
+
+    /// Forgets what was under way.
+    pub(crate) fn restart(&mut self) {
+        *self = Self::new(self.loudness);
+    }
 }
 
 /// A jump that the test found.
@@ -83,7 +105,7 @@ impl JumpTest {
         }
     }
 
-    /// Takes the innovation of a sample.
+    /// Takes the innovation of a sample, where an impact is looked for.
     pub(crate) fn take(
         &self,
         bank: &mut JumpBank,
@@ -91,6 +113,16 @@ impl JumpTest {
         approach: &Approach,
     ) -> Option<Jump> {
         let inward = approach.outward.map(|n| -n);
+        self.update(bank, innovation, inward);
+        if bank.statistic <= self.threshold * bank.loudness {
+            return None;
+        }
+        let index = self.likeliest(bank, approach, inward)?;
+        Some(self.jump(bank, index, inward))
+    }
+
+    /// Takes the innovation of a sample; the statistic is that of a jump along `inward`.
+    pub(crate) fn update(&self, bank: &mut JumpBank, innovation: &Innovation, inward: [f32; 2]) {
         if bank.wait == 0 {
             bank.wait = self.stride;
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
@@ -118,18 +150,13 @@ impl JumpTest {
             candidate.effect[1] -= innovation.gain[1] * seen;
             bank.statistic = bank.statistic.max(candidate.statistic(inward));
         }
-        if bank.statistic <= self.threshold {
-            return None;
-        }
-        let index = self.likeliest(bank, approach, inward)?;
-        Some(self.jump(bank, index, inward))
     }
 
     /// The likeliest instant. Just after an impact a small jump long ago explains the first sample as
     /// well as a large one now; what restitution makes of the speed into the wall decides. A jump that
     /// does not even stop the rotor at the wall waits for another sample, unless it is past doubt.
     fn likeliest(&self, bank: &JumpBank, approach: &Approach, inward: [f32; 2]) -> Option<usize> {
-        let past_doubt = bank.statistic > 2.0 * self.threshold;
+        let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
         let mut best = (f32::NEG_INFINITY, None);
         for (index, candidate) in bank.candidates.iter().enumerate() {
             let statistic = candidate.statistic(inward);

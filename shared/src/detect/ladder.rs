@@ -2,7 +2,7 @@
 
 use crate::detect::config::DetectorConfig;
 use crate::detect::contact::{ContactTest, Finding, Kind, Regime, Touching};
-use crate::detect::flight::{Airborne, Fix, FlightTest, Landing, direction};
+use crate::detect::flight::{Airborne, Fix, FlightTest, Landing, Listener, direction};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::release::{Release, ReleaseBank};
@@ -73,6 +73,7 @@ pub struct DetectorState {
     release: ReleaseBank,
     pending: Option<Pending>,
     flight: Airborne,
+    listener: Listener,
     contact: Touching,
     still: Still,
     /// First position, m, and whether the rotor has been at the wall since.
@@ -247,6 +248,9 @@ impl Detector {
         let [x, y] = state.levitation.mean;
         let residual = [fix.position[0] - x, fix.position[1] - y];
         let variance = state.levitation.variance.max(fix.variance);
+        if !self.learning.has_position(&state.levitation) {
+            self.flight.listen(&mut state.listener, fix);
+        }
         let released = self
             .learning
             .has_position(&state.levitation)
@@ -256,7 +260,7 @@ impl Detector {
             // Fell before anything was learnt: the wall shows it.
             let (_, radius) = direction(fix.position);
             if state.off_wall && radius >= self.near {
-                state.flight = self.flight.start(fix, None);
+                state.flight = self.flight.start(fix, None, state.listener.loudness());
                 state.phase = Phase::FreeFall;
                 state.still = Still::default();
             }
@@ -265,7 +269,7 @@ impl Detector {
         let Some(age) = released else {
             return;
         };
-        state.flight = self.flight.start(fix, None);
+        state.flight = self.flight.start(fix, None, state.listener.loudness());
         state.phase = Phase::FreeFall;
         state.still = Still::default();
         let number = teller.tell(EventKind::FreeFall, f32::from(age), 0.0);
@@ -311,6 +315,7 @@ impl Detector {
             teller.close(&mut state.pending, false);
             state.phase = Phase::Levitated;
             state.levitation = Levitation::default();
+            state.listener = Listener::default();
             state.release = ReleaseBank::default();
             teller.tell(EventKind::Levitated, 2.0 * self.still_samples as f32, 0.0);
         }
@@ -358,6 +363,12 @@ impl Detector {
         spin: Option<f32>,
         teller: &mut Teller,
     ) {
+        // On the wall, what else moves the sensors is there as it was while levitated.
+        let fix = fix.map(|fix| Fix {
+            variance: fix.variance.max(state.levitation.learnt_variance()),
+            ..*fix
+        });
+        let fix = fix.as_ref();
         for finding in self
             .contact
             .take(&mut state.contact, fix, spin)
@@ -382,7 +393,11 @@ impl Detector {
                 },
                 Finding::LiftOff(age) => {
                     if let Some(fix) = fix {
-                        state.flight = self.flight.start(fix, Some(state.contact.wall()));
+                        state.flight = self.flight.start(
+                            fix,
+                            Some(state.contact.wall()),
+                            state.listener.loudness(),
+                        );
                     }
                     state.phase = Phase::FreeFall;
                     state.still = Still::default();

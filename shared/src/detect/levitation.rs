@@ -72,6 +72,11 @@ impl Learning {
 }
 
 impl Levitation {
+    /// Variance of one axis while floating, m^2; 0 before it has been learnt.
+    pub(crate) fn learnt_variance(&self) -> f32 {
+        if self.armed { self.variance } else { 0.0 }
+    }
+
     /// Whether enough has been learnt.
     pub(crate) fn is_armed(&self) -> bool {
         self.armed

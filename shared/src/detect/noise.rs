@@ -61,6 +61,19 @@ impl Noise {
     }
 }
 
+/// White noise for tests: sum of twelve even numbers, mean 0, variance 1.
+#[cfg(test)]
+pub(crate) fn white(state: &mut u64) -> f32 {
+    let mut sum = -6.0;
+    for _ in 0..12 {
+        *state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        sum += (*state >> 40) as f32 / (1u64 << 24) as f32;
+    }
+    sum
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -125,25 +125,14 @@ impl Release {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Sum of twelve even numbers: mean 0, variance 1.
-    fn noise(state: &mut u64) -> f32 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            *state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            sum += (*state >> 40) as f32 / (1u64 << 24) as f32;
-        }
-        sum
-    }
+    use crate::detect::noise::white;
 
     fn level(sample_rate: f32) -> f32 {
         let release = Release::new(&Tuning::default(), sample_rate, 9.81, 25.3);
         let (mut bank, mut seed) = (ReleaseBank::default(), 1);
         let mut sum = 0.0;
         for _ in 0..200_000 {
-            let residual = [1e-6 * noise(&mut seed), 1e-6 * noise(&mut seed)];
+            let residual = [1e-6 * white(&mut seed), 1e-6 * white(&mut seed)];
             assert_eq!(release.take(&mut bank, residual, 1e-12), None);
             sum += f64::from(bank.statistic);
         }
@@ -172,7 +161,7 @@ mod tests {
         let variance = 450e-12;
         for k in 0..40_000 {
             let [x, y] = orbit(k);
-            let residual = [x + 1e-6 * noise(&mut seed), y + 1e-6 * noise(&mut seed)];
+            let residual = [x + 1e-6 * white(&mut seed), y + 1e-6 * white(&mut seed)];
             // The first samples teach the level.
             let found = release.take(&mut bank, residual, variance);
             assert!(k < 1_000 || found.is_none(), "{k}");
