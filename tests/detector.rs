@@ -114,7 +114,13 @@ fn impacts_are_found_dated_and_measured() {
 
 #[test]
 fn nothing_is_declared_that_did_not_happen() {
-    for name in ["rig", "rig-wide-gap", "rolling", "backward-whirl", "lift-off"] {
+    for name in [
+        "rig",
+        "rig-wide-gap",
+        "rolling",
+        "backward-whirl",
+        "lift-off",
+    ] {
         for (rate, outcome, matches) in campaign(name) {
             let invented: Vec<_> = matches
                 .false_events

@@ -7,8 +7,9 @@ use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::still::Still;
+use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
-use crate::event::{Event, EventKind, Moment, Notice, Notices, Plane};
+use crate::event::{EventKind, Moment, Notices, Plane};
 use crate::sensing::Reading;
 
 /// Velocity along the wall, m/s, that a contact starts with where nothing else is known.
@@ -54,14 +55,6 @@ pub struct Detector {
     catch_samples: u32,
 }
 
-/// A declared fall that is neither confirmed nor withdrawn.
-#[derive(Clone, Copy, Debug)]
-struct Pending {
-    number: u16,
-    /// Samples back within noise.
-    back: u32,
-}
-
 /// What the detector carries from sample to sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DetectorState {
@@ -81,42 +74,6 @@ pub struct DetectorState {
     off_wall: bool,
     /// Channels whose fault has been told.
     faulty: u8,
-}
-
-/// One tick's notices and what they need.
-struct Teller<'a> {
-    sample: u64,
-    plane: Plane,
-    next_number: &'a mut u16,
-    notices: &'a mut Notices,
-}
-
-impl Teller<'_> {
-    fn tell(&mut self, kind: EventKind, age: f32, normal_speed: f32) -> u16 {
-        let number = *self.next_number;
-        *self.next_number = number.wrapping_add(1);
-        // A full list loses the notice, not the tick; NOTICES_PER_TICK is above what one can find.
-        let _ = self.notices.push(Notice::Declared(Event {
-            number,
-            kind,
-            onset: Moment::of_sample(self.sample).later(-age),
-            declared: self.sample,
-            plane: self.plane,
-            normal_speed,
-        }));
-        number
-    }
-
-    fn close(&mut self, pending: &mut Option<Pending>, confirmed: bool) {
-        if let Some(Pending { number, .. }) = pending.take() {
-            let sample = self.sample;
-            let _ = self.notices.push(if confirmed {
-                Notice::Confirmed { number, sample }
-            } else {
-                Notice::Withdrawn { number, sample }
-            });
-        }
-    }
 }
 
 impl Detector {

@@ -12,6 +12,7 @@
 //! | `lift_off` | whether it has left the wall |
 //! | `still` | whether it moves at all |
 //! | `ladder` | which phase all this makes |
+//! | `teller` | the notices of a tick |
 
 mod config;
 mod contact;
@@ -24,6 +25,7 @@ mod noise;
 mod release;
 mod series;
 mod still;
+mod teller;
 mod track;
 mod wall;
 

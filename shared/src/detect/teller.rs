@@ -1,0 +1,49 @@
+//! What a tick says.
+
+use crate::event::{Event, EventKind, Moment, Notice, Notices, Plane};
+
+/// A declared fall that is neither confirmed nor withdrawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pending {
+    pub(crate) number: u16,
+    /// Samples back within noise.
+    pub(crate) back: u32,
+}
+
+/// One tick's notices and what they need.
+pub(crate) struct Teller<'a> {
+    pub(crate) sample: u64,
+    pub(crate) plane: Plane,
+    pub(crate) next_number: &'a mut u16,
+    pub(crate) notices: &'a mut Notices,
+}
+
+impl Teller<'_> {
+    /// Declares an event whose onset was `age` samples ago; its number.
+    pub(crate) fn tell(&mut self, kind: EventKind, age: f32, normal_speed: f32) -> u16 {
+        let number = *self.next_number;
+        *self.next_number = number.wrapping_add(1);
+        // A full list loses the notice, not the tick; NOTICES_PER_TICK is above what one can find.
+        let _ = self.notices.push(Notice::Declared(Event {
+            number,
+            kind,
+            onset: Moment::of_sample(self.sample).later(-age),
+            declared: self.sample,
+            plane: self.plane,
+            normal_speed,
+        }));
+        number
+    }
+
+    /// Confirms or withdraws the pending fall, if there is one.
+    pub(crate) fn close(&mut self, pending: &mut Option<Pending>, confirmed: bool) {
+        if let Some(Pending { number, .. }) = pending.take() {
+            let sample = self.sample;
+            let _ = self.notices.push(if confirmed {
+                Notice::Confirmed { number, sample }
+            } else {
+                Notice::Withdrawn { number, sample }
+            });
+        }
+    }
+}
