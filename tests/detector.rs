@@ -183,7 +183,7 @@ fn permanent_contact_is_dated_by_the_series() {
             worst * 1e3
         );
         assert!(median <= 1e-3, "{name}: median {median}");
-        assert!(worst <= 4e-3, "{name}: worst {worst}");
+        assert!(worst <= 2e-3, "{name}: worst {worst}");
     }
 }
 

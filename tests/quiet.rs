@@ -113,6 +113,21 @@ fn a_drop_after_being_lifted_is_found() {
     assert!(kinds.contains(&EventKind::FreeFall), "{kinds:?}");
 }
 
+#[test]
+fn motion_before_arming_does_not_deafen() {
+    // Brought to the centre within 0.3 s, then floating; released at 1 s.
+    let notices = watched(1.02, |t| {
+        let lift = 150e-6 * (smooth(t / 0.3) - 1.0);
+        [lift, straight_drop(t - 1.0) - CLEARANCE]
+    });
+    let declared = notices.iter().find_map(|notice| match notice {
+        Notice::Declared(event) if event.kind == EventKind::FreeFall => Some(event.declared),
+        _ => None,
+    });
+    let latency = declared.expect("declared") as f64 / 20_000.0 - 1.0;
+    assert!(latency > 0.0 && latency < 1.2e-3, "{latency}");
+}
+
 /// Unbalance: the rotor's centre on a circle.
 fn orbit(frequency: f64, radius: f64) -> impl Fn(f64) -> [f64; 2] {
     move |t| {

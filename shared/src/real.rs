@@ -41,6 +41,8 @@ pub trait Real:
     const EPSILON: Self;
     /// Infinity.
     const INFINITY: Self;
+    /// Halves the digits of a number: 2^(half of them, rounded up) + 1 (Dekker).
+    const SPLITTER: Self;
 
     /// A constant of the source, rounded to this precision.
     fn lit(value: f64) -> Self;
@@ -84,7 +86,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:path, $sincos:path, $atan2:path, $floor:path, $ln:path) => {
+    ($t:ident, $sqrt:path, $sincos:path, $atan2:path, $floor:path, $ln:path, $splitter:literal) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -92,6 +94,7 @@ macro_rules! real {
             const TWO: Self = 2.0;
             const EPSILON: Self = $t::EPSILON;
             const INFINITY: Self = $t::INFINITY;
+            const SPLITTER: Self = $splitter;
 
             fn lit(value: f64) -> Self {
                 value as $t
@@ -142,7 +145,8 @@ real!(
     libm::sincosf,
     libm::atan2f,
     libm::floorf,
-    libm::logf
+    libm::logf,
+    4_097.0
 );
 real!(
     f64,
@@ -150,5 +154,6 @@ real!(
     libm::sincos,
     libm::atan2,
     libm::floor,
-    libm::log
+    libm::log,
+    134_217_729.0
 );

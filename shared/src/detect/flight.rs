@@ -7,7 +7,7 @@ use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
-const UNKNOWN_SPEED: f32 = 0.3;
+pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
 /// Time after the foreseen end of a series in which a missed impact would still show, s.
 const SERIES_MARGIN: f32 = 5e-4;
 

@@ -2,7 +2,9 @@
 
 use crate::detect::config::DetectorConfig;
 use crate::detect::contact::{ContactTest, Finding, Kind, Regime, Touching};
-use crate::detect::flight::{Airborne, Fix, FlightTest, Landing, Listener, direction};
+use crate::detect::flight::{
+    Airborne, Fix, FlightTest, Landing, Listener, UNKNOWN_SPEED, direction,
+};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::release::{Release, ReleaseBank};
@@ -12,8 +14,6 @@ use crate::error::ConfigError;
 use crate::event::{EventKind, Moment, Notices, Plane};
 use crate::sensing::Reading;
 
-/// Velocity along the wall, m/s, that a contact starts with where nothing else is known.
-const UNKNOWN_SPEED: f32 = 0.3;
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
 /// Standard deviations by which a rotor has moved for certain.
@@ -202,6 +202,11 @@ impl Detector {
         teller: &mut Teller,
     ) {
         self.learning.take(&mut state.levitation, fix.position);
+        if state.levitation.is_fresh() {
+            // It still moved: what the tests learnt of it goes as well.
+            state.listener = Listener::default();
+            state.release = ReleaseBank::default();
+        }
         let [x, y] = state.levitation.mean;
         let residual = [fix.position[0] - x, fix.position[1] - y];
         let variance = state.levitation.variance.max(fix.variance);

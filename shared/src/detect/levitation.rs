@@ -72,6 +72,11 @@ impl Learning {
 }
 
 impl Levitation {
+    /// Whether learning has just begun, or begun again.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.count == 0
+    }
+
     /// Variance of one axis while floating, m^2; 0 before it has been learnt.
     pub(crate) fn learnt_variance(&self) -> f32 {
         if self.armed { self.variance } else { 0.0 }

@@ -1,6 +1,51 @@
 //! Time as whole steps and a fraction: exact after any number of steps.
 
+use crate::model::sum::product_error;
 use crate::real::Real;
+
+/// Length of a step, in units of T, and the part of it that its rounding took off: over the impacts of
+/// a long run the rounding of the length alone would shift all moments alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StepLength<R> {
+    length: R,
+    /// Rest over length.
+    rest: R,
+}
+
+impl<R: Real> StepLength<R> {
+    /// A length that is exact.
+    pub(crate) fn new(length: R) -> Self {
+        Self {
+            length,
+            rest: R::ZERO,
+        }
+    }
+
+    /// Whole steps in `time` and the fraction beyond them; the fraction is as accurate as after a short
+    /// time.
+    fn split(&self, time: R) -> (R, R) {
+        let whole = (time / self.length).floor();
+        let left = (time - whole * self.length) - product_error(whole, self.length);
+        (whole, left / self.length - (time / self.length) * self.rest)
+    }
+
+    /// Time of `steps`.
+    pub(crate) fn time(&self, steps: R) -> R {
+        let time = steps * self.length;
+        time + time * self.rest
+    }
+}
+
+impl StepLength<f64> {
+    /// Rounded once, with the rest.
+    pub(crate) fn rounded(&self) -> StepLength<f32> {
+        let length = self.length as f32;
+        StepLength {
+            length,
+            rest: (self.length / f64::from(length) - 1.0) as f32,
+        }
+    }
+}
 
 /// A moment on the model's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,16 +71,18 @@ impl<R: Real> Instant<R> {
         }
     }
 
-    /// `steps` (0 or more, not whole) later.
-    pub(crate) fn after(self, steps: R) -> Self {
-        let sum = self.fraction + steps;
+    /// `time` (0 or more) later.
+    pub(crate) fn after(self, time: R, step: &StepLength<R>) -> Self {
+        let (whole, part) = step.split(time);
+        let sum = self.fraction + part;
         if !sum.is_finite() {
             return Self::NEVER;
         }
-        let whole = sum.floor();
+        let carry = sum.floor();
+        let tick = self.tick.saturating_add(whole.to_u64());
         Self {
-            tick: self.tick.saturating_add(whole.to_u64()),
-            fraction: sum - whole,
+            tick: tick.saturating_add_signed(carry.to_i64()),
+            fraction: sum - carry,
         }
     }
 

@@ -148,7 +148,7 @@ impl<R: Precision> Rigid<R> {
             onto,
             stuck: still_stuck,
         };
-        state.ends = state.begun.after(rest / self.step);
+        state.ends = state.begun.after(rest, &self.step);
     }
 
     pub(crate) fn launch(
@@ -173,7 +173,7 @@ impl<R: Precision> Rigid<R> {
     ) {
         let to = next(&flight, &self.law);
         state.turns = (0, R::ZERO);
-        state.ends = state.begun.after(to.after / self.step);
+        state.ends = state.begun.after(to.after, &self.step);
         state.motion = Motion::Flight { flight, to };
     }
 
@@ -193,7 +193,7 @@ impl<R: Precision> Rigid<R> {
     fn touch(&self, state: &mut RigidState<R>, onto: WallState<R>, grip: Grip) {
         let contact = Contact::new(onto, grip, &self.law);
         state.spin = onto.spin;
-        state.ends = state.begun.after(contact.span / self.step);
+        state.ends = state.begun.after(contact.span, &self.step);
         state.motion = Motion::Contact(contact);
     }
 
@@ -251,7 +251,7 @@ impl<R: Precision> Rigid<R> {
             return;
         }
         let now = state.now;
-        let time = now.since(state.begun) * self.step;
+        let time = self.step.time(now.since(state.begun));
         let (onto, angle, stuck) = whirl(&contact.base, contact.mode, time, &self.law);
         state.turn(angle);
         state.begun = now;

@@ -63,7 +63,7 @@ impl<R: Precision> Rigid<R> {
     /// The rotor now.
     pub fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
         let elapsed = state.now.since(state.begun);
-        self.kinematics_after(state, elapsed.least(state.steps()) * self.step)
+        self.kinematics_after(state, self.step.time(elapsed.least(state.steps())))
     }
 
     pub(crate) fn kinematics_after(&self, state: &RigidState<R>, time: R) -> Kinematics<R> {

@@ -1,6 +1,7 @@
 //! Rung `rigid`: a rigid rotor in a rigid retainer, in the plane.
 
 use crate::error::ConfigError;
+use crate::model::clock::StepLength;
 use crate::model::law::Law;
 use crate::model::precision::Precision;
 use crate::scales::{Scales, not_negative, positive};
@@ -32,7 +33,7 @@ pub struct RigidConfig<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid<R> {
     pub(crate) law: Law<R>,
-    pub(crate) step: R,
+    pub(crate) step: StepLength<R>,
     scales: Scales<R>,
 }
 
@@ -62,7 +63,7 @@ impl<R: Precision> Rigid<R> {
         .checked()?;
         Ok(Self {
             law,
-            step: config.step / scales.time,
+            step: StepLength::new(config.step / scales.time),
             scales,
         })
     }
@@ -83,7 +84,7 @@ impl Rigid<f64> {
                 inertia_ratio: self.law.inertia_ratio as f32,
                 gravity: self.law.gravity as f32,
             },
-            step: self.step as f32,
+            step: self.step.rounded(),
             scales: Scales {
                 length: self.scales.length as f32,
                 time: self.scales.time as f32,

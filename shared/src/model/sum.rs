@@ -2,6 +2,17 @@
 
 use crate::real::Real;
 
+/// What rounding takes off a product (Dekker's, without fused multiply-add).
+pub(crate) fn product_error<R: Real>(a: R, b: R) -> R {
+    let halves = |x: R| {
+        let scaled = x * R::SPLITTER;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
+    ((a1 * b1 - a * b) + a1 * b2 + a2 * b1) + a2 * b2
+}
+
 /// A value and the part of it that does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sum<R> {
