@@ -50,7 +50,7 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     rows.push(html! {
         td { "Position at the end, part of the clearance" }
         td.number {} td.number {}
-        td.number { (error(apart(model, truth) / subject.clearance)) }
+        td.number { (error(apart(model, truth) / subject.machine.clearance)) }
     });
     html! {
         p {

@@ -30,7 +30,7 @@ pub fn displacement(window: Window, subject: &Subject, outcome: &Outcome) -> Mar
 
 fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
-    let reach = 1.12 * subject.clearance * MICRO;
+    let reach = 1.12 * subject.machine.clearance * MICRO;
     let name = ["x (right)", "y (up)"][axis];
     let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
     let chart = Chart {
@@ -48,7 +48,7 @@ fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> M
         let time = point.state.time * factor;
         let position = point.state.position[axis] * MICRO;
         match last {
-            Some(from) if far(from, point, subject.clearance) => motion.dot(time, position),
+            Some(from) if far(from, point, subject.machine.clearance) => motion.dot(time, position),
             _ => motion.line_to(time, position),
         }
         last = Some(point);
@@ -59,8 +59,8 @@ fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> M
     let mut wall = chart.pen();
     for side in [-1.0, 1.0] {
         wall.lift();
-        wall.line_to(x.lo, side * subject.clearance * MICRO);
-        wall.line_to(x.hi, side * subject.clearance * MICRO);
+        wall.line_to(x.lo, side * subject.machine.clearance * MICRO);
+        wall.line_to(x.hi, side * subject.machine.clearance * MICRO);
     }
     let curves = html! {
         (wall.finish("wall"))

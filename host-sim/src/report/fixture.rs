@@ -15,13 +15,15 @@ pub fn subject() -> Subject {
     Subject {
         title: "Rotor drop, paper rig".to_owned(),
         source: "section 4 of the paper".to_owned(),
-        mass: 3.42,
-        radius: 0.024,
-        polar_inertia: 9.8496e-4,
-        clearance: 0.3e-3,
-        friction: 0.1,
-        restitution: 0.8,
-        gravity: 9.81,
+        machine: Machine {
+            mass: 3.42,
+            radius: 0.024,
+            polar_inertia: 9.8496e-4,
+            clearance: 0.3e-3,
+            friction: 0.1,
+            restitution: 0.8,
+            gravity: 9.81,
+        },
         spin: -3141.592653589793,
         duration: 0.3,
         sample_rate: RATE,
@@ -43,16 +45,7 @@ pub fn start() -> Start {
 
 /// A drop; the model is as good as the reference.
 pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
-    let machine = Machine {
-        mass: subject.mass,
-        radius: subject.radius,
-        polar_inertia: subject.polar_inertia,
-        clearance: subject.clearance,
-        friction: subject.friction,
-        restitution: subject.restitution,
-        gravity: subject.gravity,
-    };
-    let mut reference = Reference::new(&machine, start, subject.spin);
+    let mut reference = Reference::new(&subject.machine, start, subject.spin);
     let (lead, held) = match *start {
         Start::Free { position, .. } => (LEAD, position),
         Start::Wall { .. } => (0.0, [0.0; 2]),

@@ -20,6 +20,7 @@ mod tests;
 
 use crate::matching::match_events;
 use crate::outcome::Outcome;
+use crate::reference::Machine;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use window::Window;
 
@@ -30,20 +31,8 @@ pub struct Subject {
     pub title: String,
     /// Where the scene comes from.
     pub source: String,
-    /// kg.
-    pub mass: f64,
-    /// Of the rotor at the retainer, m.
-    pub radius: f64,
-    /// kg m2.
-    pub polar_inertia: f64,
-    /// Radial, m.
-    pub clearance: f64,
-    /// Coulomb's coefficient.
-    pub friction: f64,
-    /// Coefficient of restitution.
-    pub restitution: f64,
-    /// Downwards, m/s2.
-    pub gravity: f64,
+    /// Rotor and retainer.
+    pub machine: Machine,
     /// At the release, counter-clockwise positive, rad/s.
     pub spin: f64,
     /// From the release, s.
@@ -66,7 +55,11 @@ pub struct Subject {
 pub fn render(subject: &Subject, outcome: &Outcome) -> String {
     let matches = match_events(&outcome.truth, &outcome.detection);
     let whole = Window::whole(&outcome.truth);
-    let window = Window::interesting(&outcome.truth, subject.clearance, subject.gravity);
+    let window = Window::interesting(
+        &outcome.truth,
+        subject.machine.clearance,
+        subject.machine.gravity,
+    );
     let zoomed = window != whole;
     let body = html! {
         (verdict::verdict(subject, outcome, &matches))

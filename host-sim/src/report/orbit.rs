@@ -15,8 +15,8 @@ const RADIUS: f64 = 180.0;
 
 /// Draws the whole run with equal axes.
 pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
-    let scale = RADIUS / subject.clearance;
-    let micro = 1.25 * subject.clearance * 1e6;
+    let scale = RADIUS / subject.machine.clearance;
+    let micro = 1.25 * subject.machine.clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
@@ -71,7 +71,9 @@ fn path(run: &[TracePoint], subject: &Subject, scale: f64) -> String {
                 let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
                 write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
             }
-            Some((_, from)) if far(from, point, subject.clearance) => write!(path, "M{x} {y}h0"),
+            Some((_, from)) if far(from, point, subject.machine.clearance) => {
+                write!(path, "M{x} {y}h0")
+            }
             Some(_) => write!(path, "L{x} {y}"),
         };
         last = Some((to, point));

@@ -14,23 +14,26 @@ pub fn parameters(subject: &Subject) -> Markup {
         _ => ", clockwise",
     };
     let physical = [
-        ("Mass", si(subject.mass, "kg")),
-        ("Rotor radius at the retainer", si(subject.radius, "m")),
+        ("Mass", si(subject.machine.mass, "kg")),
+        (
+            "Rotor radius at the retainer",
+            si(subject.machine.radius, "m"),
+        ),
         (
             "Polar inertia",
             format!(
                 "{}\u{a0}kg\u{a0}m\u{b2}",
-                significant(subject.polar_inertia, 5)
+                significant(subject.machine.polar_inertia, 5)
             ),
         ),
         (
             "Radial clearance \u{3c1}\u{2080}",
-            si(subject.clearance, "m"),
+            si(subject.machine.clearance, "m"),
         ),
         ("Spin at the release", format!("{rpm}\u{a0}rpm{turn}")),
         (
             "Gravity",
-            format!("{}\u{a0}m/s\u{b2}", significant(subject.gravity, 5)),
+            format!("{}\u{a0}m/s\u{b2}", significant(subject.machine.gravity, 5)),
         ),
     ];
     let run = [
@@ -50,19 +53,23 @@ pub fn parameters(subject: &Subject) -> Markup {
 }
 
 fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
-    let beta = subject.polar_inertia / (subject.mass * subject.radius * subject.radius);
-    let time = (subject.clearance / subject.gravity).sqrt();
-    let speed = (subject.clearance * subject.gravity).sqrt();
+    let beta = subject.machine.polar_inertia
+        / (subject.machine.mass * subject.machine.radius * subject.machine.radius);
+    let time = (subject.machine.clearance / subject.machine.gravity).sqrt();
+    let speed = (subject.machine.clearance * subject.machine.gravity).sqrt();
     let mut scales = vec![
-        ("Friction \u{b5}", significant(subject.friction, 4)),
-        ("Restitution \u{3b5}", significant(subject.restitution, 4)),
+        ("Friction \u{b5}", significant(subject.machine.friction, 4)),
+        (
+            "Restitution \u{3b5}",
+            significant(subject.machine.restitution, 4),
+        ),
         ("Inertia \u{3b2} = J/(m r\u{b2})", significant(beta, 4)),
     ];
-    if subject.gravity > 0.0 {
+    if subject.machine.gravity > 0.0 {
         scales.extend([
             (
                 "Spin W\u{2080} = r \u{3c9}\u{2080}/V",
-                significant(subject.radius * subject.spin / speed, 5),
+                significant(subject.machine.radius * subject.spin / speed, 5),
             ),
             ("Time T = \u{221a}(\u{3c1}\u{2080}/g)", si(time, "s")),
             ("Speed V = \u{221a}(g \u{3c1}\u{2080})", si(speed, "m/s")),
@@ -77,9 +84,9 @@ fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
 
 /// Least angular speed at the bottom from which a rotor driven by friction keeps contact for a turn.
 fn whirl_speed(subject: &Subject) -> f64 {
-    let friction = subject.friction;
+    let friction = subject.machine.friction;
     let drive = 3.0 * (1.0 + (-2.0 * PI * friction).exp()) / (1.0 + 4.0 * friction * friction);
-    (subject.gravity / subject.clearance * (drive - 1.0)).sqrt()
+    (subject.machine.gravity / subject.machine.clearance * (drive - 1.0)).sqrt()
 }
 
 fn list(name: &str, rows: &[(&str, String)]) -> Markup {

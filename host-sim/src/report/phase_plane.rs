@@ -33,7 +33,7 @@ pub fn phase_plane(subject: &Subject, outcome: &Outcome) -> Markup {
     if low == high {
         return html! { p.note { "The rotor did not move along the wall." } };
     }
-    let slow = BEGINNING * (subject.gravity / subject.clearance).sqrt();
+    let slow = BEGINNING * (subject.machine.gravity / subject.machine.clearance).sqrt();
     let beginning = slow > 0.0 && high.max(-low) > 3.0 * slow;
     html! {
         @if beginning {
@@ -84,7 +84,7 @@ fn plane(
 fn at_wall(state: &RotorState, subject: &Subject) -> Option<(f64, f64)> {
     let ([x, y], [vx, vy]) = (state.position, state.velocity);
     let radius = f64::hypot(x, y);
-    let near = radius > NEAR * subject.clearance;
+    let near = radius > NEAR * subject.machine.clearance;
     near.then(|| {
         (
             x.atan2(-y).to_degrees(),
@@ -104,7 +104,9 @@ fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -
         };
         let rate = rate * factor;
         match last {
-            Some((_, _, from)) if far(from, point, subject.clearance) => pen.dot(angle, rate),
+            Some((_, _, from)) if far(from, point, subject.machine.clearance) => {
+                pen.dot(angle, rate)
+            }
             Some((before, slower, _)) if (angle - before).abs() > 180.0 => {
                 let turn = 360f64.copysign(before);
                 pen.line_to(angle + turn, rate);
@@ -121,7 +123,7 @@ fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -
 
 /// Where the wall's force vanishes: `theta-dot^2 = -(g/clearance) cos theta`.
 fn contact_limit(subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
-    let pressing = subject.gravity / subject.clearance;
+    let pressing = subject.machine.gravity / subject.machine.clearance;
     for side in [-1.0, 1.0] {
         for half in [90..=180, -180..=-90] {
             pen.lift();

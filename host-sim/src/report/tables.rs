@@ -122,7 +122,7 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
         return html! { p { "None." } };
     }
     let found: Vec<&Match> = matches.of_kind(EventKind::Impact).collect();
-    let hard = |impact: &Impact| impact.normal_impulse / subject.mass >= DESIGN_JUMP;
+    let hard = |impact: &Impact| impact.normal_impulse / subject.machine.mass >= DESIGN_JUMP;
     let hard: Vec<bool> = truth.iter().map(hard).collect();
     let detected = found.iter().filter(|it| it.detected.is_some()).count();
     let hard_found = found

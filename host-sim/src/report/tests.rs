@@ -3,7 +3,7 @@
 use super::{Subject, fixture, render};
 use crate::history::{Recorder, RotorState};
 use crate::outcome::{Detection, Outcome};
-use crate::reference::Start;
+use crate::reference::{Machine, Start};
 use std::path::Path;
 
 /// Every element is closed by its own end tag, in order; `path` and the like must be, inside `svg`.
@@ -71,7 +71,10 @@ fn the_drop_of_the_paper() {
 #[test]
 fn slow_spin_ends_in_rolling() {
     let subject = Subject {
-        friction: 0.15,
+        machine: Machine {
+            friction: 0.15,
+            ..fixture::subject().machine
+        },
         spin: -31.415_926_535_897_93,
         duration: 0.8,
         ..fixture::subject()
@@ -120,8 +123,11 @@ fn backward_whirl_grows_without_bound() {
 #[test]
 fn minutes_of_bouncing_stay_small() {
     let subject = Subject {
-        friction: 0.0,
-        restitution: 1.0,
+        machine: Machine {
+            friction: 0.0,
+            restitution: 1.0,
+            ..fixture::subject().machine
+        },
         duration: 600.0,
         ..fixture::subject()
     };
@@ -142,7 +148,10 @@ fn nothing_to_show_renders() {
 #[test]
 fn without_gravity_renders() {
     let subject = Subject {
-        gravity: 0.0,
+        machine: Machine {
+            gravity: 0.0,
+            ..fixture::subject().machine
+        },
         spin: 0.0,
         ..fixture::subject()
     };

@@ -24,7 +24,7 @@ pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
                 (motion(truth)) " " (detection(outcome, matches))
             }
             dl.figures {
-                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth, subject.clearance)))
+                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth, subject.machine.clearance)))
                 (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
                 (figure("First contact", &contact.0, contact.1))
                 (fall_figure(outcome, matches))
