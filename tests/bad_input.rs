@@ -187,7 +187,7 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nprecision = \"f16\"",
-            "scene.toml:12: precision must be \"f64\" or \"f32\"",
+            "scene.toml:12: precision must be \"f32\" or \"f64\"",
         ),
         ("[sensors]\nbits = 3", "scene.toml:12: bits must be 4 to 16"),
         (

@@ -2,21 +2,72 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Instant, Kinematics, Precision, Rigid, RigidConfig, RigidState, Start as ScaledStart,
+    Change, Instant, Kinematics, Precision, Rigid, RigidConfig, Start as ScaledStart, Stepper,
     Touch,
 };
 use touchdown_core::scales::Scales;
 
 use crate::history::{Happening, History, Impact, Recorder, RotorState};
 use crate::reference::Start;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Math, Rung, Scene};
 
 /// Part of the speed scale below which a rotor in contact is at rest.
 const STILL: f64 = 1e-6;
 
-/// Runs the scene's rung from the release to the end.
-pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
-    let model = Rigid::try_new(&RigidConfig {
+/// What is done with a model, whatever its rung and numbers.
+pub trait Use {
+    /// What comes of it.
+    type Output;
+
+    /// Uses `subject`.
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<Self::Output, ConfigError>;
+}
+
+/// A model and where it starts.
+pub struct Subject<R, M> {
+    /// The model.
+    pub model: M,
+    /// Its start.
+    pub start: ScaledStart<R>,
+    /// Its spin, as surface speed.
+    pub spin: R,
+    /// Its units.
+    pub scales: Scales<f64>,
+}
+
+/// Builds the scene's rung in the scene's numbers, for `what`.
+pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
+    match (scene.model.precision, scene.model.math) {
+        (scene::Precision::F64, Math::Libm) => in_numbers::<f64, U>(scene, what),
+        (scene::Precision::F32, Math::Libm) => in_numbers::<f32, U>(scene, what),
+        _ => Err(ConfigError::OutOfRange("math", "\"libm\"")),
+    }
+}
+
+fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
+    match scene.model.rung {
+        Rung::Rigid => {
+            let model = rigid(scene)?;
+            what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+        }
+        Rung::Moreau | Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
+    }
+}
+
+fn subject<R: Precision, M>(scene: &Scene, model: M, scales: Scales<f64>) -> Subject<R, M> {
+    Subject {
+        model,
+        start: scaled(&scene.start, &scales).rounded(),
+        spin: R::lit(scene.rotor.spin / scales.spin),
+        scales,
+    }
+}
+
+fn rigid(scene: &Scene) -> Result<Rigid<f64>, ConfigError> {
+    Rigid::try_new(&RigidConfig {
         mass: scene.rotor.mass,
         radius: scene.rotor.radius,
         polar_inertia: scene.rotor.polar_inertia,
@@ -26,19 +77,12 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
         gravity: scene.run.gravity,
         speed: start_speed(scene),
         step: scene.model.step,
-    })?;
-    let scales = *model.scales();
-    let spin = scene.rotor.spin / scales.spin;
-    match (scene.model.precision, scaled(&scene.start, &scales)) {
-        (scene::Precision::F64, start) => run(&model, &start, spin, scene, &scales),
-        (scene::Precision::F32, start) => run(
-            &model.rounded(),
-            &rounded(&start),
-            spin as f32,
-            scene,
-            &scales,
-        ),
-    }
+    })
+}
+
+/// Runs the scene's model from the release to the end.
+pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
+    with_model(scene, Simulate(scene))
 }
 
 /// Sets the scale where there is no gravity.
@@ -67,90 +111,71 @@ fn scaled(start: &Start, scales: &Scales<f64>) -> ScaledStart<f64> {
     }
 }
 
-fn rounded(start: &ScaledStart<f64>) -> ScaledStart<f32> {
-    match *start {
-        ScaledStart::Free { position, velocity } => ScaledStart::Free {
-            position: position.map(|x| x as f32),
-            velocity: velocity.map(|v| v as f32),
-        },
-        ScaledStart::Wall {
-            sin,
-            cos,
-            tangential,
-        } => ScaledStart::Wall {
-            sin: sin as f32,
-            cos: cos as f32,
-            tangential: tangential as f32,
-        },
+struct Simulate<'a>(&'a Scene);
+
+impl Use for Simulate<'_> {
+    type Output = History;
+
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<History, ConfigError> {
+        let scene = self.0;
+        let Subject {
+            model,
+            start,
+            spin,
+            scales,
+        } = subject;
+        let step = scene.model.step;
+        let mut recorder = Recorder::new(-scene.first_sample_time());
+        let mass = scene.rotor.mass;
+        let mut take = |happening: touchdown_core::model::Happening<R>| {
+            let time = seconds(happening.at, step);
+            let after = to_si(&happening.after, time, scales);
+            recorder.take(match happening.change {
+                Change::Impact(normal) => {
+                    let normal_speed = normal.to_f64() * scales.speed;
+                    Happening::Impact(Impact {
+                        state: after,
+                        normal_speed,
+                        normal_impulse: mass * (1.0 + scene.retainer.restitution) * normal_speed,
+                    })
+                }
+                Change::ContactStarts => Happening::ContactStart {
+                    time,
+                    rolling: happening.after.touch == Touch::Rolling,
+                },
+                Change::RollingStarts => Happening::RollingStart(time),
+                Change::SlidingStarts => Happening::SlidingStart(time),
+                Change::LiftsOff => Happening::LiftOff(time),
+            });
+        };
+        let mut state = model.start(start, *spin, &mut take)?;
+        let (steps, fraction) = steps_of_run(scene.run.duration / step);
+        for _ in 0..steps {
+            model.step(&mut state, &mut take);
+        }
+        if fraction > 0.0 {
+            model.part_step(&mut state, R::lit(fraction), &mut take);
+        }
+        let last = to_si(&model.kinematics(&state), scene.run.duration, scales);
+        Ok(recorder.finish(last, STILL * scales.speed))
     }
 }
 
-fn run<R: Precision>(
-    model: &Rigid<R>,
-    start: &ScaledStart<R>,
-    spin: R,
-    scene: &Scene,
-    scales: &Scales<f64>,
-) -> Result<History, ConfigError> {
-    let step = scene.model.step;
-    let mut recorder = Recorder::new(-scene.first_sample_time());
-    let mass = scene.rotor.mass;
-    let mut take = |happening: touchdown_core::model::Happening<R>| {
-        let time = seconds(happening.at, step);
-        let after = to_si(&happening.after, time, scales);
-        recorder.take(match happening.change {
-            Change::Impact(normal) => {
-                let normal_speed = normal.to_f64() * scales.speed;
-                Happening::Impact(Impact {
-                    state: after,
-                    normal_speed,
-                    normal_impulse: mass * (1.0 + scene.retainer.restitution) * normal_speed,
-                })
-            }
-            Change::ContactStarts => Happening::ContactStart {
-                time,
-                rolling: happening.after.touch == Touch::Rolling,
-            },
-            Change::RollingStarts => Happening::RollingStart(time),
-            Change::SlidingStarts => Happening::SlidingStart(time),
-            Change::LiftsOff => Happening::LiftOff(time),
-        });
-    };
-    let mut state = model.start(start, spin, &mut take)?;
-    let end = end_of_run::<R>(scene.run.duration / step);
-    for _ in 0..end.tick {
-        model.step(&mut state, &mut take);
-    }
-    if end.fraction > R::ZERO {
-        model.advance(&mut state, end, &mut take);
-    }
-    let last = last_state(model, &state, scene.run.duration, scales);
-    Ok(recorder.finish(last, STILL * scales.speed))
-}
-
-/// A duration that is a whole number of steps but for rounding ends on the last of them.
-fn end_of_run<R: Precision>(steps: f64) -> Instant<R> {
+/// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
+/// rounding ends on the last of them.
+fn steps_of_run(steps: f64) -> (u64, f64) {
     let nearest = steps.round();
     if (steps - nearest).abs() <= 1e-9 * nearest {
-        return Instant::at_tick(nearest as u64);
+        return (nearest as u64, 0.0);
     }
-    Instant {
-        tick: steps.floor() as u64,
-        fraction: R::lit(steps.fract()),
-    }
+    (steps.floor() as u64, steps.fract())
 }
 
 fn seconds<R: Precision>(at: Instant<R>, step: f64) -> f64 {
     (at.tick as f64 + at.fraction.to_f64()) * step
-}
-
-fn last_state<R: Precision>(
-    model: &Rigid<R>,
-    state: &RigidState<R>,
-    time: f64,
-    scales: &Scales<f64>,
-) -> RotorState {
-    to_si(&model.kinematics(state), time, scales)
 }
 
 fn to_si<R: Precision>(k: &Kinematics<R>, time: f64, scales: &Scales<f64>) -> RotorState {

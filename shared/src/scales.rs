@@ -41,6 +41,18 @@ impl<R: Real> Scales<R> {
     }
 }
 
+impl Scales<f64> {
+    /// Each rounded once.
+    pub(crate) fn rounded<R: Real>(&self) -> Scales<R> {
+        Scales {
+            length: R::lit(self.length),
+            time: R::lit(self.time),
+            speed: R::lit(self.speed),
+            spin: R::lit(self.spin),
+        }
+    }
+}
+
 /// Finite and above zero, or the rule that is broken.
 pub(crate) fn positive<R: Real>(name: &'static str, value: R) -> Result<(), ConfigError> {
     if !value.is_finite() {

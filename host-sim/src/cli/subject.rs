@@ -4,7 +4,7 @@ use maud::{DOCTYPE, html};
 
 use crate::outcome::Detection;
 use crate::report::Subject;
-use crate::scene::{Precision, Scene};
+use crate::scene::Scene;
 use crate::timeline;
 
 pub(super) fn subject(scene: &Scene) -> Subject {
@@ -15,11 +15,7 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         spin: scene.rotor.spin,
         duration: scene.run.duration,
         sample_rate: scene.run.sample_rate,
-        precision: match scene.model.precision {
-            Precision::F32 => "f32",
-            Precision::F64 => "f64",
-        }
-        .to_owned(),
+        precision: scene.model.precision.name().to_owned(),
         step: scene.model.step,
         seed: scene.run.seed,
         noise: scene.sensors.noise,

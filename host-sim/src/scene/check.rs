@@ -8,7 +8,7 @@ use super::file::{
 };
 use super::flaw::Flaw;
 use super::limits;
-use super::{Model, Precision, Retainer, Rotor, Run, Rung, Scene, Start};
+use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start};
 use crate::sensors::SensorsConfig;
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -193,23 +193,20 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
 
 fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     let rung = match table.rung.as_deref() {
-        None | Some("rigid") => Rung::Rigid,
-        Some(later @ ("moreau" | "hertz" | "support" | "two-plane")) => {
-            let rule = format!("rung \"{later}\" is not available yet; available: \"rigid\"");
-            return Err(Flaw::new("model", "rung", rule));
-        }
-        Some(other) => {
-            let rule = format!("there is no rung \"{other}\"; available: \"rigid\"");
-            return Err(Flaw::new("model", "rung", rule));
-        }
+        None => Rung::Rigid,
+        Some(name) => named("rung", name, &[Rung::Rigid], Rung::name)?,
+    };
+    let scheme = match table.scheme.as_deref() {
+        None => rung.schemes()[0],
+        Some(name) => named("scheme", name, rung.schemes(), Scheme::name)?,
     };
     let precision = match table.precision.as_deref() {
-        None | Some("f64") => Precision::F64,
-        Some("f32") => Precision::F32,
-        Some(other) => {
-            let rule = format!("precision must be \"f64\" or \"f32\", is \"{other}\"");
-            return Err(Flaw::new("model", "precision", rule));
-        }
+        None => Precision::F64,
+        Some(name) => named("precision", name, &Precision::ALL, Precision::name)?,
+    };
+    let math = match table.math.as_deref() {
+        None => Math::Libm,
+        Some(name) => named("math", name, &[Math::Libm], Math::name)?,
     };
     let step = match table.step_us {
         Some(step) => MICRO * between("model", "step_us", step, 1.0..=1000.0)?,
@@ -217,9 +214,31 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     };
     Ok(Model {
         rung,
+        scheme,
         precision,
+        math,
         step,
     })
+}
+
+/// The one of `all` that has this name.
+fn named<T: Copy>(
+    key: &'static str,
+    given: &str,
+    all: &[T],
+    name: impl Fn(T) -> &'static str,
+) -> Result<T, Flaw> {
+    all.iter()
+        .copied()
+        .find(|&item| name(item) == given)
+        .ok_or_else(|| {
+            let names: Vec<_> = all
+                .iter()
+                .map(|&item| format!("\"{}\"", name(item)))
+                .collect();
+            let rule = format!("{key} must be {}, is \"{given}\"", names.join(" or "));
+            Flaw::new("model", key, rule)
+        })
 }
 
 fn sensors(table: &SensorsTable) -> Result<SensorsConfig, Flaw> {

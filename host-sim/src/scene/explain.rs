@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use super::{Precision, Rung, Scene, Start};
+use super::{Scene, Start};
 use crate::sensors::SensorsConfig;
 
 /// The explanation, for people.
@@ -30,11 +30,7 @@ fn section(text: &mut String, title: &str, rows: &[Row]) {
 }
 
 fn model(scene: &Scene) -> Vec<Row> {
-    let Rung::Rigid = scene.model.rung;
-    let precision = match scene.model.precision {
-        Precision::F32 => "f32",
-        Precision::F64 => "f64",
-    };
+    let precision = scene.model.precision.name();
     let start = match scene.start {
         Start::Free { .. } => "released in the gap, after 0.2 s of levitation",
         Start::Wall { .. } => "on the wall; the detector starts cold",

@@ -77,6 +77,8 @@ fn default_seed() -> u64 {
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelTable {
     pub rung: Option<String>,
+    pub scheme: Option<String>,
+    pub math: Option<String>,
     pub precision: Option<String>,
     pub step_us: Option<f64>,
 }

@@ -6,13 +6,14 @@ mod explain;
 mod file;
 mod flaw;
 mod limits;
+mod model;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;
+pub use model::{Math, Model, Precision, Rung, Scheme};
 
 use std::path::Path;
 
-use serde::Serialize;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::monitor::MonitorConfig;
 
@@ -81,35 +82,6 @@ pub struct Run {
     pub sample_rate: f64,
     /// Of everything random.
     pub seed: u64,
-}
-
-/// Rung of the ladder of models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rung {
-    /// Restitution and Coulomb friction on a rigid ring.
-    Rigid,
-}
-
-/// Number format of the model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Precision {
-    /// Single.
-    F32,
-    /// Double.
-    F64,
-}
-
-/// What is modelled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Model {
-    /// The rung.
-    pub rung: Rung,
-    /// Its number format.
-    pub precision: Precision,
-    /// Output interval, s.
-    pub step: f64,
 }
 
 /// Time held by the magnetic bearings before the release of a free start, s.

@@ -38,11 +38,11 @@ impl<R: Real> StepLength<R> {
 
 impl StepLength<f64> {
     /// Rounded once, with the rest.
-    pub(crate) fn rounded(&self) -> StepLength<f32> {
-        let length = self.length as f32;
+    pub(crate) fn rounded<R: Real>(&self) -> StepLength<R> {
+        let length = R::lit(self.length);
         StepLength {
             length,
-            rest: (self.length / f64::from(length) - 1.0) as f32,
+            rest: R::lit(self.length / length.to_f64() - 1.0),
         }
     }
 }

@@ -87,3 +87,15 @@ impl<R: Real> Law<R> {
         )
     }
 }
+
+impl Law<f64> {
+    /// Every coefficient rounded once.
+    pub(crate) fn rounded<R: Real>(&self) -> Law<R> {
+        Law {
+            friction: R::lit(self.friction),
+            restitution: R::lit(self.restitution),
+            inertia_ratio: R::lit(self.inertia_ratio),
+            gravity: R::lit(self.gravity),
+        }
+    }
+}

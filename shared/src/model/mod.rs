@@ -17,6 +17,7 @@ mod rigid;
 mod series;
 mod start;
 mod state;
+mod stepper;
 mod sum;
 mod whirl;
 
@@ -26,3 +27,4 @@ pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
 pub use state::RigidState;
+pub use stepper::Stepper;

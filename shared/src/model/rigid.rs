@@ -1,9 +1,13 @@
 //! Rung `rigid`: a rigid rotor in a rigid retainer, in the plane.
 
 use crate::error::ConfigError;
-use crate::model::clock::StepLength;
+use crate::model::clock::{Instant, StepLength};
+use crate::model::kinematics::{Happening, Kinematics};
 use crate::model::law::Law;
 use crate::model::precision::Precision;
+use crate::model::start::Start;
+use crate::model::state::RigidState;
+use crate::model::stepper::Stepper;
 use crate::scales::{Scales, not_negative, positive};
 
 /// A rotor and its retainer, SI.
@@ -76,21 +80,37 @@ impl<R: Precision> Rigid<R> {
 
 impl Rigid<f64> {
     /// The same model with every coefficient rounded once.
-    pub fn rounded(&self) -> Rigid<f32> {
+    pub fn rounded<R: Precision>(&self) -> Rigid<R> {
         Rigid {
-            law: Law {
-                friction: self.law.friction as f32,
-                restitution: self.law.restitution as f32,
-                inertia_ratio: self.law.inertia_ratio as f32,
-                gravity: self.law.gravity as f32,
-            },
+            law: self.law.rounded(),
             step: self.step.rounded(),
-            scales: Scales {
-                length: self.scales.length as f32,
-                time: self.scales.time as f32,
-                speed: self.scales.speed as f32,
-                spin: self.scales.spin as f32,
-            },
+            scales: self.scales.rounded(),
         }
+    }
+}
+
+impl<R: Precision> Stepper<R> for Rigid<R> {
+    type State = RigidState<R>;
+
+    fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        sink: impl FnMut(Happening<R>),
+    ) -> Result<RigidState<R>, ConfigError> {
+        self.start(start, spin, sink)
+    }
+
+    fn step(&self, state: &mut RigidState<R>, sink: impl FnMut(Happening<R>)) {
+        self.step(state, sink);
+    }
+
+    fn part_step(&self, state: &mut RigidState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
+        let tick = state.now.tick;
+        self.advance(state, Instant { tick, fraction }, sink);
+    }
+
+    fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
+        self.kinematics(state)
     }
 }

@@ -34,6 +34,27 @@ pub enum Start<R> {
     },
 }
 
+impl Start<f64> {
+    /// Every number rounded once.
+    pub fn rounded<R: Precision>(&self) -> Start<R> {
+        match *self {
+            Self::Free { position, velocity } => Start::Free {
+                position: position.map(R::lit),
+                velocity: velocity.map(R::lit),
+            },
+            Self::Wall {
+                sin,
+                cos,
+                tangential,
+            } => Start::Wall {
+                sin: R::lit(sin),
+                cos: R::lit(cos),
+                tangential: R::lit(tangential),
+            },
+        }
+    }
+}
+
 impl<R: Precision> Rigid<R> {
     /// The state at time 0, and what happens there; `spin` is the surface speed.
     pub fn start(

@@ -1,0 +1,133 @@
+//! What is modelled, and how it is computed.
+
+use serde::Serialize;
+
+/// Rung of the ladder of models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rung {
+    /// Restitution and Coulomb friction on a rigid ring, each impact located.
+    Rigid,
+    /// The same laws by time-stepping.
+    Moreau,
+    /// Contact force and its duration.
+    Hertz,
+}
+
+/// How a rung goes through time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// From the launch to the next change, in closed form or by series. Rung `rigid`.
+    Launch,
+    /// Impact laws at the middle of each step (Moreau, Jean). Rung `moreau`.
+    Midpoint,
+    /// Semi-implicit Euler. Rung `hertz`.
+    Euler,
+    /// Velocity Verlet. Rung `hertz`.
+    Verlet,
+}
+
+/// Number format of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Single.
+    F32,
+    /// Double.
+    F64,
+}
+
+/// Where square roots, sines and the like come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Math {
+    /// The libm crate.
+    Libm,
+    /// Own bounded polynomials.
+    Polynomial,
+    /// The micromath crate; single precision only.
+    Micromath,
+}
+
+/// What is modelled, and how it is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// The rung.
+    pub rung: Rung,
+    /// How it goes through time.
+    pub scheme: Scheme,
+    /// Its number format.
+    pub precision: Precision,
+    /// Its functions.
+    pub math: Math,
+    /// Output interval, and where the scheme needs one, length of a step, s.
+    pub step: f64,
+}
+
+impl Rung {
+    /// All, by rising cost.
+    pub const ALL: [Self; 3] = [Self::Rigid, Self::Moreau, Self::Hertz];
+
+    /// As in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Moreau => "moreau",
+            Self::Hertz => "hertz",
+        }
+    }
+
+    /// Its schemes; the first is the default.
+    pub fn schemes(self) -> &'static [Scheme] {
+        match self {
+            Self::Rigid => &[Scheme::Launch],
+            Self::Moreau => &[Scheme::Midpoint],
+            Self::Hertz => &[Scheme::Euler, Scheme::Verlet],
+        }
+    }
+}
+
+impl Scheme {
+    /// As in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Launch => "launch",
+            Self::Midpoint => "midpoint",
+            Self::Euler => "euler",
+            Self::Verlet => "verlet",
+        }
+    }
+}
+
+impl Precision {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+
+    /// As in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    /// The functions that exist in it.
+    pub fn maths(self) -> &'static [Math] {
+        match self {
+            Self::F32 => &[Math::Libm, Math::Polynomial, Math::Micromath],
+            Self::F64 => &[Math::Libm, Math::Polynomial],
+        }
+    }
+}
+
+impl Math {
+    /// As in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Libm => "libm",
+            Self::Polynomial => "polynomial",
+            Self::Micromath => "micromath",
+        }
+    }
+}

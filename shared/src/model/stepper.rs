@@ -1,0 +1,29 @@
+//! What all rungs of the ladder have in common: they start, and go on by equal steps.
+
+use crate::error::ConfigError;
+use crate::model::kinematics::{Happening, Kinematics};
+use crate::model::precision::Precision;
+use crate::model::start::Start;
+
+/// A rotor model that goes by equal steps.
+pub trait Stepper<R: Precision> {
+    /// The rotor's state.
+    type State: Clone;
+
+    /// The state at time 0, and what happens there; `spin` is the surface speed.
+    fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        sink: impl FnMut(Happening<R>),
+    ) -> Result<Self::State, ConfigError>;
+
+    /// One step. Bounded; cannot fail. Changes of motion go to `sink`.
+    fn step(&self, state: &mut Self::State, sink: impl FnMut(Happening<R>));
+
+    /// The last part of a run: `fraction` of a step, below 1.
+    fn part_step(&self, state: &mut Self::State, fraction: R, sink: impl FnMut(Happening<R>));
+
+    /// The rotor now.
+    fn kinematics(&self, state: &Self::State) -> Kinematics<R>;
+}
