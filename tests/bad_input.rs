@@ -179,11 +179,11 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nrung = \"soft\"",
-            "scene.toml:12: there is no rung \"soft\"",
+            "scene.toml:12: rung must be \"rigid\", is \"soft\"",
         ),
         (
             "[model]\nrung = \"hertz\"",
-            "scene.toml:12: rung \"hertz\" is not available yet",
+            "scene.toml:12: rung must be \"rigid\", is \"hertz\"",
         ),
         (
             "[model]\nprecision = \"f16\"",
