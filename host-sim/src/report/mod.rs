@@ -1,7 +1,7 @@
 //! One self-contained HTML page for a drop: no script, nothing loaded from outside.
 
 mod accuracy;
-mod chart;
+pub(crate) mod chart;
 mod displacement;
 mod orbit;
 mod parameters;
@@ -103,10 +103,12 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         section { h2 { "Not modelled" } (parameters::limits()) }
         section { h2 { "Versions" } (parameters::versions(subject)) }
     };
-    page(subject, &body).into_string()
+    let title = format!("{} \u{2013} touchdown report", subject.title);
+    page(&title, &body).into_string()
 }
 
-fn page(subject: &Subject, body: &Markup) -> Markup {
+/// A page in the report's style.
+pub(crate) fn page(title: &str, body: &Markup) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -114,7 +116,7 @@ fn page(subject: &Subject, body: &Markup) -> Markup {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (subject.title) " \u{2013} touchdown report" }
+                title { (title) }
                 style { (PreEscaped(include_str!("style.css"))) }
             }
             body { main { (body) } }
