@@ -25,3 +25,5 @@ pub mod stream;
 pub mod target;
 pub mod timeline;
 pub mod trace;
+pub mod trade;
+pub mod truth;

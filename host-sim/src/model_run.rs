@@ -86,7 +86,7 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
 }
 
 /// Sets the scale where there is no gravity.
-fn start_speed(scene: &Scene) -> f64 {
+pub(crate) fn start_speed(scene: &Scene) -> f64 {
     let speed = match scene.start {
         Start::Free { velocity, .. } => velocity[0].hypot(velocity[1]),
         Start::Wall { tangential, .. } => tangential.abs(),

@@ -46,7 +46,8 @@ impl Progress {
     }
 }
 
-fn bar(what: &'static str, total: u64) -> ProgressBar {
+/// A bar of `total` parts; draws on a terminal only.
+pub fn bar(what: &'static str, total: u64) -> ProgressBar {
     if total == 0 {
         return ProgressBar::new_spinner().with_message(what);
     }

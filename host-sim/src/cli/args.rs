@@ -16,6 +16,7 @@ Examples:
   touchdown drop my.toml --stream s.csv what the sensors would have recorded
   touchdown replay s.csv --scene my.toml
                                         a recording through the same detector
+  touchdown trade my.toml               what each way of computing costs, and how wrong it is
   touchdown scene explain my.toml       what is modelled and what is left out
 
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
@@ -38,6 +39,8 @@ pub(super) enum Command {
     Drop(DropArgs),
     /// Run the detector over a recorded stream
     Replay(ReplayArgs),
+    /// Measure accuracy against cost: every rung, scheme, precision, math and step
+    Trade(TradeArgs),
     /// Look at scenes
     Scene {
         #[command(subcommand)]
@@ -79,6 +82,22 @@ pub(super) struct ReplayArgs {
     pub report: Option<String>,
     #[command(flatten)]
     pub place: Place,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct TradeArgs {
+    /// Scene file, or name of a built-in scene (`touchdown scene list`)
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// The whole table as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Table and drawing as one HTML page
+    #[arg(long, value_name = "FILE", default_value = "touchdown-trade.html")]
+    pub report: String,
+    /// The drawing alone
+    #[arg(long, value_name = "FILE", default_value = "touchdown-trade.svg")]
+    pub svg: String,
 }
 
 #[derive(Debug, Subcommand)]

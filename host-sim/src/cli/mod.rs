@@ -8,14 +8,14 @@ pub use args::Cli;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use args::{Command, DropArgs, ReplayArgs, SceneCommand};
+use args::{Command, DropArgs, ReplayArgs, SceneCommand, TradeArgs};
 
 use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
 use crate::scene::{BUILT_IN, Scene, explain};
-use crate::{drop, replay, report, timeline};
+use crate::{drop, replay, report, timeline, trade};
 
 /// Where the report goes when nothing is asked for.
 const DEFAULT_REPORT: &str = "touchdown-report.html";
@@ -30,6 +30,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         }),
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Trade(args)) => trade_table(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
@@ -56,14 +57,7 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     if let Some(out) = &mut report_out {
         out.put(&report::render(&subject::subject(&scene), &outcome))?;
     }
-    let written = [json_out, report_out, stream_out];
-    let mut files = String::new();
-    for out in written.into_iter().flatten() {
-        if out.name() != STDOUT {
-            files += &format!("wrote {}\n", out.name());
-        }
-        out.commit()?;
-    }
+    let files = commit([json_out, report_out, stream_out])?;
     let text = timeline::drop(&scene, &outcome, Paint::for_stdout());
     say(&names, &(text + &files));
     Ok(())
@@ -89,6 +83,47 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     }
     say(&names, &timeline::replay(&args.stream, &detection));
     Ok(())
+}
+
+fn trade_table(args: &TradeArgs) -> Result<(), Failure> {
+    let names = [
+        &args.json,
+        &Some(args.report.clone()),
+        &Some(args.svg.clone()),
+    ];
+    one_standard_output(&names)?;
+    let scene = load(&args.scene)?;
+    let [json_out, page_out, svg_out] = names.map(open);
+    let (mut json_out, mut page_out, mut svg_out) = (json_out?, page_out?, svg_out?);
+    let trade = trade::run(&scene);
+    if let Some(out) = &mut json_out {
+        let text = trade::json(&trade.rows).map_err(io::Error::from);
+        out.put(&text.map_err(Failure::output(out.name()))?)?;
+    }
+    if let Some(out) = &mut page_out {
+        out.put(&trade::page(&trade))?;
+    }
+    if let Some(out) = &mut svg_out {
+        out.put(&trade::svg(&trade))?;
+    }
+    let files = commit([json_out, page_out, svg_out])?;
+    say(
+        &names,
+        &(trade::table(&trade, Paint::for_stdout()) + &files),
+    );
+    Ok(())
+}
+
+/// Gives the files their names; what was written, for people.
+fn commit(outputs: [Option<Output>; 3]) -> Result<String, Failure> {
+    let mut files = String::new();
+    for out in outputs.into_iter().flatten() {
+        if out.name() != STDOUT {
+            files += &format!("wrote {}\n", out.name());
+        }
+        out.commit()?;
+    }
+    Ok(files)
 }
 
 fn load(name: &str) -> Result<Scene, Failure> {

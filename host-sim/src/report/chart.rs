@@ -1,10 +1,10 @@
-//! Small inline SVG charts with linear axes.
+//! Small inline SVG charts with linear or logarithmic axes.
 //!
 //! A chart has a fixed height and the width of its container: positions along x are percentages, curves
 //! are stretched by a nested viewBox, and text keeps its size, so the same drawing is legible on a phone
 //! and on paper.
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 use std::fmt::Write;
 
 /// Drawing units across a curve's width.
@@ -13,17 +13,19 @@ const WIDTH: f64 = 1000.0;
 /// Points nearer than this to the last one drawn are left out, in drawing units.
 const RESOLUTION: f64 = 0.35;
 
-/// A linear axis, in the unit that its label names.
+/// An axis, in the unit that its label names.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Value at the left or lower end.
+    /// Value at the left or lower end; its power of ten where the axis is logarithmic.
     pub lo: f64,
-    /// Value at the right or upper end.
+    /// Value at the right or upper end; likewise.
     pub hi: f64,
     /// Quantity and unit.
     pub label: String,
-    /// Distance of the ticks.
+    /// Distance of the ticks; in decades where the axis is logarithmic.
     pub step: f64,
+    /// Logarithmic.
+    pub log: bool,
 }
 
 impl Axis {
@@ -38,11 +40,26 @@ impl Axis {
             hi,
             label: label.to_owned(),
             step: nice.unwrap_or(10.0) * power,
+            log: false,
         }
     }
 
-    /// 0 at `lo`, 1 at `hi`.
+    /// A logarithmic axis that holds both values, of whole decades, with at most `ticks` ticks.
+    pub fn decades(lo: f64, hi: f64, label: &str, ticks: f64) -> Self {
+        let (lo, hi) = (lo.log10().floor(), hi.log10().ceil());
+        let hi = hi.max(lo + 1.0);
+        Self {
+            lo,
+            hi,
+            label: label.to_owned(),
+            step: ((hi - lo) / ticks).ceil(),
+            log: true,
+        }
+    }
+
+    /// 0 at the left or lower end, 1 at the other.
     pub fn fraction(&self, value: f64) -> f64 {
+        let value = if self.log { value.log10() } else { value };
         (value - self.lo) / (self.hi - self.lo)
     }
 
@@ -53,11 +70,14 @@ impl Axis {
 
     /// Whether the value lies on the axis.
     pub fn shows(&self, value: f64) -> bool {
-        (self.lo..=self.hi).contains(&value)
+        (0.0..=1.0).contains(&self.fraction(value))
     }
 
     /// Values and texts of the ticks.
     pub fn ticks(&self) -> Vec<(f64, String)> {
+        if self.log {
+            return self.powers();
+        }
         let decimals = (-self.step.log10().floor()).max(0.0) as usize;
         let first = (self.lo / self.step - 1e-9).ceil() as i64;
         let last = (self.hi / self.step + 1e-9).floor() as i64;
@@ -66,6 +86,30 @@ impl Axis {
             .map(|value| (value, minus(&format!("{value:.decimals$}"))))
             .collect()
     }
+
+    fn powers(&self) -> Vec<(f64, String)> {
+        let first = (self.lo / self.step).ceil() as i32;
+        let last = (self.hi / self.step).floor() as i32;
+        (first..=last)
+            .map(|number| number * self.step as i32)
+            .map(|power| (10f64.powi(power), power_of_ten(power)))
+            .collect()
+    }
+}
+
+/// Ten to a power, with the power raised.
+fn power_of_ten(power: i32) -> String {
+    const RAISED: [char; 10] = [
+        '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}',
+        '\u{2078}', '\u{2079}',
+    ];
+    let digits = power.to_string();
+    let raised = digits.chars().map(|digit| {
+        digit
+            .to_digit(10)
+            .map_or('\u{207b}', |digit| RAISED[digit as usize])
+    });
+    "10".chars().chain(raised).collect()
 }
 
 /// With a true minus sign.
@@ -172,21 +216,46 @@ impl Chart<'_> {
 
     /// Draws it: `behind` under the grid and `front` over the curves, both with x as percentages.
     pub fn draw(&self, behind: &Markup, curves: &Markup, front: &Markup) -> Markup {
-        let viewbox = format!("0 0 {WIDTH} {}", self.height);
         html! {
             div.chart {
                 p.unit { (self.y.label) }
                 svg role="img" width="100%" height=(self.height + 40.0) {
                     title { (self.title) }
                     desc { (self.description) }
-                    (behind)
-                    (self.rows())
-                    (columns(self.x, self.height))
-                    svg x="0" y="0" width="100%" height=(self.height) viewBox=(viewbox)
-                        preserveAspectRatio="none" { (curves) }
-                    (front)
+                    (self.inside(behind, curves, front))
                 }
             }
+        }
+    }
+
+    /// The same as a file of its own, `width` px wide.
+    pub fn file(&self, width: f64, curves: &Markup, front: &Markup) -> Markup {
+        let (left, above, below) = (64.0, 40.0, 48.0);
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" role="img" width=(width)
+                height=(self.height + above + below) {
+                title { (self.title) }
+                desc { (self.description) }
+                style { (PreEscaped(include_str!("style.css"))) }
+                rect.paper width="100%" height="100%" {}
+                text.unit x="8" y="24" { (self.y.label) }
+                svg x=(left) y=(above) width=(width - left - 32.0) height=(self.height + below)
+                    overflow="visible" {
+                    (self.inside(&html! {}, curves, front))
+                }
+            }
+        }
+    }
+
+    fn inside(&self, behind: &Markup, curves: &Markup, front: &Markup) -> Markup {
+        let viewbox = format!("0 0 {WIDTH} {}", self.height);
+        html! {
+            (behind)
+            (self.rows())
+            (columns(self.x, self.height))
+            svg x="0" y="0" width="100%" height=(self.height) viewBox=(viewbox)
+                preserveAspectRatio="none" { (curves) }
+            (front)
         }
     }
 

@@ -1,0 +1,134 @@
+//! Error against cost, both logarithmic.
+
+use maud::{Markup, html};
+
+use super::Trade;
+use super::row::Row;
+use crate::report::chart::{Axis, Chart};
+use crate::report::text::si;
+use crate::scene::{Precision, Rung};
+
+/// Errors below it are drawn on it.
+const LEAST_ERROR: f64 = 1e-17;
+/// Errors above it are drawn on it.
+const MOST_ERROR: f64 = 10.0;
+const HEIGHT: f64 = 440.0;
+const WIDTH: f64 = 960.0;
+
+/// The drawing as a part of a page.
+pub(super) fn drawing(trade: &Trade) -> Markup {
+    let axes = Axes::of(&trade.rows);
+    axes.chart().draw(
+        &html! {},
+        &axes.front(&trade.rows),
+        &axes.points(&trade.rows),
+    )
+}
+
+/// The drawing as a file of its own.
+pub fn svg(trade: &Trade) -> String {
+    let axes = Axes::of(&trade.rows);
+    axes.chart()
+        .file(WIDTH, &axes.front(&trade.rows), &axes.points(&trade.rows))
+        .into_string()
+}
+
+/// Style class of a rung.
+pub(super) fn rung_class(rung: Rung) -> String {
+    format!("rung-{}", rung.name())
+}
+
+struct Axes {
+    cost: Axis,
+    error: Axis,
+}
+
+impl Axes {
+    fn of(rows: &[Row]) -> Self {
+        let costs = rows.iter().map(|row| row.seconds_per_simulated_second);
+        let least = costs.clone().fold(f64::INFINITY, f64::min);
+        let most = costs.fold(0.0, f64::max);
+        let errors = rows.iter().map(|row| height(row.worst_error));
+        let (low, high) = errors.fold((MOST_ERROR, LEAST_ERROR), |(low, high), error| {
+            (f64::min(low, error), f64::max(high, error))
+        });
+        let label = "cost here, seconds per simulated second";
+        Self {
+            cost: Axis::decades(least.min(1e9), most.max(1e-9), label, 8.0),
+            error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
+        }
+    }
+
+    fn chart(&self) -> Chart<'_> {
+        Chart {
+            title: "Error against cost",
+            description: "Each combination of rung, scheme, numbers, functions and step: its \
+                          greatest error at impacts 1, 3 and 10 over its cost; the front is joined.",
+            x: &self.cost,
+            y: &self.error,
+            height: HEIGHT,
+        }
+    }
+
+    fn front(&self, rows: &[Row]) -> Markup {
+        let mut front: Vec<&Row> = rows.iter().filter(|row| row.pareto).collect();
+        front.sort_by(|a, b| {
+            a.seconds_per_simulated_second
+                .total_cmp(&b.seconds_per_simulated_second)
+        });
+        let chart = self.chart();
+        let mut pen = chart.pen();
+        for row in front {
+            pen.line_to(row.seconds_per_simulated_second, height(row.worst_error));
+        }
+        pen.finish("front")
+    }
+
+    fn points(&self, rows: &[Row]) -> Markup {
+        html! {
+            @for row in rows {
+                @let y = (1.0 - self.error.fraction(height(row.worst_error))) * HEIGHT;
+                @let class = format!("{} {}", rung_class(row.rung), row.precision.name());
+                circle class=(class) cx=(self.cost.percent(row.seconds_per_simulated_second))
+                    cy=(format!("{y:.1}")) r=(if row.pareto { "6" } else { "3.5" }) {
+                    title { (caption(row)) }
+                }
+            }
+        }
+    }
+}
+
+/// Where an error is drawn.
+fn height(error: f64) -> f64 {
+    error.clamp(LEAST_ERROR, MOST_ERROR)
+}
+
+fn caption(row: &Row) -> String {
+    format!(
+        "{}, step {}: error {:.1e}, {:.1} ns a step",
+        row.name(),
+        si(row.step_s, "s"),
+        row.worst_error,
+        row.ns_per_step
+    )
+}
+
+/// What the points mean.
+pub(super) fn legend(rows: &[Row]) -> Markup {
+    let shown = |rung: Rung| rows.iter().any(|row| row.rung == rung);
+    html! {
+        ul.legend {
+            @for rung in Rung::ALL.into_iter().filter(|&rung| shown(rung)) {
+                li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung.name()) }
+            }
+            @for precision in Precision::ALL {
+                li { (dot(&format!("rung-rigid {}", precision.name()))) (precision.name()) }
+            }
+            li { "large: on the front" }
+        }
+    }
+}
+
+fn dot(class: &str) -> Markup {
+    html! { svg width="12" height="12" aria-hidden="true" { circle class=(class) cx="6" cy="6" r="4" {} } }
+}

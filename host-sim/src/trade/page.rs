@@ -1,0 +1,72 @@
+//! The table and its drawing as one page.
+
+use maud::{Markup, html};
+
+use super::Trade;
+use super::drawing::{drawing, legend};
+use super::row::Row;
+use crate::report::text::si;
+use crate::report::{page as shell, tables};
+
+/// Writes the page.
+pub fn page(trade: &Trade) -> String {
+    let front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
+    let all: Vec<&Row> = trade.rows.iter().collect();
+    let body = html! {
+        header {
+            p.kind { "Accuracy against cost" }
+            h1 { (trade.scene) }
+            p.note {
+                "Measured over the first " (si(trade.measured, "s")) ". Errors against the independent \
+                 reference: the greatest of time in T, position in clearances and velocity in V just \
+                 after an impact. Cost: the quickest of several runs on the machine that wrote this page, \
+                 with the rotor's place after each step. Instructions: counted in the emulator, mean of \
+                 the run."
+            }
+        }
+        section {
+            h2 { "Error against cost" }
+            (legend(&trade.rows))
+            (drawing(trade))
+        }
+        section { h2 { "Front" } (rows("Front", &front)) }
+        section { h2 { "All combinations" } (rows("All combinations", &all)) }
+    };
+    shell("Accuracy against cost \u{2013} touchdown", &body).into_string()
+}
+
+fn rows(name: &str, rows: &[&Row]) -> Markup {
+    let head = html! {
+        th { "Combination" }
+        th.number { "Step" }
+        th.number { "Impact 1" }
+        th.number { "Impact 3" }
+        th.number { "Impact 10" }
+        th.number { "Contact, T" }
+        th { "Regime" }
+        th.number { "Energy" }
+        th.number { "ns a step" }
+        th.number { "s a simulated s" }
+        th.number { "Instructions a step" }
+    };
+    tables::table(name, &head, rows.iter().map(|row| cells(row)))
+}
+
+fn cells(row: &Row) -> Markup {
+    let error = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1e}"));
+    html! {
+        td { (row.name()) }
+        td.number { (si(row.step_s, "s")) }
+        td.number { (error(row.error_impact_1)) }
+        td.number { (error(row.error_impact_3)) }
+        td.number { (error(row.error_impact_10)) }
+        td.number { (error(row.contact_error)) }
+        td { (if row.regime_ok { "right" } else { "wrong" }) }
+        td.number { (format!("{:.1e}", row.energy_drift)) }
+        td.number { (format!("{:.1}", row.ns_per_step)) }
+        td.number { (format!("{:.1e}", row.seconds_per_simulated_second)) }
+        td.number {
+            (row.mcu_instructions_per_step.map_or("\u{2013}".to_owned(), |it| format!("{it:.0}")))
+        }
+    }
+}
