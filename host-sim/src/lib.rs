@@ -15,6 +15,7 @@ pub mod names;
 pub mod outcome;
 pub mod output;
 pub mod paint;
+pub mod paper;
 pub mod progress;
 pub mod reference;
 pub mod replay;
