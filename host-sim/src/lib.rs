@@ -18,6 +18,7 @@ pub mod paint;
 pub mod paper;
 pub mod progress;
 pub mod reference;
+pub mod regions;
 pub mod replay;
 pub mod report;
 pub mod scene;

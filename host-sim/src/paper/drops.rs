@@ -1,11 +1,11 @@
 //! Random drops: how often a gap, a friction and a restitution end in whirl.
 //!
-//! The paper does not say how its starts are spread, so a spread was chosen: places even over the
-//! clearance circle, velocities even over a circle of the speed of a fall through the gap, spin 30 000
-//! rpm. In units of rho0 and sqrt(g rho0) it is the same in every gap. A drop is over at one full turn in
-//! one contact (whirl) or after 100 sqrt(rho0/g).
+//! The paper does not say from which starts a drop comes, so a spread was chosen: places even over the
+//! clearance circle, velocities even over a circle of sqrt(g rho0) or none at all, spin 30 000 rpm. In
+//! units of rho0 and sqrt(g rho0) it is the same in every gap. A drop is over at one full turn in one
+//! contact (whirl) or after 100 sqrt(rho0/g).
 
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 use indicatif::ProgressBar;
 use rand::Rng;
@@ -13,24 +13,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use serde::Serialize;
-use touchdown_core::error::ConfigError;
-use touchdown_core::model::{Change, Precision, Stepper, Touch};
 
+use super::ending::{Ending, of_model, of_reference};
 use super::rig::{GAP, WIDE_GAP};
 use super::wilson;
 use crate::failure::Failure;
-use crate::history::{Happening, PhaseKind};
-use crate::model_run::{Subject, Use, with_model};
-use crate::reference::Reference;
 use crate::scene::{Scene, Start};
 
-/// Largest speed of a start, in sqrt(g rho0).
-const FASTEST: f64 = SQRT_2;
 /// Length of a run, in sqrt(rho0/g).
 const LONGEST: f64 = 100.0;
-/// Lift-offs from which a run without whirl counts as the third motion.
-const CYCLE: u32 = 4;
-
 /// A machine and a set of starts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Condition {
@@ -40,22 +31,10 @@ pub struct Condition {
     pub friction: f64,
     /// 0 to 1.
     pub restitution: f64,
+    /// Largest speed of a start, in sqrt(g rho0).
+    pub fastest: f64,
     /// Of the starts.
     pub seed: u64,
-}
-
-/// How a drop ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum End {
-    /// A full turn in one contact.
-    Whirl,
-    /// In contact, swinging at the bottom.
-    Pendulum,
-    /// Neither: contact is lost and found again and again.
-    Cycle,
-    /// Still in its bounce series.
-    Bouncing,
 }
 
 /// How many drops of a condition ended how.
@@ -82,7 +61,7 @@ pub struct Tally {
     pub bouncing: u32,
     /// Each drop of the model under test.
     #[serde(skip)]
-    pub ends: Vec<End>,
+    pub ends: Vec<Ending>,
 }
 
 /// What is compared, all against the first: gap (other starts, then the same), friction, restitution.
@@ -91,6 +70,7 @@ pub fn conditions() -> Vec<Condition> {
         clearance_m: GAP,
         friction: 0.1,
         restitution: 0.8,
+        fastest: 1.0,
         seed: 1,
     };
     let wide = |condition| Condition {
@@ -101,6 +81,10 @@ pub fn conditions() -> Vec<Condition> {
     let lively = |restitution| Condition {
         restitution,
         ..rough(0.3)
+    };
+    let at_rest = |condition| Condition {
+        fastest: 0.0,
+        ..condition
     };
     vec![
         rig,
@@ -118,6 +102,8 @@ pub fn conditions() -> Vec<Condition> {
             restitution: 0.95,
             ..rig
         },
+        at_rest(rig),
+        at_rest(rough(0.3)),
     ]
 }
 
@@ -140,19 +126,18 @@ fn count(
     drops: u32,
     progress: &ProgressBar,
 ) -> Result<Tally, Failure> {
-    let ends: Vec<(End, End)> = (0..drops)
+    let ends: Vec<(Ending, Ending)> = (0..drops)
         .into_par_iter()
         .map(|number| {
             let scene = random(base, condition, number);
-            let ours = with_model(&scene, ToItsEnd(&scene));
+            let ours = of_model(&scene)?;
             progress.inc(1);
-            ours.map(|end| (end, of_reference(&scene)))
+            Ok((ours, of_reference(&scene)))
         })
-        .collect::<Result<_, ConfigError>>()
-        .map_err(|error| Failure::Usage(error.to_string()))?;
+        .collect::<Result<_, Failure>>()?;
     let ours = |wanted| ends.iter().filter(|it| it.0 == wanted).count() as u32;
     let reference = |wanted| ends.iter().filter(|it| it.1 == wanted).count() as u32;
-    let whirl = ours(End::Whirl);
+    let whirl = ours(Ending::Whirl);
     let (whirl_low, whirl_high) = wilson::interval(whirl, drops);
     Ok(Tally {
         condition,
@@ -160,10 +145,10 @@ fn count(
         whirl,
         whirl_low,
         whirl_high,
-        whirl_of_reference: reference(End::Whirl),
-        cycle: ours(End::Cycle),
-        cycle_of_reference: reference(End::Cycle),
-        bouncing: ours(End::Bouncing),
+        whirl_of_reference: reference(Ending::Whirl),
+        cycle: ours(Ending::Cycle),
+        cycle_of_reference: reference(Ending::Cycle),
+        bouncing: ours(Ending::Bouncing),
         ends: ends.iter().map(|it| it.0).collect(),
     })
 }
@@ -184,73 +169,8 @@ fn random(base: &Scene, condition: Condition, number: u32) -> Scene {
     let speed = (scene.run.gravity * condition.clearance_m).sqrt();
     scene.start = Start::Free {
         position: in_circle(condition.clearance_m),
-        velocity: in_circle(FASTEST * speed),
+        velocity: in_circle(condition.fastest * speed),
     };
     scene.run.duration = LONGEST * condition.clearance_m / speed;
     scene
-}
-
-fn end(turns: f64, lift_offs: u32, in_contact: bool) -> End {
-    if turns.abs() >= 1.0 {
-        End::Whirl
-    } else if lift_offs >= CYCLE {
-        End::Cycle
-    } else if in_contact {
-        End::Pendulum
-    } else {
-        End::Bouncing
-    }
-}
-
-/// Runs a model until it whirls or the time is over.
-struct ToItsEnd<'a>(&'a Scene);
-
-impl Use for ToItsEnd<'_> {
-    type Output = End;
-
-    fn with<R: Precision, M: Stepper<R>>(
-        self,
-        subject: &Subject<R, M>,
-    ) -> Result<End, ConfigError> {
-        let mut lift_offs = 0;
-        let mut count = |happening: touchdown_core::model::Happening<R>| {
-            lift_offs += u32::from(happening.change == Change::LiftsOff);
-        };
-        let model = &subject.model;
-        let mut state = model.start(&subject.start, subject.spin, &mut count)?;
-        let (mut turns, mut touch) = (0.0, Touch::None);
-        let steps = (self.0.run.duration / self.0.model.step) as u32;
-        for _ in 0..steps {
-            model.step(&mut state, &mut count);
-            let now = model.kinematics(&state);
-            turns = now.turns.0 as f64 + now.turns.1.to_f64() / TAU;
-            touch = now.touch;
-            if turns.abs() >= 1.0 {
-                break;
-            }
-        }
-        Ok(end(turns, lift_offs, touch != Touch::None))
-    }
-}
-
-/// The same of the reference.
-fn of_reference(scene: &Scene) -> End {
-    let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
-    let mut lift_offs = 0;
-    let mut turns = 0.0_f64;
-    let steps = (scene.run.duration / scene.model.step) as u32;
-    for step in 1..=steps {
-        let time = f64::from(step) * scene.model.step;
-        turns = reference
-            .advance(time, &mut |happening| {
-                lift_offs += u32::from(matches!(happening, Happening::LiftOff(_)));
-            })
-            .turns_in_contact;
-        if turns.abs() >= 1.0 {
-            break;
-        }
-    }
-    let phase = reference.phase();
-    let in_contact = matches!(phase, PhaseKind::Sliding | PhaseKind::Rolling);
-    end(turns, lift_offs, in_contact)
 }

@@ -4,12 +4,16 @@
 //! The printed numbers are those that its text and equations state; its drawings were not measured.
 
 mod contact;
+mod curve;
 mod drops;
+mod ending;
 mod equations;
 mod fall;
+mod fig_3;
+mod fig_4;
+mod fig_7;
 mod hertz;
 mod page;
-mod regions;
 mod rig;
 mod row;
 mod spread;
@@ -17,7 +21,9 @@ mod table;
 mod whirl;
 mod wilson;
 
+pub use curve::Curve;
 pub use drops::{Condition, Tally};
+pub use fig_4::Drawn;
 pub use page::page;
 pub use row::Row;
 pub use table::table;
@@ -26,9 +32,10 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::progress;
+use crate::scene::Scene;
 
 /// Random drops of a condition, unless fewer are asked for.
-pub const DROPS: u32 = 400;
+pub const DROPS: u32 = 1000;
 
 /// All of it.
 #[derive(Clone, Debug, Serialize)]
@@ -37,6 +44,14 @@ pub struct Paper {
     pub rows: Vec<Row>,
     /// The counts behind the rows on random drops.
     pub drops: Vec<Tally>,
+    /// The curves of the drawings.
+    pub figures: Vec<Curve>,
+    /// The drops of Fig. 4.
+    #[serde(skip)]
+    pub falls: Vec<Drawn>,
+    /// The rig.
+    #[serde(skip)]
+    pub base: Scene,
 }
 
 impl Paper {
@@ -58,7 +73,17 @@ pub fn run(drops: u32) -> Result<Paper, Failure> {
     rows.extend(whirl::rows(&base)?);
     rows.extend(spread::rows(&drops));
     rows.extend(contact::rows(&base));
-    Ok(Paper { rows, drops })
+    let falls = fig_4::drops()?;
+    let mut figures = fig_3::curves(&base);
+    figures.extend(falls.iter().map(fig_4::curve));
+    figures.extend(fig_7::curves(&base));
+    Ok(Paper {
+        rows,
+        drops,
+        figures,
+        falls,
+        base,
+    })
 }
 
 /// What `--json` writes.

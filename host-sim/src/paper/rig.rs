@@ -1,7 +1,5 @@
 //! The rig of the paper, and runs of it on the model under test.
 
-use std::f64::consts::PI;
-
 use crate::failure::Failure;
 use crate::history::{History, RotorState};
 use crate::model_run;
@@ -66,11 +64,6 @@ pub fn rate(state: &RotorState) -> f64 {
 /// Angular speed of a velocity at a position.
 pub fn turning([x, y]: [f64; 2], [vx, vy]: [f64; 2]) -> f64 {
     (x * vy - y * vx) / (x * x + y * y)
-}
-
-/// rad/s.
-pub fn rpm(speed: f64) -> f64 {
-    speed * PI / 30.0
 }
 
 /// The greatest argument between `lo` and `hi` for which `holds` is still false, by halving: false at

@@ -52,6 +52,12 @@ impl Row {
         self
     }
 
+    /// Whether the printed number is off by more than 1 %.
+    pub fn is_misprinted(&self) -> bool {
+        let off = |printed: f64| (printed - self.right).abs() > 0.01 * self.right.abs();
+        self.printed.is_some_and(off)
+    }
+
     /// With the number of the model under test, and how far off it may be, in the row's unit.
     pub fn ours(mut self, ours: f64, tolerance: f64) -> Self {
         self.ours = Some(ours);

@@ -1,12 +1,13 @@
 //! Rows from random drops: what decides about whirl, and that the gap does not.
 
-use super::drops::{Tally, conditions};
+use super::drops::{Condition, Tally};
+use super::rig::WIDE_GAP;
 use super::row::Row;
 
 /// Share by which model and reference may differ: they part where a start grazes.
 const CLOSE: f64 = 0.01;
 
-/// The rows of a tally of all [`conditions`].
+/// The rows of the tallies.
 pub fn rows(tallies: &[Tally]) -> Vec<Row> {
     let mut rows: Vec<Row> = tallies.iter().map(whirl).collect();
     rows.extend(same_starts(tallies));
@@ -29,8 +30,14 @@ fn whirl(tally: &Tally) -> Row {
 
 /// Drops from the same scaled starts in both gaps that ended otherwise in the wider one.
 fn same_starts(tallies: &[Tally]) -> Option<Row> {
-    let wide = tallies.iter().find(|it| it.condition == conditions()[4])?;
-    let narrow = tallies.iter().find(|it| it.condition == conditions()[3])?;
+    let of = |condition: Condition| tallies.iter().find(|it| it.condition == condition);
+    let (narrow, wide) = tallies.iter().find_map(|narrow| {
+        let wide = of(Condition {
+            clearance_m: WIDE_GAP,
+            ..narrow.condition
+        })?;
+        (wide.condition != narrow.condition).then_some((narrow, wide))
+    })?;
     let differ = wide.ends.iter().zip(&narrow.ends).filter(|(a, b)| a != b);
     let row = Row::new("drops that end otherwise at 0.75 mm", "", 0.0)
         .ours(differ.count() as f64, 0.01 * f64::from(wide.drops))
@@ -50,12 +57,17 @@ fn third_motion(tally: &Tally) -> Row {
 }
 
 fn name(tally: &Tally) -> String {
-    let condition = &tally.condition;
+    let Condition {
+        clearance_m,
+        friction,
+        restitution,
+        fastest,
+        ..
+    } = tally.condition;
+    let speed = if fastest > 0.0 { "" } else { ", at rest" };
     format!(
-        "{} mm, mu {}, eps {}",
-        condition.clearance_m * 1e3,
-        condition.friction,
-        condition.restitution
+        "{} mm, mu {friction}, eps {restitution}{speed}",
+        clearance_m * 1e3
     )
 }
 
