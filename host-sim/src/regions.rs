@@ -7,6 +7,7 @@
 //! degrees against it. So the motions that just miss these two arcs bound the regions.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::RangeInclusive;
 
 /// What becomes of a rotor on the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub enum Region {
 pub struct Plane {
     /// g/rho0, 1/s^2.
     k: f64,
-    /// Above 0 and below 1/sqrt(2).
+    /// Within [`Plane::FRICTION`].
     mu: f64,
     a: f64,
     b: f64,
@@ -40,6 +41,9 @@ pub struct Orbit {
 }
 
 impl Plane {
+    /// Friction for which the regions have this shape: from none to nearly 1/sqrt(2).
+    pub const FRICTION: RangeInclusive<f64> = 1e-6..=0.7;
+
     /// For g/rho0 (1/s^2) and friction.
     pub fn new(k: f64, mu: f64) -> Self {
         let square = 1.0 + 4.0 * mu * mu;

@@ -16,9 +16,17 @@ use crate::scene::Scene;
 const FIGURE: &str = "3";
 const ANGLE: &str = "theta from the bottom, deg";
 const RATE: &str = "theta', rad/s";
-/// theta' at the bottom from which motions are drawn, rad/s.
-const STARTS: [f64; 9] = [
-    110.0, 200.0, 250.0, 300.0, 330.0, 350.0, 430.0, -320.0, -430.0,
+/// Angle from the bottom, deg, and theta', rad/s, from which motions are drawn.
+const STARTS: [(f64, f64); 9] = [
+    (0.0, 110.0),
+    (0.0, 200.0),
+    (88.0, -40.0),
+    (100.0, -150.0),
+    (-97.0, 75.0),
+    (-179.0, 190.0),
+    (-179.0, 340.0),
+    (140.0, -240.0),
+    (179.0, -420.0),
 ];
 /// Spacing of the points of a motion, s.
 const SPACING: f64 = 0.1e-3;
@@ -69,9 +77,9 @@ pub fn curves(base: &Scene) -> Vec<Curve> {
             points,
         ));
     }
-    for start in STARTS {
-        let name = format!("motion from the bottom at {start} rad/s");
-        curves.push(curve(&name, "path", motion(base, start)));
+    for (angle, rate) in STARTS {
+        let name = format!("motion from {angle} deg and {rate} rad/s");
+        curves.push(curve(&name, "path", motion(base, angle, rate)));
     }
     curves
 }
@@ -79,7 +87,7 @@ pub fn curves(base: &Scene) -> Vec<Curve> {
 /// Draws it.
 pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
     let mut x = Axis::new(-180.0, 180.0, "\u{3b8} from the bottom, degrees", 8.0);
-    x.step = 45.0;
+    x.step = 60.0;
     let y = Axis::new(-RANGE, RANGE, "\u{3b8}\u{2032}, rad/s", 10.0);
     let chart = Chart {
         title: "Fig. 3: phase plane",
@@ -116,8 +124,12 @@ pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
     chart.draw(&html! {}, &drawn, &front)
 }
 
+/// Angles from one to another, closer together at both ends, where boundaries are steep.
 fn spaced(from: f64, to: f64) -> impl Iterator<Item = f64> {
-    (0..=120).map(move |n| from + (to - from) * f64::from(n) / 120.0)
+    (0..=120).map(move |n| {
+        let part = 0.5 - 0.5 * (PI * f64::from(n) / 120.0).cos();
+        from + (to - from) * part
+    })
 }
 
 /// Where the wall holds a motion with the friction.
@@ -137,14 +149,14 @@ fn closed(orbit: Orbit) -> Vec<Option<[f64; 2]>> {
     there.chain(back).collect()
 }
 
-/// From the bottom until contact is lost, a turn is done, or a swing has closed.
-fn motion(base: &Scene, start: f64) -> Vec<Option<[f64; 2]>> {
-    let scene = on_wall(base, 0.0, start, 1.0);
+/// From a point until contact is lost, the top is reached, or a swing has closed.
+fn motion(base: &Scene, start: f64, speed: f64) -> Vec<Option<[f64; 2]>> {
+    let scene = on_wall(base, start.to_radians(), speed, 1.0);
     let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
     let mut points = Vec::new();
     for step in 0..=LONGEST {
         let state = reference.advance(f64::from(step) * SPACING, &mut |_| {});
-        let angle = 360.0 * state.turns_in_contact;
+        let angle = start + 360.0 * state.turns_in_contact;
         if reference.phase() != PhaseKind::Sliding || angle.abs() > 180.0 {
             break;
         }

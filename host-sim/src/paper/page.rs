@@ -65,7 +65,7 @@ fn verdict(paper: &Paper) -> Markup {
     html! {
         div.verdict.alarm[wrong > 0] {
             "Of " (measured) " numbers measured on the model, " (wrong) " differ from what is right. Of " (printed)
-            " printed ones, " (off) " are off by more than 1 %."
+            " printed ones, " (off) " do so by more than 1 %."
         }
     }
 }
@@ -81,9 +81,8 @@ fn fig_3(paper: &Paper) -> Markup {
         }
         p.note {
             "Friction 0.1, gap 0.3 mm; friction drives towards +\u{3b8} all the time, as with much spin clockwise. Thick: \
-             boundaries in closed form. Dashed: force of the wall 0. Thin: motions from the bottom, until the rotor \
-             lifts off or has done its turn. Above 90\u{b0} contact is lost before the dashed curve is crossed a second \
-             time; what follows is in flight and has no place in this plane."
+             boundaries in closed form. Dashed: no force between rotor and wall. Thin: motions, to the right above \
+             0 and to the left below, until the rotor lifts off or reaches the top."
         }
     }
 }

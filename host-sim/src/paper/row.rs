@@ -65,11 +65,11 @@ impl Row {
         if !self.note.is_empty() {
             self.note += "; ";
         }
-        self.note += &match (tolerance, self.unit) {
-            (0.0, _) => "ours to be equal".to_owned(),
-            (_, "") => format!("ours within {tolerance:e}"),
-            (_, unit) => format!("ours within {tolerance:e} {unit}"),
+        let tolerance = match tolerance {
+            it if it < 0.1 => format!("{it:e}"),
+            it => it.to_string(),
         };
+        self.note += format!("ours within {tolerance} {}", self.unit).trim_end();
         self
     }
 }
@@ -85,6 +85,6 @@ mod tests {
         assert_eq!(row(8.95).agrees, Some(false));
         assert_eq!(row(f64::NAN).agrees, Some(false));
         assert_eq!(Row::new("x", "m", 2.0).agrees, None);
-        assert_eq!(row(2.0).note("a").note, "a; ours within 1e-1 m");
+        assert_eq!(row(2.0).note("a").note, "a; ours within 0.1 m");
     }
 }

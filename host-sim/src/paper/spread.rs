@@ -40,7 +40,7 @@ fn same_starts(tallies: &[Tally]) -> Option<Row> {
     })?;
     let differ = wide.ends.iter().zip(&narrow.ends).filter(|(a, b)| a != b);
     let row = Row::new("drops that end otherwise at 0.75 mm", "", 0.0)
-        .ours(differ.count() as f64, 0.01 * f64::from(wide.drops))
+        .ours(differ.count() as f64, CLOSE * f64::from(wide.drops))
         .note("of those at mu 0.3, same starts in units of rho0 and sqrt(g rho0) as at 0.3 mm; right: the scale law has no gap");
     Some(row)
 }
@@ -53,7 +53,7 @@ fn third_motion(tally: &Tally) -> Row {
     )
     .printed(0.0)
     .ours(share(tally.cycle, tally), CLOSE)
-    .note("four lift-offs or more: slides, lifts off, bounces, again and again; right: reference")
+    .note("the paper names whirl and pendulum; this one slides, lifts off and bounces, four times or more; right: reference")
 }
 
 fn name(tally: &Tally) -> String {

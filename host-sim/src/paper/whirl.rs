@@ -42,7 +42,7 @@ fn thresholds(base: &Scene) -> Result<Vec<Row>, Failure> {
         Row::new("whirl speed, contact kept", "rad/s", contact_kept(base, base.retainer.friction))
             .printed(PRINTED)
             .ours(least_whirl(base)?, CLOSE)
-            .note("theta' at the bottom; k (3 (1 + e^(-2 pi mu))/(1 + 4 mu^2) - 1); ours: bisection on runs"),
+            .note("theta' at the bottom; sqrt(g/rho0 (3 (1 + e^(-2 pi mu))/(1 + 4 mu^2) - 1)); ours: bisection on runs"),
         Row::new("whirl speed, after one lift-off", "rad/s", by_reference)
             .printed(PRINTED)
             .ours(by_model, CLOSE)
@@ -103,7 +103,7 @@ fn fig_3(base: &Scene) -> Result<Vec<Row>, Failure> {
     let [x, y] = run(&on_wall(base, 0.0, BETWEEN, lift_off))?.end.position;
     Ok(vec![
         Row::new(
-            "Fig. 3, B/C boundary at the bottom",
+            "Fig. 3, edge of B at the bottom",
             "rad/s",
             plane.widest_swing().rate(0.0),
         )
@@ -111,7 +111,7 @@ fn fig_3(base: &Scene) -> Result<Vec<Row>, Failure> {
         .note("widest swing that keeps contact: it stops at 90 degrees; ours: bisection on runs"),
         Row::new("Fig. 3, lift-off from 320 rad/s", "deg", lost.to_degrees())
             .ours(x.atan2(-y).to_degrees(), 1e-6)
-            .note("from the bottom, where theta'^2 + k cos phi falls through 0"),
+            .note("from the bottom, where theta'^2 + g/rho0 cos phi falls through 0"),
     ])
 }
 

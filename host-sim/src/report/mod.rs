@@ -84,7 +84,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             section {
                 h2 { "Phase plane at the wall" }
                 (phase_plane::phase_plane(subject, outcome))
-                p.note { "True motion where the rotor is beyond 80 % of the clearance. Inside a dashed curve the wall cannot hold the rotor: contact ends there." }
+                p.note { "True motion where the rotor is beyond 80 % of the clearance. Inside a dashed curve the wall cannot hold the rotor: contact ends there. Shaded, where a full turn is shown and the spin is fast: contact is kept for ever in whirl (orange) or in a swing (green), as in Fig. 3 of the source paper." }
             }
         }
         section {

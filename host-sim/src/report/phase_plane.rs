@@ -2,10 +2,12 @@
 
 use super::Subject;
 use super::chart::{Axis, Chart, Pen};
+use super::regions::{View, areas};
 use super::stretch::{far, runs};
 use super::text::phase_class;
 use crate::history::RotorState;
 use crate::outcome::{Outcome, TracePoint};
+use crate::regions::Plane;
 use maud::{Markup, html};
 
 /// Part of the clearance beyond which the rotor counts as near the wall.
@@ -13,6 +15,9 @@ const NEAR: f64 = 0.8;
 
 /// Range of the slow part in `sqrt(g/clearance)`: a turn without friction takes `sqrt(5)` at the bottom.
 const BEGINNING: f64 = 5.0;
+
+/// Surface speed, in `sqrt(g clearance)`, from which the slip keeps its sign until fast whirl.
+const FAST: f64 = 20.0;
 
 const HEIGHT: f64 = 330.0;
 
@@ -74,10 +79,23 @@ fn plane(
         height: HEIGHT,
     };
     let curves = html! {
+        @if let Some(plane) = fast_plane(subject).filter(|_| reach > 90.0) {
+            (areas(View { plane: &plane, side: -subject.spin.signum(), factor }, &chart))
+        }
         @if reach > 90.0 { (contact_limit(subject, chart.pen(), factor)) }
         @for run in runs(&outcome.trace) { (curve(run, subject, chart.pen(), factor)) }
     };
     chart.draw(&html! {}, &curves, &html! {})
+}
+
+/// The regions of a rotor that spins so fast that friction drives one way all the time.
+fn fast_plane(subject: &Subject) -> Option<Plane> {
+    let machine = &subject.machine;
+    let unit = (machine.gravity * machine.clearance).sqrt();
+    let fast = machine.radius * subject.spin.abs() > FAST * unit;
+    let friction = Plane::FRICTION.contains(&machine.friction);
+    (unit > 0.0 && fast && friction)
+        .then(|| Plane::new(machine.gravity / machine.clearance, machine.friction))
 }
 
 /// Angle in degrees and its rate in rad/s, if the rotor is near the wall.

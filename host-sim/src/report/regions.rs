@@ -6,7 +6,7 @@ use super::chart::{Axis, Chart};
 use crate::regions::{Orbit, Plane};
 use maud::{Markup, html};
 
-/// Points of a boundary.
+/// Points of a boundary, closer together at its ends, where it is steep.
 const POINTS: u32 = 240;
 
 /// How a chart shows a plane.
@@ -31,20 +31,17 @@ pub fn areas(view: View<'_>, chart: &Chart<'_>) -> Markup {
     };
     let leftmost = swing.held_until(0.0, -FRAC_PI_2);
     let stops = |orbit: Orbit| move |phi: f64| orbit.square(phi).max(0.0).sqrt();
-    let whole = (-PI, PI);
     html! {
-        (view.between(chart, whole, &plane_limit(plane, -1.0), &plane_limit(plane, 1.0), "no-hold"))
-        (view.between(chart, whole, &least, &|_| fastest, "whirl"))
+        @for half in [(-PI, -FRAC_PI_2), (FRAC_PI_2, PI)] {
+            (view.between(chart, half, &|phi| -plane.limit(phi), &|phi| plane.limit(phi), "no-hold"))
+        }
+        (view.between(chart, (-PI, PI), &least, &|_| fastest, "whirl"))
         (view.between(chart, (leftmost, FRAC_PI_2), &|phi| -stops(swing)(phi), &stops(swing), "swing"))
         @for (slow, fast) in plane.turning_whirls().take_while(|it| it.0.rate(0.0) < fastest) {
             @let from = if fast.holds(-PI) { -PI } else { -FRAC_PI_2 };
             (view.between(chart, (from, PI), &|phi| -stops(fast)(phi), &|phi| -stops(slow)(phi), "whirl"))
         }
     }
-}
-
-fn plane_limit(plane: &Plane, sign: f64) -> impl Fn(f64) -> f64 {
-    move |phi| sign * plane.limit(phi)
 }
 
 impl View<'_> {
@@ -58,7 +55,10 @@ impl View<'_> {
         class: &str,
     ) -> Markup {
         let mut pen = chart.pen();
-        let angles = (0..=POINTS).map(|n| from + (to - from) * f64::from(n) / f64::from(POINTS));
+        let angles = (0..=POINTS).map(|n| {
+            let part = 0.5 - 0.5 * (PI * f64::from(n) / f64::from(POINTS)).cos();
+            from + (to - from) * part
+        });
         let there = angles.clone().map(|phi| (phi, low(phi)));
         let back = angles.rev().map(|phi| (phi, high(phi)));
         for (phi, rate) in there.chain(back) {
