@@ -209,7 +209,7 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
         Some(name) => named("math", name, &[Math::Libm], Math::name)?,
     };
     let step = match table.step_us {
-        Some(step) => MICRO * between("model", "step_us", step, 1.0..=1000.0)?,
+        Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
     };
     Ok(Model {

@@ -5,7 +5,7 @@ mod check;
 mod explain;
 mod file;
 mod flaw;
-mod limits;
+pub mod limits;
 mod model;
 
 pub use builtin::{BUILT_IN, BuiltIn};
@@ -184,6 +184,17 @@ impl Scene {
             restitution: self.retainer.restitution,
             gravity: self.run.gravity,
         }
+    }
+
+    /// Takes rotor and retainer bearing of `machine`; the spin stays.
+    pub fn set_machine(&mut self, machine: &Machine) {
+        self.rotor.mass = machine.mass;
+        self.rotor.radius = machine.radius;
+        self.rotor.polar_inertia = machine.polar_inertia;
+        self.retainer.clearance = machine.clearance;
+        self.retainer.friction = machine.friction;
+        self.retainer.restitution = machine.restitution;
+        self.run.gravity = machine.gravity;
     }
 
     /// Time of the first sample, s since the release.
