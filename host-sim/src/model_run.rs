@@ -2,8 +2,8 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Instant, Kinematics, Precision, Rigid, RigidConfig, Start as ScaledStart, Stepper,
-    Touch,
+    Change, Instant, Kinematics, Moreau, Precision, Rigid, RigidConfig, Start as ScaledStart,
+    Stepper, Touch,
 };
 use touchdown_core::scales::Scales;
 
@@ -50,10 +50,14 @@ pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigErr
 fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
     match scene.model.rung {
         Rung::Rigid => {
-            let model = rigid(scene)?;
+            let model = Rigid::try_new(&config(scene))?;
             what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
         }
-        Rung::Moreau | Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
+        Rung::Moreau => {
+            let model = Moreau::try_new(&config(scene))?;
+            what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+        }
+        Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
     }
 }
 
@@ -66,8 +70,8 @@ fn subject<R: Precision, M>(scene: &Scene, model: M, scales: Scales<f64>) -> Sub
     }
 }
 
-fn rigid(scene: &Scene) -> Result<Rigid<f64>, ConfigError> {
-    Rigid::try_new(&RigidConfig {
+fn config(scene: &Scene) -> RigidConfig<f64> {
+    RigidConfig {
         mass: scene.rotor.mass,
         radius: scene.rotor.radius,
         polar_inertia: scene.rotor.polar_inertia,
@@ -77,7 +81,7 @@ fn rigid(scene: &Scene) -> Result<Rigid<f64>, ConfigError> {
         gravity: scene.run.gravity,
         speed: start_speed(scene),
         step: scene.model.step,
-    })
+    }
 }
 
 /// Runs the scene's model from the release to the end.

@@ -194,7 +194,7 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
 fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     let rung = match table.rung.as_deref() {
         None => Rung::Rigid,
-        Some(name) => named("rung", name, &[Rung::Rigid], Rung::name)?,
+        Some(name) => named("rung", name, &[Rung::Rigid, Rung::Moreau], Rung::name)?,
     };
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
