@@ -4,19 +4,10 @@
 
 /// Square root; NaN below 0. Of a NaN only that it is one is the same everywhere.
 #[cfg(all(target_arch = "arm", target_os = "none", target_abi = "eabihf"))]
-#[inline]
-pub fn sqrt(x: f32) -> f32 {
-    let root: f32;
-    // SAFETY: reads and writes the named registers only; targets of this ABI have the instruction.
-    unsafe {
-        core::arch::asm!(
-            "vsqrt.f32 {root}, {x}",
-            root = lateout(sreg) root,
-            x = in(sreg) x,
-            options(pure, nomem, nostack, preserves_flags),
-        );
-    }
-    root
+// SAFETY: this ABI passes and returns a single in s0, and only targets with the instruction have it.
+#[unsafe(naked)]
+pub extern "C" fn sqrt(x: f32) -> f32 {
+    core::arch::naked_asm!(".fpu fpv4-sp-d16", "vsqrt.f32 s0, s0", "bx lr")
 }
 
 /// Square root; NaN below 0. Of a NaN only that it is one is the same everywhere.

@@ -28,9 +28,9 @@ enum Task {
         #[arg(long)]
         yes: bool,
     },
-    /// Build both images, for silicon and for the emulator
+    /// Build the images, for silicon and for the emulator
     Firmware,
-    /// Set up what is missing, build both images, and run every test
+    /// Set up what is missing, build the images, and run every test
     Test {
         /// Do not ask
         #[arg(long)]

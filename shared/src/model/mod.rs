@@ -26,5 +26,5 @@ pub use kinematics::{Change, Happening, Kinematics, Touch};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
-pub use state::RigidState;
+pub use state::{RigidState, Solved};
 pub use stepper::Stepper;
