@@ -1,5 +1,5 @@
-//! The model under test against the 40-digit values of `data/cases`, at every step and precision, with the functions
-//! of libm and with own polynomials. What micromath makes of them: `math.rs`.
+//! The model under test against the 40-digit values of `data/cases`, at every step and precision, with
+//! every kind of functions.
 
 use touchdown_sim::history::{History, Impact};
 use touchdown_sim::model_run::simulate;
@@ -8,7 +8,6 @@ use touchdown_tests::cases::{Case, open_cases};
 
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
-const MATHS: [Math; 2] = [Math::Libm, Math::Polynomial];
 
 fn run(case: &Case, precision: Precision, math: Math, step: f64) -> History {
     let mut scene = case.scene();
@@ -28,7 +27,7 @@ fn open_case(name: &str) -> Case {
 fn runs(case: &Case) -> Vec<(String, Precision, History)> {
     let mut all = Vec::new();
     for precision in PRECISIONS {
-        for math in MATHS {
+        for &math in precision.maths() {
             for step in STEPS {
                 let name = format!("{} {precision:?} {math:?} {step:e} s", case.name);
                 all.push((name, precision, run(case, precision, math, step)));
@@ -179,7 +178,7 @@ fn permanent_contact_meets_the_target_at_any_step() {
 fn the_result_does_not_depend_on_the_step() {
     for case in open_cases() {
         for (precision, target) in [(Precision::F64, 1e-13), (Precision::F32, 1e-6)] {
-            for math in MATHS {
+            for &math in precision.maths() {
                 let fine = run(&case, precision, math, STEPS[0]);
                 let coarse = STEPS[1..].iter();
                 let spread = coarse

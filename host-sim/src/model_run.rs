@@ -173,7 +173,7 @@ impl Use for Simulate<'_> {
 
 /// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
 /// rounding ends on the last of them.
-fn steps_of_run(steps: f64) -> (u64, f64) {
+pub(crate) fn steps_of_run(steps: f64) -> (u64, f64) {
     let nearest = steps.round();
     if (steps - nearest).abs() <= 1e-9 * nearest {
         return (nearest as u64, 0.0);

@@ -9,7 +9,7 @@ use super::{Counter, Name, Table, Tally};
 
 /// Duration of the drop, us.
 const DURATION: u32 = 300_000;
-/// Steps, us. The classes come from the first.
+/// Steps, us.
 const STEPS: [u32; 2] = [10, 1_000];
 /// 30 000 rpm, clockwise, rad/s.
 const SPIN: f64 = -1_000.0 * core::f64::consts::PI;
@@ -23,15 +23,15 @@ enum Class {
     Flight,
     /// In contact, likewise.
     Contact,
-    /// Flights were solved.
+    /// One flight was solved.
     Impact,
-    /// Stretches of contact were solved.
+    /// One stretch of contact was solved.
     Stretch,
-    /// Both.
-    Both,
+    /// More than one motion was solved.
+    Several,
 }
 
-const NAMES: [&str; 5] = ["flight", "contact", "impact", "stretch", "both"];
+const NAMES: [&str; 5] = ["flight", "contact", "impact", "stretch", "several"];
 
 pub(super) fn count(counter: &Counter, table: &mut Table) {
     let name = |precision, math| Name { precision, math };
@@ -123,9 +123,9 @@ fn class(solved: Solved, touch: Touch) -> Class {
     match (solved.flights, solved.stretches) {
         (0, 0) if touch == Touch::None => Class::Flight,
         (0, 0) => Class::Contact,
-        (_, 0) => Class::Impact,
-        (0, _) => Class::Stretch,
-        _ => Class::Both,
+        (1, 0) => Class::Impact,
+        (0, 1) => Class::Stretch,
+        _ => Class::Several,
     }
 }
 

@@ -8,7 +8,7 @@ use touchdown_core::real::{Micro32, Poly32, Poly64, Real};
 use super::{Counter, Name, Table, Tally};
 
 /// Arguments in a set.
-const ARGUMENTS: i32 = 61;
+const ARGUMENTS: usize = 61;
 
 pub(super) fn count(counter: &Counter, table: &mut Table) {
     let name = |precision, math| Name { precision, math };
@@ -25,6 +25,8 @@ pub(super) fn count(counter: &Counter, table: &mut Table) {
 }
 
 fn of_number<R: Real>(counter: &Counter, table: &mut Table, name: Name) {
+    // What handing over argument and result takes is part of every row.
+    of_function(counter, table, name, "identity", sizes(), |x: R| x);
     of_function(counter, table, name, "sqrt", sizes(), R::sqrt);
     of_function(counter, table, name, "ln", sizes(), R::ln);
     for (function, to) in [
@@ -34,36 +36,39 @@ fn of_number<R: Real>(counter: &Counter, table: &mut Table, name: Name) {
     ] {
         of_function(counter, table, name, function, angles(to), R::sin_cos);
     }
-    let directions = angles(PI).map(|angle: R| R::lit(angle.to_f64()).sin_cos());
+    let directions = angles(PI).map(R::sin_cos);
     of_function(counter, table, name, "atan2", directions, |(y, x)| {
         y.atan2(x)
     });
 }
 
 /// From 1e-6 to 1e6 by equal ratios.
-fn sizes<R: Real>() -> impl Iterator<Item = R> {
+fn sizes<R: Real>() -> [R; ARGUMENTS] {
     const RATIO: f64 = 1.584_893_192_461_113_5;
-    let next = |x: &f64| Some(x * RATIO);
-    core::iter::successors(Some(1e-6), next)
-        .take(ARGUMENTS as usize)
-        .map(R::lit)
+    let mut size = 1e-6;
+    core::array::from_fn(|_| {
+        let this = R::lit(size);
+        size *= RATIO;
+        this
+    })
 }
 
 /// From -`to` to `to` by equal steps.
-fn angles<R: Real>(to: f64) -> impl Iterator<Item = R> {
-    (0..ARGUMENTS).map(move |k| R::lit(to * (f64::from(2 * k) / f64::from(ARGUMENTS - 1) - 1.0)))
+fn angles<R: Real>(to: f64) -> [R; ARGUMENTS] {
+    core::array::from_fn(|k| R::lit(to * (2.0 * k as f64 / (ARGUMENTS - 1) as f64 - 1.0)))
 }
 
-fn of_function<A, T>(
+fn of_function<A: Copy, T>(
     counter: &Counter,
     table: &mut Table,
     Name { precision, math }: Name,
     function: &str,
-    arguments: impl Iterator<Item = A>,
+    arguments: [A; ARGUMENTS],
     call: impl Fn(A) -> T,
 ) {
     let mut tally = Tally::default();
-    for argument in arguments {
+    // Ready before the first count: what makes the arguments could be moved into it otherwise.
+    for argument in black_box(arguments) {
         let (_, instructions) = counter.count(|| call(black_box(argument)));
         tally.add(instructions);
     }
