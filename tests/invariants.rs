@@ -3,6 +3,7 @@
 
 use proptest::prelude::*;
 use touchdown_core::model::{Change, Kinematics, Precision, Rigid, RigidConfig, Start, Touch};
+use touchdown_core::real::{Micro32, Poly32, Poly64};
 
 /// A dimensionless drop: everything that matters of gap, mass and size is in here.
 #[derive(Clone, Copy, Debug)]
@@ -152,5 +153,17 @@ proptest! {
     #[test]
     fn in_f32(drop in drops()) {
         check::<f32>(&drop, 300, 1e-4)?;
+    }
+
+    #[test]
+    fn with_polynomials(drop in drops()) {
+        check::<Poly64>(&drop, 300, 1e-9)?;
+        check::<Poly32>(&drop, 300, 1e-4)?;
+    }
+
+    // In a whirl too fast to be followed, its sine and cosine leave the unit circle by 1e-3.
+    #[test]
+    fn with_micromath(drop in drops()) {
+        check::<Micro32>(&drop, 300, 3e-3)?;
     }
 }

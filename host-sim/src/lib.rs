@@ -7,6 +7,7 @@ pub mod emulator;
 pub mod failure;
 pub mod history;
 pub mod input_error;
+pub mod instructions;
 pub mod json;
 pub mod matching;
 pub mod model_run;

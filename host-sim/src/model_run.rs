@@ -5,6 +5,7 @@ use touchdown_core::model::{
     Change, Instant, Kinematics, Moreau, Precision, Rigid, RigidConfig, Start as ScaledStart,
     Stepper, Touch,
 };
+use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
 use crate::history::{Happening, History, Impact, Recorder, RotorState};
@@ -43,7 +44,13 @@ pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigErr
     match (scene.model.precision, scene.model.math) {
         (scene::Precision::F64, Math::Libm) => in_numbers::<f64, U>(scene, what),
         (scene::Precision::F32, Math::Libm) => in_numbers::<f32, U>(scene, what),
-        _ => Err(ConfigError::OutOfRange("math", "\"libm\"")),
+        (scene::Precision::F64, Math::Polynomial) => in_numbers::<Poly64, U>(scene, what),
+        (scene::Precision::F32, Math::Polynomial) => in_numbers::<Poly32, U>(scene, what),
+        (scene::Precision::F32, Math::Micromath) => in_numbers::<Micro32, U>(scene, what),
+        (scene::Precision::F64, Math::Micromath) => Err(ConfigError::OutOfRange(
+            "math",
+            "\"libm\" or \"polynomial\" in f64",
+        )),
     }
 }
 
@@ -170,7 +177,7 @@ impl Use for Simulate<'_> {
 
 /// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
 /// rounding ends on the last of them.
-fn steps_of_run(steps: f64) -> (u64, f64) {
+pub(crate) fn steps_of_run(steps: f64) -> (u64, f64) {
     let nearest = steps.round();
     if (steps - nearest).abs() <= 1e-9 * nearest {
         return (nearest as u64, 0.0);

@@ -206,7 +206,7 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     };
     let math = match table.math.as_deref() {
         None => Math::Libm,
-        Some(name) => named("math", name, &[Math::Libm], Math::name)?,
+        Some(name) => named("math", name, precision.maths(), Math::name)?,
     };
     let step = match table.step_us {
         Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,

@@ -177,6 +177,7 @@ impl<R: Precision> Rigid<R> {
         next: impl Fn(&Flight<R>, &Law<R>) -> Landing<R>,
     ) {
         let to = next(&flight, &self.law);
+        state.solved.flights = state.solved.flights.wrapping_add(1);
         state.turns = (0, R::ZERO);
         state.ends = state.begun.after(to.after, &self.step);
         state.motion = Motion::Flight { flight, to };
@@ -197,6 +198,7 @@ impl<R: Precision> Rigid<R> {
     /// Starts the next stretch of contact at `state.begun`.
     fn touch(&self, state: &mut RigidState<R>, onto: WallState<R>, grip: Grip) {
         let contact = Contact::new(onto, grip, &self.law);
+        state.solved.stretches = state.solved.stretches.wrapping_add(1);
         state.spin = onto.spin;
         state.ends = state.begun.after(contact.span, &self.step);
         state.motion = Motion::Contact(contact);

@@ -32,5 +32,5 @@ pub use moreau::{Moreau, MoreauState};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
-pub use state::RigidState;
+pub use state::{RigidState, Solved};
 pub use stepper::Stepper;

@@ -6,7 +6,7 @@ use crate::model::kinematics::{Happening, Kinematics};
 use crate::model::law::Law;
 use crate::model::precision::Precision;
 use crate::model::start::Start;
-use crate::model::state::RigidState;
+use crate::model::state::{RigidState, Solved};
 use crate::model::stepper::Stepper;
 use crate::real::Real;
 use crate::scales::{Scales, not_negative, positive};
@@ -116,5 +116,9 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
 
     fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
         self.kinematics(state)
+    }
+
+    fn solved(&self, state: &RigidState<R>) -> Solved {
+        state.solved()
     }
 }

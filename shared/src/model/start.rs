@@ -7,7 +7,7 @@ use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::Happening;
 use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
-use crate::model::state::{Motion, RigidState};
+use crate::model::state::{Motion, RigidState, Solved};
 use crate::model::sum::Sum;
 
 /// Distance from the wall, in units of epsilon, at which a start counts as on it.
@@ -111,6 +111,7 @@ impl<R: Precision> Rigid<R> {
             spin: Sum::new(spin),
             turns: (0, R::ZERO),
             shortened: 0,
+            solved: Solved::default(),
         };
         match *start {
             Start::Free { position, velocity } => self.start_free(&mut state, position, velocity),

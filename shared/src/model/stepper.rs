@@ -4,6 +4,7 @@ use crate::error::ConfigError;
 use crate::model::kinematics::{Happening, Kinematics};
 use crate::model::precision::Precision;
 use crate::model::start::Start;
+use crate::model::state::Solved;
 
 /// A rotor model that goes by equal steps.
 pub trait Stepper<R: Precision> {
@@ -26,4 +27,9 @@ pub trait Stepper<R: Precision> {
 
     /// The rotor now.
     fn kinematics(&self, state: &Self::State) -> Kinematics<R>;
+
+    /// What it has solved since the start; nothing, if all its steps do the same.
+    fn solved(&self, _state: &Self::State) -> Solved {
+        Solved::default()
+    }
 }
