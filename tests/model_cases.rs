@@ -1,20 +1,26 @@
 //! The model under test against the 40-digit values of `data/cases`, at every step and precision, with
 //! every kind of functions.
 
+use touchdown_core::error::ConfigError;
+use touchdown_core::model::{Precision as Digits, Stepper};
 use touchdown_sim::history::{History, Impact};
-use touchdown_sim::model_run::simulate;
-use touchdown_sim::scene::{Math, Precision};
+use touchdown_sim::model_run::{Subject, Use, simulate, with_model};
+use touchdown_sim::scene::{Math, Precision, Scene};
 use touchdown_tests::cases::{Case, open_cases};
 
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
 
-fn run(case: &Case, precision: Precision, math: Math, step: f64) -> History {
+fn scene(case: &Case, precision: Precision, math: Math, step: f64) -> Scene {
     let mut scene = case.scene();
     scene.model.precision = precision;
     scene.model.math = math;
     scene.model.step = step;
-    simulate(&scene).expect("valid case")
+    scene
+}
+
+fn run(case: &Case, precision: Precision, math: Math, step: f64) -> History {
+    simulate(&scene(case, precision, math, step)).expect("valid case")
 }
 
 fn open_case(name: &str) -> Case {
@@ -246,4 +252,47 @@ fn slide_to_rolling() {
         assert!(position <= target, "{name}: {position:e}");
         assert_eq!(history.rolling_starts.len(), 1, "{name}");
     }
+}
+
+/// Runs the same drop by steps and at once; the changes of motion, if both have the same.
+struct BothWays(f64);
+
+impl Use for BothWays {
+    type Output = usize;
+
+    fn with<R: Digits, M: Stepper<R>>(
+        self,
+        Subject {
+            model, start, spin, ..
+        }: &Subject<R, M>,
+    ) -> Result<usize, ConfigError> {
+        let (whole, part) = (self.0.floor() as u64, R::lit(self.0.fract()));
+        let mut seen = Vec::new();
+        let mut stepped = model.start(start, *spin, |h| seen.push(h))?;
+        for _ in 0..whole {
+            model.step(&mut stepped, |h| seen.push(h));
+        }
+        model.part_step(&mut stepped, part, |h| seen.push(h));
+        let mut told = Vec::new();
+        let mut run = model.start(start, *spin, |h| told.push(h))?;
+        model.run(&mut run, whole, part, |h| told.push(h));
+        assert_eq!(told, seen);
+        assert_eq!(model.kinematics(&run), model.kinematics(&stepped));
+        Ok(told.len())
+    }
+}
+
+#[test]
+fn a_run_has_the_bits_of_its_steps() {
+    let mut changes = 0;
+    for case in open_cases() {
+        for precision in PRECISIONS {
+            for step in STEPS {
+                let scene = scene(&case, precision, Math::Libm, step);
+                let steps = case.result.t_end / step + 0.4;
+                changes += with_model(&scene, BothWays(steps)).expect("valid case");
+            }
+        }
+    }
+    assert!(changes > 3000, "{changes}");
 }

@@ -164,12 +164,7 @@ impl Use for Simulate<'_> {
         };
         let mut state = model.start(start, *spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / step);
-        for _ in 0..steps {
-            model.step(&mut state, &mut take);
-        }
-        if fraction > 0.0 {
-            model.part_step(&mut state, R::lit(fraction), &mut take);
-        }
+        model.run(&mut state, steps, R::lit(fraction), &mut take);
         let last = to_si(&model.kinematics(&state), scene.run.duration, scales);
         Ok(recorder.finish(last, STILL * scales.speed))
     }

@@ -27,20 +27,29 @@ const LONGEST_REST: f64 = 1e-4;
 
 impl<R: Precision> Rigid<R> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
-    pub fn step(&self, state: &mut RigidState<R>, sink: impl FnMut(Happening<R>)) {
-        let next = state.now.tick + 1;
-        self.advance(state, Instant::at_tick(next), sink);
+    pub fn step(&self, state: &mut RigidState<R>, mut sink: impl FnMut(Happening<R>)) {
+        state.now = Instant::at_tick(state.now.tick + 1);
+        self.follow(state, &mut sink);
     }
 
-    /// Goes to `to`, which is not before now. As bounded as a step: over more than a step or two,
-    /// the bound on changes can shorten a dense series.
-    pub fn advance(
+    /// Goes to `until`, which is not before now, by those steps alone in which something changes: the
+    /// bits of stepping there, at the cost of the changes. Costs at most what stepping does. Changes of
+    /// motion go to `sink` in the order of time.
+    pub fn run(
         &self,
         state: &mut RigidState<R>,
-        to: Instant<R>,
+        until: Instant<R>,
         mut sink: impl FnMut(Happening<R>),
     ) {
-        state.now = to;
+        while state.ends.is_reached_at(until) {
+            let eventful = state.ends.next_tick().max(state.now.tick + 1);
+            if eventful > until.tick {
+                break;
+            }
+            state.now = Instant::at_tick(eventful);
+            self.follow(state, &mut sink);
+        }
+        state.now = until;
         self.follow(state, &mut sink);
     }
 

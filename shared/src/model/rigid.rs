@@ -110,8 +110,18 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
     }
 
     fn part_step(&self, state: &mut RigidState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
-        let tick = state.now.tick;
-        self.advance(state, Instant { tick, fraction }, sink);
+        Stepper::run(self, state, 0, fraction, sink);
+    }
+
+    fn run(
+        &self,
+        state: &mut RigidState<R>,
+        steps: u64,
+        fraction: R,
+        sink: impl FnMut(Happening<R>),
+    ) {
+        let tick = state.now.tick.saturating_add(steps);
+        self.run(state, Instant { tick, fraction }, sink);
     }
 
     fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {

@@ -106,21 +106,28 @@ impl<R: Precision> Series<R> {
     /// What `at` (in the series' unit) adds to sine, cosine, velocity, the wall's impulse and the angle
     /// turned.
     pub(crate) fn rise(&self, at: R) -> [R; 5] {
-        let mut rise = [R::ZERO; 5];
-        for k in (1..=R::SERIES_ORDER).rev() {
-            let terms = [
-                self.sin[k],
-                self.cos[k],
-                self.tangential[k],
-                self.impulse[k],
-                self.angle[k],
-            ];
-            for (value, term) in rise.iter_mut().zip(terms) {
-                *value = (*value + term) * at;
-            }
-        }
-        rise
+        let terms = [
+            &self.sin,
+            &self.cos,
+            &self.tangential,
+            &self.impulse,
+            &self.angle,
+        ];
+        terms.map(|c| without_constant(c, at))
     }
+}
+
+/// The series without its constant term. Odd and even powers apart: two sums that do not wait for each
+/// other.
+fn without_constant<R: Precision>(c: &Terms<R>, at: R) -> R {
+    let square = at * at;
+    let (pairs, last) = c[1..=R::SERIES_ORDER].as_chunks();
+    let first = (last.first().copied().unwrap_or(R::ZERO), R::ZERO);
+    let sums = pairs.iter().rev();
+    let (odd, even) = sums.fold(first, |(odd, even), &[a, b]| {
+        (odd * square + a, even * square + b)
+    });
+    (odd + even * at) * at
 }
 
 /// Term `k` of the product of two series.
