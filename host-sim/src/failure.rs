@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::input_error::{InputError, reason};
 
-/// Ends a command with exit status 2.
+/// Ends a command with [`Failure::status`].
 #[derive(Debug, Error, Diagnostic)]
 pub enum Failure {
     /// A scene or stream that cannot be used.
@@ -28,9 +28,20 @@ pub enum Failure {
     /// The place where the detector should run is not ready.
     #[error("{0}")]
     Target(String),
+    /// A check that the command exists for did not hold.
+    #[error("{0}")]
+    Check(String),
 }
 
 impl Failure {
+    /// Exit status: 1 for a check that did not hold, else 2.
+    pub fn status(&self) -> u8 {
+        match self {
+            Self::Check(_) => 1,
+            Self::Input(_) | Self::Output { .. } | Self::Usage(_) | Self::Target(_) => 2,
+        }
+    }
+
     /// For `map_err` on writing `file`.
     pub fn output(file: &str) -> impl Fn(io::Error) -> Self + '_ {
         move |error| Self::Output {

@@ -10,7 +10,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             cli::complain(&failure);
-            ExitCode::from(2)
+            ExitCode::from(failure.status())
         }
     }
 }

@@ -8,14 +8,14 @@ pub use args::Cli;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use args::{Command, DropArgs, ReplayArgs, SceneCommand, TradeArgs};
+use args::{Command, DropArgs, PaperArgs, ReplayArgs, SceneCommand, TradeArgs};
 
 use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
 use crate::scene::{BUILT_IN, Scene, explain};
-use crate::{drop, replay, report, timeline, trade};
+use crate::{drop, paper, replay, report, timeline, trade};
 
 /// Where the report goes when nothing is asked for.
 const DEFAULT_REPORT: &str = "touchdown-report.html";
@@ -31,6 +31,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
         Some(Command::Trade(args)) => trade_table(&args),
+        Some(Command::Paper(args)) => check_paper(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
@@ -112,6 +113,33 @@ fn trade_table(args: &TradeArgs) -> Result<(), Failure> {
         &(trade::table(&trade, Paint::for_stdout()) + &files),
     );
     Ok(())
+}
+
+fn check_paper(args: &PaperArgs) -> Result<(), Failure> {
+    let names = [&args.json, &Some(args.report.clone())];
+    one_standard_output(&names)?;
+    let [json_out, page_out] = names.map(open);
+    let (mut json_out, mut page_out) = (json_out?, page_out?);
+    let paper = paper::run(args.drops)?;
+    if let Some(out) = &mut json_out {
+        let text = paper::json(&paper).map_err(io::Error::from);
+        out.put(&text.map_err(Failure::output(out.name()))?)?;
+    }
+    if let Some(out) = &mut page_out {
+        out.put(&paper::page(&paper))?;
+    }
+    let files = commit([json_out, page_out, None])?;
+    say(
+        &names,
+        &(paper::table(&paper, Paint::for_stdout()) + &files),
+    );
+    if paper.agrees() {
+        Ok(())
+    } else {
+        Err(Failure::Check(
+            "numbers of ours are not right: those marked with !".to_owned(),
+        ))
+    }
 }
 
 /// Gives the files their names; what was written, for people.

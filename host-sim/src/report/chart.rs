@@ -184,6 +184,12 @@ impl<'a> Pen<'a> {
         let _ = write!(self.path, "{} {}", coordinate(x), coordinate(y));
     }
 
+    /// The area inside, styled by its class.
+    pub fn fill(mut self, class: &str) -> Markup {
+        self.path.push('Z');
+        html! { path class={ "region " (class) } d=(self.path) {} }
+    }
+
     /// The path element, styled by its class.
     pub fn finish(self, class: &str) -> Markup {
         html! {

@@ -3,9 +3,10 @@
 mod accuracy;
 pub(crate) mod chart;
 mod displacement;
-mod orbit;
+pub(crate) mod orbit;
 mod parameters;
 mod phase_plane;
+pub(crate) mod regions;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod text;
@@ -77,7 +78,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         div.pair {
             section {
                 h2 { "Orbit" }
-                (orbit::orbit(subject, outcome))
+                (orbit::orbit(subject.machine.clearance, subject.spin, outcome))
                 p.note { "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts. Here and below, dots stand alone where the points of the trace are too far apart to be joined." }
             }
             section {

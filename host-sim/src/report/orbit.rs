@@ -1,6 +1,5 @@
 //! The path of the rotor's centre inside the clearance circle.
 
-use super::Subject;
 use super::chart::{Axis, coordinate};
 use super::stretch::{far, runs};
 use super::text::{phase_class, significant};
@@ -13,10 +12,10 @@ use std::fmt::Write;
 /// Radius of the clearance circle in drawing units; the drawing is 488 of them wide.
 const RADIUS: f64 = 180.0;
 
-/// Draws the whole run with equal axes.
-pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
-    let scale = RADIUS / subject.machine.clearance;
-    let micro = 1.25 * subject.machine.clearance * 1e6;
+/// Draws the whole run with equal axes; clearance in m, spin in rad/s.
+pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
+    let scale = RADIUS / clearance;
+    let micro = 1.25 * clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
@@ -35,12 +34,12 @@ pub fn orbit(subject: &Subject, outcome: &Outcome) -> Markup {
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
             @for run in runs(&outcome.trace) {
-                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, subject, scale)) {}
+                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
             @for (x, y) in hits(outcome, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
             }
-            (spin_arrow(subject))
+            (spin_arrow(spin))
         }
     }
 }
@@ -51,7 +50,7 @@ fn place(point: &TracePoint, scale: f64) -> (f64, f64) {
 }
 
 /// In contact the points are joined by arcs, so that a whirl with few points a turn is still round.
-fn path(run: &[TracePoint], subject: &Subject, scale: f64) -> String {
+fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
     let mut path = String::new();
     let mut last: Option<((f64, f64), &TracePoint)> = None;
     for point in run {
@@ -71,7 +70,7 @@ fn path(run: &[TracePoint], subject: &Subject, scale: f64) -> String {
                 let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
                 write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
             }
-            Some((_, from)) if far(from, point, subject.machine.clearance) => {
+            Some((_, from)) if far(from, point, clearance) => {
                 write!(path, "M{x} {y}h0")
             }
             Some(_) => write!(path, "L{x} {y}"),
@@ -111,10 +110,10 @@ fn hits(outcome: &Outcome, scale: f64) -> Vec<(f64, f64)> {
     places
 }
 
-fn spin_arrow(subject: &Subject) -> Markup {
-    let rpm = significant(subject.spin.abs() * 30.0 / PI, 5);
-    let (path, turn) = match subject.spin.total_cmp(&0.0) {
-        _ if subject.spin == 0.0 => ("", "no spin".to_owned()),
+fn spin_arrow(spin: f64) -> Markup {
+    let rpm = significant(spin.abs() * 30.0 / PI, 5);
+    let (path, turn) = match spin.total_cmp(&0.0) {
+        _ if spin == 0.0 => ("", "no spin".to_owned()),
         std::cmp::Ordering::Greater => (
             "M194 -70A206 206 0 0 0 150 -141M150 -141l1 12M150 -141l11 5",
             format!("spin {rpm} rpm \u{21ba}"),
