@@ -4,11 +4,12 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use touchdown_core::model::Precision as _;
-use touchdown_sim::history::{History, Impact};
+use touchdown_sim::history::History;
 use touchdown_sim::model_run::simulate;
 use touchdown_sim::reference::Start;
 use touchdown_sim::scene::{Precision, Scene};
 use touchdown_sim::truth;
+use touchdown_tests::growth::{apart, growth, unit_speed};
 
 /// Scenes, where the environment's `PROPTEST_CASES` says nothing else.
 const SCENES: usize = 150;
@@ -18,10 +19,6 @@ const MOST_FRICTION: f64 = 1.5;
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Impacts that are compared.
 const IMPACTS: usize = 40;
-/// Change of the start that shows how errors grow, parts of the clearance and of V.
-const NUDGE: f64 = 1e-8;
-/// Growth beyond which nothing is asked.
-const CHAOS: f64 = 1e6;
 
 fn scenes() -> impl Strategy<Value = Scene> {
     let free = (
@@ -55,54 +52,6 @@ fn scenes() -> impl Strategy<Value = Scene> {
         )
 }
 
-fn apart(a: &Impact, b: &Impact, scene: &Scene) -> f64 {
-    let length = scene.retainer.clearance;
-    let speed = (scene.run.gravity * length).sqrt();
-    let gap = |a: [f64; 2], b: [f64; 2]| f64::hypot(a[0] - b[0], a[1] - b[1]);
-    let (p, q) = (&a.state, &b.state);
-    ((p.time - q.time).abs() * speed / length)
-        .max(gap(p.position, q.position) / length)
-        .max(gap(p.velocity, q.velocity) / speed)
-        .max((a.normal_speed - b.normal_speed).abs() / speed)
-}
-
-/// Growth of a start error up to each impact, as far as the nudged drops have the same impacts.
-fn growth(scene: &Scene, truth: &History) -> Vec<f64> {
-    let Start::Free { position, velocity } = scene.start else {
-        panic!("a free start");
-    };
-    let length = scene.retainer.clearance;
-    let speed = (scene.run.gravity * length).sqrt();
-    let mut growth = vec![1.0; truth.impacts.len().min(IMPACTS)];
-    for [x, y, u, v] in [
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, 1.0, 0.0],
-        [0.0, 0.0, 0.0, 1.0],
-    ] {
-        let mut near = scene.clone();
-        near.start = Start::Free {
-            position: [
-                position[0] + x * NUDGE * length,
-                position[1] + y * NUDGE * length,
-            ],
-            velocity: [
-                velocity[0] + u * NUDGE * speed,
-                velocity[1] + v * NUDGE * speed,
-            ],
-        };
-        let other = truth::simulate(&near);
-        growth.truncate(other.impacts.len());
-        for (k, growth) in growth.iter_mut().enumerate() {
-            let grown = apart(&other.impacts[k], &truth.impacts[k], scene) / NUDGE;
-            *growth = f64::max(*growth, grown);
-        }
-    }
-    let tame = growth.iter().take_while(|growth| **growth < CHAOS).count();
-    growth.truncate(tame);
-    growth
-}
-
 /// Greatest error over its target.
 fn worst(scene: &Scene, truth: &History, growth: &[f64], precision: Precision) -> f64 {
     let history = simulate(scene).expect("valid scene");
@@ -111,7 +60,7 @@ fn worst(scene: &Scene, truth: &History, growth: &[f64], precision: Precision) -
         Precision::F32 => f64::from(f32::CUTOFF_SPEED),
     };
     // A series ends a little below its cut-off, or a little above.
-    let least = 2.0 * cutoff * (scene.run.gravity * scene.retainer.clearance).sqrt();
+    let least = 2.0 * cutoff * unit_speed(scene);
     let mut worst = 0.0;
     for (k, &growth) in growth.iter().enumerate() {
         if truth.impacts[k].normal_speed * scene.retainer.restitution < least {
@@ -141,7 +90,7 @@ fn random_drops_meet_the_target_at_any_step() {
     for _ in 0..scenes_wanted {
         let mut scene = strategy.new_tree(&mut runner).expect("a scene").current();
         let truth = truth::simulate(&scene);
-        let growth = growth(&scene, &truth);
+        let growth = growth(&scene, &truth, IMPACTS);
         compared += growth.len();
         for (slot, precision) in [Precision::F64, Precision::F32].into_iter().enumerate() {
             for step in STEPS {
