@@ -17,7 +17,7 @@ pub fn all() -> Vec<Model> {
                         scheme,
                         precision,
                         math,
-                        step: f64::from(step) * 1e-6,
+                        step: f64::from(step) / 1e6,
                     }));
                 }
             }
