@@ -5,6 +5,7 @@ pub mod detection;
 pub mod drop;
 pub mod emulator;
 pub mod failure;
+pub mod fidelity;
 pub mod history;
 pub mod input_error;
 pub mod instructions;

@@ -3,6 +3,7 @@
 use touchdown_core::error::ConfigError;
 use touchdown_core::monitor::Monitor;
 
+use super::auto::auto;
 use super::file::{
     ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
 };
@@ -23,6 +24,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let start = start(&file.start, &retainer)?;
     let run = run(&file.run)?;
     let model = model(&file.model, &run)?;
+    let auto = auto(&file, &model)?;
     let scene = Scene {
         name: name.to_owned(),
         title: file.title,
@@ -32,6 +34,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         start,
         run,
         model,
+        auto,
         sensors: sensors(&file.sensors)?,
         tuning: file.detector,
     };

@@ -1,5 +1,6 @@
 //! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
 
+mod auto;
 mod builtin;
 mod check;
 mod explain;
@@ -7,10 +8,12 @@ mod file;
 mod flaw;
 pub mod limits;
 mod model;
+mod outputs;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;
 pub use model::{Math, Model, Precision, Rung, Scheme};
+pub use outputs::{Auto, Fixed, Output, Request};
 
 use std::path::Path;
 
@@ -41,6 +44,8 @@ pub struct Scene {
     pub run: Run,
     /// What is modelled.
     pub model: Model,
+    /// Where the model is to be chosen: what is asked of it.
+    pub auto: Option<Auto>,
     /// The sensor chain.
     pub sensors: SensorsConfig,
     /// The detector's thresholds and times.
