@@ -4,12 +4,19 @@ use std::env;
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=../memory.x");
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
         return Ok(());
     }
+    // Counts of instructions belong to the compiler that made them.
+    let compiler = Command::new(env::var("RUSTC")?).arg("--version").output()?;
+    println!(
+        "cargo::rustc-env=COMPILER={}",
+        String::from_utf8(compiler.stdout)?.trim()
+    );
     // The linker runs in the workspace's root or elsewhere, as cargo likes.
     let out = env::var("OUT_DIR")?;
     fs::copy("../memory.x", Path::new(&out).join("memory.x"))?;

@@ -179,11 +179,11 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nrung = \"soft\"",
-            "scene.toml:12: rung must be \"rigid\", is \"soft\"",
+            "scene.toml:12: rung must be \"rigid\" or \"moreau\", is \"soft\"",
         ),
         (
             "[model]\nrung = \"hertz\"",
-            "scene.toml:12: rung must be \"rigid\", is \"hertz\"",
+            "scene.toml:12: rung must be \"rigid\" or \"moreau\", is \"hertz\"",
         ),
         (
             "[model]\nprecision = \"f16\"",

@@ -3,7 +3,9 @@
 use serde::Deserialize;
 use std::fs;
 use std::path::Path;
+use touchdown_sim::history::Regime;
 use touchdown_sim::reference::{Machine, Start};
+use touchdown_sim::scene::Scene;
 
 /// A case.
 #[derive(Clone, Debug, Deserialize)]
@@ -169,6 +171,42 @@ impl Case {
                 position: [initial.x, initial.y],
                 velocity: [initial.vx, initial.vy],
             },
+        }
+    }
+
+    /// The rig's scene with the case in it.
+    ///
+    /// # Panics
+    /// If the built-in scene is broken.
+    pub fn scene(&self) -> Scene {
+        let mut scene = Scene::load("rig").expect("built-in scene");
+        let machine = self.machine();
+        scene.rotor.mass = machine.mass;
+        scene.rotor.radius = machine.radius;
+        scene.rotor.polar_inertia = machine.polar_inertia;
+        scene.rotor.spin = self.initial.omega;
+        scene.retainer.clearance = machine.clearance;
+        scene.retainer.friction = machine.friction;
+        scene.retainer.restitution = machine.restitution;
+        scene.run.gravity = machine.gravity;
+        scene.run.duration = self.result.t_end;
+        scene.start = self.start();
+        scene
+    }
+
+    /// The regime at the end.
+    ///
+    /// # Panics
+    /// If the case's name for it is unknown.
+    pub fn regime(&self) -> Regime {
+        match self.result.final_regime.as_str() {
+            "pendulum" => Regime::Pendulum,
+            "bouncing" => Regime::Bouncing,
+            "whirl" if self.result.turns_in_last_contact * self.initial.omega < 0.0 => {
+                Regime::BackwardWhirl
+            }
+            "whirl" => Regime::ForwardWhirl,
+            other => panic!("unknown regime {other}"),
         }
     }
 

@@ -2,11 +2,13 @@
 //! The touchdown monitor next to the controller of the magnetic bearings: one application over a
 //! small board trait, and the boards.
 //!
-//! The images are the package's two binaries. For the desktop the library holds the application
+//! The images are the package's binaries. For the desktop the library holds the application
 //! and its tests only; the boards are for the target.
 
 pub mod app;
 pub mod board;
+#[cfg(target_os = "none")]
+pub mod count;
 #[cfg(target_os = "none")]
 mod journal;
 pub mod overrun;

@@ -19,7 +19,8 @@ use crate::monitor_run::Answer;
 const QEMU: &str = "qemu-system-arm";
 /// An STM32F405; what of it is emulated is in docs/firmware.md.
 const MACHINE: &str = "netduinoplus2";
-const IMAGE: &str = "thumbv7em-none-eabihf/release/touchdown-qemu";
+const IMAGE: &str = "touchdown-qemu";
+const COUNTING_IMAGE: &str = "touchdown-count";
 
 /// Longest time for the start of QEMU, and for each sample: far more than they take.
 const START_LIMIT: Duration = Duration::from_secs(30);
@@ -72,7 +73,15 @@ pub struct Emulator {
 impl Emulator {
     /// Looks for the image, by default the one that `cargo xtask firmware` builds, and for QEMU.
     pub fn find(image: Option<&Path>) -> Result<Self, EmulatorError> {
-        let image = image.map_or_else(|| target_directory().join(IMAGE), Path::to_path_buf);
+        Self::over(image.map_or_else(|| built(IMAGE), Path::to_path_buf))
+    }
+
+    /// Looks for the image that counts instructions, and for QEMU.
+    pub fn find_counting() -> Result<Self, EmulatorError> {
+        Self::over(built(COUNTING_IMAGE))
+    }
+
+    fn over(image: PathBuf) -> Result<Self, EmulatorError> {
         let Ok(image) = image.canonicalize() else {
             return Err(EmulatorError::ImageMissing(image));
         };
@@ -89,27 +98,16 @@ impl Emulator {
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<Answer, EmulatorError> {
-        let elf = fs::read(&self.image).map_err(|e| EmulatorError::Io("read the image", e))?;
         let folder = tempfile::tempdir().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let replay = folder.path().join("replay");
         let count = write_replay(&replay, config, samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
 
-        let (out, err) = (folder.path().join("out"), folder.path().join("err"));
-        let child = self
-            .start(folder.path(), &out, &err)
-            .map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        let arguments = ["enable=on,target=native,arg=replay,arg=answer"];
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
-        let status = wait(child, limit)?;
-
-        let read = |path: &Path| fs::read(path).map_err(|e| EmulatorError::Io("read", e));
-        let log = self.decode_log(&elf, &read(&out)?)?;
-        if !status.success() {
-            let qemu = String::from_utf8_lossy(&read(&err)?).trim().to_owned();
-            return Err(EmulatorError::Failed { status, log, qemu });
-        }
-        let (notices, summary) =
-            decode_answer(&read(&folder.path().join("answer"))?).ok_or(EmulatorError::Damaged)?;
+        let log = self.execute(folder.path(), &arguments, limit)?;
+        let answer = read(&folder.path().join("answer"))?;
+        let (notices, summary) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
         Ok(Answer {
             notices,
             summary,
@@ -117,11 +115,39 @@ impl Emulator {
         })
     }
 
-    fn start(&self, folder: &Path, out: &Path, err: &Path) -> io::Result<Child> {
+    /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after
+    /// `-semihosting-config`.
+    pub fn execute(
+        &self,
+        folder: &Path,
+        arguments: &[&str],
+        limit: Duration,
+    ) -> Result<Vec<String>, EmulatorError> {
+        let elf = read(&self.image)?;
+        let (out, err) = (folder.join("out"), folder.join("err"));
+        let child = self
+            .start(folder, arguments, &out, &err)
+            .map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        let status = wait(child, limit)?;
+        let log = self.decode_log(&elf, &read(&out)?)?;
+        if !status.success() {
+            let qemu = String::from_utf8_lossy(&read(&err)?).trim().to_owned();
+            return Err(EmulatorError::Failed { status, log, qemu });
+        }
+        Ok(log)
+    }
+
+    fn start(
+        &self,
+        folder: &Path,
+        arguments: &[&str],
+        out: &Path,
+        err: &Path,
+    ) -> io::Result<Child> {
         Command::new(QEMU)
             .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
             .args(["-serial", "none", "-semihosting-config"])
-            .arg("enable=on,target=native,arg=replay,arg=answer")
+            .args(arguments)
             .arg("-kernel")
             .arg(&self.image)
             .current_dir(folder)
@@ -152,11 +178,17 @@ impl Emulator {
     }
 }
 
-fn target_directory() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {
+    fs::read(path).map_err(|e| EmulatorError::Io("read", e))
+}
+
+/// Where `cargo xtask firmware` puts an image.
+fn built(name: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"),
         PathBuf::from,
-    )
+    );
+    target.join("thumbv7em-none-eabihf/release").join(name)
 }
 
 fn write_replay(

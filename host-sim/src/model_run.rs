@@ -2,9 +2,10 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Instant, Kinematics, Precision, Rigid, RigidConfig, Start as ScaledStart, Stepper,
-    Touch,
+    Change, Instant, Kinematics, Moreau, Precision, Rigid, RigidConfig, Start as ScaledStart,
+    Stepper, Touch,
 };
+use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
 use crate::history::{Happening, History, Impact, Recorder, RotorState};
@@ -43,17 +44,27 @@ pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigErr
     match (scene.model.precision, scene.model.math) {
         (scene::Precision::F64, Math::Libm) => in_numbers::<f64, U>(scene, what),
         (scene::Precision::F32, Math::Libm) => in_numbers::<f32, U>(scene, what),
-        _ => Err(ConfigError::OutOfRange("math", "\"libm\"")),
+        (scene::Precision::F64, Math::Polynomial) => in_numbers::<Poly64, U>(scene, what),
+        (scene::Precision::F32, Math::Polynomial) => in_numbers::<Poly32, U>(scene, what),
+        (scene::Precision::F32, Math::Micromath) => in_numbers::<Micro32, U>(scene, what),
+        (scene::Precision::F64, Math::Micromath) => Err(ConfigError::OutOfRange(
+            "math",
+            "\"libm\" or \"polynomial\" in f64",
+        )),
     }
 }
 
 fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
     match scene.model.rung {
         Rung::Rigid => {
-            let model = rigid(scene)?;
+            let model = Rigid::try_new(&config(scene))?;
             what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
         }
-        Rung::Moreau | Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
+        Rung::Moreau => {
+            let model = Moreau::try_new(&config(scene))?;
+            what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+        }
+        Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
     }
 }
 
@@ -66,8 +77,8 @@ fn subject<R: Precision, M>(scene: &Scene, model: M, scales: Scales<f64>) -> Sub
     }
 }
 
-fn rigid(scene: &Scene) -> Result<Rigid<f64>, ConfigError> {
-    Rigid::try_new(&RigidConfig {
+fn config(scene: &Scene) -> RigidConfig<f64> {
+    RigidConfig {
         mass: scene.rotor.mass,
         radius: scene.rotor.radius,
         polar_inertia: scene.rotor.polar_inertia,
@@ -77,7 +88,7 @@ fn rigid(scene: &Scene) -> Result<Rigid<f64>, ConfigError> {
         gravity: scene.run.gravity,
         speed: start_speed(scene),
         step: scene.model.step,
-    })
+    }
 }
 
 /// Runs the scene's model from the release to the end.
@@ -153,12 +164,7 @@ impl Use for Simulate<'_> {
         };
         let mut state = model.start(start, *spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / step);
-        for _ in 0..steps {
-            model.step(&mut state, &mut take);
-        }
-        if fraction > 0.0 {
-            model.part_step(&mut state, R::lit(fraction), &mut take);
-        }
+        model.run(&mut state, steps, R::lit(fraction), &mut take);
         let last = to_si(&model.kinematics(&state), scene.run.duration, scales);
         Ok(recorder.finish(last, STILL * scales.speed))
     }
@@ -166,7 +172,7 @@ impl Use for Simulate<'_> {
 
 /// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
 /// rounding ends on the last of them.
-fn steps_of_run(steps: f64) -> (u64, f64) {
+pub(crate) fn steps_of_run(steps: f64) -> (u64, f64) {
     let nearest = steps.round();
     if (steps - nearest).abs() <= 1e-9 * nearest {
         return (nearest as u64, 0.0);

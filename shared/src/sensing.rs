@@ -2,7 +2,7 @@
 //! axes.
 
 use crate::error::ConfigError;
-use crate::real::Real;
+use crate::real::sin_cos;
 use crate::sample::Sample;
 
 /// Sensor planes.
@@ -79,7 +79,7 @@ impl Sensing {
             zero_count: config.zero_count,
             full_scale: config.full_scale,
             rotation: config.mounting_angle.map(|angle| {
-                let (sin, cos) = Real::sin_cos(angle);
+                let (sin, cos) = sin_cos(angle);
                 [sin, cos]
             }),
         })

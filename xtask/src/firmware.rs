@@ -11,10 +11,10 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-const IMAGES: [&str; 2] = ["touchdown-firmware", "touchdown-qemu"];
+const IMAGES: [&str; 3] = ["touchdown-firmware", "touchdown-qemu", "touchdown-count"];
 const RAM_START: u64 = 0x2000_0000;
 
-/// Builds both images.
+/// Builds all images.
 pub fn build() -> anyhow::Result<()> {
     println!("Firmware: building for {TARGET}");
     let status = Machine::look()

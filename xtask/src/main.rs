@@ -1,6 +1,7 @@
-//! `cargo xtask`: set-up, firmware build and tests.
+//! `cargo xtask`: set-up, firmware build, counts of instructions and tests.
 
 mod firmware;
+mod instructions;
 mod machine;
 mod setup;
 mod tally;
@@ -28,9 +29,11 @@ enum Task {
         #[arg(long)]
         yes: bool,
     },
-    /// Build both images, for silicon and for the emulator
+    /// Build the images, for silicon and for the emulator
     Firmware,
-    /// Set up what is missing, build both images, and run every test
+    /// Build the images, count the model's instructions in the emulator, write the tables
+    Instructions,
+    /// Set up what is missing, build the images, and run every test
     Test {
         /// Do not ask
         #[arg(long)]
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware => firmware::build(),
+        Task::Instructions => firmware::build().and_then(|()| instructions::count()),
         Task::Test { yes } => setup::run(yes)
             .and_then(|()| firmware::build())
             .and_then(|()| test::run()),

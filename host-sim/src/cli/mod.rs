@@ -15,7 +15,7 @@ use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
 use crate::scene::{BUILT_IN, Scene, explain};
-use crate::{drop, paper, replay, report, timeline, trade};
+use crate::{drop, fidelity, paper, replay, report, timeline, trade};
 
 /// Where the report goes when nothing is asked for.
 const DEFAULT_REPORT: &str = "touchdown-report.html";
@@ -45,7 +45,8 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
 fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     let names = [&args.json, &args.report, &args.stream];
     one_standard_output(&names)?;
-    let scene = load(&args.scene)?;
+    let mut scene = load(&args.scene)?;
+    let why = choose(&mut scene)?;
     let target = args.place.target()?;
     let [json_out, report_out, stream_out] = names.map(open);
     let (mut json_out, mut report_out) = (json_out?, report_out?);
@@ -60,8 +61,23 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     }
     let files = commit([json_out, report_out, stream_out])?;
     let text = timeline::drop(&scene, &outcome, Paint::for_stdout());
-    say(&names, &(text + &files));
+    say(&names, &(why + &text + &files));
     Ok(())
+}
+
+/// Takes the cheapest model that gives what the scene asks, where it leaves the model open; why, for
+/// people.
+fn choose(scene: &mut Scene) -> Result<String, Failure> {
+    let Some(auto) = &scene.auto else {
+        return Ok(String::new());
+    };
+    let choice = fidelity::choose(scene, auto);
+    let why = fidelity::explain(&choice);
+    let Some(best) = choice.best() else {
+        return Err(Failure::Usage(format!("{}: {why}", scene.name)));
+    };
+    scene.model = best.model;
+    Ok(why + "\n")
 }
 
 fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {

@@ -8,6 +8,7 @@
 mod contact;
 mod flight;
 mod impact;
+pub mod pulse;
 mod roots;
 mod scale;
 mod series;

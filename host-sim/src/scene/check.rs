@@ -3,6 +3,7 @@
 use touchdown_core::error::ConfigError;
 use touchdown_core::monitor::Monitor;
 
+use super::auto::auto;
 use super::file::{
     ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
 };
@@ -23,6 +24,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let start = start(&file.start, &retainer)?;
     let run = run(&file.run)?;
     let model = model(&file.model, &run)?;
+    let auto = auto(&file, &model)?;
     let scene = Scene {
         name: name.to_owned(),
         title: file.title,
@@ -32,6 +34,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         start,
         run,
         model,
+        auto,
         sensors: sensors(&file.sensors)?,
         tuning: file.detector,
     };
@@ -194,7 +197,7 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
 fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     let rung = match table.rung.as_deref() {
         None => Rung::Rigid,
-        Some(name) => named("rung", name, &[Rung::Rigid], Rung::name)?,
+        Some(name) => named("rung", name, &[Rung::Rigid, Rung::Moreau], Rung::name)?,
     };
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
@@ -206,10 +209,10 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     };
     let math = match table.math.as_deref() {
         None => Math::Libm,
-        Some(name) => named("math", name, &[Math::Libm], Math::name)?,
+        Some(name) => named("math", name, precision.maths(), Math::name)?,
     };
     let step = match table.step_us {
-        Some(step) => MICRO * between("model", "step_us", step, 1.0..=1000.0)?,
+        Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
     };
     Ok(Model {

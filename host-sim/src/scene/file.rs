@@ -8,6 +8,7 @@ use touchdown_core::detect::Tuning;
 pub(super) struct SceneFile {
     pub title: Option<String>,
     pub source: Option<String>,
+    pub fidelity: Option<String>,
     pub rotor: RotorTable,
     pub retainer: RetainerTable,
     #[serde(default)]
@@ -15,6 +16,7 @@ pub(super) struct SceneFile {
     pub run: RunTable,
     #[serde(default)]
     pub model: ModelTable,
+    pub outputs: Option<OutputsTable>,
     #[serde(default)]
     pub sensors: SensorsTable,
     #[serde(default)]
@@ -81,6 +83,19 @@ pub(super) struct ModelTable {
     pub math: Option<String>,
     pub precision: Option<String>,
     pub step_us: Option<f64>,
+    pub fidelity: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OutputsTable {
+    pub regime: Option<bool>,
+    pub impact_time_us: Option<f64>,
+    pub impact_speed_percent: Option<f64>,
+    pub phases_us: Option<f64>,
+    pub whirl_load_percent: Option<f64>,
+    pub peak_force_percent: Option<f64>,
+    pub contact_time_percent: Option<f64>,
 }
 
 #[derive(Deserialize)]

@@ -1,16 +1,19 @@
 //! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
 
+mod auto;
 mod builtin;
 mod check;
 mod explain;
 mod file;
 mod flaw;
-mod limits;
+pub mod limits;
 mod model;
+mod outputs;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;
 pub use model::{Math, Model, Precision, Rung, Scheme};
+pub use outputs::{Auto, Fixed, Output, Request};
 
 use std::path::Path;
 
@@ -41,6 +44,8 @@ pub struct Scene {
     pub run: Run,
     /// What is modelled.
     pub model: Model,
+    /// Where the model is to be chosen: what is asked of it.
+    pub auto: Option<Auto>,
     /// The sensor chain.
     pub sensors: SensorsConfig,
     /// The detector's thresholds and times.
@@ -184,6 +189,17 @@ impl Scene {
             restitution: self.retainer.restitution,
             gravity: self.run.gravity,
         }
+    }
+
+    /// Takes rotor and retainer bearing of `machine`; the spin stays.
+    pub fn set_machine(&mut self, machine: &Machine) {
+        self.rotor.mass = machine.mass;
+        self.rotor.radius = machine.radius;
+        self.rotor.polar_inertia = machine.polar_inertia;
+        self.retainer.clearance = machine.clearance;
+        self.retainer.friction = machine.friction;
+        self.retainer.restitution = machine.restitution;
+        self.run.gravity = machine.gravity;
     }
 
     /// Time of the first sample, s since the release.

@@ -6,7 +6,7 @@ use crate::scene::{Model, Precision, Rung};
 pub(super) const STEPS_US: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 /// Every combination of rung, scheme, precision, math and step.
-pub(super) fn all() -> Vec<Model> {
+pub fn all() -> Vec<Model> {
     let mut all = Vec::new();
     for rung in Rung::ALL {
         for &scheme in rung.schemes() {
@@ -17,7 +17,7 @@ pub(super) fn all() -> Vec<Model> {
                         scheme,
                         precision,
                         math,
-                        step: f64::from(step) * 1e-6,
+                        step: f64::from(step) / 1e6,
                     }));
                 }
             }

@@ -15,9 +15,37 @@ const MOST_ERROR: f64 = 10.0;
 const HEIGHT: f64 = 440.0;
 const WIDTH: f64 = 960.0;
 
+/// Whose cost is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cost {
+    /// Seconds per simulated second on this machine.
+    Here,
+    /// Instructions per simulated second on the target.
+    Target,
+}
+
+impl Cost {
+    /// None where it is not known.
+    fn of(self, row: &Row) -> Option<f64> {
+        match self {
+            Self::Here => Some(row.seconds_per_simulated_second),
+            Self::Target => row
+                .mcu_instructions_per_step
+                .map(|count| count / row.step_s),
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Here => "cost here, seconds per simulated second",
+            Self::Target => "cost on the target, instructions per simulated second",
+        }
+    }
+}
+
 /// The drawing as a part of a page.
-pub(super) fn drawing(trade: &Trade) -> Markup {
-    let axes = Axes::of(&trade.rows);
+pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
+    let axes = Axes::of(&trade.rows, cost);
     axes.chart().draw(
         &html! {},
         &axes.front(&trade.rows),
@@ -25,9 +53,9 @@ pub(super) fn drawing(trade: &Trade) -> Markup {
     )
 }
 
-/// The drawing as a file of its own.
+/// The drawing for this machine as a file of its own.
 pub fn svg(trade: &Trade) -> String {
-    let axes = Axes::of(&trade.rows);
+    let axes = Axes::of(&trade.rows, Cost::Here);
     axes.chart()
         .file(WIDTH, &axes.front(&trade.rows), &axes.points(&trade.rows))
         .into_string()
@@ -39,22 +67,23 @@ pub(super) fn rung_class(rung: Rung) -> String {
 }
 
 struct Axes {
+    of: Cost,
     cost: Axis,
     error: Axis,
 }
 
 impl Axes {
-    fn of(rows: &[Row]) -> Self {
-        let costs = rows.iter().map(|row| row.seconds_per_simulated_second);
+    fn of(rows: &[Row], of: Cost) -> Self {
+        let costs = rows.iter().filter_map(|row| of.of(row));
         let least = costs.clone().fold(f64::INFINITY, f64::min);
         let most = costs.fold(0.0, f64::max);
         let errors = rows.iter().map(|row| height(row.worst_error));
         let (low, high) = errors.fold((MOST_ERROR, LEAST_ERROR), |(low, high), error| {
             (f64::min(low, error), f64::max(high, error))
         });
-        let label = "cost here, seconds per simulated second";
         Self {
-            cost: Axis::decades(least.min(1e9), most.max(1e-9), label, 8.0),
+            of,
+            cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label(), 8.0),
             error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
         }
     }
@@ -70,6 +99,7 @@ impl Axes {
         }
     }
 
+    /// Joins the front, which is about the cost here.
     fn front(&self, rows: &[Row]) -> Markup {
         let mut front: Vec<&Row> = rows.iter().filter(|row| row.pareto).collect();
         front.sort_by(|a, b| {
@@ -78,19 +108,21 @@ impl Axes {
         });
         let chart = self.chart();
         let mut pen = chart.pen();
-        for row in front {
+        for row in front.into_iter().filter(|_| self.of == Cost::Here) {
             pen.line_to(row.seconds_per_simulated_second, height(row.worst_error));
         }
         pen.finish("front")
     }
 
     fn points(&self, rows: &[Row]) -> Markup {
+        let known = rows.iter().filter_map(|row| Some((row, self.of.of(row)?)));
         html! {
-            @for row in rows {
+            @for (row, cost) in known {
                 @let y = (1.0 - self.error.fraction(height(row.worst_error))) * HEIGHT;
                 @let class = format!("{} {}", rung_class(row.rung), row.precision.name());
-                circle class=(class) cx=(self.cost.percent(row.seconds_per_simulated_second))
-                    cy=(format!("{y:.1}")) r=(if row.pareto { "6" } else { "3.5" }) {
+                @let large = row.pareto && self.of == Cost::Here;
+                circle class=(class) cx=(self.cost.percent(cost)) cy=(format!("{y:.1}"))
+                    r=(if large { "6" } else { "3.5" }) {
                     title { (caption(row)) }
                 }
             }
@@ -122,9 +154,9 @@ pub(super) fn legend(rows: &[Row]) -> Markup {
                 li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung.name()) }
             }
             @for precision in Precision::ALL {
-                li { (dot(&format!("rung-rigid {}", precision.name()))) (precision.name()) }
+                li { (dot(&format!("levitated {}", precision.name()))) (precision.name()) }
             }
-            li { "large: on the front" }
+            li { "large and joined: the front" }
         }
     }
 }

@@ -9,7 +9,9 @@ mod pareto;
 mod row;
 mod table;
 
+pub use combination::all as combinations;
 pub use drawing::svg;
+pub use pace::target_cost;
 pub use page::page;
 pub use row::{Row, json};
 pub use table::table;

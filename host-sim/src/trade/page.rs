@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::Trade;
-use super::drawing::{drawing, legend};
+use super::drawing::{Cost, drawing, legend};
 use super::row::Row;
 use crate::report::text::si;
 use crate::report::{page as shell, tables};
@@ -12,6 +12,10 @@ use crate::report::{page as shell, tables};
 pub fn page(trade: &Trade) -> String {
     let front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
     let all: Vec<&Row> = trade.rows.iter().collect();
+    let counted = trade
+        .rows
+        .iter()
+        .any(|row| row.mcu_instructions_per_step.is_some());
     let body = html! {
         header {
             p.kind { "Accuracy against cost" }
@@ -27,7 +31,12 @@ pub fn page(trade: &Trade) -> String {
         section {
             h2 { "Error against cost" }
             (legend(&trade.rows))
-            (drawing(trade))
+            h3 { "Here" }
+            (drawing(trade, Cost::Here))
+            @if counted {
+                h3 { "On the target" }
+                (drawing(trade, Cost::Target))
+            }
         }
         section { h2 { "Front" } (rows("Front", &front)) }
         section { h2 { "All combinations" } (rows("All combinations", &all)) }

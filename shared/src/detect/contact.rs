@@ -7,6 +7,7 @@ use crate::detect::flight::{Fix, direction};
 use crate::detect::lift_off::LiftOff;
 use crate::detect::still::Still;
 use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+use crate::real::sqrt;
 
 /// Slip, m/s, that a speed sensor resolves.
 const SLIP_RESOLUTION: f32 = 0.02;
@@ -209,7 +210,7 @@ impl ContactTest {
     fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32) -> Option<Finding> {
         let swing = *state.swing();
         let block = state.still.take(fix.position, self.still_samples);
-        let clear = CLEAR_SWING * libm::sqrtf(fix.variance) / self.machine.clearance;
+        let clear = CLEAR_SWING * sqrt(fix.variance) / self.machine.clearance;
         let turned_back = state.turning.take(swing.turned, clear);
         let (found, age) = if swing.turned.abs() >= TAU {
             let with_spin = swing.turned * surface >= 0.0;

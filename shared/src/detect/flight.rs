@@ -5,6 +5,7 @@ use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
+use crate::real::sqrt;
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -104,7 +105,7 @@ impl FlightTest {
         // A bounce of height h lasts 2 sqrt(2 h/g); twice that, so that one that has just begun ends.
         let slowest = machine.gravity.max(1.0);
         let tolerance = tuning.wall_tolerance * machine.clearance;
-        let longest_bounce = 2.0 * libm::sqrtf(2.0 * tolerance / slowest);
+        let longest_bounce = 2.0 * sqrt(2.0 * tolerance / slowest);
         Self {
             ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
@@ -120,7 +121,7 @@ impl FlightTest {
     /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
     /// (m) at which it lay: what is clearly inside of it is no contact, however near.
     pub(crate) fn start(&self, fix: &Fix, wall: Option<f32>, loudness: f32) -> Airborne {
-        let clear = CLEAR_OF_WALL * libm::sqrtf(fix.variance);
+        let clear = CLEAR_OF_WALL * sqrt(fix.variance);
         Airborne {
             track: Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED),
             bank: JumpBank::new(loudness),
@@ -276,7 +277,7 @@ impl FlightTest {
 
 /// Unit vector from the centre and distance, m.
 pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
-    let radius = libm::sqrtf(x * x + y * y);
+    let radius = sqrt(x * x + y * y);
     if radius > 0.0 {
         ([x / radius, y / radius], radius)
     } else {

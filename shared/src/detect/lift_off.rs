@@ -1,5 +1,7 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
+use crate::real::sqrt;
+
 /// Samples that the wall's place is learnt from before it is trusted.
 const WARM_UP: u16 = 16;
 /// Samples that the wall's learnt place remembers.
@@ -31,7 +33,7 @@ impl LiftOff {
     /// Takes the distance from the centre (m), known to `variance` (m^2). Where the rotor has left the
     /// wall: samples since.
     pub(crate) fn take(&mut self, radius: f32, variance: f32, threshold: f32) -> Option<f32> {
-        let sigma = libm::sqrtf(variance);
+        let sigma = sqrt(variance);
         let inward = (self.wall - radius) / sigma;
         self.sum = (self.sum + SHIFT * (inward - 0.5 * SHIFT)).max(0.0);
         if self.count < WARM_UP {

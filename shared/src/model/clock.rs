@@ -95,6 +95,15 @@ impl<R: Real> Instant<R> {
         steps.most(R::ZERO)
     }
 
+    /// The first whole step not before.
+    pub(crate) fn next_tick(self) -> u64 {
+        if self.fraction > R::ZERO {
+            self.tick.saturating_add(1)
+        } else {
+            self.tick
+        }
+    }
+
     /// Whether the moment has come at `now`.
     pub(crate) fn is_reached_at(self, now: Self) -> bool {
         self.tick < now.tick || (self.tick == now.tick && self.fraction <= now.fraction)

@@ -205,7 +205,8 @@ impl<R: Precision> Contact<R> {
     }
 }
 
-fn mode_of<R: Real>(base: &WallState<R>, grip: Grip, law: &Law<R>) -> Mode<R> {
+/// How the contact point moves at the start of a contact.
+pub(crate) fn mode_of<R: Real>(base: &WallState<R>, grip: Grip, law: &Law<R>) -> Mode<R> {
     let slip = base.spin.plus(base.tangential.value());
     let speed = base.tangential.value();
     let force = speed * speed + law.gravity * base.cos.value();

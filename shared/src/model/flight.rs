@@ -4,6 +4,9 @@ use crate::model::law::Law;
 use crate::model::polynomial::first_rise;
 use crate::real::Real;
 
+/// Over the time in which a flight crosses the whole gap.
+const BEYOND: f64 = 1.1;
+
 /// A flight, by its launch state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Flight<R> {
@@ -63,13 +66,31 @@ impl<R: Real> Flight<R> {
         [u * u + v * v - g * y, -g * v, R::lit(0.25) * g]
     }
 
+    /// A time at which every such flight is beyond the wall: it has crossed the gap, risen through it or
+    /// fallen through it. The sooner the faster, so that no power of it overflows.
+    fn outside_at(&self, law: &Law<R>) -> R {
+        let [u, v] = self.velocity;
+        let g = law.gravity;
+        let four = R::TWO * R::TWO;
+        let across = R::TWO / u.abs();
+        let vertical = if g == R::ZERO {
+            R::TWO / v.abs()
+        } else if v > R::TWO {
+            four / v
+        } else {
+            // v t - t^2/2 = -2 without cancellation: the fall from the top.
+            four / ((v * v + four).sqrt() - v)
+        };
+        R::lit(BEYOND) * across.least(vertical)
+    }
+
     /// Next contact of a free start.
     pub(crate) fn landing_from_free(&self, law: &Law<R>) -> Landing<R> {
         let ([x, y], [u, v]) = (self.position, self.velocity);
         let [c2, c3, c4] = self.curve(law);
         let c0 = x * x + y * y - R::ONE;
         let c = [c0, R::TWO * (x * u + y * v), c2, c3, c4];
-        let (after, slope) = first_rise(&c, [R::ONE, R::ZERO]);
+        let (after, slope) = first_rise(&c, [R::ONE, R::ZERO], self.outside_at(law));
         Landing {
             after,
             normal: R::HALF * slope,
@@ -82,13 +103,21 @@ impl<R: Real> Flight<R> {
         let [c2, c3, c4] = self.curve(law);
         let [u, v] = self.velocity;
         let c = [-R::TWO * launch, c2, c3, c4, R::ZERO];
-        self.resting_on(first_rise(&c, [R::ZERO, u * u + v * v]))
+        self.resting_on(first_rise(
+            &c,
+            [R::ZERO, u * u + v * v],
+            self.outside_at(law),
+        ))
     }
 
     /// Next contact after a lift-off, where the wall had just ceased to press: exactly 4 v_y/g.
     pub(crate) fn landing_from_lift_off(&self, law: &Law<R>) -> Landing<R> {
         let [_, c3, c4] = self.curve(law);
-        let (after, slope) = first_rise(&[c3, c4, R::ZERO, R::ZERO, R::ZERO], [R::ZERO; 2]);
+        let (after, slope) = first_rise(
+            &[c3, c4, R::ZERO, R::ZERO, R::ZERO],
+            [R::ZERO; 2],
+            self.outside_at(law),
+        );
         self.resting_on((after, slope * after * after))
     }
 

@@ -76,8 +76,9 @@ impl<R: Precision> Rigid<R> {
             turns: (turns, angle),
         };
         match &state.motion {
-            Motion::Flight { flight, .. } => {
-                let (position, velocity) = flight.at(time, law);
+            Motion::Flight { flight, to } => {
+                // The clock resolves a step, a fast flight less: never past its landing.
+                let (position, velocity) = flight.at(time.least(to.after), law);
                 Kinematics {
                     position,
                     velocity,
@@ -92,7 +93,7 @@ impl<R: Precision> Rigid<R> {
                 on_wall([sin, cos, speed, spin, R::ZERO], Touch::None, 0)
             }
             Motion::Contact(contact) => {
-                let mut point = contact.at(time, law);
+                let mut point = contact.at(time.least(contact.span), law);
                 point[4] += state.turns.1;
                 let touch = match contact.mode {
                     Mode::Sliding(_) => Touch::Sliding,

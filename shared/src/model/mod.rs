@@ -1,9 +1,12 @@
 //! The impact model.
 //!
 //! All of it is dimensionless (see [`crate::scales`]); x right, y up, angles from the bottom of the
-//! retainer, counter-clockwise. Nothing is integrated step by step: a flight keeps its launch state
-//! and a contact its Taylor series, and the moment at which each ends is solved for once. A step is
-//! then a comparison, and the result does not depend on its length.
+//! retainer, counter-clockwise. Three rungs, each a [`Stepper`] of its own:
+//!
+//! - [`Rigid`] integrates nothing step by step: a flight keeps its launch state and a contact its
+//!   Taylor series, and the moment at which each ends is solved for once. A step is then a comparison,
+//!   and the result does not depend on its length.
+//! - [`Moreau`] steps through the same laws: cheap, of first order, at any step.
 
 mod clock;
 mod contact;
@@ -11,6 +14,7 @@ mod flight;
 mod follow;
 mod kinematics;
 mod law;
+mod moreau;
 mod polynomial;
 mod precision;
 mod rigid;
@@ -19,12 +23,14 @@ mod start;
 mod state;
 mod stepper;
 mod sum;
+mod turns;
 mod whirl;
 
 pub use clock::Instant;
 pub use kinematics::{Change, Happening, Kinematics, Touch};
+pub use moreau::{Moreau, MoreauState};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
-pub use state::RigidState;
+pub use state::{RigidState, Solved};
 pub use stepper::Stepper;

@@ -63,8 +63,8 @@ fn bracketed<R: Real>(c: &Quartic<R>, mut low: R, mut high: R, guess: R) -> R {
     t
 }
 
-/// Ascending roots above 0 at which the sign changes; infinity fills up.
-fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize) -> [R; DEGREE] {
+/// Ascending roots in (0, `end`) at which the sign changes; infinity fills up.
+fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize, end: R) -> [R; DEGREE] {
     let mut found = [R::INFINITY; DEGREE];
     if degree == 0 {
         return found;
@@ -72,16 +72,12 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize) -> [R; DEGREE] {
     let turns = if degree == 1 {
         found
     } else {
-        sign_changes(&derivative(c), degree - 1)
+        sign_changes(&derivative(c), degree - 1, end)
     };
     let mut slots = found.iter_mut();
     let mut low = R::ZERO;
     for turn in turns.into_iter().chain([R::INFINITY]).take(degree) {
-        let high = if turn.is_finite() {
-            turn
-        } else {
-            reach(c, degree, low)
-        };
+        let high = turn.least(end);
         let (at_low, at_high) = (evaluate(c, low).0, evaluate(c, high).0);
         let changes =
             (at_low < R::ZERO && at_high > R::ZERO) || (at_low > R::ZERO && at_high < R::ZERO);
@@ -96,39 +92,28 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize) -> [R; DEGREE] {
     found
 }
 
-/// A bound above all roots (Cauchy's), and above `low`.
-fn reach<R: Real>(c: &Quartic<R>, degree: usize, low: R) -> R {
-    let lead = c.get(degree).copied().unwrap_or(R::ONE).abs();
-    let largest = c
-        .iter()
-        .take(degree)
-        .fold(R::ZERO, |most, k| most.most(k.abs()));
-    R::ONE + low + largest / lead
-}
-
-/// The first t > 0 at which a polynomial that is negative just above 0 becomes positive, and its
-/// slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over;
+/// The first t in (0, `end`) at which a polynomial that is negative just above 0 becomes positive, and
+/// its slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over;
 /// `lost` are the sizes of what cancelled in the constant and the linear coefficient. Infinity if
 /// there is none.
-pub(crate) fn first_rise<R: Real>(c: &Quartic<R>, lost: [R; 2]) -> (R, R) {
+pub(crate) fn first_rise<R: Real>(c: &Quartic<R>, lost: [R; 2], end: R) -> (R, R) {
     let never = (R::INFINITY, R::ZERO);
     let Some(degree) = c.iter().rposition(|k| *k != R::ZERO) else {
         return never;
     };
-    if degree == 0 {
+    if degree == 0 || !end.is_finite() {
         return never;
     }
-    let turns = sign_changes(&derivative(c), degree - 1);
+    let turns = sign_changes(&derivative(c), degree - 1, end);
     let mut low = R::ZERO;
     for turn in turns.into_iter().chain([R::INFINITY]).take(degree) {
-        let last = !turn.is_finite();
-        let high = if last { reach(c, degree, low) } else { turn };
+        let high = turn.least(end);
         if evaluate(c, high).0 > rounding(c, lost, high) {
             let linear = -c[0] / c[1];
             let t = bracketed(c, low, high, linear);
             return (t, evaluate(c, t).1);
         }
-        if last {
+        if !turn.is_finite() {
             break;
         }
         low = turn;
@@ -143,7 +128,7 @@ mod tests {
     #[test]
     fn first_rise_is_the_smallest_root_where_the_sign_turns_positive() {
         // (t - 1)(t - 2)(t - 3), negative before 1.
-        let (t, slope) = first_rise(&[-6.0, 11.0, -6.0, 1.0, 0.0], [0.0; 2]);
+        let (t, slope) = first_rise(&[-6.0, 11.0, -6.0, 1.0, 0.0], [0.0; 2], 9.0);
         assert!((t - 1.0f64).abs() < 1e-15, "{t}");
         assert!((slope - 2.0).abs() < 1e-14);
     }
@@ -151,25 +136,25 @@ mod tests {
     #[test]
     fn a_graze_is_passed_over() {
         // (t - 1)^2 (t - 3): touches 0 at 1, rises at 3.
-        let (t, _) = first_rise(&[-3.0f32, 7.0, -5.0, 1.0, 0.0], [0.0; 2]);
+        let (t, _) = first_rise(&[-3.0f32, 7.0, -5.0, 1.0, 0.0], [0.0; 2], 9.0);
         assert!((t - 3.0).abs() < 1e-6, "{t}");
     }
 
     #[test]
     fn without_gravity_the_path_is_a_line() {
         assert_eq!(
-            first_rise(&[-2.0f64, 4.0, 0.0, 0.0, 0.0], [0.0; 2]),
+            first_rise(&[-2.0f64, 4.0, 0.0, 0.0, 0.0], [0.0; 2], 9.0),
             (0.5, 4.0)
         );
         assert_eq!(
-            first_rise(&[-2.0f64, 0.0, 0.0, 0.0, 0.0], [0.0; 2]).0,
+            first_rise(&[-2.0f64, 0.0, 0.0, 0.0, 0.0], [0.0; 2], 9.0).0,
             f64::INFINITY
         );
     }
 
     #[test]
     fn a_tiny_hop_keeps_all_digits() {
-        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0], [0.0; 2]);
+        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0], [0.0; 2], 9.0);
         assert!((t / 2.000_000_001_2e-9 - 1.0).abs() < 1e-14, "{t}");
     }
 }

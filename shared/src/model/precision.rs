@@ -1,6 +1,6 @@
 //! What depends on the number of digits.
 
-use crate::real::Real;
+use crate::real::{Micro32, Poly32, Poly64, Real};
 
 /// Longest Taylor series of a contact.
 pub(crate) const SERIES_LENGTH: usize = 16;
@@ -28,3 +28,17 @@ impl Precision for f64 {
     const SERIES_TOLERANCE: Self = 1e-16;
     const CUTOFF_SPEED: Self = 1e-10;
 }
+
+macro_rules! like {
+    ($number:ident, $base:ty) => {
+        impl Precision for $number {
+            const SERIES_ORDER: usize = <$base>::SERIES_ORDER;
+            const SERIES_TOLERANCE: Self = Self(<$base>::SERIES_TOLERANCE);
+            const CUTOFF_SPEED: Self = Self(<$base>::CUTOFF_SPEED);
+        }
+    };
+}
+
+like!(Poly32, f32);
+like!(Micro32, f32);
+like!(Poly64, f64);

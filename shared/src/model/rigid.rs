@@ -6,8 +6,9 @@ use crate::model::kinematics::{Happening, Kinematics};
 use crate::model::law::Law;
 use crate::model::precision::Precision;
 use crate::model::start::Start;
-use crate::model::state::RigidState;
+use crate::model::state::{RigidState, Solved};
 use crate::model::stepper::Stepper;
+use crate::real::Real;
 use crate::scales::{Scales, not_negative, positive};
 
 /// A rotor and its retainer, SI.
@@ -33,6 +34,29 @@ pub struct RigidConfig<R> {
     pub step: R,
 }
 
+impl<R: Real> RigidConfig<R> {
+    /// Checks every value; the contact laws' coefficients and the model's units.
+    pub(crate) fn scaled(&self) -> Result<(Law<R>, Scales<R>), ConfigError> {
+        positive("mass", self.mass)?;
+        positive("polar_inertia", self.polar_inertia)?;
+        positive("step", self.step)?;
+        let scales = Scales::try_new(self.clearance, self.gravity, self.radius, self.speed)?;
+        not_negative("gravity", self.gravity)?;
+        let law = Law {
+            friction: self.friction,
+            restitution: self.restitution,
+            inertia_ratio: self.polar_inertia / (self.mass * self.radius * self.radius),
+            gravity: if self.gravity > R::ZERO {
+                R::ONE
+            } else {
+                R::ZERO
+            },
+        }
+        .checked()?;
+        Ok((law, scales))
+    }
+}
+
 /// Coefficients of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid<R> {
@@ -44,27 +68,7 @@ pub struct Rigid<R> {
 impl<R: Precision> Rigid<R> {
     /// Checks `config` and works out the coefficients.
     pub fn try_new(config: &RigidConfig<R>) -> Result<Self, ConfigError> {
-        positive("mass", config.mass)?;
-        positive("polar_inertia", config.polar_inertia)?;
-        positive("step", config.step)?;
-        let scales = Scales::try_new(
-            config.clearance,
-            config.gravity,
-            config.radius,
-            config.speed,
-        )?;
-        not_negative("gravity", config.gravity)?;
-        let law = Law {
-            friction: config.friction,
-            restitution: config.restitution,
-            inertia_ratio: config.polar_inertia / (config.mass * config.radius * config.radius),
-            gravity: if config.gravity > R::ZERO {
-                R::ONE
-            } else {
-                R::ZERO
-            },
-        }
-        .checked()?;
+        let (law, scales) = config.scaled()?;
         Ok(Self {
             law,
             step: StepLength::new(config.step / scales.time),
@@ -106,11 +110,25 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
     }
 
     fn part_step(&self, state: &mut RigidState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
-        let tick = state.now.tick;
-        self.advance(state, Instant { tick, fraction }, sink);
+        Stepper::run(self, state, 0, fraction, sink);
+    }
+
+    fn run(
+        &self,
+        state: &mut RigidState<R>,
+        steps: u64,
+        fraction: R,
+        sink: impl FnMut(Happening<R>),
+    ) {
+        let tick = state.now.tick.saturating_add(steps);
+        self.run(state, Instant { tick, fraction }, sink);
     }
 
     fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
         self.kinematics(state)
+    }
+
+    fn solved(&self, state: &RigidState<R>) -> Solved {
+        state.solved()
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Sliding obeys phi'' = -g sin phi + mu_s n with n = phi'^2 + g cos phi, rolling
 //! phi'' = -g sin phi/(1 + beta). The series of sin phi, cos phi, phi' and n follow from each other
-//! term by term. Time is counted in units in which the rotor turns by at most a radian: at the speeds
-//! of whirl the terms would overflow in f32 otherwise.
+//! term by term. Time is counted in units in which the rotor turns by at most a radian, and friction
+//! changes its speed by no more than that speed: at the speeds of whirl the terms would overflow in
+//! f32 otherwise.
 
 use crate::model::contact::{Mode, WallState};
 use crate::model::law::Law;
@@ -39,8 +40,13 @@ impl<R: Precision> Series<R> {
     pub(crate) fn new(base: &WallState<R>, mode: Mode<R>, law: &Law<R>) -> Self {
         let zero = [R::ZERO; SERIES_LENGTH];
         let start = base.tangential.value();
+        // Of speed and force by sliding, in a radian.
+        let growth = match mode {
+            Mode::Sliding(friction) => friction.abs().most(R::ONE),
+            Mode::Rolling => R::ONE,
+        };
         let mut series = Self {
-            pace: R::ONE + start.abs(),
+            pace: (R::ONE + start.abs()) * growth,
             sin: zero,
             cos: zero,
             tangential: zero,
@@ -77,11 +83,12 @@ impl<R: Precision> Series<R> {
     /// Length over which the last two terms stay below the tolerance, in the series' unit.
     pub(crate) fn accurate_span(&self) -> R {
         let last = R::SERIES_ORDER;
+        let speed = R::ONE + self.tangential[0].abs();
         let size = |k: usize| {
             let angle = self.sin[k].abs().most(self.cos[k].abs());
-            self.tangential[k].abs().most(angle * self.pace)
+            self.tangential[k].abs().most(angle * speed)
         };
-        let tolerance = R::SERIES_TOLERANCE * self.pace;
+        let tolerance = R::SERIES_TOLERANCE * speed;
         let mut span = R::ONE;
         let mut power = R::ONE;
         let shorter = R::lit(SHORTER);
@@ -99,21 +106,28 @@ impl<R: Precision> Series<R> {
     /// What `at` (in the series' unit) adds to sine, cosine, velocity, the wall's impulse and the angle
     /// turned.
     pub(crate) fn rise(&self, at: R) -> [R; 5] {
-        let mut rise = [R::ZERO; 5];
-        for k in (1..=R::SERIES_ORDER).rev() {
-            let terms = [
-                self.sin[k],
-                self.cos[k],
-                self.tangential[k],
-                self.impulse[k],
-                self.angle[k],
-            ];
-            for (value, term) in rise.iter_mut().zip(terms) {
-                *value = (*value + term) * at;
-            }
-        }
-        rise
+        let terms = [
+            &self.sin,
+            &self.cos,
+            &self.tangential,
+            &self.impulse,
+            &self.angle,
+        ];
+        terms.map(|c| without_constant(c, at))
     }
+}
+
+/// The series without its constant term. Odd and even powers apart: two sums that do not wait for each
+/// other.
+fn without_constant<R: Precision>(c: &Terms<R>, at: R) -> R {
+    let square = at * at;
+    let (pairs, last) = c[1..=R::SERIES_ORDER].as_chunks();
+    let first = (last.first().copied().unwrap_or(R::ZERO), R::ZERO);
+    let sums = pairs.iter().rev();
+    let (odd, even) = sums.fold(first, |(odd, even), &[a, b]| {
+        (odd * square + a, even * square + b)
+    });
+    (odd + even * at) * at
 }
 
 /// Term `k` of the product of two series.

@@ -7,7 +7,7 @@ use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::Happening;
 use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
-use crate::model::state::{Motion, RigidState};
+use crate::model::state::{Motion, RigidState, Solved};
 use crate::model::sum::Sum;
 
 /// Distance from the wall, in units of epsilon, at which a start counts as on it.
@@ -55,6 +55,42 @@ impl Start<f64> {
     }
 }
 
+impl<R: Precision> Start<R> {
+    /// Every number finite, and the rotor inside the gap; `spin` is the surface speed.
+    pub(crate) fn check(&self, spin: R) -> Result<(), ConfigError> {
+        if !spin.is_finite() {
+            return Err(ConfigError::NotFinite("spin"));
+        }
+        let numbers = match *self {
+            Self::Free {
+                position: [x, y],
+                velocity: [u, v],
+            } => [x, y, u, v],
+            Self::Wall {
+                sin,
+                cos,
+                tangential,
+            } => [sin, cos, tangential, R::ZERO],
+        };
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Err(ConfigError::NotFinite("start"));
+        }
+        match *self {
+            Self::Free {
+                position: [x, y], ..
+            } if (x * x + y * y).sqrt() > R::ONE + on_wall() => {
+                Err(ConfigError::OutOfRange("start", "inside the clearance"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Distance from the wall at which a start counts as on it.
+fn on_wall<R: Precision>() -> R {
+    R::lit(ON_WALL) * R::EPSILON
+}
+
 impl<R: Precision> Rigid<R> {
     /// The state at time 0, and what happens there; `spin` is the surface speed.
     pub fn start(
@@ -63,6 +99,7 @@ impl<R: Precision> Rigid<R> {
         spin: R,
         mut sink: impl FnMut(Happening<R>),
     ) -> Result<RigidState<R>, ConfigError> {
+        start.check(spin)?;
         let mut state = RigidState {
             now: Instant::default(),
             motion: Motion::Flight {
@@ -74,25 +111,15 @@ impl<R: Precision> Rigid<R> {
             spin: Sum::new(spin),
             turns: (0, R::ZERO),
             shortened: 0,
+            solved: Solved::default(),
         };
-        if !spin.is_finite() {
-            return Err(ConfigError::NotFinite("spin"));
-        }
         match *start {
-            Start::Free { position, velocity } => {
-                if position.iter().chain(&velocity).any(|v| !v.is_finite()) {
-                    return Err(ConfigError::NotFinite("start"));
-                }
-                self.start_free(&mut state, position, velocity)?;
-            }
+            Start::Free { position, velocity } => self.start_free(&mut state, position, velocity),
             Start::Wall {
                 sin,
                 cos,
                 tangential,
             } => {
-                if !(sin.is_finite() && cos.is_finite() && tangential.is_finite()) {
-                    return Err(ConfigError::NotFinite("start"));
-                }
                 let onto = state.on_wall(sin, cos, tangential);
                 self.enter_contact(&mut state, onto, Grip::Open, &mut sink);
             }
@@ -101,23 +128,14 @@ impl<R: Precision> Rigid<R> {
         Ok(state)
     }
 
-    fn start_free(
-        &self,
-        state: &mut RigidState<R>,
-        position: [R; 2],
-        velocity: [R; 2],
-    ) -> Result<(), ConfigError> {
+    fn start_free(&self, state: &mut RigidState<R>, position: [R; 2], velocity: [R; 2]) {
         let [x, y] = position;
         let distance = (x * x + y * y).sqrt();
-        let margin = R::lit(ON_WALL) * R::EPSILON;
-        if distance > R::ONE + margin {
-            return Err(ConfigError::OutOfRange("start", "inside the clearance"));
-        }
-        if distance < R::ONE - margin {
+        if distance < R::ONE - on_wall() {
             self.fly(state, Flight::free(position, velocity), |flight, law| {
                 flight.landing_from_free(law)
             });
-            return Ok(());
+            return;
         }
         let (sin, cos) = (x / distance, -y / distance);
         let normal = velocity[0] * sin - velocity[1] * cos;
@@ -134,6 +152,5 @@ impl<R: Precision> Rigid<R> {
         } else {
             self.launch(state, sin, cos, -normal, tangential);
         }
-        Ok(())
     }
 }

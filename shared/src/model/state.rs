@@ -16,6 +16,15 @@ pub(crate) enum Motion<R> {
     Contact(Contact<R>),
 }
 
+/// What a model has solved since its start, beyond what every step does: what a run cost follows from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Solved {
+    /// Flights, each to its next contact.
+    pub flights: u32,
+    /// Stretches of permanent contact, each to its end.
+    pub stretches: u32,
+}
+
 /// The rotor's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidState<R> {
@@ -26,6 +35,7 @@ pub struct RigidState<R> {
     pub(crate) spin: Sum<R>,
     pub(crate) turns: (i64, R),
     pub(crate) shortened: u32,
+    pub(crate) solved: Solved,
 }
 
 impl<R: Precision> RigidState<R> {
@@ -38,6 +48,11 @@ impl<R: Precision> RigidState<R> {
     /// or the mean of its whirl.
     pub fn shortened(&self) -> u32 {
         self.shortened
+    }
+
+    /// Flights and stretches solved since the start; wraps.
+    pub fn solved(&self) -> Solved {
+        self.solved
     }
 
     pub(crate) fn is_rolling(&self) -> bool {

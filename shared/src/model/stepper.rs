@@ -4,6 +4,7 @@ use crate::error::ConfigError;
 use crate::model::kinematics::{Happening, Kinematics};
 use crate::model::precision::Precision;
 use crate::model::start::Start;
+use crate::model::state::Solved;
 
 /// A rotor model that goes by equal steps.
 pub trait Stepper<R: Precision> {
@@ -24,6 +25,28 @@ pub trait Stepper<R: Precision> {
     /// The last part of a run: `fraction` of a step, below 1.
     fn part_step(&self, state: &mut Self::State, fraction: R, sink: impl FnMut(Happening<R>));
 
+    /// `steps` whole steps and `fraction` of one, below 1: the last part of a run that nobody looks at
+    /// on its way.
+    fn run(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        fraction: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) {
+        for _ in 0..steps {
+            self.step(state, &mut sink);
+        }
+        if fraction > R::ZERO {
+            self.part_step(state, fraction, &mut sink);
+        }
+    }
+
     /// The rotor now.
     fn kinematics(&self, state: &Self::State) -> Kinematics<R>;
+
+    /// What it has solved since the start; nothing, if all its steps do the same.
+    fn solved(&self, _state: &Self::State) -> Solved {
+        Solved::default()
+    }
 }

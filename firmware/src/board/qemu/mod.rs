@@ -1,6 +1,7 @@
 //! QEMU's netduinoplus2: samples from a replay file, notices to an answer file, both by
 //! semihosting. Formats: [`touchdown_core::wire`].
 
+mod counter;
 mod files;
 
 use defmt::{Debug2Format, Display2Format, error, info};
@@ -8,6 +9,7 @@ use touchdown_core::event::Notice;
 use touchdown_core::monitor::Fingerprint;
 use touchdown_core::wire::Record;
 
+pub use self::counter::Counter;
 use self::files::Answer;
 use super::{Board, TripOutput};
 use crate::app::App;

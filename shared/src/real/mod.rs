@@ -1,15 +1,31 @@
-//! `f32` and `f64` behind one sealed trait: the only place where libm appears.
+//! Numbers behind one sealed trait: two formats, and where their functions come from.
 //!
-//! Square roots and angles come from libm on every side, so that desktop and target give the same
-//! bits.
+//! | number | functions |
+//! |---|---|
+//! | `f32`, `f64` | libm |
+//! | [`Poly32`], [`Poly64`] | own polynomials; square root by hardware where it is there |
+//! | [`Micro32`] | micromath; square root as in [`Poly32`] |
+//!
+//! Each gives the same bits on desktop and target: all of it is addition, multiplication, division
+//! and correctly rounded square roots, in source order. Errors: `tests/math.rs`; what each costs on
+//! the target: docs/timing.md.
+
+mod coefficients;
+mod libm;
+mod micromath;
+mod newtype;
+mod polynomial;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+pub use micromath::Micro32;
+pub(crate) use polynomial::sin_cos;
+pub use polynomial::{Poly32, Poly64};
+pub use touchdown_fpu::sqrt;
+
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
 }
 
 /// A floating-point number.
@@ -64,7 +80,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
-    /// Angle of (x = `other`, y = `self`), rad, in (-pi, pi].
+    /// Angle of (x = `other`, y = `self`), rad, -pi to pi.
     fn atan2(self, other: Self) -> Self;
     /// Largest integer not above.
     fn floor(self) -> Self;
@@ -84,76 +100,3 @@ pub trait Real:
         self.most(-bound).least(bound)
     }
 }
-
-macro_rules! real {
-    ($t:ident, $sqrt:path, $sincos:path, $atan2:path, $floor:path, $ln:path, $splitter:literal) => {
-        impl Real for $t {
-            const ZERO: Self = 0.0;
-            const ONE: Self = 1.0;
-            const HALF: Self = 0.5;
-            const TWO: Self = 2.0;
-            const EPSILON: Self = $t::EPSILON;
-            const INFINITY: Self = $t::INFINITY;
-            const SPLITTER: Self = $splitter;
-
-            fn lit(value: f64) -> Self {
-                value as $t
-            }
-            fn from_i32(value: i32) -> Self {
-                value as $t
-            }
-            fn from_u64(value: u64) -> Self {
-                value as $t
-            }
-            fn to_u64(self) -> u64 {
-                self as u64
-            }
-            fn to_i64(self) -> i64 {
-                self as i64
-            }
-            fn to_f64(self) -> f64 {
-                self as f64
-            }
-            fn is_finite(self) -> bool {
-                $t::is_finite(self)
-            }
-            fn abs(self) -> Self {
-                $t::abs(self)
-            }
-            fn sqrt(self) -> Self {
-                $sqrt(self)
-            }
-            fn sin_cos(self) -> (Self, Self) {
-                $sincos(self)
-            }
-            fn atan2(self, other: Self) -> Self {
-                $atan2(self, other)
-            }
-            fn floor(self) -> Self {
-                $floor(self)
-            }
-            fn ln(self) -> Self {
-                $ln(self)
-            }
-        }
-    };
-}
-
-real!(
-    f32,
-    libm::sqrtf,
-    libm::sincosf,
-    libm::atan2f,
-    libm::floorf,
-    libm::logf,
-    4_097.0
-);
-real!(
-    f64,
-    libm::sqrt,
-    libm::sincos,
-    libm::atan2,
-    libm::floor,
-    libm::log,
-    134_217_729.0
-);

@@ -1,0 +1,63 @@
+//! How many instructions the model and the functions below it take on the target: an image for the
+//! emulator that writes a table of counts to the file `counts.csv` of the desktop, by semihosting.
+//!
+//! One count a line; the desktop makes means of them (`tests/instructions.rs`). "Worst" is the worst
+//! that was met.
+
+mod drop;
+mod functions;
+
+use core::fmt::Write as _;
+
+use heapless::String;
+use semihosting::fs::File;
+use semihosting::io::Write as _;
+
+use crate::board::qemu::Counter;
+
+const LINE_BYTES: usize = 128;
+
+/// Calls of a kind.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    calls: u32,
+    /// Instructions.
+    sum: u64,
+    /// Instructions of one call.
+    worst: u32,
+}
+
+impl Tally {
+    fn add(&mut self, instructions: u32) {
+        self.calls += 1;
+        self.sum += u64::from(instructions);
+        self.worst = self.worst.max(instructions);
+    }
+}
+
+/// The number format and its functions, as a scene names them.
+#[derive(Clone, Copy)]
+struct Name {
+    precision: &'static str,
+    math: &'static str,
+}
+
+struct Table(File);
+
+impl Table {
+    fn line(&mut self, text: core::fmt::Arguments<'_>) {
+        let mut line: String<LINE_BYTES> = String::new();
+        writeln!(line, "{text}").expect("longer than any line of the table");
+        self.0.write_all(line.as_bytes()).expect("a writable file");
+    }
+}
+
+/// Counts everything and exits the emulator.
+pub fn main() -> ! {
+    let counter = Counter::take();
+    let mut table = Table(File::create(c"counts.csv").expect("a writable folder"));
+    table.line(format_args!("compiler,{}", env!("COMPILER")));
+    functions::count(&counter, &mut table);
+    drop::count(&counter, &mut table);
+    semihosting::process::exit(0)
+}

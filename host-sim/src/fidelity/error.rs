@@ -1,0 +1,73 @@
+//! How wrong an output is.
+
+use crate::history::{History, Regime};
+use crate::scene::{Output, Scene};
+
+/// Impacts that are looked at.
+const IMPACTS: usize = 10;
+
+/// Error of `output`: s for times, a part of the true value for the rest, 0 or infinite for the regime.
+/// Infinite where the model does not give it.
+pub fn error(output: Output, history: &History, truth: &History, scene: &Scene) -> f64 {
+    match output {
+        Output::Regime if history.regime == truth.regime => 0.0,
+        Output::Regime => f64::INFINITY,
+        Output::ImpactTime => impacts(history, truth, |a, b| (a.state.time - b.state.time).abs()),
+        Output::ImpactSpeed => impacts(history, truth, |a, b| {
+            relative(a.normal_speed, b.normal_speed)
+        }),
+        Output::Phases => phases(history, truth),
+        Output::WhirlLoad => relative(load(history, scene), load(truth, scene)),
+        Output::PeakForce | Output::ContactTime => f64::INFINITY,
+    }
+}
+
+fn relative(ours: f64, theirs: f64) -> f64 {
+    if ours == theirs {
+        0.0
+    } else {
+        (ours - theirs).abs() / theirs.abs()
+    }
+}
+
+fn impacts(
+    history: &History,
+    truth: &History,
+    apart: impl Fn(&crate::history::Impact, &crate::history::Impact) -> f64,
+) -> f64 {
+    let expected = truth.impacts.len().min(IMPACTS);
+    if history.impacts.len() < expected {
+        return f64::INFINITY;
+    }
+    let pairs = history.impacts.iter().zip(&truth.impacts).take(expected);
+    pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max)
+}
+
+fn phases(history: &History, truth: &History) -> f64 {
+    let lists = |history: &History| {
+        [
+            history.contact_starts.clone(),
+            history.rolling_starts.clone(),
+            history.lift_offs.clone(),
+        ]
+    };
+    let mut worst = 0.0;
+    for (ours, theirs) in lists(history).iter().zip(&lists(truth)) {
+        if ours.len() != theirs.len() {
+            return f64::INFINITY;
+        }
+        for (a, b) in ours.iter().zip(theirs) {
+            worst = f64::max(worst, (a - b).abs());
+        }
+    }
+    worst
+}
+
+/// N; 0 without whirl.
+fn load(history: &History, scene: &Scene) -> f64 {
+    if !matches!(history.regime, Regime::ForwardWhirl | Regime::BackwardWhirl) {
+        return 0.0;
+    }
+    let [u, v] = history.end.velocity;
+    scene.rotor.mass * (u * u + v * v) / scene.retainer.clearance
+}
