@@ -24,16 +24,16 @@ Examples:
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
 
 const PAPER: &str = "\
-printed: stated by Fumagalli, Varadi, Schweitzer, \"Impact dynamics of high speed rotors in retainer
-         bearings\"; - where they give no number
+printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
+         speed rotors in retainer bearings\"; - where they give no number
 right:   from a closed form, or where there is none from the independent reference
 ours:    measured on runs of the model under test; - where no run can tell
 
-Each row's note (in the page and the JSON) says where its numbers come from and how close ours has to
-be. Whirl is counted over random drops, with a 95 % interval: the paper concludes that a large gap
-avoids it, and its own equations say otherwise.
+A note on each row says where its numbers come from and how close ours has to be; it is
+in the page and the JSON. Whirl is counted over random drops: the paper concludes that a
+large gap avoids it, which its own equations do not bear out.
 
-Exit status: 0 ours agrees with what is right, whatever is printed; 1 it does not.";
+Exit status: 0 ours is right in every row, whatever is printed; 1 it is not.";
 
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.

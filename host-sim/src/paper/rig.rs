@@ -11,6 +11,8 @@ pub const GAP: f64 = 0.3e-3;
 pub const WIDE_GAP: f64 = 0.75e-3;
 /// Output interval, s: what a run gives does not depend on it.
 const STEP: f64 = 1e-3;
+/// Halvings of a search: to 1e-12 of its range.
+const HALVINGS: usize = 40;
 
 /// The rig with 0.3 mm of gap, on the desktop's first built-in scene.
 pub fn rig() -> Result<Scene, Failure> {
@@ -66,8 +68,7 @@ pub fn turning([x, y]: [f64; 2], [vx, vy]: [f64; 2]) -> f64 {
     (x * vy - y * vx) / (x * x + y * y)
 }
 
-/// The greatest argument between `lo` and `hi` for which `holds` is still false, by halving: false at
-/// `lo`, true at `hi`, one change between.
+/// Where `holds` changes from false at `lo` to true at `hi`, by halving; one such place if there are more.
 pub fn change(
     mut lo: f64,
     mut hi: f64,
@@ -83,6 +84,3 @@ pub fn change(
     }
     Ok(0.5 * (lo + hi))
 }
-
-/// Halvings of a search: to 1e-12 of its range.
-const HALVINGS: usize = 40;
