@@ -4,8 +4,9 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use touchdown_core::error::ConfigError;
-use touchdown_core::model::{Happening, Precision, Stepper, Touch};
+use touchdown_core::model::{Happening, Precision, Stepper};
 
+use crate::instructions::{Instructions, Steps};
 use crate::model_run::{Subject, Use, with_model};
 use crate::scene::Scene;
 
@@ -19,26 +20,8 @@ const ENOUGH: Duration = Duration::from_millis(4);
 pub(super) struct Pace {
     /// Of the quickest of several runs, each step with the rotor's place after it, ns.
     pub ns_per_step: f64,
-    /// What was done.
-    pub steps: Steps,
-}
-
-/// What was done in a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Steps {
-    /// Steps that ended in flight.
-    pub flight: u64,
-    /// Steps that ended in contact.
-    pub contact: u64,
-    /// Changes of motion.
-    pub changes: u64,
-}
-
-impl Steps {
-    /// All.
-    pub fn all(&self) -> u64 {
-        self.flight + self.contact
-    }
+    /// Mean of the instructions of a step on the target.
+    pub target: Option<f64>,
 }
 
 /// Times the scene's model.
@@ -65,7 +48,7 @@ impl Use for Measure<'_> {
         }
         Ok(Pace {
             ns_per_step: best.as_secs_f64() * 1e9 / steps as f64,
-            steps: count(subject, steps)?,
+            target: target(self.0)?,
         })
     }
 }
@@ -88,28 +71,17 @@ fn timed<R: Precision, M: Stepper<R>>(
     Ok(begin.elapsed())
 }
 
-fn count<R: Precision, M: Stepper<R>>(
-    Subject {
-        model, start, spin, ..
-    }: &Subject<R, M>,
-    all: u64,
-) -> Result<Steps, ConfigError> {
-    let mut steps = Steps::default();
-    let mut changes = 0;
-    let mut state = model.start(start, *spin, |_| changes += 1)?;
-    for _ in 0..all {
-        model.step(&mut state, |_| changes += 1);
-        match model.kinematics(&state).touch {
-            Touch::None => steps.flight += 1,
-            Touch::Sliding | Touch::Rolling => steps.contact += 1,
-        }
-    }
-    steps.changes = changes;
-    Ok(steps)
+/// Mean of the instructions of a step of the scene's run on the target; none where the model was not counted
+/// there.
+fn target(scene: &Scene) -> Result<Option<f64>, ConfigError> {
+    let steps = Steps::of(scene)?;
+    let each = Instructions::of(&scene.model);
+    Ok(each.map(|each| each.per_step(&steps)))
 }
 
-/// Instructions a simulated second on the target; none where they were not counted or the model refuses.
+/// Instructions a simulated second on the target; none where the model was not counted there, or refuses the
+/// scene.
 pub fn target_cost(scene: &Scene) -> Option<f64> {
-    let _ = scene;
-    None
+    let each = target(scene).ok()??;
+    Some(each / scene.model.step)
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::accuracy::Accuracy;
-use super::pace::{Pace, Steps};
+use super::pace::Pace;
 use crate::scene::{Math, Model, Precision, Rung, Scheme};
 
 /// One combination: how wrong it is, and what it costs.
@@ -44,9 +44,6 @@ pub struct Row {
     /// Greatest error at impacts 1, 3 and 10, infinite where one is missing; without impacts, of the energy.
     #[serde(skip)]
     pub worst_error: f64,
-    /// What was done.
-    #[serde(skip)]
-    pub steps: Steps,
 }
 
 #[derive(Serialize)]
@@ -71,10 +68,9 @@ impl Row {
             energy_drift: accuracy.energy,
             ns_per_step: pace.ns_per_step,
             seconds_per_simulated_second: pace.ns_per_step * 1e-9 / model.step,
-            mcu_instructions_per_step: None,
+            mcu_instructions_per_step: pace.target,
             pareto: false,
             worst_error: accuracy.worst(),
-            steps: pace.steps,
         }
     }
 

@@ -16,7 +16,7 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
         trade.measured
     );
     let head = format!(
-        "{:<29}{:>9}{:>9}{:>9}{:>9}{:>8}{:>7}",
+        "{:<31}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}",
         "rung, scheme, numbers, math", "1 us", "10 us", "100 us", "1 ms", "ns/step", "instr."
     );
     text += &(paint.bold(&head) + "\n");
@@ -29,7 +29,7 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
     front.sort_by(|a, b| a.worst_error.total_cmp(&b.worst_error));
     for row in front {
         text += &format!(
-            "{:<29}step {:>7} us{:>10.1e}{:>10.2e} s a simulated s\n",
+            "{:<31}step {:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
             row.name(),
             short(row.step_s * 1e6),
             row.worst_error,
@@ -58,7 +58,7 @@ fn line(group: &[Row]) -> String {
         .and_then(|row| row.mcu_instructions_per_step)
         .map_or("-".to_owned(), |count| format!("{count:.0}"));
     let name = group.first().map(Row::name).unwrap_or_default();
-    format!("{name:<29}{errors}{pace:>8}{target:>7}\n")
+    format!("{name:<31}{errors}{pace:>7}{target:>7}\n")
 }
 
 fn short(value: f64) -> String {
