@@ -5,7 +5,9 @@ use std::fs;
 
 use serde_json::Value;
 use tempfile::TempDir;
+use touchdown_sim::failure::Failure;
 use touchdown_sim::history::History;
+use touchdown_sim::paint::Paint;
 use touchdown_sim::paper::{self, Paper};
 use touchdown_sim::reference::Start;
 use touchdown_sim::regions::{Plane, Region};
@@ -89,6 +91,17 @@ fn ours_is_right_in_every_row() {
     }
     let measured = paper.rows.iter().filter(|row| row.ours.is_some()).count();
     assert_eq!((paper.rows.len(), measured), (49, 38));
+}
+
+#[test]
+fn a_wrong_row_fails_the_command() {
+    let mut paper = paper::run(1).unwrap();
+    let first = paper.rows.remove(0);
+    let right = first.right;
+    paper.rows.push(first.ours(right + 1.0, 0.5));
+    assert!(!paper.agrees());
+    assert!(paper::table(&paper, Paint::PLAIN).contains('!'));
+    assert_eq!(Failure::Check(String::new()).status(), 1);
 }
 
 /// Printed and right numbers as known beforehand, to half a unit of their last digit.
