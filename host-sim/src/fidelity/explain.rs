@@ -14,7 +14,7 @@ pub fn explain(choice: &Choice) -> String {
     let Some(best) = choice.best() else {
         let _ = writeln!(
             text,
-            "fidelity: none of {} combinations gives all that is asked; the errors of each output's best:",
+            "fidelity: none of {} combinations gives all that is asked; the best of each output:",
             choice.candidates.len()
         );
         for (index, request) in choice.asked.iter().enumerate() {
@@ -31,7 +31,7 @@ pub fn explain(choice: &Choice) -> String {
     };
     let _ = writeln!(
         text,
-        "fidelity: {}, the cheapest of {} combinations, measured over {} s:",
+        "fidelity: {}; of {} combinations\nthe cheapest that suffices, measured over {} s",
         name(&best.model),
         choice.candidates.len(),
         choice.measured

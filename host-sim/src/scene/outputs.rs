@@ -89,10 +89,23 @@ impl Output {
             Self::Regime if error == 0.0 => "right".to_owned(),
             Self::Regime => "wrong".to_owned(),
             _ if !error.is_finite() => "not given".to_owned(),
-            Self::ImpactTime | Self::Phases => format!("{:.2e} us", error * 1e6),
+            Self::ImpactTime | Self::Phases => format!("{} us", short(error * 1e6)),
             Self::ImpactSpeed | Self::WhirlLoad | Self::PeakForce | Self::ContactTime => {
-                format!("{:.2e} %", error * 100.0)
+                format!("{} %", short(error * 100.0))
             }
         }
+    }
+}
+
+/// Three digits or so.
+fn short(value: f64) -> String {
+    if value != 0.0 && value < 1e-3 {
+        return format!("{value:.1e}");
+    }
+    let decimals = (2 - value.max(1e-3).log10().floor() as i32).clamp(0, 5) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
     }
 }
