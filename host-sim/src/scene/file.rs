@@ -16,6 +16,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub model: ModelTable,
     #[serde(default)]
+    pub materials: MaterialsTable,
+    #[serde(default)]
     pub sensors: SensorsTable,
     #[serde(default)]
     pub detector: Tuning,
@@ -81,6 +83,31 @@ pub(super) struct ModelTable {
     pub math: Option<String>,
     pub precision: Option<String>,
     pub step_us: Option<f64>,
+}
+
+/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct MaterialsTable {
+    pub rotor_modulus_gpa: f64,
+    pub rotor_poisson: f64,
+    pub retainer_modulus_gpa: f64,
+    pub retainer_poisson: f64,
+    pub contact: Option<String>,
+    pub length_mm: Option<f64>,
+}
+
+impl Default for MaterialsTable {
+    fn default() -> Self {
+        Self {
+            rotor_modulus_gpa: 210.0,
+            rotor_poisson: 0.3,
+            retainer_modulus_gpa: 210.0,
+            retainer_poisson: 0.3,
+            contact: None,
+            length_mm: None,
+        }
+    }
 }
 
 #[derive(Deserialize)]

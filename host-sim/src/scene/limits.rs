@@ -9,6 +9,11 @@ pub(super) const INERTIA_RATIO: RangeInclusive<f64> = 1e-3..=1e3;
 pub(super) const SPEED_RPM: RangeInclusive<f64> = -1e7..=1e7;
 pub(super) const CLEARANCE_MM: RangeInclusive<f64> = 1e-3..=100.0;
 pub(super) const FRICTION: RangeInclusive<f64> = 0.0..=100.0;
+/// From foam to beyond diamond.
+pub(super) const MODULUS_GPA: RangeInclusive<f64> = 1e-3..=1e4;
+pub(super) const POISSON: RangeInclusive<f64> = 0.0..=0.5;
+/// Axial length of a contact.
+pub(super) const LENGTH_MM: RangeInclusive<f64> = 0.01..=1e5;
 pub(super) const ANGLE_DEG: RangeInclusive<f64> = -36e3..=36e3;
 /// Speed of a start.
 pub(super) const SPEED_MM_S: RangeInclusive<f64> = -1e6..=1e6;
