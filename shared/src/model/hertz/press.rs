@@ -49,13 +49,18 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         touching.impulse += impulse;
         touching.peak = touching.peak.most(impulse / time);
         let rolled = touching.rolling;
-        touching.rolling = stuck;
+        if impulse > R::ZERO {
+            // Where the wall does not push, slip neither ends nor begins; and one push alone that lets
+            // it slip is half of a step that does not.
+            touching.rolling = stuck || (rolled && touching.gripped);
+            touching.gripped = stuck;
+        }
         let change = if starts {
             touching.stays = true;
             Some(Change::ContactStarts)
         } else if touching.stays {
             touching.turns.add(time * along * inverse);
-            match (rolled, stuck) {
+            match (rolled, touching.rolling) {
                 (false, true) => Some(Change::RollingStarts),
                 (true, false) => Some(Change::SlidingStarts),
                 _ => None,

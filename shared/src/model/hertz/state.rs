@@ -19,6 +19,8 @@ pub(super) struct Touching<R> {
     /// Whether it is permanent.
     pub(super) stays: bool,
     pub(super) rolling: bool,
+    /// Whether the last push of the wall stopped the slip.
+    pub(super) gripped: bool,
     pub(super) turns: Turns<R>,
 }
 
@@ -43,6 +45,7 @@ impl<R: Real> Touching<R> {
             impulse: R::ZERO,
             stays: false,
             rolling: false,
+            gripped: false,
             turns: Turns::default(),
         }
     }
