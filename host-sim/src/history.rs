@@ -27,6 +27,19 @@ pub struct Impact {
     pub normal_speed: f64,
     /// N s.
     pub normal_impulse: f64,
+    /// What the contact was like, where the model gives it a duration and it has ended.
+    pub pulse: Option<Pulse>,
+}
+
+/// A contact that took time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse {
+    /// Largest normal force, N.
+    pub peak_force: f64,
+    /// s.
+    pub duration: f64,
+    /// Normal, N s.
+    pub impulse: f64,
 }
 
 /// A change of motion, in the order of time.
@@ -34,6 +47,13 @@ pub struct Impact {
 pub enum Happening {
     /// The rotor hit the retainer.
     Impact(Impact),
+    /// It left the retainer again, where that takes time: this is the state after the last impact.
+    Released {
+        /// State just after.
+        state: RotorState,
+        /// The contact.
+        pulse: Pulse,
+    },
     /// Permanent contact began at this time, s (0 for a start on the wall), sliding or rolling.
     ContactStart {
         /// s.
@@ -161,6 +181,14 @@ impl Recorder {
             Happening::Impact(impact) => {
                 self.change(PhaseKind::Impact, impact.state.time);
                 self.impacts.push(impact);
+            }
+            Happening::Released { state, pulse } => {
+                if let Some(impact) = self.impacts.last_mut() {
+                    let time = impact.state.time;
+                    impact.state = RotorState { time, ..state };
+                    impact.normal_impulse = pulse.impulse;
+                    impact.pulse = Some(pulse);
+                }
             }
             Happening::ContactStart { time, rolling } => {
                 self.contact_starts.push(time);

@@ -39,6 +39,10 @@ struct ImpactJson {
     spin_rad_s: f64,
     normal_speed_m_s: f64,
     normal_impulse_n_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_force_n: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_time_s: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -111,6 +115,8 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
         spin_rad_s: state.spin,
         normal_speed_m_s: impact.normal_speed,
         normal_impulse_n_s: impact.normal_impulse,
+        peak_force_n: impact.pulse.map(|pulse| pulse.peak_force),
+        contact_time_s: impact.pulse.map(|pulse| pulse.duration),
     }
 }
 

@@ -229,6 +229,7 @@ mod tests {
                 state: at(time),
                 normal_speed: 0.05,
                 normal_impulse: 0.1,
+                pulse: None,
             }));
         }
         recorder.take(Happening::ContactStart {

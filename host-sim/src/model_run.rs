@@ -2,15 +2,16 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Instant, Kinematics, Moreau, Precision, Rigid, RigidConfig, Start as ScaledStart,
-    Stepper, Touch,
+    Change, Compliance, Euler, Hertz, HertzConfig, Instant, Kinematics, Line, Moreau, Point,
+    Precision, Rigid, RigidConfig, Scheme as ContactScheme, Shape, Start as ScaledStart, Stepper,
+    Touch, Verlet,
 };
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
-use crate::history::{Happening, History, Impact, Recorder, RotorState};
+use crate::history::{Happening, History, Impact, Pulse, Recorder, RotorState};
 use crate::reference::Start;
-use crate::scene::{self, Math, Rung, Scene};
+use crate::scene::{self, Contact, Math, Rung, Scene, Scheme};
 
 /// Part of the speed scale below which a rotor in contact is at rest.
 const STILL: f64 = 1e-6;
@@ -64,7 +65,71 @@ fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output,
             let model = Moreau::try_new(&config(scene))?;
             what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
         }
-        Rung::Hertz => Err(ConfigError::OutOfRange("rung", "\"rigid\"")),
+        Rung::Hertz => match (scene.materials.contact, scene.model.scheme) {
+            (Contact::Point, Scheme::Verlet) => {
+                hertz::<R, Point, Point, Verlet, U>(scene, Point, what)
+            }
+            (Contact::Point, _) => hertz::<R, Point, Point, Euler, U>(scene, Point, what),
+            (Contact::Line { length }, Scheme::Verlet) => {
+                hertz::<R, Line<f64>, Line<R>, Verlet, U>(scene, Line { length }, what)
+            }
+            (Contact::Line { length }, _) => {
+                hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
+            }
+        },
+    }
+}
+
+/// `D` is the shape `C` in the numbers `R`.
+fn hertz<R, C, D, S, U>(scene: &Scene, shape: C, what: U) -> Result<U::Output, ConfigError>
+where
+    R: Precision,
+    C: Shape<f64>,
+    D: Shape<R>,
+    S: ContactScheme,
+    U: Use,
+{
+    let model = Hertz::<f64, C, S>::try_new(&compliant(scene, shape))?;
+    what.with(&subject(scene, model.rounded::<R, D>(), *model.scales()))
+}
+
+/// How stiff the scene's contact is.
+pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
+    match scene.materials.contact {
+        Contact::Point => compliant(scene, Point).compliance(),
+        Contact::Line { length } => compliant(scene, Line { length }).compliance(),
+    }
+}
+
+fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {
+    HertzConfig {
+        rigid: config(scene),
+        materials: scene.materials.elastic,
+        shape,
+        fastest: fastest_impact(scene),
+    }
+}
+
+/// A fall to the bottom from the start's height, or through the gap if that is more, and the start's
+/// speed.
+fn fastest_impact(scene: &Scene) -> f64 {
+    let height = match scene.start {
+        Start::Free { position, .. } => position[1],
+        Start::Wall { angle, .. } => -scene.retainer.clearance * angle.cos(),
+    };
+    let fall = scene.retainer.clearance + height.max(0.0);
+    let speed = speed_of(&scene.start).hypot((2.0 * scene.run.gravity * fall).sqrt());
+    if speed > 0.0 {
+        speed
+    } else {
+        start_speed(scene)
+    }
+}
+
+fn speed_of(start: &Start) -> f64 {
+    match *start {
+        Start::Free { velocity, .. } => velocity[0].hypot(velocity[1]),
+        Start::Wall { tangential, .. } => tangential.abs(),
     }
 }
 
@@ -98,10 +163,7 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
 
 /// Sets the scale where there is no gravity.
 pub(crate) fn start_speed(scene: &Scene) -> f64 {
-    let speed = match scene.start {
-        Start::Free { velocity, .. } => velocity[0].hypot(velocity[1]),
-        Start::Wall { tangential, .. } => tangential.abs(),
-    };
+    let speed = speed_of(&scene.start);
     if speed > 0.0 { speed } else { 1.0 }
 }
 
@@ -151,8 +213,17 @@ impl Use for Simulate<'_> {
                         state: after,
                         normal_speed,
                         normal_impulse: mass * (1.0 + scene.retainer.restitution) * normal_speed,
+                        pulse: None,
                     })
                 }
+                Change::Released(pulse) => Happening::Released {
+                    state: after,
+                    pulse: Pulse {
+                        peak_force: pulse.peak_force.to_f64() * mass * scales.speed / scales.time,
+                        duration: pulse.duration.to_f64() * scales.time,
+                        impulse: pulse.impulse.to_f64() * mass * scales.speed,
+                    },
+                },
                 Change::ContactStarts => Happening::ContactStart {
                     time,
                     rolling: happening.after.touch == Touch::Rolling,

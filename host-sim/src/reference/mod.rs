@@ -207,6 +207,7 @@ impl Reference {
                 state: self.on_wall(self.since.value, &wall, -launch),
                 normal_speed: normal_speed * self.scale.speed,
                 normal_impulse: self.machine.mass * impulse * self.scale.speed,
+                pulse: None,
             }));
         }
         self.motion = Motion::leaving_wall(&self.law, wall, launch);

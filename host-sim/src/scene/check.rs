@@ -1,20 +1,26 @@
 //! From the file's units and names to a valid scene.
 
 use touchdown_core::error::ConfigError;
+use touchdown_core::model::Materials as Elastic;
 use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
 use super::file::{
-    ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
+    MaterialsTable, ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable,
+    StartTable,
 };
 use super::flaw::Flaw;
 use super::limits;
-use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start};
+use super::{
+    Contact, Materials, Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start,
+};
+use crate::model_run::compliance;
 use crate::sensors::SensorsConfig;
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
 const MILLI: f64 = 1e-3;
 const MICRO: f64 = 1e-6;
+const GIGA: f64 = 1e9;
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 const ON_THE_WALL: f64 = 1e-9;
 
@@ -25,7 +31,8 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let run = run(&file.run)?;
     let model = model(&file.model, &run)?;
     let auto = auto(&file, &model)?;
-    let scene = Scene {
+    let materials = materials(&file.materials)?;
+    let mut scene = Scene {
         name: name.to_owned(),
         title: file.title,
         source: file.source,
@@ -35,9 +42,13 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         run,
         model,
         auto,
+        materials,
         sensors: sensors(&file.sensors)?,
         tuning: file.detector,
     };
+    if scene.model.rung == Rung::Hertz {
+        scene.model.step = step_in_contact(&scene, file.model.step_us.is_some())?;
+    }
     monitor(&scene)?;
     Ok(scene)
 }
@@ -197,19 +208,19 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
 fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     let rung = match table.rung.as_deref() {
         None => Rung::Rigid,
-        Some(name) => named("rung", name, &[Rung::Rigid, Rung::Moreau], Rung::name)?,
+        Some(name) => named("model", "rung", name, &Rung::ALL, Rung::name)?,
     };
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
-        Some(name) => named("scheme", name, rung.schemes(), Scheme::name)?,
+        Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::name)?,
     };
     let precision = match table.precision.as_deref() {
         None => Precision::F64,
-        Some(name) => named("precision", name, &Precision::ALL, Precision::name)?,
+        Some(name) => named("model", "precision", name, &Precision::ALL, Precision::name)?,
     };
     let math = match table.math.as_deref() {
         None => Math::Libm,
-        Some(name) => named("math", name, precision.maths(), Math::name)?,
+        Some(name) => named("model", "math", name, precision.maths(), Math::name)?,
     };
     let step = match table.step_us {
         Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
@@ -224,8 +235,70 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     })
 }
 
+/// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
+/// that is accurate.
+fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
+    let compliance = compliance(scene).map_err(|error| translate(&error))?;
+    let step = scene.model.step;
+    if !given {
+        return Ok(step / (step / compliance.accurate_step()).ceil());
+    }
+    let longest = compliance.longest_step();
+    if step > longest {
+        let rule = format!(
+            "step_us must be no more than {:.4}, the limit of stability 2/omega_c of this contact, is {}",
+            longest / MICRO,
+            step / MICRO
+        );
+        return Err(Flaw::new("model", "step_us", rule));
+    }
+    Ok(step)
+}
+
+fn materials(table: &MaterialsTable) -> Result<Materials, Flaw> {
+    const TABLE: &str = "materials";
+    let modulus = |key, value| {
+        let value = above_zero(TABLE, key, value)?;
+        between(TABLE, key, value, limits::MODULUS_GPA).map(|value| GIGA * value)
+    };
+    let poisson = |key, value| between(TABLE, key, value, limits::POISSON);
+    let names = ["point", "line"];
+    let contact = match table.contact.as_deref() {
+        None => names[0],
+        Some(name) => named(TABLE, "contact", name, &names, |name| name)?,
+    };
+    let contact = match (contact, table.length_mm) {
+        ("line", Some(length)) => {
+            let length = above_zero(TABLE, "length_mm", length)?;
+            let length = between(TABLE, "length_mm", length, limits::LENGTH_MM)?;
+            Contact::Line {
+                length: MILLI * length,
+            }
+        }
+        ("line", None) => {
+            let rule = "contact = \"line\" needs length_mm";
+            return Err(Flaw::new(TABLE, "contact", rule));
+        }
+        (_, Some(_)) => {
+            let rule = "length_mm is that of contact = \"line\"";
+            return Err(Flaw::new(TABLE, "length_mm", rule));
+        }
+        (_, None) => Contact::Point,
+    };
+    Ok(Materials {
+        elastic: Elastic {
+            rotor_modulus: modulus("rotor_modulus_gpa", table.rotor_modulus_gpa)?,
+            rotor_poisson: poisson("rotor_poisson", table.rotor_poisson)?,
+            retainer_modulus: modulus("retainer_modulus_gpa", table.retainer_modulus_gpa)?,
+            retainer_poisson: poisson("retainer_poisson", table.retainer_poisson)?,
+        },
+        contact,
+    })
+}
+
 /// The one of `all` that has this name.
 fn named<T: Copy>(
+    table: &'static str,
     key: &'static str,
     given: &str,
     all: &[T],
@@ -240,7 +313,7 @@ fn named<T: Copy>(
                 .map(|&item| format!("\"{}\"", name(item)))
                 .collect();
             let rule = format!("{key} must be {}, is \"{given}\"", names.join(" or "));
-            Flaw::new("model", key, rule)
+            Flaw::new(table, key, rule)
         })
 }
 
@@ -283,6 +356,8 @@ fn translate(error: &ConfigError) -> Flaw {
         "rotor_radius" => ("rotor", "radius_mm"),
         "inertia_ratio" => ("rotor", "polar_inertia_kg_m2"),
         "spin" => ("rotor", "speed_rpm"),
+        "length" => ("materials", "length_mm"),
+        "fastest" => ("start", "vx_mm_s"),
         "planes" => ("sensors", "planes"),
         "bits" | "full_scale" | "zero_count" => ("sensors", "bits"),
         "range" | "resolution" => ("sensors", "range_um"),

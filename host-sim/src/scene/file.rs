@@ -18,6 +18,8 @@ pub(super) struct SceneFile {
     pub model: ModelTable,
     pub outputs: Option<OutputsTable>,
     #[serde(default)]
+    pub materials: MaterialsTable,
+    #[serde(default)]
     pub sensors: SensorsTable,
     #[serde(default)]
     pub detector: Tuning,
@@ -96,6 +98,31 @@ pub(super) struct OutputsTable {
     pub whirl_load_percent: Option<f64>,
     pub peak_force_percent: Option<f64>,
     pub contact_time_percent: Option<f64>,
+}
+
+/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct MaterialsTable {
+    pub rotor_modulus_gpa: f64,
+    pub rotor_poisson: f64,
+    pub retainer_modulus_gpa: f64,
+    pub retainer_poisson: f64,
+    pub contact: Option<String>,
+    pub length_mm: Option<f64>,
+}
+
+impl Default for MaterialsTable {
+    fn default() -> Self {
+        Self {
+            rotor_modulus_gpa: 210.0,
+            rotor_poisson: 0.3,
+            retainer_modulus_gpa: 210.0,
+            retainer_poisson: 0.3,
+            contact: None,
+            length_mm: None,
+        }
+    }
 }
 
 #[derive(Deserialize)]

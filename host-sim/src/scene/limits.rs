@@ -14,6 +14,12 @@ pub const SPEED_RPM: RangeInclusive<f64> = -1e7..=1e7;
 pub const CLEARANCE_MM: RangeInclusive<f64> = 1e-3..=100.0;
 /// Coulomb's coefficient.
 pub const FRICTION: RangeInclusive<f64> = 0.0..=100.0;
+/// Elastic modulus, GPa: from foam to beyond diamond.
+pub const MODULUS_GPA: RangeInclusive<f64> = 1e-3..=1e4;
+/// Poisson's ratio.
+pub const POISSON: RangeInclusive<f64> = 0.0..=0.5;
+/// Axial length of a contact, mm.
+pub const LENGTH_MM: RangeInclusive<f64> = 0.01..=1e5;
 /// Angle of a start on the wall, deg.
 pub const ANGLE_DEG: RangeInclusive<f64> = -36e3..=36e3;
 /// Speed of a start, each component, mm/s.

@@ -7,11 +7,13 @@ mod explain;
 mod file;
 mod flaw;
 pub mod limits;
+mod materials;
 mod model;
 mod outputs;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;
+pub use materials::{Contact, Materials};
 pub use model::{Math, Model, Precision, Rung, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
 
@@ -21,6 +23,7 @@ use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::monitor::MonitorConfig;
 
 use crate::input_error::InputError;
+use crate::model_run::compliance;
 use crate::reference::Machine;
 pub use crate::reference::Start;
 use crate::sensors::SensorsConfig;
@@ -46,6 +49,8 @@ pub struct Scene {
     pub model: Model,
     /// Where the model is to be chosen: what is asked of it.
     pub auto: Option<Auto>,
+    /// What rotor and retainer are made of.
+    pub materials: Materials,
     /// The sensor chain.
     pub sensors: SensorsConfig,
     /// The detector's thresholds and times.
@@ -140,7 +145,23 @@ impl Scene {
                 self.sensors.range * 1e6
             ));
         }
+        warnings.extend(self.step_warning());
         warnings
+    }
+
+    fn step_warning(&self) -> Option<String> {
+        if self.model.rung != Rung::Hertz {
+            return None;
+        }
+        let limit = compliance(self).ok()?.accurate_step();
+        (self.model.step > limit).then(|| {
+            format!(
+                "{}: step_us is {}, above T_c/25 = {:.4} us: forces and contact times are inaccurate",
+                self.name,
+                self.model.step * 1e6,
+                limit * 1e6
+            )
+        })
     }
 
     /// What the monitor is told of this scene.

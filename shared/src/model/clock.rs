@@ -86,6 +86,23 @@ impl<R: Real> Instant<R> {
         }
     }
 
+    /// `steps` (0 to 1) earlier, not before the release.
+    pub(crate) fn before(self, steps: R) -> Self {
+        if steps <= self.fraction {
+            Self {
+                tick: self.tick,
+                fraction: self.fraction - steps,
+            }
+        } else if self.tick > 0 {
+            Self {
+                tick: self.tick - 1,
+                fraction: self.fraction + (R::ONE - steps),
+            }
+        } else {
+            Self::default()
+        }
+    }
+
     /// Steps from `earlier` to here; 0 if `earlier` is later.
     pub(crate) fn since(self, earlier: Self) -> R {
         if self.tick < earlier.tick {

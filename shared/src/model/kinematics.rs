@@ -20,6 +20,19 @@ pub enum Change<R> {
     SlidingStarts,
     /// Permanent contact ended.
     LiftsOff,
+    /// The rotor left the wall after an impact, where impacts take time.
+    Released(Pulse<R>),
+}
+
+/// A contact that took time, in the model's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse<R> {
+    /// Largest force per mass, V^2/rho0.
+    pub peak_force: R,
+    /// T.
+    pub duration: R,
+    /// Normal impulse per mass, V.
+    pub impulse: R,
 }
 
 /// A change of motion.

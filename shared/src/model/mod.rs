@@ -7,11 +7,13 @@
 //!   Taylor series, and the moment at which each ends is solved for once. A step is then a comparison,
 //!   and the result does not depend on its length.
 //! - [`Moreau`] steps through the same laws: cheap, of first order, at any step.
+//! - [`Hertz`] gives each contact a force and a duration, and needs steps far shorter than it.
 
 mod clock;
 mod contact;
 mod flight;
 mod follow;
+mod hertz;
 mod kinematics;
 mod law;
 mod moreau;
@@ -27,7 +29,11 @@ mod turns;
 mod whirl;
 
 pub use clock::Instant;
-pub use kinematics::{Change, Happening, Kinematics, Touch};
+pub use hertz::{
+    Compliance, Euler, Hertz, HertzConfig, HertzState, Line, Materials, Pairing, Point, Scheme,
+    Shape, Verlet,
+};
+pub use kinematics::{Change, Happening, Kinematics, Pulse, Touch};
 pub use moreau::{Moreau, MoreauState};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
