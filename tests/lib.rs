@@ -1,4 +1,5 @@
-//! What the tests share: reference cases and their tolerances.
+//! What the tests share: reference cases and their tolerances, and the counts of the emulated target.
 
 pub mod binary;
 pub mod cases;
+pub mod counting;
