@@ -189,6 +189,14 @@ fn optional_keys_are_checked_too() {
             "[model]\nprecision = \"f16\"",
             "scene.toml:12: precision must be \"f32\" or \"f64\"",
         ),
+        (
+            "[model]\nmath = \"cordic\"",
+            "scene.toml:12: math must be \"libm\" or \"polynomial\", is \"cordic\"",
+        ),
+        (
+            "[model]\nprecision = \"f64\"\nmath = \"micromath\"",
+            "scene.toml:13: math must be \"libm\" or \"polynomial\", is \"micromath\"",
+        ),
         ("[sensors]\nbits = 3", "scene.toml:12: bits must be 4 to 16"),
         (
             "[sensors]\nbits = 17",

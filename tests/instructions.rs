@@ -5,15 +5,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use touchdown_sim::emulator::Emulator;
 use touchdown_sim::instructions::{Instructions, Steps};
 use touchdown_sim::scene::{Model, Precision, Rung, Scene};
+use touchdown_tests::counting::count;
 
-/// 16 ns of emulated time an instruction: what the image's counter is made for.
-const COUNTING: [&str; 3] = ["enable=on,target=native", "-icount", "shift=4"];
-const LIMIT: Duration = Duration::from_secs(120);
 /// Set by `cargo xtask instructions`.
 const WRITE: &str = "TOUCHDOWN_WRITE_TABLES";
 /// Largest deviation of another compiler's counts from the tables.
@@ -22,15 +18,6 @@ const OTHER_COMPILER: f64 = 0.1;
 const COMPOSITION: f64 = 0.05;
 /// Step that the classes are taken from, us.
 const STEP: u32 = 10;
-
-fn count() -> String {
-    let folder = tempfile::tempdir().expect("a folder");
-    Emulator::find_counting()
-        .unwrap_or_else(|error| panic!("{error}"))
-        .execute(folder.path(), &COUNTING, LIMIT)
-        .unwrap_or_else(|error| panic!("{error}"));
-    fs::read_to_string(folder.path().join("counts.csv")).expect("the image's counts")
-}
 
 /// Steps of one class in one drop.
 #[derive(Clone, Copy, Debug)]
