@@ -158,6 +158,14 @@ impl<R: Precision> Contact<R> {
         }
     }
 
+    /// When the wall has given `impulse` (per mass), at most the whole stretch; `guess` is near it.
+    pub(crate) fn time_of_impulse(&self, impulse: R, guess: R) -> R {
+        let at = guess.least(self.span) * self.series.pace;
+        let (given, force) = horner(&self.series.impulse, at);
+        let better = (at + (impulse - given) / force) / self.series.pace;
+        better.most(R::ZERO).least(self.span)
+    }
+
     /// Angle turned since the start of the stretch, rad.
     pub(crate) fn turned(&self, time: R) -> R {
         horner(&self.series.angle, time * self.series.pace).0

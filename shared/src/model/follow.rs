@@ -20,10 +20,8 @@ const STRETCHES_PER_STEP: u32 = 256;
 const CHANGES_PER_STEP: u32 = IMPACTS_PER_STEP + STRETCHES_PER_STEP;
 /// Square of the speed, in units of V, from which on whirl has a mean.
 const WHIRL: f64 = 16.0;
-/// Longest rest of a bounce series, in units of T and of the time of a radian, that is summed in closed
-/// form: the wall turns away under it. Chosen, because what the energy gains there, its cube over 8, is
-/// then within rounding.
-const LONGEST_REST: f64 = 1e-4;
+/// Longest rest of a bounce series, in units of T, that is summed.
+const LONGEST_REST: f64 = 1e-2;
 
 impl<R: Precision> Rigid<R> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
@@ -119,50 +117,44 @@ impl<R: Precision> Rigid<R> {
                 },
             });
         }
-        let (rest, impulse) = law.rest_of_series(hit.launch_speed, pressing);
-        let short = rest * (R::ONE + hit.tangential.abs()) <= R::lit(LONGEST_REST);
+        let rest = law.rest_of_series(hit.launch_speed, pressing);
         let ends = hit.launch_speed <= R::CUTOFF_SPEED
             && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO)
-            && short;
+            && rest <= R::lit(LONGEST_REST);
         if ends || hurry {
-            // A rest too long for the closed form is cut short.
-            let rest = if short { rest } else { R::ZERO };
-            self.settle(state, [sin, cos], hit.tangential, rest, impulse, hit.stuck);
+            let onto = state.on_wall(sin, cos, hit.tangential);
+            self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
         } else {
             self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
         }
     }
 
-    /// The rest of a bounce series at once: it slides (or rolls) along the wall meanwhile.
+    /// The rest of a bounce series from launch speed `launch` at once: `rest` would be its length if the
+    /// wall kept pressing as it does at its start. Its mean is contact, but for the last impact's impulse.
     fn settle(
         &self,
         state: &mut RigidState<R>,
-        [sin, cos]: [R; 2],
-        tangential: R,
+        mut onto: WallState<R>,
+        launch: R,
         rest: R,
-        impulse: R,
-        stuck: bool,
+        grip: Grip,
     ) {
         let law = &self.law;
-        let half_way = sin + R::HALF * cos * tangential * rest;
-        let pulled = tangential - law.gravity * half_way * rest;
-        let (after, still_stuck) = if impulse > R::ZERO {
-            law.rub(impulse, pulled, &mut state.spin)
-        } else {
-            (tangential, stuck)
-        };
-        let turned = R::HALF * (tangential + after) * rest;
-        let (turn_sin, turn_cos) = turned.sin_cos();
-        let onto = state.on_wall(
-            sin * turn_cos + cos * turn_sin,
-            cos * turn_cos - sin * turn_sin,
-            after,
-        );
-        state.motion = Motion::Settling {
-            onto,
-            stuck: still_stuck,
-        };
-        state.ends = state.begun.after(rest, &self.step);
+        let mut after = R::ZERO;
+        let mut stuck = grip == Grip::Caught;
+        if rest > R::ZERO {
+            let mean = Contact::new(onto, grip, law);
+            let impulse = R::TWO * launch / (R::ONE - law.restitution);
+            after = mean.time_of_impulse(impulse, rest);
+            onto = mean.wall_state(after, law);
+            stuck = mean.mode == Mode::Rolling;
+            if let Mode::Sliding(friction) = mean.mode {
+                onto.tangential.add(-friction * launch);
+                onto.spin.add(-friction * launch / law.inertia_ratio);
+            }
+        }
+        state.motion = Motion::Settling { onto, stuck };
+        state.ends = state.begun.after(after, &self.step);
     }
 
     pub(crate) fn launch(

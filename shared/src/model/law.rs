@@ -74,17 +74,14 @@ impl<R: Real> Law<R> {
         self.inertia_ratio * self.gravity * sin / (R::ONE + self.inertia_ratio)
     }
 
-    /// The rest of a bounce series in closed form, from launch speed `launch` where the wall presses
-    /// with `pressing`: its duration and normal impulse (per mass). Error: square of `launch`.
-    pub(crate) fn rest_of_series(&self, launch: R, pressing: R) -> (R, R) {
+    /// How long the rest of a bounce series lasts from launch speed `launch` where the wall presses with
+    /// `pressing`; 0 where there is none, or no end of it.
+    pub(crate) fn rest_of_series(&self, launch: R, pressing: R) -> R {
         let lost = R::ONE - self.restitution;
         if launch <= R::ZERO || lost <= R::ZERO || pressing <= R::ZERO {
-            return (R::ZERO, R::ZERO);
+            return R::ZERO;
         }
-        (
-            R::TWO * launch / (pressing * lost),
-            launch * (R::ONE + self.restitution) / lost,
-        )
+        R::TWO * launch / (pressing * lost)
     }
 }
 
