@@ -4,7 +4,7 @@
 
 use crate::model::law::Law;
 use crate::model::precision::Precision;
-use crate::model::series::{Series, horner};
+use crate::model::series::{Series, horner, reach};
 use crate::model::sum::Sum;
 use crate::real::Real;
 
@@ -85,42 +85,59 @@ impl<R: Precision> Contact<R> {
         contact
     }
 
+    /// Most stretches are too short for any ending: then the reach of their series rules it out, which
+    /// costs less than to look for it.
     fn find_ending(&mut self, law: &Law<R>) {
         // Force first: where the wall stops pressing, friction stops as well.
-        self.cut_at(Ending::LiftsOff, |series, at| horner(&series.normal, at));
+        if self.series.normal[0] <= reach(&self.series.normal, self.span) {
+            self.cut_at(Ending::LiftsOff, |series, at| horner(&series.normal, at));
+        }
         match self.mode {
-            Mode::Sliding(friction) if friction != R::ZERO => {
-                let start_speed = self.series.tangential[0];
-                let start = self.base.spin.plus(start_speed);
-                let sign = if start != R::ZERO { start } else { -friction };
-                let per_force = friction / law.inertia_ratio;
-                self.cut_at(Ending::SlipEnds, |series, at| {
-                    let (speed, rate) = horner(&series.tangential, at);
-                    let (impulse, force) = horner(&series.impulse, at);
-                    let turned = per_force * impulse;
-                    let slip = start + ((speed - start_speed) + turned);
-                    let slope = rate + per_force * force;
-                    if sign > R::ZERO {
-                        (slip, slope)
-                    } else {
-                        (-slip, -slope)
-                    }
-                });
-            }
+            Mode::Sliding(friction) if friction != R::ZERO => self.find_end_of_slip(friction, law),
             Mode::Sliding(_) => {}
-            Mode::Rolling => {
-                for side in [R::ONE, -R::ONE] {
-                    let needed = side * law.rolling_friction(R::ONE);
-                    self.cut_at(Ending::Slips, |series, at| {
-                        let (force, force_rate) = horner(&series.normal, at);
-                        let (sin, sin_rate) = horner(&series.sin, at);
-                        (
-                            law.friction * force - needed * sin,
-                            law.friction * force_rate - needed * sin_rate,
-                        )
-                    });
-                }
+            Mode::Rolling => self.find_slip(law),
+        }
+    }
+
+    fn find_end_of_slip(&mut self, friction: R, law: &Law<R>) {
+        let start_speed = self.series.tangential[0];
+        let start = self.base.spin.plus(start_speed);
+        let per_force = friction / law.inertia_ratio;
+        let turn = per_force.abs() * reach(&self.series.impulse, self.span);
+        if start.abs() > reach(&self.series.tangential, self.span) + turn {
+            return;
+        }
+        let sign = if start != R::ZERO { start } else { -friction };
+        self.cut_at(Ending::SlipEnds, |series, at| {
+            let (speed, rate) = horner(&series.tangential, at);
+            let (impulse, force) = horner(&series.impulse, at);
+            let turned = per_force * impulse;
+            let slip = start + ((speed - start_speed) + turned);
+            let slope = rate + per_force * force;
+            if sign > R::ZERO {
+                (slip, slope)
+            } else {
+                (-slip, -slope)
             }
+        });
+    }
+
+    fn find_slip(&mut self, law: &Law<R>) {
+        let least = self.series.normal[0] - reach(&self.series.normal, self.span);
+        let steepest = self.series.sin[0].abs() + reach(&self.series.sin, self.span);
+        if law.friction * least > law.rolling_friction(steepest) {
+            return;
+        }
+        for side in [R::ONE, -R::ONE] {
+            let needed = side * law.rolling_friction(R::ONE);
+            self.cut_at(Ending::Slips, |series, at| {
+                let (force, force_rate) = horner(&series.normal, at);
+                let (sin, sin_rate) = horner(&series.sin, at);
+                (
+                    law.friction * force - needed * sin,
+                    law.friction * force_rate - needed * sin_rate,
+                )
+            });
         }
     }
 

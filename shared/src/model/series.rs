@@ -58,9 +58,12 @@ impl<R: Precision> Series<R> {
         series.sin[0] = base.sin.value();
         series.cos[0] = base.cos.value();
         series.tangential[0] = start;
+        let mut mirrored = zero;
         let mut divisor = series.pace;
         for k in 0..=R::SERIES_ORDER {
-            let square = product(&series.tangential, &series.tangential, k);
+            mirrored[SERIES_LENGTH - 1 - k] = series.tangential[k];
+            let [square, turned_sin, turned_cos] =
+                products([&series.tangential, &series.sin, &series.cos], &mirrored, k);
             series.normal[k] = square + g * series.cos[k];
             if k == R::SERIES_ORDER {
                 break;
@@ -71,8 +74,8 @@ impl<R: Precision> Series<R> {
             };
             let factor = R::ONE / divisor;
             series.tangential[k + 1] = acceleration * factor;
-            series.sin[k + 1] = product(&series.cos, &series.tangential, k) * factor;
-            series.cos[k + 1] = -product(&series.sin, &series.tangential, k) * factor;
+            series.sin[k + 1] = turned_cos * factor;
+            series.cos[k + 1] = -turned_sin * factor;
             series.angle[k + 1] = series.tangential[k] * factor;
             series.impulse[k + 1] = series.normal[k] * factor;
             divisor += series.pace;
@@ -117,6 +120,11 @@ impl<R: Precision> Series<R> {
     }
 }
 
+/// The most by which the series can differ from its constant term up to `at`.
+pub(crate) fn reach<R: Precision>(c: &Terms<R>, at: R) -> R {
+    without_constant(&c.map(R::abs), at)
+}
+
 /// The series without its constant term. Odd and even powers apart: two sums that do not wait for each
 /// other.
 fn without_constant<R: Precision>(c: &Terms<R>, at: R) -> R {
@@ -130,11 +138,22 @@ fn without_constant<R: Precision>(c: &Terms<R>, at: R) -> R {
     (odd + even * at) * at
 }
 
-/// Term `k` of the product of two series.
-fn product<R: Real>(a: &Terms<R>, b: &Terms<R>, k: usize) -> R {
-    a.iter()
-        .zip(b.iter().take(k + 1).rev())
-        .fold(R::ZERO, |sum, (&x, &y)| sum + x * y)
+/// Term `k` of the products of three series with a fourth, which is given from its last place down.
+/// The newest terms come last: all others are summed while those are still being worked out.
+fn products<R: Real>(series: [&Terms<R>; 3], mirrored: &Terms<R>, k: usize) -> [R; 3] {
+    let factors = &mirrored[SERIES_LENGTH - 1 - k..];
+    if k == 0 {
+        return series.map(|terms| terms[0] * factors[0]);
+    }
+    let [a, b, c] = series.map(|terms| &terms[1..k]);
+    let mut sums = [R::ZERO; 3];
+    for (((&a, &b), &c), &factor) in a.iter().zip(b).zip(c).zip(&factors[1..k]) {
+        sums[0] += a * factor;
+        sums[1] += b * factor;
+        sums[2] += c * factor;
+    }
+    let [a, b, c] = series.map(|terms| terms[0] * factors[0] + terms[k] * factors[k]);
+    [sums[0] + a, sums[1] + b, sums[2] + c]
 }
 
 /// Value and slope, in the series' unit.

@@ -1,0 +1,151 @@
+//! The drop by Touchdown, on any rung, or its exact course by the independent reference.
+//!
+//! Arguments: variant, `[model]` of the scene as TOML, `steps` or `changes`, duration (s), file for
+//! the samples (`-`: none), repeats; or variant, `exact`, duration.
+
+use std::env;
+use std::f64::consts::TAU;
+use std::hint::black_box;
+
+use serde_json::{Value, json};
+use touchdown_core::error::ConfigError;
+use touchdown_core::model::{Change, Happening, Kinematics, Precision, Stepper};
+use touchdown_peers::{Sample, answer, contact, median_time, write_samples};
+use touchdown_sim::history;
+use touchdown_sim::model_run::{Subject, Use, with_model};
+use touchdown_sim::reference::Reference;
+use touchdown_sim::scene::Scene;
+
+fn scene(variant: &str, model: &str, duration: f64) -> Scene {
+    let (friction, restitution) = contact(variant);
+    let rpm = 3141.6 * 60.0 / TAU;
+    let text = format!(
+        "rotor = {{ mass_kg = 3.42, radius_mm = 24.0, speed_rpm = {rpm:?} }}\n\
+         retainer = {{ clearance_mm = 0.3, friction = {friction:?}, restitution = {restitution:?} }}\n\
+         run = {{ duration_s = {duration:?}, gravity_m_s2 = 9.81 }}\n\
+         [model]\n{model}\n"
+    );
+    Scene::parse("peers", &text).expect("valid scene")
+}
+
+/// Time, position, velocity after and speed into the wall before an impact, SI.
+type Impact = [f64; 6];
+
+fn exact(variant: &str, duration: f64) -> Value {
+    let scene = scene(variant, "", duration);
+    let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
+    let mut impacts: Vec<Impact> = Vec::new();
+    let mut contact_starts = Vec::new();
+    reference.advance(duration, &mut |happening| match happening {
+        history::Happening::Impact(impact) => {
+            let s = impact.state;
+            let ([x, y], [u, v]) = (s.position, s.velocity);
+            impacts.push([s.time, x, y, u, v, impact.normal_speed]);
+        }
+        history::Happening::ContactStart { time, .. } => contact_starts.push(time),
+        _ => {}
+    });
+    json!({ "impacts": impacts, "contact_starts": contact_starts })
+}
+
+struct Run<'a> {
+    scene: &'a Scene,
+    by_steps: bool,
+    file: &'a str,
+    repeats: usize,
+}
+
+impl Run<'_> {
+    /// The whole drop. What is read on the way goes to `seen`.
+    fn drop<R: Precision, M: Stepper<R>>(
+        &self,
+        Subject {
+            model, start, spin, ..
+        }: &Subject<R, M>,
+        steps: u64,
+        mut seen: impl FnMut(u64, &Kinematics<R>),
+        mut sink: impl FnMut(Happening<R>),
+    ) {
+        let mut state = model.start(start, *spin, &mut sink).expect("valid start");
+        if self.by_steps {
+            for step in 1..=steps {
+                model.step(&mut state, &mut sink);
+                seen(step, &model.kinematics(&state));
+            }
+        } else {
+            model.run(&mut state, steps, R::ZERO, &mut sink);
+            seen(steps, &model.kinematics(&state));
+        }
+    }
+}
+
+impl Use for Run<'_> {
+    type Output = Value;
+
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<Value, ConfigError> {
+        let (step, scales) = (self.scene.model.step, subject.scales);
+        let steps = (self.scene.run.duration / step).round() as u64;
+        let in_si = |k: &Kinematics<R>| {
+            let [x, y] = k.position.map(|x| x.to_f64() * scales.length);
+            let [u, v] = k.velocity.map(|v| v.to_f64() * scales.speed);
+            [x, y, u, v]
+        };
+        let (mut samples, mut impacts): (Vec<Sample>, Vec<Impact>) = Default::default();
+        self.drop(
+            subject,
+            steps,
+            |tick, k| {
+                let [x, y, u, v] = in_si(k);
+                samples.push([tick as f64 * step, x, y, u, v]);
+            },
+            |h| {
+                if let Change::Impact(normal) = h.change {
+                    let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
+                    let [x, y, u, v] = in_si(&h.after);
+                    impacts.push([at, x, y, u, v, normal.to_f64() * scales.speed]);
+                }
+            },
+        );
+        let mut kept = Vec::new();
+        let time = median_time(self.repeats, || {
+            kept.clear();
+            self.drop(
+                subject,
+                steps,
+                |_, k| {
+                    black_box(k);
+                },
+                |h| kept.push(h),
+            );
+            black_box(&kept);
+        });
+        if self.file != "-" {
+            write_samples(self.file, &samples).expect("a file");
+        }
+        let counted = self.by_steps.then_some(steps);
+        Ok(json!({ "cpu_s": time, "steps": counted, "impacts": impacts }))
+    }
+}
+
+fn main() {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let number = |text: &str| -> f64 { text.parse().expect("a number") };
+    answer(&match arguments.as_slice() {
+        [variant, "exact", duration] => exact(variant, number(duration)),
+        [variant, model, way, duration, file, repeats] => {
+            let scene = scene(variant, model, number(duration));
+            let run = Run {
+                scene: &scene,
+                by_steps: *way == "steps",
+                file,
+                repeats: repeats.parse().expect("a count"),
+            };
+            with_model(&scene, run).expect("a rung that is built")
+        }
+        _ => panic!("three or six arguments"),
+    });
+}
