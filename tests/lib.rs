@@ -2,5 +2,5 @@
 
 pub mod binary;
 pub mod cases;
-pub mod growth;
 pub mod counting;
+pub mod growth;
