@@ -1,6 +1,8 @@
 //! How wrong an output is.
 
-use crate::history::{History, Regime};
+use super::force::pulses;
+use crate::history::{History, Pulse, Regime};
+use crate::reference::pulse::Pulse as True;
 use crate::scene::{Output, Scene};
 
 /// Impacts that are looked at.
@@ -18,8 +20,22 @@ pub fn error(output: Output, history: &History, truth: &History, scene: &Scene) 
         }),
         Output::Phases => phases(history, truth),
         Output::WhirlLoad => relative(load(history, scene), load(truth, scene)),
-        Output::PeakForce | Output::ContactTime => f64::INFINITY,
+        Output::PeakForce => force(history, truth, scene, |ours, real| {
+            relative(ours.peak_force, real.peak_force)
+        }),
+        Output::ContactTime => force(history, truth, scene, |ours, real| {
+            relative(ours.duration, real.duration)
+        }),
     }
+}
+
+fn force(
+    history: &History,
+    truth: &History,
+    scene: &Scene,
+    apart: impl Fn(&Pulse, &True) -> f64,
+) -> f64 {
+    pulses(history, truth, scene).map_or(f64::INFINITY, |(ours, real)| apart(&ours, &real))
 }
 
 fn relative(ours: f64, theirs: f64) -> f64 {

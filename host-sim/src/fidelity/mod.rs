@@ -2,6 +2,7 @@
 
 mod error;
 mod explain;
+mod force;
 
 pub use error::error;
 pub use explain::explain;

@@ -16,7 +16,7 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
         trade.measured
     );
     let head = format!(
-        "{:<31}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}",
+        "{:<31}{:>8}{:>8}{:>8}{:>8}{:>8}{:>7}",
         "rung, scheme, numbers, math", "1 us", "10 us", "100 us", "1 ms", "ns/step", "instr."
     );
     text += &(paint.bold(&head) + "\n");
@@ -48,8 +48,8 @@ fn line(group: &[Row]) -> String {
     let errors: String = COLUMNS
         .into_iter()
         .map(|step| match at(step) {
-            Some(row) if row.worst_error.is_finite() => format!("{:>9.1e}", row.worst_error),
-            _ => format!("{:>9}", "-"),
+            Some(row) if row.worst_error.is_finite() => format!("{:>8.1e}", row.worst_error),
+            _ => format!("{:>8}", "-"),
         })
         .collect();
     let middle = at(10);
@@ -58,7 +58,7 @@ fn line(group: &[Row]) -> String {
         .and_then(|row| row.mcu_instructions_per_step)
         .map_or("-".to_owned(), |count| format!("{count:.0}"));
     let name = group.first().map(Row::name).unwrap_or_default();
-    format!("{name:<31}{errors}{pace:>7}{target:>7}\n")
+    format!("{name:<31}{errors}{pace:>8}{target:>7}\n")
 }
 
 fn short(value: f64) -> String {
