@@ -179,11 +179,39 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nrung = \"soft\"",
-            "scene.toml:12: rung must be \"rigid\" or \"moreau\", is \"soft\"",
+            "scene.toml:12: rung must be \"rigid\" or \"moreau\" or \"hertz\", is \"soft\"",
         ),
         (
-            "[model]\nrung = \"hertz\"",
-            "scene.toml:12: rung must be \"rigid\" or \"moreau\", is \"hertz\"",
+            "[model]\nrung = \"moreau\"\nscheme = \"verlet\"",
+            "scene.toml:13: scheme must be \"midpoint\", is \"verlet\"",
+        ),
+        (
+            "[model]\nrung = \"hertz\"\nstep_us = 200",
+            "scene.toml:13: step_us must be no more than 128.0407, the limit of stability 2/omega_c",
+        ),
+        (
+            "[materials]\ncontact = \"line\"",
+            "scene.toml:12: contact = \"line\" needs length_mm",
+        ),
+        (
+            "[materials]\nlength_mm = 20",
+            "scene.toml:12: length_mm is that of contact = \"line\"",
+        ),
+        (
+            "[materials]\ncontact = \"plane\"",
+            "scene.toml:12: contact must be \"point\" or \"line\", is \"plane\"",
+        ),
+        (
+            "[materials]\nrotor_modulus_gpa = 0",
+            "scene.toml:12: rotor_modulus_gpa must be above 0",
+        ),
+        (
+            "[materials]\nretainer_poisson = 0.6",
+            "scene.toml:12: retainer_poisson must be 0 to 0.5",
+        ),
+        (
+            "[model]\nrung = \"hertz\"\n[materials]\ncontact = \"line\"\nlength_mm = 0.01\nrotor_modulus_gpa = 0.001",
+            "scene.toml:15: length_mm must be long enough",
         ),
         (
             "[model]\nprecision = \"f16\"",

@@ -501,6 +501,7 @@ proptest! {
                     prop_assert!(impact.normal_speed > 0.0);
                     impact.state.time
                 }
+                Happening::Released { state, .. } => state.time,
                 Happening::ContactStart { time, .. }
                 | Happening::RollingStart(time)
                 | Happening::SlidingStart(time)

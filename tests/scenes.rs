@@ -6,7 +6,7 @@ use std::path::Path;
 use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
-use touchdown_sim::scene::{BUILT_IN, Precision, Scene};
+use touchdown_sim::scene::{BUILT_IN, Precision, Scene, explain};
 use touchdown_tests::binary::touchdown;
 
 const MINIMAL: &str = "\
@@ -72,6 +72,10 @@ fn the_edges_of_every_range_are_valid() {
         "[model]\nstep_us = 1",
         "[model]\nstep_us = 1000",
         "[model]\nprecision = \"f32\"\nrung = \"rigid\"",
+        "[model]\nrung = \"moreau\"\nstep_us = 1000",
+        "[model]\nrung = \"hertz\"\nscheme = \"verlet\"\nstep_us = 128",
+        "[model]\nrung = \"hertz\"\n[materials]\ncontact = \"line\"\nlength_mm = 20",
+        "[materials]\nrotor_modulus_gpa = 70\nrotor_poisson = 0\nretainer_poisson = 0.5",
         "[sensors]\nbits = 16\nnoise_um = 0\nplanes = 1",
         "[start]\nx_mm = 0.18\ny_mm = -0.24",
         "[start]\nangle_deg = 400",
@@ -254,6 +258,63 @@ fn a_gap_beyond_the_sensors_is_a_warning() {
         .stderr(contains(
             "warning: m.toml: clearance_mm is 1.5, beyond the sensors' range",
         ));
+}
+
+#[test]
+fn a_step_of_a_contact_is_a_whole_part_of_a_sample() {
+    let hertz = "[model]\nrung = \"hertz\"\n";
+    let scene = Scene::parse("h", &format!("{MINIMAL}{hertz}")).unwrap();
+    // T_c/25 is 10.32 us, a sample 50 us.
+    assert!((scene.model.step - 1e-5).abs() < 1e-15);
+    assert!(scene.warnings().is_empty());
+    let coarse = Scene::parse("h", &format!("{MINIMAL}{hertz}step_us = 11\n")).unwrap();
+    let warnings = coarse.warnings();
+    assert!(
+        warnings[0].contains("step_us is 11, above T_c/25 = 10.3207 us"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn impacts_that_take_time_say_how_hard_and_how_long() {
+    let folder = TempDir::new().unwrap();
+    let scene = format!("{MINIMAL}[model]\nrung = \"hertz\"\n");
+    fs::write(folder.path().join("h.toml"), scene).unwrap();
+    let json = drop_json(folder.path(), "h.toml");
+    assert_eq!(json["model"]["rung"], "hertz");
+    let impact = &json["impacts"][0];
+    let number = |key: &str| impact[key].as_f64().unwrap();
+    let momentum = 3.42 * number("normal_speed_m_s");
+    let product = number("peak_force_n") * number("contact_time_s") / momentum;
+    assert!((3.3..3.6).contains(&product), "{product}");
+    // Gravity's share of the impulse is g T_c/v = 0.034.
+    let impulse = number("normal_impulse_n_s") / momentum;
+    assert!((1.8..1.84).contains(&impulse), "{impulse}");
+    let moreau = format!("{MINIMAL}[model]\nrung = \"moreau\"\n");
+    fs::write(folder.path().join("m.toml"), moreau).unwrap();
+    let json = drop_json(folder.path(), "m.toml");
+    assert_eq!(json["model"]["rung"], "moreau");
+    assert!(json["impacts"][0].get("peak_force_n").is_none());
+}
+
+#[test]
+fn an_explanation_says_what_the_rung_models() {
+    let explained = |rung: &str| {
+        let scene = format!("{MINIMAL}[model]\nrung = \"{rung}\"\n");
+        explain(&Scene::parse("s", &scene).unwrap())
+    };
+    let hertz = explained("hertz");
+    for number in [
+        "2.145037e11 N/m^1.5",
+        "15620.0 rad/s",
+        "258.0176 us",
+        "128.0407 us",
+    ] {
+        assert!(hertz.contains(number), "{number} in\n{hertz}");
+    }
+    assert!(!hertz.contains("contact force and its duration"));
+    assert!(explained("moreau").contains("middle of a step"));
+    assert!(explained("rigid").contains("contact force and its duration"));
 }
 
 #[test]

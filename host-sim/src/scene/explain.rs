@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use super::{Scene, Start};
+use super::{Contact, Rung, Scene, Start};
+use crate::model_run::compliance;
 use crate::sensors::SensorsConfig;
 
 /// The explanation, for people.
@@ -13,7 +14,10 @@ pub fn explain(scene: &Scene) -> String {
         text += &format!("source: {source}\n");
     }
     section(&mut text, "Model", &model(scene));
-    section(&mut text, "Left out", &left_out());
+    if scene.model.rung == Rung::Hertz {
+        section(&mut text, "Contact", &contact(scene));
+    }
+    section(&mut text, "Left out", &left_out(scene.model.rung));
     section(&mut text, "Scales", &scales(scene));
     section(&mut text, "Speeds and times", &speeds(scene));
     section(&mut text, "Sensors", &sensors(&scene.sensors, scene));
@@ -31,29 +35,39 @@ fn section(text: &mut String, title: &str, rows: &[Row]) {
 
 fn model(scene: &Scene) -> Vec<Row> {
     let precision = scene.model.precision.name();
+    let step = scene.model.step * 1e6;
+    let (rung, wall, step) = match scene.model.rung {
+        Rung::Rigid => (
+            "rigid: impacts take no time",
+            "slide, roll and lift-off on a fixed ring",
+            format!("{step:.4} us, output only: impacts lie between steps"),
+        ),
+        Rung::Moreau => (
+            "moreau: impacts take no time, and lie in the middle of a step",
+            "slide, roll and lift-off on a fixed ring",
+            format!("{step:.4} us; times are off by about as much an impact"),
+        ),
+        Rung::Hertz => (
+            "hertz: impacts have a force and take time",
+            "slide, roll and lift-off on a fixed, soft ring",
+            format!("{step:.4} us; the limits stand below"),
+        ),
+    };
     let start = match scene.start {
         Start::Free { .. } => "released in the gap, after 0.2 s of levitation",
         Start::Wall { .. } => "on the wall; the detector starts cold",
     };
     vec![
-        ("rung", "rigid: impacts take no time".to_owned()),
+        ("rung", rung.to_owned()),
+        ("scheme", scene.model.scheme.name().to_owned()),
         ("degrees of freedom", "3: x, y, spin".to_owned()),
         (
             "impact",
             "restitution; Coulomb friction up to sticking".to_owned(),
         ),
-        (
-            "contact",
-            "slide, roll and lift-off on a fixed ring".to_owned(),
-        ),
+        ("contact", wall.to_owned()),
         ("number format", precision.to_owned()),
-        (
-            "step",
-            format!(
-                "{:.4} us, output only: impacts lie between steps",
-                scene.model.step * 1e6
-            ),
-        ),
+        ("step", step),
         ("start", start.to_owned()),
         (
             "truth",
@@ -62,14 +76,54 @@ fn model(scene: &Scene) -> Vec<Row> {
     ]
 }
 
-fn left_out() -> Vec<Row> {
+fn contact(scene: &Scene) -> Vec<Row> {
+    let exponent = match scene.materials.contact {
+        Contact::Point => "1.5",
+        Contact::Line { .. } => "1",
+    };
+    let Ok(compliance) = compliance(scene) else {
+        return Vec::new();
+    };
+    let micros = |seconds: f64| format!("{:.4} us", seconds * 1e6);
+    vec![
+        ("shape", scene.materials.contact.name().to_owned()),
+        (
+            "K, force is K d^n",
+            format!("{:.6e} N/m^{exponent}", compliance.stiffness),
+        ),
+        (
+            "fastest impact: force, depth",
+            format!(
+                "{:.1} N, {:.4} um",
+                compliance.peak_force,
+                compliance.deepest * 1e6
+            ),
+        ),
+        ("omega_c, there", format!("{:.1} rad/s", compliance.rate)),
+        ("T_c, its duration", micros(compliance.contact_time)),
+        (
+            "steps: accurate, longest",
+            format!(
+                "{}, {}",
+                micros(compliance.accurate_step()),
+                micros(compliance.longest_step())
+            ),
+        ),
+    ]
+}
+
+fn left_out(rung: Rung) -> Vec<Row> {
     let parts = [
         ("contact force and its duration", "rung hertz"),
         ("retainer's mass, spring, inner ring", "rung support"),
         ("tilt, gyroscopic effect, unbalance", "rung two-plane"),
         ("shaft bending, heat, wear", "no rung"),
     ];
-    parts.map(|(part, rung)| (part, rung.to_owned())).to_vec()
+    let skipped = usize::from(rung == Rung::Hertz);
+    let parts = parts.iter().skip(skipped);
+    parts
+        .map(|(part, rung)| (*part, (*rung).to_owned()))
+        .collect()
 }
 
 fn scales(scene: &Scene) -> Vec<Row> {

@@ -14,6 +14,9 @@ use crate::real::Real;
 /// bounce is then lost in the static compression of any machine with gravity.
 pub(super) const LEAST_RESTITUTION: f64 = 0.02;
 
+/// Constants below this are found on the series, whose terms then fall below f64's last digit.
+const SMALL: f64 = 0.25;
+const TERMS: i32 = 28;
 /// Halvings: one for each binary digit and more.
 const ITERATIONS: usize = 80;
 
@@ -24,15 +27,28 @@ pub(super) fn damping<R: Real>(restitution: R) -> R {
     let (mut low, mut high) = (R::ZERO, R::ONE / e);
     for _ in 0..ITERATIONS {
         let a = R::HALF * (low + high);
-        let left = R::ONE - e * a;
-        let beyond = left <= R::ZERO || ((R::ONE + a) / left).ln() > (R::ONE + e) * a;
-        if beyond {
+        if is_beyond(a, e) {
             high = a;
         } else {
             low = a;
         }
     }
     high
+}
+
+/// Whether `a` lies beyond the root.
+fn is_beyond<R: Real>(a: R, e: R) -> bool {
+    if a < R::lit(SMALL) {
+        // The logarithm's series without the terms that cancel, over a^2.
+        let (mut sum, mut power, mut sign, mut of_a) = (R::ZERO, e * e, -R::ONE, R::ONE);
+        for k in 2..=TERMS {
+            sum += (power + sign) * of_a / R::from_i32(k);
+            (power, sign, of_a) = (power * e, -sign, of_a * a);
+        }
+        return sum > R::ZERO;
+    }
+    let left = R::ONE - e * a;
+    left <= R::ZERO || ((R::ONE + a) / left).ln() > (R::ONE + e) * a
 }
 
 #[cfg(test)]
@@ -51,7 +67,7 @@ mod tests {
             );
             assert!(a > 0.0 && a <= 1.0 / e);
             assert!(
-                (damping(e as f32) - a as f32).abs() <= 0.02 * a as f32,
+                (damping(e as f32) - a as f32).abs() <= 1e-4 * a as f32,
                 "{e}"
             );
         }

@@ -148,7 +148,7 @@ impl<R: Real> Shape<R> for Line<R> {
         let mut stiffness = plane;
         for _ in 0..ITERATIONS {
             let logarithm = (largest / peak(stiffness)).ln();
-            if !(logarithm > R::TWO) {
+            if logarithm <= R::TWO || !logarithm.is_finite() {
                 let rule = "long enough for the force of the fastest impact in this clearance";
                 return Err(ConfigError::OutOfRange("length", rule));
             }
@@ -174,7 +174,7 @@ fn root<R: Real>(value: R, degree: i32) -> R {
     for _ in 0..ITERATIONS {
         let power = (2..degree).fold(root, |product, _| product * root);
         let next = root - (root - value / power) / order;
-        if !(next > R::ZERO) || next == root {
+        if next <= R::ZERO || next == root {
             break;
         }
         root = next;
