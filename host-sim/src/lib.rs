@@ -8,6 +8,7 @@ pub mod failure;
 pub mod history;
 pub mod input_error;
 pub mod json;
+pub mod limits;
 pub mod matching;
 pub mod model_run;
 pub mod monitor_run;

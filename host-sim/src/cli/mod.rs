@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod limits;
 mod subject;
 
 pub use args::Cli;
@@ -20,8 +21,17 @@ use crate::{drop, replay, report, timeline};
 /// Where the report goes when nothing is asked for.
 const DEFAULT_REPORT: &str = "touchdown-report.html";
 
+/// What came of a command that could do what it was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is done, whatever the rotor did.
+    Done,
+    /// A check that the command exists for does not hold.
+    DoesNotHold,
+}
+
 /// Does what the command line asks.
-pub fn run(cli: Cli) -> Result<(), Failure> {
+pub fn run(cli: Cli) -> Result<Verdict, Failure> {
     match cli.command {
         None => drop_scene(&DropArgs {
             scene: BUILT_IN[0].name.to_owned(),
@@ -30,17 +40,18 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         }),
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
                 SceneCommand::List => say(&[], &list()?),
             }
-            Ok(())
+            Ok(Verdict::Done)
         }
     }
 }
 
-fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
+fn drop_scene(args: &DropArgs) -> Result<Verdict, Failure> {
     let names = [&args.json, &args.report, &args.stream];
     one_standard_output(&names)?;
     let scene = load(&args.scene)?;
@@ -66,10 +77,10 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     }
     let text = timeline::drop(&scene, &outcome, Paint::for_stdout());
     say(&names, &(text + &files));
-    Ok(())
+    Ok(Verdict::Done)
 }
 
-fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
+fn replay_stream(args: &ReplayArgs) -> Result<Verdict, Failure> {
     let names = [&args.json, &args.report];
     one_standard_output(&names)?;
     let scene = load(&args.scene)?;
@@ -88,7 +99,7 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
         out.commit()?;
     }
     say(&names, &timeline::replay(&args.stream, &detection));
-    Ok(())
+    Ok(Verdict::Done)
 }
 
 fn load(name: &str) -> Result<Scene, Failure> {
