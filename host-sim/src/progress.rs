@@ -13,8 +13,11 @@ const LOOK: u64 = 16_384;
 /// Shows how far a run is; nothing where standard error is no terminal.
 pub struct Progress {
     what: &'static str,
-    /// Samples in all; 0 if not known.
+    /// Samples or jobs in all; 0 if not known.
     total: u64,
+    done: u64,
+    /// Of these between two looks at the clock.
+    look: u64,
     start: Instant,
     bar: Option<ProgressBar>,
     terminal: bool,
@@ -26,15 +29,30 @@ impl Progress {
         Self {
             what,
             total,
+            done: 0,
+            look: LOOK,
             start: Instant::now(),
             bar: None,
             terminal: std::io::stderr().is_terminal(),
         }
     }
 
-    /// `done` samples are through.
+    /// Of jobs that each take long enough for a look at the clock.
+    pub fn of_jobs(what: &'static str, total: u64) -> Self {
+        let mut progress = Self::new(what, total);
+        progress.look = 1;
+        progress
+    }
+
+    /// One more is through.
+    pub fn advance(&mut self) {
+        self.at(self.done + 1);
+    }
+
+    /// `done` are through.
     pub fn at(&mut self, done: u64) {
-        if !self.terminal || !done.is_multiple_of(LOOK) {
+        self.done = done;
+        if !self.terminal || !done.is_multiple_of(self.look) {
             return;
         }
         if self.bar.is_none() && self.start.elapsed() > QUIET {

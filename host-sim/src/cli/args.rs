@@ -20,6 +20,7 @@ Examples:
   touchdown trade my.toml               what each way of computing costs, and how wrong it is
   touchdown paper                       the source paper's numbers: printed, right, ours
   touchdown scene explain my.toml       what is modelled and what is left out
+  touchdown limits                      how the model holds at its extremes
 
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
 
@@ -58,6 +59,21 @@ pub(super) enum Command {
     /// Check every number of the source paper: as printed, as right, as ours
     #[command(after_help = PAPER)]
     Paper(PaperArgs),
+    /// Run the model at its extremes: what was measured, the limit, and whether it holds
+    ///
+    /// Steps of 1 us to 1 ms; restitution, friction, gap, spin and gravity at their ends; starts on,
+    /// along and into the wall; the cases between two motions; a whole bounce series or an endless
+    /// growth of whirl in one step; 10^9 ticks; NaN, infinity and the smallest numbers. Each in f64 and
+    /// in f32.
+    ///
+    /// Every measure is held against the independent reference, a closed form or a law of physics;
+    /// "used" is how much of the limit it takes. rho0 is the gap, T = sqrt(rho0/g), V = sqrt(g rho0);
+    /// the target of an impact is 1e-14 + 20 A 2.2e-16 (f64) and 5e-6 + 50 A 6e-8 (f32) in these units,
+    /// A being the growth of a change at the start. Where the rotor spins, the limit of the energy
+    /// contains the last digit of its spin.
+    ///
+    /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
+    Limits(LimitsArgs),
     /// Look at scenes
     Scene {
         #[command(subcommand)]
@@ -129,6 +145,13 @@ pub(super) struct PaperArgs {
     #[arg(long, value_name = "N", default_value_t = DROPS,
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub drops: u32,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct LimitsArgs {
+    /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,21 +1,24 @@
 //! The command line.
 
 mod args;
+mod limits;
+mod paper;
 mod subject;
+mod trade;
 
 pub use args::Cli;
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use args::{Command, DropArgs, PaperArgs, ReplayArgs, SceneCommand, TradeArgs};
+use args::{Command, DropArgs, ReplayArgs, SceneCommand};
 
 use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
 use crate::scene::{BUILT_IN, Scene, explain};
-use crate::{drop, fidelity, paper, replay, report, timeline, trade};
+use crate::{drop, fidelity, replay, report, timeline};
 
 /// Where the report goes when nothing is asked for.
 const DEFAULT_REPORT: &str = "touchdown-report.html";
@@ -30,8 +33,9 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         }),
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
-        Some(Command::Trade(args)) => trade_table(&args),
-        Some(Command::Paper(args)) => check_paper(&args),
+        Some(Command::Trade(args)) => trade::table(&args),
+        Some(Command::Paper(args)) => paper::check(&args),
+        Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
@@ -100,62 +104,6 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     }
     say(&names, &timeline::replay(&args.stream, &detection));
     Ok(())
-}
-
-fn trade_table(args: &TradeArgs) -> Result<(), Failure> {
-    let names = [
-        &args.json,
-        &Some(args.report.clone()),
-        &Some(args.svg.clone()),
-    ];
-    one_standard_output(&names)?;
-    let scene = load(&args.scene)?;
-    let [json_out, page_out, svg_out] = names.map(open);
-    let (mut json_out, mut page_out, mut svg_out) = (json_out?, page_out?, svg_out?);
-    let trade = trade::run(&scene);
-    if let Some(out) = &mut json_out {
-        let text = trade::json(&trade.rows).map_err(io::Error::from);
-        out.put(&text.map_err(Failure::output(out.name()))?)?;
-    }
-    if let Some(out) = &mut page_out {
-        out.put(&trade::page(&trade))?;
-    }
-    if let Some(out) = &mut svg_out {
-        out.put(&trade::svg(&trade))?;
-    }
-    let files = commit([json_out, page_out, svg_out])?;
-    say(
-        &names,
-        &(trade::table(&trade, Paint::for_stdout()) + &files),
-    );
-    Ok(())
-}
-
-fn check_paper(args: &PaperArgs) -> Result<(), Failure> {
-    let names = [&args.json, &Some(args.report.clone())];
-    one_standard_output(&names)?;
-    let [json_out, page_out] = names.map(open);
-    let (mut json_out, mut page_out) = (json_out?, page_out?);
-    let paper = paper::run(args.drops)?;
-    if let Some(out) = &mut json_out {
-        let text = paper::json(&paper).map_err(io::Error::from);
-        out.put(&text.map_err(Failure::output(out.name()))?)?;
-    }
-    if let Some(out) = &mut page_out {
-        out.put(&paper::page(&paper))?;
-    }
-    let files = commit([json_out, page_out, None])?;
-    say(
-        &names,
-        &(paper::table(&paper, Paint::for_stdout()) + &files),
-    );
-    if paper.agrees() {
-        Ok(())
-    } else {
-        Err(Failure::Check(
-            "numbers of ours are not right: those marked with !".to_owned(),
-        ))
-    }
 }
 
 /// Gives the files their names; what was written, for people.

@@ -1,0 +1,47 @@
+//! `touchdown limits`.
+
+use std::io;
+
+use super::args::LimitsArgs;
+use super::{commit, open, say};
+use crate::failure::Failure;
+use crate::limits::{Row, all_hold, json, run, table};
+use crate::paint::Paint;
+
+/// Runs the extremes, says and writes what came of them; fails where a limit does not hold.
+pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
+    let mut out = open(&args.json)?;
+    let rows = run()?;
+    if let Some(out) = &mut out {
+        let json = json(&rows).map_err(io::Error::from);
+        out.put(&json.map_err(Failure::output(out.name()))?)?;
+    }
+    let files = commit([out, None, None])?;
+    say(&[&args.json], &(table(&rows, Paint::for_stdout()) + &files));
+    verdict(&rows)
+}
+
+fn verdict(rows: &[Row]) -> Result<(), Failure> {
+    if all_hold(rows) {
+        return Ok(());
+    }
+    let broken = rows.iter().filter(|row| !row.holds).count();
+    Err(Failure::Check(format!(
+        "{broken} of {} limits do not hold",
+        rows.len()
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Precision;
+
+    #[test]
+    fn a_broken_limit_is_a_failed_check() {
+        let row = |measured| Row::new("made up", Precision::F64, measured, 1.0, "s");
+        assert!(verdict(&[row(1.0)]).is_ok());
+        let failure = verdict(&[row(1.0), row(1.5)]).expect_err("1.5 is above 1");
+        assert_eq!(failure.status(), 1);
+    }
+}

@@ -1,0 +1,79 @@
+//! `touchdown limits`: the model at its extremes, each with what was measured, the limit and the verdict.
+//!
+//! What is measured is held against the independent reference, against closed forms, or against laws
+//! that hold whatever the scene; never against the model itself.
+
+mod clock;
+mod closed_form;
+mod extreme;
+mod refusal;
+mod row;
+mod scenes;
+mod table;
+mod truth;
+mod watch;
+
+use serde::Serialize;
+use touchdown_core::error::ConfigError;
+
+pub use row::{Row, all_hold};
+pub use table::table;
+
+use crate::failure::Failure;
+use crate::model_run::simulate;
+use crate::progress::Progress;
+use crate::scene::Precision;
+use closed_form::ClosedForm;
+use truth::Truth;
+
+/// f64 first: what breaks there is no matter of rounding.
+const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
+
+/// Runs every extreme in both precisions.
+pub fn run() -> Result<Vec<Row>, Failure> {
+    let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
+    let extremes = extreme::extremes()?;
+    let closed_forms = closed_form::closed_forms()?;
+    let jobs = (extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
+    let mut progress = Progress::of_jobs("limits", jobs);
+    let mut rows = Vec::new();
+    for extreme in &extremes {
+        let truth = Truth::of(&extreme.scene);
+        for precision in PRECISIONS {
+            rows.extend(scenes::rows(extreme, &truth, precision).map_err(refused)?);
+        }
+        progress.advance();
+    }
+    for known in &closed_forms {
+        for (precision, limit) in PRECISIONS.into_iter().zip(known.limits) {
+            rows.push(closed(known, precision, limit).map_err(refused)?);
+        }
+        progress.advance();
+    }
+    rows.extend(clock::rows(&mut progress).map_err(refused)?);
+    rows.extend(refusal::rows().map_err(refused)?);
+    Ok(rows)
+}
+
+fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, ConfigError> {
+    let mut worst = 0.0_f64;
+    for &step in known.steps {
+        let mut scene = known.scene.clone();
+        scene.model.precision = precision;
+        scene.model.step = step;
+        let error = (known.error)(&simulate(&scene)?);
+        // NaN is the worst there is.
+        worst = if error <= worst { worst } else { error };
+    }
+    Ok(Row::new(known.name, precision, worst, limit, known.unit))
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    rows: &'a [Row],
+}
+
+/// `limits --json`.
+pub fn json(rows: &[Row]) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(&Json { rows }).map(|json| json + "\n")
+}

@@ -1,0 +1,102 @@
+//! Each extreme scene against the reference, and watched.
+
+use touchdown_core::error::ConfigError;
+
+use crate::limits::extreme::Extreme;
+use crate::limits::row::Row;
+use crate::limits::truth::Truth;
+use crate::limits::watch::{Watch, Watched};
+use crate::model_run::{simulate, with_model};
+use crate::scene::Precision;
+
+/// Bound on the changes of motion in a step: of 768 impacts and stretches each, and the contact or the
+/// flight that follows (`docs/model.md`).
+pub const MOST_CHANGES: f64 = 768.0;
+/// Changes in a step from which on a bounce series was cut short there, and what its end may then be
+/// off, T: the rest was summed from a speed that is not tiny.
+const CUT: u32 = 512;
+const CUT_ERROR: f64 = 1e-7;
+/// Most beyond the wall, in units of the last digit.
+const OUTSIDE: f64 = 16.0;
+
+/// All measures of one extreme in one precision.
+pub fn rows(
+    extreme: &Extreme,
+    truth: &Truth,
+    precision: Precision,
+) -> Result<Vec<Row>, ConfigError> {
+    let mut watched = Watched {
+        outside: -1.0,
+        ..Watched::default()
+    };
+    let mut impacts = (0.0_f64, 0);
+    let mut contact: Option<(f64, f64)> = None;
+    for &step in extreme.steps {
+        let scene = extreme.at(precision, step);
+        let seen = with_model(&scene, Watch(&scene))?;
+        watched = watched.worst(seen);
+        let history = simulate(&scene)?;
+        let (error, compared) = truth.impact_error(&history, precision);
+        impacts = (impacts.0.max(error), compared);
+        if let Some((error, limit)) = truth.contact_error(&history, precision) {
+            let limit = if seen.changes > CUT {
+                limit.max(CUT_ERROR)
+            } else {
+                limit
+            };
+            if contact.is_none_or(|(worst, of)| error / limit > worst / of) {
+                contact = Some((error, limit));
+            }
+        }
+    }
+    let row = |measure: &str, measured, limit, unit| {
+        Row::new(
+            format!("{}: {measure}", extreme.name),
+            precision,
+            measured,
+            limit,
+            unit,
+        )
+    };
+    let (epsilon, gain) = match precision {
+        Precision::F64 => (f64::EPSILON, 1e-12),
+        Precision::F32 => (f32::EPSILON.into(), 1e-4),
+    };
+    let mut rows = Vec::new();
+    if impacts.1 > 0 {
+        rows.push(row(
+            "error of the first impacts",
+            impacts.0,
+            1.0,
+            "of target",
+        ));
+    }
+    if let Some((error, limit)) = contact {
+        rows.push(row("time of permanent contact", error, limit, "T"));
+    }
+    rows.push(row(
+        "energy gained",
+        watched.energy_gain,
+        gain + watched.spin_rounding + watched.path_rounding,
+        "m g rho0",
+    ));
+    rows.push(row(
+        "farthest beyond the wall",
+        watched.outside.max(0.0),
+        OUTSIDE * epsilon,
+        "rho0",
+    ));
+    rows.push(row(
+        "steps with NaN or infinity",
+        f64::from(watched.not_finite),
+        0.0,
+        "steps",
+    ));
+    rows.push(row(
+        "most changes in a step",
+        f64::from(watched.changes),
+        MOST_CHANGES,
+        "changes",
+    ));
+    Ok(rows)
+}
