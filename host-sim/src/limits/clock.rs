@@ -67,7 +67,7 @@ fn measure<R: Number>(
     let (mut count, mut last) = (0_u64, Instant::default());
     let mut apart = 0.0_f64;
     for tick in (STRIDE..=TICKS).step_by(STRIDE as usize) {
-        model.advance(&mut state, Instant::at_tick(tick), |h| {
+        model.run(&mut state, Instant::at_tick(tick), |h| {
             if let Some(&other) = impacts.get(count as usize) {
                 apart = apart.max((ticks(h.at) - ticks(other)).abs());
             }

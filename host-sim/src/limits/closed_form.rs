@@ -3,9 +3,9 @@
 use crate::history::History;
 use crate::input_error::InputError;
 use crate::limits::extreme::STEPS;
-use crate::limits::truth::Units;
 use crate::reference::{Start, energy};
 use crate::scene::Scene;
+use crate::truth::Units;
 
 /// A scene and what is known of it.
 pub struct ClosedForm {

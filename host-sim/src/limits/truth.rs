@@ -3,9 +3,10 @@
 //! A path multiplies the rounding of what it starts from. By how much is found with the reference
 //! itself: each number of the scene is changed by a little, one after the other.
 
-use crate::history::{History, Impact, Recorder};
-use crate::reference::{Reference, Start};
+use crate::history::{History, Impact};
+use crate::reference::Start;
 use crate::scene::{Precision, Scene};
+use crate::truth::{Units, simulate};
 
 /// Impacts of the first series that are compared.
 const COMPARED: usize = 40;
@@ -15,35 +16,6 @@ const WEAKEST: f64 = 1e-5;
 const CHANGE: f64 = 1e-9;
 /// Largest part of rho0, T and V that rounding may have grown to where impacts are still compared.
 const LOST: f64 = 1e-2;
-
-/// Units of a scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Units {
-    /// rho0, m.
-    pub length: f64,
-    /// T, s.
-    pub time: f64,
-    /// V, m/s; without gravity the start's speed.
-    pub speed: f64,
-}
-
-impl Units {
-    /// Of `scene`.
-    pub fn of(scene: &Scene) -> Self {
-        let length = scene.retainer.clearance;
-        let weight = (scene.run.gravity * length).sqrt();
-        let speed = match scene.start {
-            _ if weight > 0.0 => weight,
-            Start::Free { velocity, .. } => f64::hypot(velocity[0], velocity[1]),
-            Start::Wall { tangential, .. } => tangential.abs(),
-        };
-        Self {
-            length,
-            time: length / speed,
-            speed,
-        }
-    }
-}
 
 /// The truth of a scene.
 pub struct Truth {
@@ -60,7 +32,7 @@ pub struct Truth {
 impl Truth {
     /// Follows `scene`.
     pub fn of(scene: &Scene) -> Self {
-        let history = follow(scene);
+        let history = simulate(scene);
         let units = Units::of(scene);
         let mut truth = Self {
             growth: Vec::new(),
@@ -88,7 +60,7 @@ impl Truth {
             });
         truth.growth = vec![1.0; series.count()];
         for changed in changed(scene) {
-            let other = follow(&changed);
+            let other = simulate(&changed);
             for (k, growth) in truth.growth.iter_mut().enumerate() {
                 let error = match other.impacts.get(k) {
                     Some(impact) => {
@@ -143,14 +115,6 @@ impl Truth {
         });
         Some((error, target + 20.0 * self.contact_growth * epsilon))
     }
-}
-
-/// The reference's history of `scene`.
-fn follow(scene: &Scene) -> History {
-    let mut recorder = Recorder::new(0.0);
-    let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
-    let end = reference.advance(scene.run.duration, &mut |h| recorder.take(h));
-    recorder.finish(end, reference.still_speed())
 }
 
 /// The scene with each of its numbers changed a little, one at a time.

@@ -1,8 +1,8 @@
 //! How far a model's drop is from the reference's.
 
 use crate::history::{History, Impact, RotorState};
-use crate::model_run::start_speed;
 use crate::scene::Scene;
+use crate::truth::Units;
 
 /// Impacts at which the error is told.
 pub(super) const IMPACTS: [usize; 3] = [1, 3, 10];
@@ -25,35 +25,12 @@ pub(super) struct Accuracy {
     pub energy: f64,
 }
 
-/// Units of a scene.
-struct Units {
-    length: f64,
-    time: f64,
-    speed: f64,
-}
-
-impl Units {
-    fn of(scene: &Scene) -> Self {
-        let length = scene.retainer.clearance;
-        let speed = if scene.run.gravity > 0.0 {
-            (scene.run.gravity * length).sqrt()
-        } else {
-            start_speed(scene)
-        };
-        Self {
-            length,
-            time: length / speed,
-            speed,
-        }
-    }
-
-    fn apart(&self, a: &Impact, b: &Impact) -> f64 {
-        let (a, b) = (&a.state, &b.state);
-        let time = (a.time - b.time).abs() / self.time;
-        let place = distance(a.position, b.position) / self.length;
-        time.max(place)
-            .max(distance(a.velocity, b.velocity) / self.speed)
-    }
+fn apart(a: &Impact, b: &Impact, units: Units) -> f64 {
+    let (a, b) = (&a.state, &b.state);
+    let time = (a.time - b.time).abs() / units.time;
+    let place = distance(a.position, b.position) / units.length;
+    time.max(place)
+        .max(distance(a.velocity, b.velocity) / units.speed)
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -67,7 +44,7 @@ impl Accuracy {
         Self {
             impacts: IMPACTS.map(|k| {
                 let pair = history.impacts.get(k - 1).zip(truth.impacts.get(k - 1));
-                pair.map(|(a, b)| units.apart(a, b))
+                pair.map(|(a, b)| apart(a, b, units))
             }),
             expected: IMPACTS.map(|k| truth.impacts.len() >= k),
             contact: contact(history)
