@@ -85,7 +85,7 @@ fn model_table(counts: &str) -> String {
         if step != STEP {
             continue;
         }
-        let mean = |class: &str| classes[class].sum / classes[class].steps;
+        let mean = |class: &str| classes[class].sum / classes[class].steps.max(1.0);
         let (flight, contact) = (mean("flight"), mean("contact"));
         for (class, step) in [
             ("flight", 0.0),
@@ -93,7 +93,13 @@ fn model_table(counts: &str) -> String {
             ("impact", flight),
             ("stretch", contact),
         ] {
-            let (mean, worst) = (mean(class) - step, classes[class].worst - step);
+            // A time-stepping rung solves nothing: its steps are all alike.
+            let beyond = if classes[class].steps > 0.0 {
+                step
+            } else {
+                0.0
+            };
+            let (mean, worst) = (mean(class) - beyond, classes[class].worst - beyond);
             writeln!(table, "{model},{class},{mean:.1},{worst:.0}").expect("memory");
         }
     }
@@ -161,7 +167,7 @@ fn tables_are_current_and_counts_repeat() {
 /// All models that are counted.
 fn models(model: &Model) -> Vec<Model> {
     let mut all = Vec::new();
-    for rung in [Rung::Rigid] {
+    for rung in Rung::ALL {
         for &scheme in rung.schemes() {
             for precision in Precision::ALL {
                 all.extend(precision.maths().iter().map(|&math| Model {
@@ -175,6 +181,14 @@ fn models(model: &Model) -> Vec<Model> {
         }
     }
     all
+}
+
+/// Steps that the image runs, us.
+fn counted_steps(rung: Rung) -> [u32; 2] {
+    match rung {
+        Rung::Rigid | Rung::Moreau => [10, 1_000],
+        Rung::Hertz => [10, 100],
+    }
 }
 
 #[test]
@@ -192,7 +206,7 @@ fn whole_drops_take_what_their_parts_add_up_to() {
             model.math.name(),
         ];
         let each = Instructions::find(&table, &model).expect("a counted model");
-        for step in [10, 1_000] {
+        for step in counted_steps(model.rung) {
             let classes = drops[&(names.join(","), step)].values();
             let sum = |part: fn(&Class) -> f64| classes.clone().map(part).sum::<f64>();
             scene.model.step = 1e-6 * f64::from(step);

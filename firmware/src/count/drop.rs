@@ -2,7 +2,10 @@
 
 use core::hint::black_box;
 
-use touchdown_core::model::{Precision, Rigid, RigidConfig, Solved, Start, Stepper, Touch};
+use touchdown_core::model::{
+    Euler, Hertz, HertzConfig, Materials, Moreau, Point, Precision, Rigid, RigidConfig, Scheme,
+    Solved, Start, Stepper, Touch, Verlet,
+};
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 
 use super::{Counter, Name, Table, Tally};
@@ -11,10 +14,15 @@ use super::{Counter, Name, Table, Tally};
 const DURATION: u32 = 300_000;
 /// Steps, us.
 const STEPS: [u32; 2] = [10, 1_000];
+/// Steps of rung `hertz`, which refuses longer ones, us.
+const SHORT_STEPS: [u32; 2] = [10, 100];
 /// 30 000 rpm, clockwise, rad/s.
 const SPIN: f64 = -1_000.0 * core::f64::consts::PI;
 /// Start, m.
 const POSITION: [f64; 2] = [20e-6, 0.0];
+
+/// Speed after a fall through the gap, m/s.
+const FASTEST: f64 = 0.0767;
 
 /// What a step did.
 #[derive(Clone, Copy)]
@@ -54,6 +62,18 @@ fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
         let scales = *rigid.scales();
         run.of_model::<R, _>(&rigid.rounded(), scales.length, scales.spin)
             .write(table, "rigid", "launch", &run);
+        let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&moreau.rounded(), scales.length, scales.spin)
+            .write(table, "moreau", "midpoint", &run);
+    }
+    for step in SHORT_STEPS {
+        let run = Run {
+            counter,
+            name,
+            step,
+        };
+        run.of_hertz::<R, Euler>(table, "euler");
+        run.of_hertz::<R, Verlet>(table, "verlet");
     }
 }
 
@@ -88,6 +108,20 @@ struct Counts {
 }
 
 impl Run<'_> {
+    /// Steel on steel.
+    fn of_hertz<R: Precision, S: Scheme>(&self, table: &mut Table, scheme: &str) {
+        let config = HertzConfig {
+            rigid: config(self.step),
+            materials: Materials::steel(),
+            shape: Point,
+            fastest: FASTEST,
+        };
+        let model = Hertz::<f64, Point, S>::try_new(&config).expect("a valid configuration");
+        let scales = *model.scales();
+        self.of_model::<R, _>(&model.rounded::<R, Point>(), scales.length, scales.spin)
+            .write(table, "hertz", scheme, self);
+    }
+
     fn of_model<R: Precision, M: Stepper<R>>(&self, model: &M, length: f64, spin: f64) -> Counts {
         let start = Start::Free {
             position: POSITION.map(|x| x / length),
