@@ -2,6 +2,7 @@
 
 mod builtin;
 mod check;
+mod contact;
 mod explain;
 mod file;
 mod flaw;
