@@ -166,7 +166,7 @@ fn energy<R: Precision>(drop: &Drop, k: &Kinematics<R>) -> f64 {
     0.5 * (u * u + v * v) + 0.5 * drop.inertia_ratio * spin * spin + height
 }
 
-fn in_step_of<R: Precision>(drop: &Drop) -> Moreau<R> {
+fn built<R: Precision>(drop: &Drop) -> Moreau<R> {
     Moreau::try_new(&config(drop)).expect("valid configuration")
 }
 
@@ -189,7 +189,7 @@ fn from_bottom(friction: f64, gravity: bool, spin: f64, step: f64, tangential: f
 
 /// Largest change of energy over `time` T.
 fn energy_swing(drop: &Drop, time: f64) -> f64 {
-    let model = in_step_of::<f64>(drop);
+    let model = built::<f64>(drop);
     let mut state = model
         .start(&start(drop), drop.spin, |_| {})
         .expect("valid start");
@@ -223,7 +223,7 @@ fn contact_keeps_energy_to_the_square_of_the_step() {
 fn whirl_without_gravity_grows_exactly() {
     for step in [1e-3, 0.01, 0.1] {
         let drop = from_bottom(0.1, false, -1000.0, step, 1.0);
-        let model = in_step_of::<f64>(&drop);
+        let model = built::<f64>(&drop);
         let mut state = model
             .start(&start(&drop), drop.spin, |_| {})
             .expect("valid start");
@@ -251,7 +251,7 @@ fn whirl_without_gravity_grows_exactly() {
 
 /// Energy may rise within a step by the square of its length, and never by more over a run.
 fn check<R: Precision>(drop: &Drop, steps: u32, rounding: f64) -> Result<(), TestCaseError> {
-    let model = in_step_of::<R>(drop);
+    let model = built::<R>(drop);
     let mut state = model
         .start(&start(drop), R::lit(drop.spin), |_| {})
         .expect("valid start");

@@ -1,26 +1,21 @@
 //! From the file's units and names to a valid scene.
 
 use touchdown_core::error::ConfigError;
-use touchdown_core::model::Materials as Elastic;
 use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
+use super::contact::{materials, step_in_contact};
 use super::file::{
-    MaterialsTable, ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable,
-    StartTable,
+    ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
 };
 use super::flaw::Flaw;
 use super::limits;
-use super::{
-    Contact, Materials, Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start,
-};
-use crate::model_run::compliance;
+use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start};
 use crate::sensors::SensorsConfig;
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
-const MILLI: f64 = 1e-3;
-const MICRO: f64 = 1e-6;
-const GIGA: f64 = 1e9;
+pub(super) const MILLI: f64 = 1e-3;
+pub(super) const MICRO: f64 = 1e-6;
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 const ON_THE_WALL: f64 = 1e-9;
 
@@ -53,7 +48,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     Ok(scene)
 }
 
-fn above_zero(table: &'static str, key: &'static str, value: f64) -> Result<f64, Flaw> {
+pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> Result<f64, Flaw> {
     if value > 0.0 {
         return Ok(value);
     }
@@ -75,7 +70,7 @@ fn zero_or_more(table: &'static str, key: &'static str, value: f64) -> Result<f6
     ))
 }
 
-fn between(
+pub(super) fn between(
     table: &'static str,
     key: &'static str,
     value: f64,
@@ -235,69 +230,8 @@ fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
     })
 }
 
-/// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
-/// that is accurate.
-fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
-    let compliance = compliance(scene).map_err(|error| translate(&error))?;
-    let step = scene.model.step;
-    if !given {
-        return Ok(step / (step / compliance.accurate_step()).ceil());
-    }
-    let longest = compliance.longest_step();
-    if step > longest {
-        let rule = format!(
-            "step_us must be no more than {:.4}, the limit of stability 2/omega_c of this contact, is {}",
-            longest / MICRO,
-            step / MICRO
-        );
-        return Err(Flaw::new("model", "step_us", rule));
-    }
-    Ok(step)
-}
-
-fn materials(table: &MaterialsTable) -> Result<Materials, Flaw> {
-    const TABLE: &str = "materials";
-    let modulus = |key, value| {
-        let value = above_zero(TABLE, key, value)?;
-        between(TABLE, key, value, limits::MODULUS_GPA).map(|value| GIGA * value)
-    };
-    let poisson = |key, value| between(TABLE, key, value, limits::POISSON);
-    let names = ["point", "line"];
-    let contact = match table.contact.as_deref() {
-        None => names[0],
-        Some(name) => named(TABLE, "contact", name, &names, |name| name)?,
-    };
-    let contact = match (contact, table.length_mm) {
-        ("line", Some(length)) => {
-            let length = above_zero(TABLE, "length_mm", length)?;
-            let length = between(TABLE, "length_mm", length, limits::LENGTH_MM)?;
-            Contact::Line {
-                length: MILLI * length,
-            }
-        }
-        ("line", None) => {
-            let rule = "contact = \"line\" needs length_mm";
-            return Err(Flaw::new(TABLE, "contact", rule));
-        }
-        (_, Some(_)) => {
-            let rule = "length_mm is that of contact = \"line\"";
-            return Err(Flaw::new(TABLE, "length_mm", rule));
-        }
-        (_, None) => Contact::Point,
-    };
-    Ok(Materials {
-        elastic: Elastic {
-            rotor_modulus: modulus("rotor_modulus_gpa", table.rotor_modulus_gpa)?,
-            rotor_poisson: poisson("rotor_poisson", table.rotor_poisson)?,
-            retainer_modulus: modulus("retainer_modulus_gpa", table.retainer_modulus_gpa)?,
-            retainer_poisson: poisson("retainer_poisson", table.retainer_poisson)?,
-        },
-        contact,
-    })
-}
-
 /// The one of `all` that has this name.
-fn named<T: Copy>(
+pub(super) fn named<T: Copy>(
     table: &'static str,
     key: &'static str,
     given: &str,
@@ -345,7 +279,7 @@ fn monitor(scene: &Scene) -> Result<(), Flaw> {
 }
 
 /// A rule in the words of the configuration, in those of the file.
-fn translate(error: &ConfigError) -> Flaw {
+pub(super) fn translate(error: &ConfigError) -> Flaw {
     let parameter = error.parameter();
     let (table, key) = match parameter {
         "clearance" => ("retainer", "clearance_mm"),

@@ -3,6 +3,7 @@
 mod auto;
 mod builtin;
 mod check;
+mod contact;
 mod explain;
 mod file;
 mod flaw;

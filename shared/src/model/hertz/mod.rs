@@ -3,7 +3,6 @@
 //! The wall pushes with K d^n (1 + a d'/V) at depth d, n = 3/2 for a point contact (Hertz) and 1 for a
 //! line contact; friction is Coulomb's, and what would stop the slip within the step limits it, so
 //! sticking is exact and needs no constant. Between contacts the path is the rigid rung's parabola.
-//! The wall moves neither elastically nor as a body otherwise: depth is all there is of it.
 
 mod config;
 mod damping;
