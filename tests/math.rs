@@ -1,7 +1,7 @@
 //! The functions of each kind of number against those of libm in f64: largest errors on dense grids, and what they
 //! make of the built-in scenes. The open cases: `model_cases.rs`.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{LN_10, PI, TAU};
 
 use touchdown_core::real::{Micro32, Poly32, Poly64, Real};
 use touchdown_sim::history::{History, Recorder};
@@ -133,4 +133,37 @@ fn regimes_of_the_built_in_scenes_are_those_of_the_reference() {
             }
         }
     }
+}
+
+fn edges<R: Real>() {
+    let nan = R::lit(f64::NAN);
+    assert_eq!(R::ZERO.ln(), -R::INFINITY);
+    assert_eq!(R::INFINITY.ln(), R::INFINITY);
+    assert_eq!(R::ONE.ln(), R::ZERO);
+    for none in [
+        (-R::ONE).ln(),
+        nan.ln(),
+        nan.sin_cos().0,
+        R::INFINITY.sin_cos().1,
+    ] {
+        assert!(none.to_f64().is_nan(), "{none:?}");
+    }
+    assert_eq!(R::ZERO.atan2(R::ZERO), R::ZERO);
+    // Angles that have no digits left of a turn are somewhere on the circle.
+    for power in 4..38 {
+        let (sin, cos) = R::lit(10.0_f64.powi(power)).sin_cos();
+        let radius = f64::hypot(sin.to_f64(), cos.to_f64());
+        assert!((radius - 1.0).abs() < 2e-7, "1e{power}: {radius}");
+    }
+}
+
+#[test]
+fn polynomials_are_sane_at_the_edges() {
+    edges::<Poly32>();
+    edges::<Poly64>();
+    // The smallest numbers.
+    for (small, ln) in [(1e-40, -40.0), (1e-45, -45.0)].map(|(x, power)| (x, power * LN_10)) {
+        assert!((Poly32::lit(small).ln().to_f64() - ln).abs() < 0.4);
+    }
+    assert!((Poly64::lit(1e-310).ln().to_f64() + 310.0 * LN_10).abs() < 1e-12 * 700.0);
 }

@@ -130,11 +130,15 @@ fn ln<R: Digits>(x: R) -> R {
         return -R::INFINITY;
     }
     if !(x > R::ZERO && x.is_finite()) {
-        return if x > R::ZERO { x } else { (x - x) / R::ZERO };
+        return if x > R::ZERO {
+            x
+        } else {
+            R::INFINITY * R::ZERO
+        };
     }
     let (mut mantissa, mut exponent) = x.parts();
     if mantissa > R::lit(SQRT_2) {
-        mantissa = mantissa * R::HALF;
+        mantissa *= R::HALF;
         exponent += 1;
     }
     let f = mantissa - R::ONE;
