@@ -75,8 +75,9 @@ pub struct Kinematics<R> {
 impl<R: Precision> Rigid<R> {
     /// The rotor now.
     pub fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
-        let elapsed = state.now.since(state.begun);
-        self.kinematics_after(state, self.step.time(elapsed.least(state.steps())))
+        let overdue = state.ends.is_reached_at(state.now);
+        let until = if overdue { state.ends } else { state.now };
+        self.kinematics_after(state, self.step.time(until.since(state.begun)))
     }
 
     pub(crate) fn kinematics_after(&self, state: &RigidState<R>, time: R) -> Kinematics<R> {

@@ -59,11 +59,6 @@ impl<R: Precision> RigidState<R> {
         matches!(&self.motion, Motion::Contact(contact) if contact.mode == Mode::Rolling)
     }
 
-    /// Length of the present motion, steps.
-    pub(crate) fn steps(&self) -> R {
-        self.ends.since(self.begun)
-    }
-
     pub(crate) fn on_wall(&self, sin: R, cos: R, tangential: R) -> WallState<R> {
         WallState {
             sin: Sum::new(sin),
