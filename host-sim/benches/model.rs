@@ -63,7 +63,7 @@ impl Use for Parts<'_> {
                 }
                 done += 1;
                 model.step(&mut state, |_| {});
-                black_box(model.kinematics(&state))
+                black_box(&model.kinematics(&state));
             });
         });
 
@@ -72,7 +72,7 @@ impl Use for Parts<'_> {
         group.bench_function(format!("contact step/{digits}"), |bencher| {
             bencher.iter(|| {
                 model.step(&mut state, |_| {});
-                black_box(model.kinematics(&state))
+                black_box(&model.kinematics(&state));
             });
         });
 

@@ -47,8 +47,10 @@ impl<R: Precision> Rigid<R> {
             state.now = Instant::at_tick(eventful);
             self.follow(state, &mut sink);
         }
-        state.now = until;
-        self.follow(state, &mut sink);
+        if state.now != until {
+            state.now = until;
+            self.follow(state, &mut sink);
+        }
     }
 
     pub(crate) fn follow(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {

@@ -25,8 +25,8 @@ pub trait Stepper<R: Precision> {
     /// The last part of a run: `fraction` of a step, below 1.
     fn part_step(&self, state: &mut Self::State, fraction: R, sink: impl FnMut(Happening<R>));
 
-    /// `steps` whole steps and `fraction` of one, below 1: the last part of a run that nobody looks at
-    /// on its way.
+    /// `steps` whole steps and `fraction` of one, below 1, that nobody looks at on their way: by steps,
+    /// unless the rung can do without. With a fraction, the end of the run.
     fn run(
         &self,
         state: &mut Self::State,
