@@ -129,12 +129,47 @@ fn the_choice_is_the_cheapest_of_the_table() {
     check("backward-whirl", "regime = true", same_regime);
 }
 
+/// Hertz' F0 and T_c of the first impact; at restitution 1 the pulse is theirs.
+#[test]
+fn a_force_needs_the_rung_that_has_one() {
+    let outputs = "peak_force_percent = 2\ncontact_time_percent = 2";
+    let text = text("rig", "", outputs).replace("restitution = 0.8", "restitution = 1.0");
+    let mut scene = Scene::parse("rig", &text).expect("a valid scene");
+    assert_eq!(scene.retainer.restitution, 1.0);
+    scene.run.duration = 0.02;
+    let choice = choose(&scene, scene.auto.as_ref().expect("open"));
+    let best = choice.best().expect("something suffices");
+    assert_eq!(best.model.rung, Rung::Hertz);
+    scene.model = best.model;
+    let impact = simulate(&scene).expect("possible").impacts[0];
+    let pulse = impact.pulse.expect("a pulse");
+    let (mass, radius) = (scene.rotor.mass, scene.rotor.radius);
+    let outer = radius + scene.retainer.clearance;
+    let modulus = 3.625e11;
+    let flat = 1.0 - radius / outer;
+    let speed = impact.normal_speed;
+    let force =
+        0.811_45 * (speed.powi(6) * mass.powi(3) * radius * modulus * modulus / flat).powf(0.2);
+    let time = 4.533_98 * (mass * mass * flat / (speed * radius * modulus * modulus)).powf(0.2);
+    println!(
+        "{:?}: {} N of {force}, {} s of {time}",
+        best.model, pulse.peak_force, pulse.duration
+    );
+    // The weight, a hundredth of the force, is not in the formulas.
+    assert!((pulse.peak_force / force - 1.0).abs() < 0.02 + 0.01);
+    assert!((pulse.duration / time - 1.0).abs() < 0.02 + 0.01);
+    for candidate in &choice.candidates {
+        let given = candidate.errors.iter().all(|error| error.is_finite());
+        assert_eq!(given, candidate.model.rung == Rung::Hertz, "{candidate:?}");
+    }
+}
+
 #[test]
 fn keys_of_the_model_are_kept() {
     let text = text("rig", "precision = \"f64\"\nstep_us = 37", "regime = true");
     let scene = Scene::parse("rig", &text).expect("a valid scene");
     let choice = choose(&scene, scene.auto.as_ref().expect("open"));
-    assert!(choice.candidates.len() >= 2);
+    assert!(choice.candidates.len() > 6);
     for candidate in &choice.candidates {
         assert_eq!(candidate.model.precision, Precision::F64);
         assert_eq!(candidate.model.step, 37e-6);
