@@ -30,6 +30,12 @@ pub fn page(trade: &Trade) -> String {
         }
         section {
             h2 { "Error against cost" }
+            p.note {
+                "Rung rigid solves from change to change, so its error does not depend on the step. Rung \
+                 moreau is of first order. Rung hertz is another law, whose contacts last: it does not \
+                 converge to the rigid laws, and gives force and contact time, which they do not. s/s: \
+                 seconds per simulated second. Errors at or above 10, and missed impacts, are drawn at 10."
+            }
             (legend(&trade.rows))
             h3 { "Here" }
             (drawing(trade, Cost::Here))
@@ -55,8 +61,8 @@ fn rows(name: &str, rows: &[&Row]) -> Markup {
         th { "Regime" }
         th.number { "Energy" }
         th.number { "ns a step" }
-        th.number { "s a simulated s" }
-        th.number { "Instructions a step" }
+        th.number { "s/s" }
+        th.number { "Instr. a step" }
     };
     tables::table(name, &head, rows.iter().map(|row| cells(row)))
 }
