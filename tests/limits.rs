@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use touchdown_tests::binary::touchdown;
 
 /// What a designer would try to break it with.
-const EXTREMES: [&str; 36] = [
+const EXTREMES: [&str; 38] = [
     "step of 1 us",
     "step of 1 ms",
     "restitution 0:",
@@ -46,7 +46,12 @@ const EXTREMES: [&str; 36] = [
     "10^9 ticks",
     "NaN and infinity",
     "start outside the gap",
+    "hertz: straight impact, restitution 0, which is 0.02",
+    "hertz: straight impact, restitution 1:",
 ];
+
+/// Of the scenes above, those that the rungs `moreau` and `hertz` run too.
+const SCENES: usize = 24;
 
 /// The command is run once for all tests: its exit status, what it says and its JSON.
 fn answer() -> &'static (Option<i32>, String, Value) {
@@ -119,6 +124,30 @@ fn every_extreme_is_measured_once_in_each_precision() {
             precisions.keys().any(|name| name.contains(extreme)),
             "{extreme}"
         );
+    }
+}
+
+/// Every scene on every rung; steps that are too long for a contact are refused in each.
+#[test]
+fn the_rungs_that_integrate_are_there() {
+    let has = |extreme: &str, measure: &str| {
+        let found = |row: &&Value| {
+            let name = row["extreme"].as_str().unwrap();
+            name.starts_with(extreme) && name.ends_with(measure)
+        };
+        assert!(rows().iter().any(|row| found(&row)), "{extreme} {measure}");
+    };
+    for extreme in &EXTREMES[..SCENES] {
+        let [moreau, hertz] = ["moreau", "hertz"].map(|rung| format!("{rung}: {extreme}"));
+        has(&moreau, "energy gained");
+        has(&moreau, "farthest beyond the wall");
+        has(&moreau, "steps with NaN or infinity");
+        has(&hertz, "steps above 2/omega_c");
+        if *extreme != "step of 1 ms" {
+            has(&hertz, "energy gained at T_c/25 and below");
+            has(&hertz, "deepest compression");
+            has(&hertz, "steps with NaN or infinity");
+        }
     }
 }
 

@@ -290,8 +290,26 @@ fn impacts_that_take_time_say_how_hard_and_how_long() {
     // Gravity's share of the impulse is g T_c/v = 0.034.
     let impulse = number("normal_impulse_n_s") / momentum;
     assert!((1.8..1.84).contains(&impulse), "{impulse}");
+    let shown = |scene: &str| {
+        let output = touchdown(folder.path())
+            .args(["drop", scene, "--report", "report.html"])
+            .output()
+            .unwrap();
+        let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+        (String::from_utf8(output.stdout).unwrap(), page)
+    };
+    let line = format!(
+        "contact force up to {:.0} N, within {:.4} ms",
+        number("peak_force_n"),
+        number("contact_time_s") * 1e3
+    );
+    let (timeline, page) = shown("h.toml");
+    assert!(timeline.contains(&line), "{line} in\n{timeline}");
+    assert!(page.contains("Peak force") && !page.contains("contact durations are not"));
     let moreau = format!("{MINIMAL}[model]\nrung = \"moreau\"\n");
     fs::write(folder.path().join("m.toml"), moreau).unwrap();
+    let (timeline, page) = shown("m.toml");
+    assert!(!timeline.contains("contact force") && !page.contains("Peak force"));
     let json = drop_json(folder.path(), "m.toml");
     assert_eq!(json["model"]["rung"], "moreau");
     assert!(json["impacts"][0].get("peak_force_n").is_none());

@@ -133,6 +133,18 @@ pub struct History {
     pub end: RotorState,
 }
 
+impl History {
+    /// What the contacts were like that have ended, where the model gives them a force.
+    pub fn pulses(&self) -> impl Iterator<Item = Pulse> {
+        self.impacts.iter().filter_map(|impact| impact.pulse)
+    }
+
+    /// Whether there is any.
+    pub fn has_forces(&self) -> bool {
+        self.pulses().next().is_some()
+    }
+}
+
 /// Collects happenings into a history.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {

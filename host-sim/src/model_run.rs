@@ -112,7 +112,7 @@ fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {
 
 /// A fall to the bottom from the start's height, or through the gap if that is more, and the start's
 /// speed.
-fn fastest_impact(scene: &Scene) -> f64 {
+pub(crate) fn fastest_impact(scene: &Scene) -> f64 {
     let height = match scene.start {
         Start::Free { position, .. } => position[1],
         Start::Wall { angle, .. } => -scene.retainer.clearance * angle.cos(),

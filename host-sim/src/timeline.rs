@@ -2,7 +2,7 @@
 
 use touchdown_core::event::EventKind;
 
-use crate::history::{Phase, PhaseKind};
+use crate::history::{History, Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
 use crate::names::{event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
@@ -145,7 +145,24 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         };
         text.push('\n');
     }
-    text + &more(truth.len(), "impacts")
+    text + &more(truth.len(), "impacts") + &forces(&outcome.model)
+}
+
+/// The contact forces of the model's impacts, where it has any.
+fn forces(model: &History) -> String {
+    let Some(hardest) = model
+        .pulses()
+        .max_by(|a, b| a.peak_force.total_cmp(&b.peak_force))
+    else {
+        return String::new();
+    };
+    let longest = model.pulses().map(|it| it.duration).fold(0.0, f64::max);
+    format!(
+        "model's contact force up to {:.0} N, within {} ms; longest contact {} ms\n",
+        hardest.peak_force,
+        millis(hardest.duration),
+        millis(longest)
+    )
 }
 
 fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {

@@ -3,6 +3,7 @@
 use crate::history::History;
 use crate::input_error::InputError;
 use crate::limits::extreme::STEPS;
+use crate::limits::watch::inertia;
 use crate::reference::{Start, energy};
 use crate::scene::Scene;
 use crate::truth::Units;
@@ -230,12 +231,6 @@ fn denormals(rig: &Scene) -> ClosedForm {
 fn first<T>(all: &[T], error: impl Fn(&T) -> f64) -> f64 {
     all.first()
         .map_or(f64::INFINITY, |first| error(first).abs())
-}
-
-/// J/(m r^2).
-fn inertia(scene: &Scene) -> f64 {
-    let rotor = &scene.rotor;
-    rotor.polar_inertia / (rotor.mass * rotor.radius * rotor.radius)
 }
 
 fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {

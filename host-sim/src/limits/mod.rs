@@ -3,16 +3,21 @@
 //! What is measured is held against the independent reference, against closed forms, or against laws
 //! that hold whatever the scene; never against the model itself.
 
+mod bounce;
 mod clock;
 mod closed_form;
+mod compliant;
 mod extreme;
+mod press;
 mod refusal;
 mod row;
 mod scenes;
+mod stepping;
 mod table;
 mod truth;
 mod watch;
 
+use rayon::prelude::*;
 use serde::Serialize;
 use touchdown_core::error::ConfigError;
 
@@ -24,6 +29,7 @@ use crate::model_run::simulate;
 use crate::progress::Progress;
 use crate::scene::Precision;
 use closed_form::ClosedForm;
+use extreme::Extreme;
 use truth::Truth;
 
 /// f64 first: what breaks there is no matter of rounding.
@@ -34,7 +40,7 @@ pub fn run() -> Result<Vec<Row>, Failure> {
     let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
     let extremes = extreme::extremes()?;
     let closed_forms = closed_form::closed_forms()?;
-    let jobs = (extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
+    let jobs = (2 * extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
     let mut progress = Progress::of_jobs("limits", jobs);
     let mut rows = Vec::new();
     for extreme in &extremes {
@@ -50,9 +56,40 @@ pub fn run() -> Result<Vec<Row>, Failure> {
         }
         progress.advance();
     }
+    rows.extend(other_rungs(&extremes, &mut progress).map_err(refused)?);
+    rows.extend(bounce::rows()?);
     rows.extend(clock::rows(&mut progress).map_err(refused)?);
     rows.extend(refusal::rows().map_err(refused)?);
     Ok(rows)
+}
+
+/// The rungs that integrate, whose path is their own: what holds whatever the scene.
+fn other_rungs(extremes: &[Extreme], progress: &mut Progress) -> Result<Vec<Row>, ConfigError> {
+    let done: Vec<[Vec<Row>; 2]> = extremes
+        .par_iter()
+        .map(|extreme| {
+            let (mut moreau, mut hertz) = (Vec::new(), Vec::new());
+            for precision in PRECISIONS {
+                moreau.extend(stepping::rows(extreme, precision)?);
+                hertz.extend(compliant::rows(extreme, precision)?);
+            }
+            Ok([moreau, hertz])
+        })
+        .collect::<Result<_, ConfigError>>()?;
+    for _ in extremes {
+        progress.advance();
+    }
+    let (moreau, hertz): (Vec<_>, Vec<_>) = done.into_iter().map(|[a, b]| (a, b)).unzip();
+    Ok([moreau, hertz].into_iter().flatten().flatten().collect())
+}
+
+/// What rounding may add to the energy of a run at the scale of the gap, m g rho0: the targets of 10^6
+/// steps without losses.
+fn rounding(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-12,
+        Precision::F32 => 1e-4,
+    }
 }
 
 fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, ConfigError> {

@@ -45,6 +45,25 @@ impl Row {
     }
 }
 
+/// The measured value that uses most of its limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Worst {
+    /// Worst that was found.
+    pub measured: f64,
+    /// Most that is allowed there.
+    pub limit: f64,
+}
+
+impl Worst {
+    /// Takes a value and its limit, above 0. What is no number at all stays.
+    pub fn take(&mut self, measured: f64, limit: f64) {
+        let part = measured / limit;
+        if self.limit == 0.0 || part.is_nan() || part > self.measured / self.limit {
+            *self = Self { measured, limit };
+        }
+    }
+}
+
 /// Whether every row holds; no row at all is no proof.
 pub fn all_hold(rows: &[Row]) -> bool {
     !rows.is_empty() && rows.iter().all(|row| row.holds)
@@ -63,6 +82,18 @@ mod tests {
         assert!(all_hold(&[row(0.5), row(1.0)]));
         assert!(!all_hold(&[row(0.5), row(1.1)]));
         assert!(!all_hold(&[]));
+    }
+
+    #[test]
+    fn the_worst_is_what_uses_most_of_its_limit() {
+        let mut worst = Worst::default();
+        for (measured, limit) in [(0.0, 1.0), (2.0, 100.0), (1.0, 10.0), (3.0, 40.0)] {
+            worst.take(measured, limit);
+        }
+        assert_eq!((worst.measured, worst.limit), (1.0, 10.0));
+        worst.take(f64::NAN, 1.0);
+        worst.take(5.0, 1.0);
+        assert!(worst.measured.is_nan());
     }
 
     #[test]

@@ -3,9 +3,9 @@
 use touchdown_core::error::ConfigError;
 
 use crate::limits::extreme::Extreme;
-use crate::limits::row::Row;
+use crate::limits::row::{Row, Worst};
 use crate::limits::truth::Truth;
-use crate::limits::watch::{Watch, Watched};
+use crate::limits::watch::{ROUNDED, Watch, Watched};
 use crate::model_run::{simulate, with_model};
 use crate::scene::Precision;
 
@@ -16,8 +16,6 @@ pub const MOST_CHANGES: f64 = 768.0;
 /// off, T: the rest was summed from a speed that is not tiny.
 const CUT: u32 = 512;
 const CUT_ERROR: f64 = 1e-7;
-/// Most beyond the wall, in units of the last digit.
-const OUTSIDE: f64 = 16.0;
 
 /// All measures of one extreme in one precision.
 pub fn rows(
@@ -30,7 +28,7 @@ pub fn rows(
         ..Watched::default()
     };
     let mut impacts = (0.0_f64, 0);
-    let mut contact: Option<(f64, f64)> = None;
+    let mut contact = Worst::default();
     for &step in extreme.steps {
         let scene = extreme.at(precision, step);
         let seen = with_model(&scene, Watch(&scene))?;
@@ -44,9 +42,7 @@ pub fn rows(
             } else {
                 limit
             };
-            if contact.is_none_or(|(worst, of)| error / limit > worst / of) {
-                contact = Some((error, limit));
-            }
+            contact.take(error, limit);
         }
     }
     let row = |measure: &str, measured, limit, unit| {
@@ -58,9 +54,9 @@ pub fn rows(
             unit,
         )
     };
-    let (epsilon, gain) = match precision {
-        Precision::F64 => (f64::EPSILON, 1e-12),
-        Precision::F32 => (f32::EPSILON.into(), 1e-4),
+    let epsilon = match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f32::EPSILON.into(),
     };
     let mut rows = Vec::new();
     if impacts.1 > 0 {
@@ -71,19 +67,24 @@ pub fn rows(
             "of target",
         ));
     }
-    if let Some((error, limit)) = contact {
-        rows.push(row("time of permanent contact", error, limit, "T"));
+    if contact.limit > 0.0 {
+        rows.push(row(
+            "time of permanent contact",
+            contact.measured,
+            contact.limit,
+            "T",
+        ));
     }
     rows.push(row(
         "energy gained",
         watched.energy_gain,
-        gain + watched.spin_rounding + watched.path_rounding,
+        super::rounding(precision) + watched.spin_rounding + watched.path_rounding,
         "m g rho0",
     ));
     rows.push(row(
         "farthest beyond the wall",
         watched.outside.max(0.0),
-        OUTSIDE * epsilon,
+        ROUNDED * epsilon,
         "rho0",
     ));
     rows.push(row(

@@ -19,7 +19,7 @@ pub fn table(rows: &[Row], paint: Paint) -> String {
     for row in rows.iter().filter(|row| row.precision == Precision::F64) {
         let (name, measure) = row
             .extreme
-            .split_once(MEASURE)
+            .rsplit_once(MEASURE)
             .unwrap_or((&row.extreme, ""));
         if name != extreme {
             text += &format!("{}\n", paint.bold(name));

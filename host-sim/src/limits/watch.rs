@@ -4,13 +4,18 @@ use touchdown_core::error::ConfigError;
 use touchdown_core::model::{Change, Kinematics, Precision, Stepper};
 
 use crate::model_run::{Subject, Use};
-use crate::scene::Scene;
+use crate::scene::{Rung, Scene};
+
+/// Of a place, in units of the last digit.
+pub const ROUNDED: f64 = 16.0;
 
 /// What was seen, worst of all steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watched {
     /// Farthest beyond the wall, rho0; below 0 where it never got there.
     pub outside: f64,
+    /// The same in parts of half a step's path, half of h (v + h) at the speed v after the step.
+    pub outside_path: f64,
     /// Largest rise of translation, spin and height above the lowest so far, in m g rho0.
     pub energy_gain: f64,
     /// Rounding of the spin as it is shown, in the same unit; 0 where it did not change.
@@ -19,7 +24,8 @@ pub struct Watched {
     pub not_finite: u32,
     /// Most changes of motion in a step.
     pub changes: u32,
-    /// What rounding of the largest translation may add up to over all changes, in m g rho0.
+    /// What rounding of the largest translation may add up to, in m g rho0: once for each change of motion,
+    /// and in a model that integrates for each step.
     pub path_rounding: f64,
 }
 
@@ -28,6 +34,7 @@ impl Watched {
     pub fn worst(self, other: Self) -> Self {
         Self {
             outside: self.outside.max(other.outside),
+            outside_path: self.outside_path.max(other.outside_path),
             energy_gain: self.energy_gain.max(other.energy_gain),
             spin_rounding: self.spin_rounding.max(other.spin_rounding),
             not_finite: self.not_finite.max(other.not_finite),
@@ -48,15 +55,20 @@ impl Use for Watch<'_> {
         subject: &Subject<R, M>,
     ) -> Result<Watched, ConfigError> {
         let Subject {
-            model, start, spin, ..
+            model,
+            start,
+            spin,
+            scales,
         } = subject;
+        let step = self.0.model.step / scales.time;
+        let rounded_in_a_step = u64::from(self.0.model.rung != Rung::Rigid);
         let mut watched = Watched {
             outside: -1.0,
             ..Watched::default()
         };
         let mut state = model.start(start, *spin, |_| watched.changes += 1)?;
         let first = model.kinematics(&state).spin;
-        let mut lowest = self.energy(&model.kinematics(&state), first);
+        let mut lowest = energy(self.0, &model.kinematics(&state), first);
         let (mut fastest, mut in_all) = (0.0_f64, 1_u64);
         for _ in 0..(self.0.run.duration / self.0.model.step).ceil() as u64 {
             let mut in_step = 0;
@@ -70,18 +82,22 @@ impl Use for Watch<'_> {
             });
             let now = model.kinematics(&state);
             let [x, y] = now.position.map(R::to_f64);
-            let energy = self.energy(&now, first);
-            watched.outside = watched.outside.max(x.hypot(y) - 1.0);
+            let [u, v] = now.velocity.map(R::to_f64);
+            let speed = u.hypot(v);
+            let energy = energy(self.0, &now, first);
+            let outside = x.hypot(y) - 1.0;
+            watched.outside = watched.outside.max(outside);
+            let path = 0.5 * step * (speed + step) + ROUNDED * R::EPSILON.to_f64();
+            watched.outside_path = watched.outside_path.max(outside / path);
             watched.energy_gain = watched.energy_gain.max(energy - lowest);
             watched.not_finite += u32::from(!(finite && is_finite(&now)));
             watched.changes = watched.changes.max(in_step);
-            let [u, v] = now.velocity.map(R::to_f64);
-            fastest = fastest.max(u.hypot(v));
-            in_all += u64::from(in_step);
+            fastest = fastest.max(speed);
+            in_all += u64::from(in_step) + rounded_in_a_step;
             lowest = lowest.min(energy);
             if now.spin != first {
                 let largest = first.to_f64().abs().max(now.spin.to_f64().abs());
-                watched.spin_rounding = self.inertia() * largest * largest * R::EPSILON.to_f64();
+                watched.spin_rounding = inertia(self.0) * largest * largest * R::EPSILON.to_f64();
             }
         }
         // Without bias it adds up as a random walk does: four deviations.
@@ -91,28 +107,27 @@ impl Use for Watch<'_> {
     }
 }
 
-impl Watch<'_> {
-    /// J/(m r^2).
-    fn inertia(&self) -> f64 {
-        let rotor = &self.0.rotor;
-        rotor.polar_inertia / (rotor.mass * rotor.radius * rotor.radius)
-    }
-
-    /// Translation, height and what the spin has over its first value: small differences of large spins
-    /// are exact.
-    fn energy<R: Precision>(&self, k: &Kinematics<R>, first: R) -> f64 {
-        let [u, v] = k.velocity.map(R::to_f64);
-        let [spin, first] = [k.spin, first].map(R::to_f64);
-        let height = if self.0.run.gravity > 0.0 {
-            k.position[1].to_f64()
-        } else {
-            0.0
-        };
-        0.5 * (u * u + v * v) + 0.5 * self.inertia() * (spin - first) * (spin + first) + height
-    }
+/// J/(m r^2).
+pub fn inertia(scene: &Scene) -> f64 {
+    let rotor = &scene.rotor;
+    rotor.polar_inertia / (rotor.mass * rotor.radius * rotor.radius)
 }
 
-fn is_finite<R: Precision>(k: &Kinematics<R>) -> bool {
+/// Translation, height and what the spin has over its first value, in m g rho0: small differences of
+/// large spins are exact.
+pub fn energy<R: Precision>(scene: &Scene, k: &Kinematics<R>, first: R) -> f64 {
+    let [u, v] = k.velocity.map(R::to_f64);
+    let [spin, first] = [k.spin, first].map(R::to_f64);
+    let height = if scene.run.gravity > 0.0 {
+        k.position[1].to_f64()
+    } else {
+        0.0
+    };
+    0.5 * (u * u + v * v) + 0.5 * inertia(scene) * (spin - first) * (spin + first) + height
+}
+
+/// Whether every number is.
+pub fn is_finite<R: Precision>(k: &Kinematics<R>) -> bool {
     let mut all = k.position.iter().chain(&k.velocity).chain([&k.spin]);
     all.all(|x| x.is_finite())
 }

@@ -17,6 +17,7 @@ mod page;
 mod rig;
 mod row;
 mod spread;
+mod straight;
 mod table;
 mod whirl;
 mod wilson;
@@ -72,11 +73,11 @@ pub fn run(drops: u32) -> Result<Paper, Failure> {
     rows.extend(fall::rows(&base)?);
     rows.extend(whirl::rows(&base)?);
     rows.extend(spread::rows(&drops));
-    rows.extend(contact::rows(&base));
+    rows.extend(contact::rows(&base)?);
     let falls = fig_4::drops()?;
     let mut figures = fig_3::curves(&base);
     figures.extend(falls.iter().map(fig_4::curve));
-    figures.extend(fig_7::curves(&base));
+    figures.extend(fig_7::curves(&base)?);
     Ok(Paper {
         rows,
         drops,

@@ -36,7 +36,8 @@ pub fn on_wall(scene: &Scene, angle: f64, rate: f64, duration: f64) -> Scene {
     started(scene, Start::Wall { angle, tangential }, duration)
 }
 
-fn started(scene: &Scene, start: Start, duration: f64) -> Scene {
+/// `scene` from `start`, for `duration` s.
+pub fn started(scene: &Scene, start: Start, duration: f64) -> Scene {
     let mut scene = scene.clone();
     scene.start = start;
     scene.run.duration = duration;

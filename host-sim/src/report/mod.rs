@@ -101,7 +101,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
         section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
         section { h2 { "Parameters" } (parameters::parameters(subject)) }
-        section { h2 { "Not modelled" } (parameters::limits()) }
+        section { h2 { "Not modelled" } (parameters::limits(outcome.model.has_forces())) }
         section { h2 { "Versions" } (parameters::versions(subject)) }
     };
     let title = format!("{} \u{2013} touchdown report", subject.title);

@@ -96,13 +96,17 @@ fn list(name: &str, rows: &[(&str, String)]) -> Markup {
     }
 }
 
-/// What the rigid model leaves out.
-pub fn limits() -> Markup {
+/// What the model leaves out; `forces`: it gives impacts a force and a duration.
+pub fn limits(forces: bool) -> Markup {
     html! {
         ul {
             li { "The retainer is rigid and fixed: no compliance or damping of its support, no inner ring that spins up, no heat." }
             li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
-            li { "An impact takes no time: impulses are given, contact forces and contact durations are not." }
+            @if forces {
+                li { "In the reference an impact takes no time; the model's contact force is that of an elastic wall with damping, without tangential compliance or plastic flow." }
+            } @else {
+                li { "An impact takes no time: impulses are given, contact forces and contact durations are not." }
+            }
             li { "Motion is planar, for a rigid rotor: no conical motion, no bending, no unbalance or magnetic force after the release." }
             li { "Friction is Coulomb's, with one constant coefficient; restitution does not depend on speed." }
             li { "Truth here is the reference solution of the same equations, not a measurement." }

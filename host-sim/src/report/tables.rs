@@ -2,7 +2,7 @@
 
 use super::Subject;
 use super::text::{column, error, ms, ms_or_dash, si};
-use crate::history::Impact;
+use crate::history::{Impact, Pulse};
 use crate::matching::{Match, Matches};
 use crate::names::event_name;
 use crate::outcome::{DetectedEvent, Outcome};
@@ -129,6 +129,7 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
         .iter()
         .zip(&hard)
         .filter(|(it, hard)| **hard && it.detected.is_some());
+    let forces = outcome.model.has_forces();
     let head = html! {
         th.number { "Index" }
         th.number { "Time" br; "ms" }
@@ -139,10 +140,18 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
         th.number { "Onset error" br; "ms" }
         th.number { "Model: time error" br; "s" }
         th.number { "Model: speed error" br; "relative" }
+        @if forces {
+            th.number { "Peak force" br; "N" }
+            th.number { "Contact" br; "ms" }
+        }
     };
     let model = &outcome.model.impacts;
     let row = |((index, impact), found): ((usize, &Impact), &&Match)| {
-        impact_row(index, impact, model.get(index), found)
+        let model = model.get(index);
+        html! {
+            (impact_row(index, impact, model, found))
+            @if forces { (force_cells(model.and_then(|it| it.pulse))) }
+        }
     };
     let rows = truth.iter().enumerate().zip(&found).map(row);
     html! {
@@ -155,6 +164,7 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
         p.note {
             "Normal speed: into the wall just before. The series ends where the bounce speed is below the reference's "
             "cut-off; its last impacts are far below any sensor's noise. Model and reference are compared by index."
+            @if forces { " Peak force and length of the contact are the model's; an impact that turns into permanent contact has none of its own." }
         }
     }
 }
@@ -172,5 +182,13 @@ fn impact_row(index: usize, truth: &Impact, model: Option<&Impact>, found: &Matc
         td.number { (ms_or_dash(found.onset_error_s)) }
         td.number { (time_error.map_or("\u{2013}".to_owned(), error)) }
         td.number { (speed_error.map_or("\u{2013}".to_owned(), error)) }
+    }
+}
+
+fn force_cells(pulse: Option<Pulse>) -> Markup {
+    let number = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), column);
+    html! {
+        td.number { (number(pulse.map(|it| it.peak_force))) }
+        td.number { (number(pulse.map(|it| it.duration * 1e3))) }
     }
 }
