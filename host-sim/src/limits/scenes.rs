@@ -9,9 +9,8 @@ use crate::limits::watch::{Watch, Watched};
 use crate::model_run::{simulate, with_model};
 use crate::scene::Precision;
 
-/// Bound on the changes of motion in a step: of 768 impacts and stretches each, and the contact or the
-/// flight that follows (`docs/model.md`).
-pub const MOST_CHANGES: f64 = 768.0;
+/// Bound on what is followed in a step: 512 impacts and 256 stretches of contact.
+const MOST_CHANGES: f64 = 768.0;
 /// Changes in a step from which on a bounce series was cut short there, and what its end may then be
 /// off, T: the rest was summed from a speed that is not tiny.
 const CUT: u32 = 512;
@@ -49,6 +48,10 @@ pub fn rows(
             }
         }
     }
+    let (epsilon, gain) = match precision {
+        Precision::F64 => (f64::EPSILON, 1e-12),
+        Precision::F32 => (f32::EPSILON.into(), 1e-4),
+    };
     let row = |measure: &str, measured, limit, unit| {
         Row::new(
             format!("{}: {measure}", extreme.name),
@@ -57,10 +60,6 @@ pub fn rows(
             limit,
             unit,
         )
-    };
-    let (epsilon, gain) = match precision {
-        Precision::F64 => (f64::EPSILON, 1e-12),
-        Precision::F32 => (f32::EPSILON.into(), 1e-4),
     };
     let mut rows = Vec::new();
     if impacts.1 > 0 {
