@@ -24,7 +24,7 @@ pub struct ClosedForm {
     pub unit: &'static str,
 }
 
-/// Errors of times and speeds, f64 and f32: those of PHYSICS for the first impact and for contact.
+/// Errors of times and speeds, f64 and f32: what is asked of the time of permanent contact.
 const EVENT: [f64; 2] = [1e-11, 1e-5];
 
 /// All of them.
@@ -33,13 +33,15 @@ pub fn closed_forms() -> Result<Vec<ClosedForm>, InputError> {
     Ok(vec![
         fall_from_the_top(&rig),
         force_ends_where_it_starts(&rig),
+        graze(&rig),
         rolling_at_the_limit(&rig),
         impact_at_the_limit(&rig),
         whirl(&rig, WHIRL),
         whirl(&rig, GROWTH_IN_ONE_STEP),
         series_in_one_step(&rig),
         hundreds_of_impacts_in_one_step(&rig),
-        denormals(&rig),
+        denormals(&rig, DENORMAL),
+        denormals(&rig, SINGLE_DENORMAL),
     ])
 }
 
@@ -73,6 +75,35 @@ fn force_ends_where_it_starts(rig: &Scene) -> ClosedForm {
         error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - flight)),
         // Rounding of the force decides which flight it is: the root of it is lost.
         limits: [1e-7, 1e-3],
+        unit: "T",
+    }
+}
+
+/// A parabola that touches the wall from inside at the top right and bends away: no impact there. From
+/// there on |p|^2 - 1 = (v^2 + p.g) t^2 + v.g t^3 + t^4/4 in the model's units, 0 at the first impact.
+fn graze(rig: &Scene) -> ClosedForm {
+    let mut scene = rig.clone();
+    let units = Units::of(&scene);
+    let (angle, speed, before) = (2.5_f64, 0.6, 0.4);
+    let there = [speed * angle.cos(), speed * angle.sin()];
+    let position = [
+        angle.sin() - there[0] * before,
+        -angle.cos() - there[1] * before - 0.5 * before * before,
+    ];
+    let velocity = [there[0], there[1] + before];
+    scene.start = free(
+        position.map(|x| x * units.length),
+        velocity.map(|v| v * units.speed),
+    );
+    let (square, cube) = (speed * speed + angle.cos(), -there[1]);
+    let landing = before + 2.0 * ((cube * cube - square).sqrt() - cube);
+    ClosedForm {
+        name: "graze, where the path touches the wall and bends away: first impact",
+        scene,
+        steps: &STEPS,
+        error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - landing)),
+        // The root of what rounding takes off.
+        limits: [1e-6, 1e-5],
         unit: "T",
     }
 }
@@ -208,9 +239,19 @@ fn hundreds_of_impacts_in_one_step(rig: &Scene) -> ClosedForm {
     }
 }
 
+/// Name and size of the numbers.
+type Denormal = (&'static str, f64);
+const DENORMAL: Denormal = (
+    "denormals of f64 for spin, friction, restitution and start: first impact",
+    f64::MIN_POSITIVE / 1024.0,
+);
+const SINGLE_DENORMAL: Denormal = (
+    "denormals of f32 for spin, friction, restitution and start: first impact",
+    1e-42,
+);
+
 /// Numbers too small to keep their digits are as good as 0.
-fn denormals(rig: &Scene) -> ClosedForm {
-    let least = f64::MIN_POSITIVE / 1024.0;
+fn denormals(rig: &Scene, (name, least): Denormal) -> ClosedForm {
     let mut scene = rig.clone();
     scene.rotor.spin = least;
     scene.retainer.friction = least;
@@ -218,7 +259,7 @@ fn denormals(rig: &Scene) -> ClosedForm {
     scene.start = free([least, -least], [-least, least]);
     let units = Units::of(&scene);
     ClosedForm {
-        name: "denormal spin, friction, restitution and start: first impact",
+        name,
         scene,
         steps: &STEPS,
         error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - 2.0_f64.sqrt())),

@@ -9,9 +9,8 @@ use crate::limits::watch::{ROUNDED, Watch, Watched};
 use crate::model_run::{simulate, with_model};
 use crate::scene::Precision;
 
-/// Bound on the changes of motion in a step: of 768 impacts and stretches each, and the contact or the
-/// flight that follows (`docs/model.md`).
-pub const MOST_CHANGES: f64 = 768.0;
+/// Bound on what is followed in a step: 512 impacts and 256 stretches of contact.
+const MOST_CHANGES: f64 = 768.0;
 /// Changes in a step from which on a bounce series was cut short there, and what its end may then be
 /// off, T: the rest was summed from a speed that is not tiny.
 const CUT: u32 = 512;
@@ -45,6 +44,10 @@ pub fn rows(
             contact.take(error, limit);
         }
     }
+    let epsilon = match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f32::EPSILON.into(),
+    };
     let row = |measure: &str, measured, limit, unit| {
         Row::new(
             format!("{}: {measure}", extreme.name),
@@ -53,10 +56,6 @@ pub fn rows(
             limit,
             unit,
         )
-    };
-    let epsilon = match precision {
-        Precision::F64 => f64::EPSILON,
-        Precision::F32 => f32::EPSILON.into(),
     };
     let mut rows = Vec::new();
     if impacts.1 > 0 {

@@ -10,7 +10,7 @@ use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState};
 use crate::model::whirl::whirl;
 
-/// Most impacts followed in one step; beyond it a bounce series is ended by its limit. Chosen, because a
+/// Most impacts followed in one step; beyond it the rest of a bounce series is summed. Chosen, because a
 /// whole series at restitution 0.95 fits in.
 const IMPACTS_PER_STEP: u32 = 512;
 /// Most stretches of contact followed in one step; beyond it whirl goes on by its mean. Chosen, because

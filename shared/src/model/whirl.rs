@@ -26,11 +26,9 @@ pub(crate) fn whirl<R: Real>(
     let (speed, angle, stuck) = match mode {
         Mode::Sliding(friction) if friction != R::ZERO && start != R::ZERO => {
             let last = (start - beta * from.spin.value()) / (R::ONE + beta);
-            let until = (R::ONE / start - R::ONE / last) / friction;
-            if (start + from.spin.value()) * friction >= R::ZERO {
-                // The mean over a turn has no slip left against which this friction would work.
-                (last, last * time, true)
-            } else if last * start > R::ZERO && until >= R::ZERO && until <= time {
+            // Below 0, the mean over a turn has no slip left against which this friction would work.
+            let until = ((R::ONE / start - R::ONE / last) / friction).most(R::ZERO);
+            if last * start > R::ZERO && until <= time {
                 let turned = (last / start).ln() / friction + last * (time - until);
                 (last, turned, true)
             } else {
