@@ -152,7 +152,10 @@ impl<R: Precision> Rigid<R> {
             after = mean.time_of_impulse(impulse, rest);
             onto = mean.wall_state(after, law);
             stuck = mean.mode == Mode::Rolling;
-            if let Mode::Sliding(friction) = mean.mode {
+            // A stretch that ended before has not given all of the impulse, or no longer slips.
+            if let Mode::Sliding(friction) = mean.mode
+                && after < mean.span
+            {
                 onto.tangential.add(-friction * launch);
                 onto.spin.add(-friction * launch / law.inertia_ratio);
             }
