@@ -1,6 +1,6 @@
 //! Time as whole steps and a fraction: exact after any number of steps.
 
-use crate::model::sum::product_error;
+use crate::model::sum::{Sum, product_error};
 use crate::real::Real;
 
 /// Length of a step, in units of T, and the part of it that its rounding took off: over the impacts of
@@ -27,6 +27,24 @@ impl<R: Real> StepLength<R> {
         let whole = (time / self.length).floor();
         let left = (time - whole * self.length) - product_error(whole, self.length);
         (whole, left / self.length - (time / self.length) * self.rest)
+    }
+
+    /// Whole steps in `count` times `time`, and the fraction beyond them: the fraction of `time` is kept
+    /// with twice the digits, so that it can be taken a million times.
+    pub(crate) fn times(&self, count: R, time: Sum<R>) -> Instant<R> {
+        let whole = (time.value() / self.length).floor();
+        let exact = (time.value() - whole * self.length) - product_error(whole, self.length);
+        let first = exact / self.length;
+        let left = (exact - first * self.length) - product_error(first, self.length);
+        let second = (left + time.rest()) / self.length - (whole + first) * self.rest;
+        let mut steps = Sum::new(R::ZERO);
+        let mut fraction = Sum::new(first);
+        fraction.add(second);
+        steps.add_times(count, fraction);
+        let carry = steps.value().floor();
+        steps.add(-carry);
+        let tick = whole.to_u64().saturating_mul(count.to_u64());
+        Instant::at_tick(tick.saturating_add_signed(carry.to_i64())).later(0, steps.value())
     }
 
     /// Time of `steps`.
@@ -74,12 +92,22 @@ impl<R: Real> Instant<R> {
     /// `time` (0 or more) later.
     pub(crate) fn after(self, time: R, step: &StepLength<R>) -> Self {
         let (whole, part) = step.split(time);
+        self.later(whole.to_u64(), part)
+    }
+
+    /// `span` later.
+    pub(crate) fn plus(self, span: Self) -> Self {
+        self.later(span.tick, span.fraction)
+    }
+
+    /// `whole` steps and `part` of one later.
+    fn later(self, whole: u64, part: R) -> Self {
         let sum = self.fraction + part;
         if !sum.is_finite() {
             return Self::NEVER;
         }
         let carry = sum.floor();
-        let tick = self.tick.saturating_add(whole.to_u64());
+        let tick = self.tick.saturating_add(whole);
         Self {
             tick: tick.saturating_add_signed(carry.to_i64()),
             fraction: sum - carry,

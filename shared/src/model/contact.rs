@@ -10,6 +10,8 @@ use crate::real::Real;
 
 /// Iterations of the search for an event: secant steps kept inside a bracket.
 const ITERATIONS: usize = 60;
+/// Steps of Newton's method to the place of balance: each doubles the digits of a first guess of one.
+const PASSAGE_ITERATIONS: usize = 6;
 /// Parts of the span at whose ends an event is looked for.
 const PARTS: i32 = 2;
 
@@ -65,7 +67,7 @@ pub(crate) struct Contact<R> {
     pub(crate) ending: Ending,
     /// Time from its start to its end.
     pub(crate) span: R,
-    series: Series<R>,
+    pub(crate) series: Series<R>,
 }
 
 impl<R: Precision> Contact<R> {
@@ -181,6 +183,35 @@ impl<R: Precision> Contact<R> {
         let (given, force) = horner(&self.series.impulse, at);
         let better = (at + (impulse - given) / force) / self.series.pace;
         better.most(R::ZERO).least(self.span)
+    }
+
+    /// When the stretch passes the place where weight and friction balance, tan phi = mu_s in the lower
+    /// half, and whether counter-clockwise.
+    pub(crate) fn crossing(&self) -> Option<(R, bool)> {
+        let friction = match self.mode {
+            Mode::Sliding(friction) => friction,
+            Mode::Rolling => R::ZERO,
+        };
+        if self.series.cos[0] + friction * self.series.sin[0] <= R::ZERO {
+            return None;
+        }
+        let beyond = |at: R| {
+            let [sin, cos] = [&self.series.sin, &self.series.cos].map(|c| horner(c, at));
+            (sin.0 - friction * cos.0, sin.1 - friction * cos.1)
+        };
+        let end = self.span * self.series.pace;
+        let (first, last) = (beyond(R::ZERO).0, beyond(end).0);
+        let end_beyond = last >= R::ZERO;
+        if (first >= R::ZERO) == end_beyond {
+            return None;
+        }
+        // Newton's method: in a stretch the rotor turns by less than a radian, and this hardly bends.
+        let mut at = end * (first / (first - last));
+        for _ in 0..PASSAGE_ITERATIONS {
+            let (value, slope) = beyond(at);
+            at = (at - value / slope).most(R::ZERO).least(end);
+        }
+        Some((at / self.series.pace, end_beyond))
     }
 
     /// Angle turned since the start of the stretch, rad.

@@ -5,6 +5,7 @@ use crate::model::contact::{Contact, Ending, Grip, Mode, WallState};
 use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::{Change, Happening, Kinematics, Touch};
 use crate::model::law::Law;
+use crate::model::period::Round;
 use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState};
@@ -27,33 +28,42 @@ impl<R: Precision> Rigid<R> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
     pub fn step(&self, state: &mut RigidState<R>, mut sink: impl FnMut(Happening<R>)) {
         state.now = Instant::at_tick(state.now.tick + 1);
-        self.follow(state, &mut sink);
+        self.follow(state, &mut sink, |_| false);
     }
 
-    /// Goes to `until`, which is not before now, by those steps alone in which something changes: the
-    /// bits of stepping there, at the cost of the changes. Costs at most what stepping does. Changes of
-    /// motion go to `sink` in the order of time.
+    /// Goes to `until`, which is not before now, by those steps alone in which something changes, and
+    /// past whole periods of a motion on the wall at once (`period.rs`): where there are none, it gives
+    /// the bits of stepping. Costs the changes, at most what stepping does. Changes of motion go to
+    /// `sink` in the order of time.
     pub fn run(
         &self,
         state: &mut RigidState<R>,
         until: Instant<R>,
         mut sink: impl FnMut(Happening<R>),
     ) {
+        let mut round = Round::new(until);
         while state.ends.is_reached_at(until) {
             let eventful = state.ends.next_tick().max(state.now.tick + 1);
             if eventful > until.tick {
                 break;
             }
             state.now = Instant::at_tick(eventful);
-            self.follow(state, &mut sink);
+            self.follow(state, &mut sink, |state| round.take(self, state));
         }
         if state.now != until {
             state.now = until;
-            self.follow(state, &mut sink);
+            self.follow(state, &mut sink, |_| false);
         }
     }
 
-    pub(crate) fn follow(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {
+    /// Goes through the changes up to now. Before a stretch of contact ends, `watch` may put it off, and
+    /// says so.
+    pub(crate) fn follow(
+        &self,
+        state: &mut RigidState<R>,
+        sink: &mut impl FnMut(Happening<R>),
+        mut watch: impl FnMut(&mut RigidState<R>) -> bool,
+    ) {
         let (mut impacts, mut stretches) = (0, 0);
         while state.ends.is_reached_at(state.now) && impacts < CHANGES_PER_STEP {
             match state.motion {
@@ -67,6 +77,9 @@ impl<R: Precision> Rigid<R> {
                     self.enter_contact(state, onto, grip(stuck), sink);
                 }
                 Motion::Contact(contact) if stretches < STRETCHES_PER_STEP => {
+                    if watch(state) {
+                        continue;
+                    }
                     stretches += 1;
                     self.end_of_stretch(state, &contact, sink);
                 }

@@ -17,6 +17,7 @@ mod hertz;
 mod kinematics;
 mod law;
 mod moreau;
+mod period;
 mod polynomial;
 mod precision;
 mod rigid;

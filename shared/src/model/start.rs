@@ -124,7 +124,7 @@ impl<R: Precision> Rigid<R> {
                 self.enter_contact(&mut state, onto, Grip::Open, &mut sink);
             }
         }
-        self.follow(&mut state, &mut sink);
+        self.follow(&mut state, &mut sink, |_| false);
         Ok(state)
     }
 

@@ -37,6 +37,25 @@ impl<R: Real> Sum<R> {
         (self.value + term) + self.rest
     }
 
+    /// The difference, with its rest.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        let mut difference = Self::new(self.value);
+        difference.add(-other.value);
+        difference.add(self.rest - other.rest);
+        difference
+    }
+
+    /// Adds `term` `count` times; what rounding takes off the product is kept.
+    pub(crate) fn add_times(&mut self, count: R, term: Self) {
+        let rest = core::mem::take(&mut self.rest);
+        self.add(count * term.value);
+        self.add(rest + product_error(count, term.value) + count * term.rest);
+    }
+
+    pub(crate) fn rest(self) -> R {
+        self.rest
+    }
+
     pub(crate) fn negative(self) -> Self {
         Self {
             value: -self.value,
