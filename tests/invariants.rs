@@ -2,78 +2,20 @@
 //! finite, takes a bounded number of changes a step, and goes the same way when no step is looked at.
 
 use proptest::prelude::*;
-use touchdown_core::model::{
-    Change, Instant, Kinematics, Precision, Rigid, RigidConfig, Start, Touch,
-};
+use touchdown_core::model::{Change, Instant, Kinematics, Precision, Rigid, Start, Touch};
 use touchdown_core::real::{Micro32, Poly32, Poly64};
-
-/// A dimensionless drop: everything that matters of gap, mass and size is in here.
-#[derive(Clone, Copy, Debug)]
-struct Drop {
-    friction: f64,
-    restitution: f64,
-    inertia_ratio: f64,
-    spin: f64,
-    gravity: bool,
-    /// In units of T.
-    step: f64,
-    start: Start<f64>,
-}
-
-fn config<R: Precision>(drop: &Drop) -> RigidConfig<R> {
-    // Gap, gravity and radius of 1 make the units those of the model.
-    let one = R::ONE;
-    RigidConfig {
-        mass: one,
-        radius: one,
-        polar_inertia: R::lit(drop.inertia_ratio),
-        clearance: one,
-        friction: R::lit(drop.friction),
-        restitution: R::lit(drop.restitution),
-        gravity: if drop.gravity { one } else { R::ZERO },
-        speed: one,
-        step: R::lit(drop.step),
-    }
-}
-
-fn start<R: Precision>(drop: &Drop) -> Start<R> {
-    match drop.start {
-        Start::Free { position, velocity } => Start::Free {
-            position: position.map(R::lit),
-            velocity: velocity.map(R::lit),
-        },
-        Start::Wall {
-            sin,
-            cos,
-            tangential,
-        } => Start::Wall {
-            sin: R::lit(sin),
-            cos: R::lit(cos),
-            tangential: R::lit(tangential),
-        },
-    }
-}
-
-/// Translation, spin and height, per mass.
-fn energy<R: Precision>(drop: &Drop, k: &Kinematics<R>) -> f64 {
-    let [u, v] = k.velocity.map(R::to_f64);
-    let spin = k.spin.to_f64();
-    let height = if drop.gravity {
-        k.position[1].to_f64()
-    } else {
-        0.0
-    };
-    0.5 * (u * u + v * v) + 0.5 * drop.inertia_ratio * spin * spin + height
-}
+use touchdown_tests::drops::{Drop, inside};
 
 fn check<R: Precision>(drop: &Drop, steps: u32, tolerance: f64) -> Result<(), TestCaseError> {
-    let model = Rigid::<R>::try_new(&config(drop)).expect("valid configuration");
+    let model = Rigid::<R>::try_new(&drop.config()).expect("valid configuration");
     let mut happenings = Vec::new();
     let mut state = model
-        .start(&start(drop), R::lit(drop.spin), |h| happenings.push(h))
+        .start(&drop.start.rounded(), R::lit(drop.spin), |h| {
+            happenings.push(h)
+        })
         .expect("valid start");
     let released = (state, happenings.clone());
-    let first = energy(drop, &model.kinematics(&state));
+    let first = drop.energy(&model.kinematics(&state));
     let size = first.abs().max(1.0);
     let mut last = first;
     for _ in 0..steps {
@@ -87,7 +29,7 @@ fn check<R: Precision>(drop: &Drop, steps: u32, tolerance: f64) -> Result<(), Te
         });
         let k = model.kinematics(&state);
         let [x, y] = k.position.map(R::to_f64);
-        let now = energy(drop, &k);
+        let now = drop.energy(&k);
         prop_assert!(now.is_finite() && k.spin.is_finite());
         prop_assert!(
             x.hypot(y) <= 1.0 + tolerance,
@@ -146,16 +88,6 @@ fn apart<R: Precision>(a: &Kinematics<R>, b: &Kinematics<R>) -> f64 {
         .map(|(a, b)| [a[0] - b[0], a[1] - b[1]].map(|d| d.to_f64().abs()));
     let spin = (a.spin - b.spin).to_f64().abs();
     x.max(y).max(u).max(v).max(spin)
-}
-
-prop_compose! {
-    fn inside()(radius in 0.0..1.0_f64, angle in 0.0..std::f64::consts::TAU,
-                speed in 0.0..3.0_f64, heading in 0.0..std::f64::consts::TAU) -> Start<f64> {
-        Start::Free {
-            position: [radius * angle.cos(), radius * angle.sin()],
-            velocity: [speed * heading.cos(), speed * heading.sin()],
-        }
-    }
 }
 
 prop_compose! {

@@ -3,4 +3,5 @@
 pub mod binary;
 pub mod cases;
 pub mod counting;
+pub mod drops;
 pub mod growth;

@@ -2,13 +2,12 @@
 //! gains no energy, whatever the configuration and the step.
 
 use proptest::prelude::*;
-use touchdown_core::model::{
-    Change, Kinematics, Moreau, Precision, RigidConfig, Start, Stepper, Touch,
-};
+use touchdown_core::model::{Change, Moreau, Precision, Start, Stepper, Touch};
 use touchdown_sim::history::{History, Recorder, Regime};
 use touchdown_sim::model_run::simulate;
 use touchdown_sim::reference::Reference;
 use touchdown_sim::scene::{self, Rung, Scene, Scheme};
+use touchdown_tests::drops::{Drop, inside};
 
 fn scene(name: &str, step: f64) -> Scene {
     let mut scene = Scene::load(name).expect("built-in scene");
@@ -107,67 +106,8 @@ fn contact_and_regime_are_those_of_the_reference() {
     }
 }
 
-/// A dimensionless drop: everything that matters of gap, mass and size is in here.
-#[derive(Clone, Copy, Debug)]
-struct Drop {
-    friction: f64,
-    restitution: f64,
-    inertia_ratio: f64,
-    spin: f64,
-    gravity: bool,
-    /// In units of T.
-    step: f64,
-    start: Start<f64>,
-}
-
-fn config<R: Precision>(drop: &Drop) -> RigidConfig<R> {
-    // Gap, gravity and radius of 1 make the units those of the model.
-    let one = R::ONE;
-    RigidConfig {
-        mass: one,
-        radius: one,
-        polar_inertia: R::lit(drop.inertia_ratio),
-        clearance: one,
-        friction: R::lit(drop.friction),
-        restitution: R::lit(drop.restitution),
-        gravity: if drop.gravity { one } else { R::ZERO },
-        speed: one,
-        step: R::lit(drop.step),
-    }
-}
-
-fn start<R: Precision>(drop: &Drop) -> Start<R> {
-    match drop.start {
-        Start::Free { position, velocity } => Start::Free {
-            position: position.map(R::lit),
-            velocity: velocity.map(R::lit),
-        },
-        Start::Wall {
-            sin,
-            cos,
-            tangential,
-        } => Start::Wall {
-            sin: R::lit(sin),
-            cos: R::lit(cos),
-            tangential: R::lit(tangential),
-        },
-    }
-}
-
-/// Translation, spin and height, per mass.
-fn energy<R: Precision>(drop: &Drop, k: &Kinematics<R>) -> f64 {
-    let [u, v] = k.velocity.map(R::to_f64);
-    let spin = k.spin.to_f64();
-    let height = if drop.gravity {
-        k.position[1].to_f64()
-    } else {
-        0.0
-    };
-    0.5 * (u * u + v * v) + 0.5 * drop.inertia_ratio * spin * spin + height
-}
-
 fn built<R: Precision>(drop: &Drop) -> Moreau<R> {
-    Moreau::try_new(&config(drop)).expect("valid configuration")
+    Moreau::try_new(&drop.config()).expect("valid configuration")
 }
 
 /// On the wall at the bottom, with this speed.
@@ -191,12 +131,12 @@ fn from_bottom(friction: f64, gravity: bool, spin: f64, step: f64, tangential: f
 fn energy_swing(drop: &Drop, time: f64) -> f64 {
     let model = built::<f64>(drop);
     let mut state = model
-        .start(&start(drop), drop.spin, |_| {})
+        .start(&drop.start.rounded(), drop.spin, |_| {})
         .expect("valid start");
-    let first = energy(drop, &model.kinematics(&state));
+    let first = drop.energy(&model.kinematics(&state));
     (0..(time / drop.step) as u64).fold(0.0, |worst, _| {
         model.step(&mut state, |_| {});
-        worst.max((energy(drop, &model.kinematics(&state)) - first).abs())
+        worst.max((drop.energy(&model.kinematics(&state)) - first).abs())
     })
 }
 
@@ -225,7 +165,7 @@ fn whirl_without_gravity_grows_exactly() {
         let drop = from_bottom(0.1, false, -1000.0, step, 1.0);
         let model = built::<f64>(&drop);
         let mut state = model
-            .start(&start(&drop), drop.spin, |_| {})
+            .start(&drop.start.rounded(), drop.spin, |_| {})
             .expect("valid start");
         let mut rolls = None;
         for tick in 1..=(10.0 / step) as u64 {
@@ -253,9 +193,9 @@ fn whirl_without_gravity_grows_exactly() {
 fn check<R: Precision>(drop: &Drop, steps: u32, rounding: f64) -> Result<(), TestCaseError> {
     let model = built::<R>(drop);
     let mut state = model
-        .start(&start(drop), R::lit(drop.spin), |_| {})
+        .start(&drop.start.rounded(), R::lit(drop.spin), |_| {})
         .expect("valid start");
-    let first = energy(drop, &model.kinematics(&state));
+    let first = drop.energy(&model.kinematics(&state));
     let size = first.abs().max(1.0);
     let step = drop.step;
     for _ in 0..steps {
@@ -264,7 +204,7 @@ fn check<R: Precision>(drop: &Drop, steps: u32, rounding: f64) -> Result<(), Tes
         let k = model.kinematics(&state);
         let [x, y] = k.position.map(R::to_f64);
         let [u, v] = k.velocity.map(R::to_f64);
-        let now = energy(drop, &k);
+        let now = drop.energy(&k);
         prop_assert!(now.is_finite() && k.spin.is_finite());
         let beyond = x.hypot(y) - 1.0;
         let path = step * (u.hypot(v) + step);
@@ -281,16 +221,6 @@ fn check<R: Precision>(drop: &Drop, steps: u32, rounding: f64) -> Result<(), Tes
         }
     }
     Ok(())
-}
-
-prop_compose! {
-    fn inside()(radius in 0.0..1.0_f64, angle in 0.0..std::f64::consts::TAU,
-                speed in 0.0..3.0_f64, heading in 0.0..std::f64::consts::TAU) -> Start<f64> {
-        Start::Free {
-            position: [radius * angle.cos(), radius * angle.sin()],
-            velocity: [speed * heading.cos(), speed * heading.sin()],
-        }
-    }
 }
 
 prop_compose! {
