@@ -102,10 +102,19 @@ impl Use for Run<'_> {
                 samples.push([tick as f64 * step, x, y, u, v]);
             },
             |h| {
-                if let Change::Impact(normal) = h.change {
-                    let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
-                    let [x, y, u, v] = in_si(&h.after);
-                    impacts.push([at, x, y, u, v, normal.to_f64() * scales.speed]);
+                let [x, y, u, v] = in_si(&h.after);
+                match h.change {
+                    Change::Impact(normal) => {
+                        let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
+                        impacts.push([at, x, y, u, v, normal.to_f64() * scales.speed]);
+                    }
+                    // An impact that takes time: its state just after is that at its end.
+                    Change::Released(_) => {
+                        if let Some(impact) = impacts.last_mut() {
+                            impact[1..5].copy_from_slice(&[x, y, u, v]);
+                        }
+                    }
+                    _ => {}
                 }
             },
         );
