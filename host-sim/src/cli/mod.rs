@@ -38,7 +38,11 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Scene { what }) => {
             match what {
-                SceneCommand::Explain { scene } => say(&[], &explain(&load(&scene)?)),
+                SceneCommand::Explain { scene } => {
+                    let mut scene = load(&scene)?;
+                    let why = choose(&mut scene)?;
+                    say(&[], &(why + &explain(&scene)));
+                }
                 SceneCommand::List => say(&[], &list()?),
             }
             Ok(())
