@@ -56,9 +56,40 @@ pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
 /// The drawing for this machine as a file of its own.
 pub fn svg(trade: &Trade) -> String {
     let axes = Axes::of(&trade.rows, Cost::Here);
+    let points = html! { (axes.points(&trade.rows)) (key(&trade.rows)) };
     axes.chart()
-        .file(WIDTH, &axes.front(&trade.rows), &axes.points(&trade.rows))
+        .file(WIDTH, &axes.front(&trade.rows), &points)
         .into_string()
+}
+
+/// What the points mean, inside the drawing.
+fn key(rows: &[Row]) -> Markup {
+    let mut entries: Vec<(String, String)> = shown(rows)
+        .map(|rung| {
+            (
+                format!("{} f32", rung_class(rung)),
+                format!("rung {}", rung.name()),
+            )
+        })
+        .collect();
+    entries.extend(Precision::ALL.map(|precision| {
+        let name = precision.name();
+        (format!("levitated {name}"), name.to_owned())
+    }));
+    html! {
+        @for (index, (class, name)) in entries.iter().enumerate() {
+            @let y = 0.5 * HEIGHT + 20.0 * index as f64;
+            circle class=(class) cx="86%" cy=(y) r="4" {}
+            text x="87.5%" y=(y) dy="4" { (name) }
+        }
+    }
+}
+
+/// The rungs of the table.
+fn shown(rows: &[Row]) -> impl Iterator<Item = Rung> {
+    Rung::ALL
+        .into_iter()
+        .filter(|rung| rows.iter().any(|row| row.rung == *rung))
 }
 
 /// Style class of a rung.
@@ -147,10 +178,9 @@ fn caption(row: &Row) -> String {
 
 /// What the points mean.
 pub(super) fn legend(rows: &[Row]) -> Markup {
-    let shown = |rung: Rung| rows.iter().any(|row| row.rung == rung);
     html! {
         ul.legend {
-            @for rung in Rung::ALL.into_iter().filter(|&rung| shown(rung)) {
+            @for rung in shown(rows) {
                 li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung.name()) }
             }
             @for precision in Precision::ALL {
