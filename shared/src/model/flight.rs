@@ -1,7 +1,7 @@
 //! Free flight: a parabola from its launch to its next contact, solved for once.
 
 use crate::model::law::Law;
-use crate::model::polynomial::first_rise;
+use crate::model::polynomial::{early_rise, first_rise};
 use crate::real::Real;
 
 /// Over the time in which a flight crosses the whole gap.
@@ -103,11 +103,11 @@ impl<R: Real> Flight<R> {
         let [c2, c3, c4] = self.curve(law);
         let [u, v] = self.velocity;
         let c = [-R::TWO * launch, c2, c3, c4, R::ZERO];
-        self.resting_on(first_rise(
-            &c,
-            [R::ZERO, u * u + v * v],
-            self.outside_at(law),
-        ))
+        let lost = u * u + v * v;
+        self.resting_on(
+            early_rise(&c, lost)
+                .unwrap_or_else(|| first_rise(&c, [R::ZERO, lost], self.outside_at(law))),
+        )
     }
 
     /// Next contact after a lift-off, where the wall had just ceased to press: exactly 4 v_y/g.

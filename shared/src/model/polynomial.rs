@@ -5,6 +5,9 @@ use crate::real::Real;
 /// Highest degree: a free parabola against a circle.
 const DEGREE: usize = 4;
 
+/// How far above its rounding a slope has to be to be certain. Chosen.
+const CERTAIN: f64 = 1024.0;
+
 /// Newton steps in one bracket; halving alone would need as many as there are binary digits.
 const ITERATIONS: usize = 64;
 
@@ -92,6 +95,25 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize, end: R) -> [R; DEGREE] {
     found
 }
 
+/// The first t above 0 at which a polynomial that is negative there becomes positive, and its slope,
+/// where bounds alone show that it rises all the way to there and well beyond rounding: a short hop.
+/// `lost` is the size of what cancelled in the linear coefficient.
+pub(crate) fn early_rise<R: Real>(c: &Quartic<R>, lost: R) -> Option<(R, R)> {
+    let [constant, linear, c2, c3, c4] = *c;
+    if constant >= R::ZERO || linear <= R::lit(CERTAIN) * R::EPSILON * lost {
+        return None;
+    }
+    // Up to `end` the slope keeps half of its first value, so the rise comes before it.
+    let first = -constant / linear;
+    let end = first + first;
+    let bend = R::TWO * c2.abs() + (R::lit(3.0) * c3.abs() + R::lit(4.0) * c4.abs() * end) * end;
+    if bend * end > R::HALF * linear {
+        return None;
+    }
+    let t = bracketed(c, R::ZERO, end, first);
+    Some((t, evaluate(c, t).1))
+}
+
 /// The first t in (0, `end`) at which a polynomial that is negative just above 0 becomes positive, and
 /// its slope there. A maximum that rises above 0 by no more than rounding is a graze and is passed over;
 /// `lost` are the sizes of what cancelled in the constant and the linear coefficient. Infinity if
@@ -154,7 +176,29 @@ mod tests {
 
     #[test]
     fn a_tiny_hop_keeps_all_digits() {
-        let (t, _) = first_rise(&[-2e-9f64, 1.0, -0.3, 0.25, 0.0], [0.0; 2], 9.0);
+        let hop = [-2e-9f64, 1.0, -0.3, 0.25, 0.0];
+        let (t, _) = first_rise(&hop, [0.0; 2], 9.0);
         assert!((t / 2.000_000_001_2e-9 - 1.0).abs() < 1e-14, "{t}");
+        assert_eq!(early_rise(&hop, 1.0), Some(first_rise(&hop, [0.0; 2], 9.0)));
+    }
+
+    #[test]
+    fn an_early_rise_is_the_first_or_none() {
+        let mut early = 0;
+        for a in [-3.0f64, -1.0, -0.2, 0.0, 0.4, 2.0] {
+            for b in [-2.0, -0.25, 0.0, 0.25, 1.5] {
+                for launch in [1e-9, 1e-3, 0.1, 0.5, 2.0] {
+                    let c = [-launch, 1.0, a, b, 0.0];
+                    let Some((t, _)) = early_rise(&c, 1.0) else {
+                        continue;
+                    };
+                    early += 1;
+                    let first = first_rise(&c, [0.0; 2], 1e3).0;
+                    assert!((t / first - 1.0).abs() < 1e-14, "{c:?}: {t} {first}");
+                }
+            }
+        }
+        assert!(early > 60, "{early}");
+        assert_eq!(early_rise(&[-1e-3f64, 1e-14, 1.0, 0.0, 0.0], 1.0), None);
     }
 }
