@@ -11,11 +11,11 @@ use touchdown_sim::scene::{Precision, Scene};
 use touchdown_sim::truth;
 use touchdown_tests::growth::{apart, growth, unit_speed};
 
-/// Scenes, where the environment's `PROPTEST_CASES` says nothing else.
+/// Scenes, where the environment's `PROPTEST_CASES` says nothing else. In 3000 a few go beyond the f64 target,
+/// to 1.9 of it, and the test fails: the reference is no better than that. In one such scene it was 1.8e-14 off
+/// after 15 impacts against 40 digits, the model 5e-15.
 const SCENES: usize = 150;
-/// In f32 the rounding of ever higher speeds along the wall outgrows the target beyond it: 1.23 of it in one
-/// of 3000 scenes with friction to 2.
-const MOST_FRICTION: f64 = 1.5;
+const MOST_FRICTION: f64 = 2.0;
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Impacts that are compared.
 const IMPACTS: usize = 40;
@@ -67,9 +67,7 @@ fn worst(scene: &Scene, truth: &History, growth: &[f64], precision: Precision) -
             break;
         }
         let target = match precision {
-            // Twice the target: the reference's own error is as large (1.8e-14 after 15 impacts of one scene
-            // against 40 digits, where the model's was 5e-15).
-            Precision::F64 => 2.0 * (1e-14 + 20.0 * growth * 2.2e-16),
+            Precision::F64 => 1e-14 + 20.0 * growth * 2.2e-16,
             Precision::F32 => 5e-6 + 50.0 * growth * 6e-8,
         };
         let error = history.impacts.get(k).map_or(f64::INFINITY, |impact| {
