@@ -12,7 +12,7 @@ use touchdown_sim::truth;
 use touchdown_tests::growth::{apart, growth, unit_speed};
 
 /// Scenes, where the environment's `PROPTEST_CASES` says nothing else. In 3000 a few go beyond the f64 target,
-/// to 1.9 of it, and the test fails: the reference is no better than that. In one such scene it was 1.8e-14 off
+/// to 1.9 of it, and the test fails: about the own error of the reference. In one such scene it was 1.8e-14 off
 /// after 15 impacts against 40 digits, the model 5e-15.
 const SCENES: usize = 150;
 const MOST_FRICTION: f64 = 2.0;
