@@ -14,6 +14,8 @@ mod contact;
 mod flight;
 mod follow;
 mod hertz;
+mod hold;
+mod impulse;
 mod kinematics;
 mod law;
 mod moreau;
