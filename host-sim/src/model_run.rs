@@ -77,6 +77,7 @@ fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output,
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
+        Rung::Support | Rung::TwoPlane => todo!(),
     }
 }
 

@@ -5,26 +5,34 @@ use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
 use super::contact::{materials, step_in_contact};
-use super::file::{
-    ModelTable, RetainerTable, RotorTable, RunTable, SceneFile, SensorsTable, StartTable,
-};
+use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
 use super::flaw::Flaw;
 use super::limits;
-use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start};
+use super::machine::{retainer, rotor, start};
+use super::support::{BallBearingTable, SupportTable};
+use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
 use crate::sensors::SensorsConfig;
 
-const RPM: f64 = std::f64::consts::TAU / 60.0;
+pub(super) const RPM: f64 = std::f64::consts::TAU / 60.0;
 pub(super) const MILLI: f64 = 1e-3;
 pub(super) const MICRO: f64 = 1e-6;
-/// How far outside the gap rounding may put a start on the wall, relative to the clearance.
-const ON_THE_WALL: f64 = 1e-9;
 
 pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let rotor = rotor(&file.rotor)?;
     let retainer = retainer(&file.retainer)?;
-    let start = start(&file.start, &retainer)?;
+    // The rings of a rotor that tilts are looked at below.
+    let clearance = match file.two_plane {
+        Some(_) => f64::INFINITY,
+        None => retainer.clearance,
+    };
+    let start = start(&file.start, clearance)?;
     let run = run(&file.run)?;
-    let model = model(&file.model, &run)?;
+    let support = file.support.as_ref().map(SupportTable::check).transpose()?;
+    let ball_bearing = file.ball_bearing.as_ref();
+    let ball_bearing = ball_bearing.map(BallBearingTable::check).transpose()?;
+    let two_plane = two_plane(&file, &rotor, &retainer, &start)?;
+    let needed = needed(&file)?;
+    let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
     let materials = materials(&file.materials)?;
     let mut scene = Scene {
@@ -33,6 +41,9 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         source: file.source,
         rotor,
         retainer,
+        support,
+        ball_bearing,
+        two_plane,
         start,
         run,
         model,
@@ -59,7 +70,11 @@ pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> 
     ))
 }
 
-fn zero_or_more(table: &'static str, key: &'static str, value: f64) -> Result<f64, Flaw> {
+pub(super) fn zero_or_more(
+    table: &'static str,
+    key: &'static str,
+    value: f64,
+) -> Result<f64, Flaw> {
     if value >= 0.0 {
         return Ok(value);
     }
@@ -84,99 +99,6 @@ pub(super) fn between(
     Err(Flaw::new(table, key, rule))
 }
 
-fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
-    let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
-    let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
-    let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
-    let radius = MILLI * between("rotor", "radius_mm", radius, limits::RADIUS_MM)?;
-    let solid = 0.5 * mass * radius * radius;
-    let polar_inertia = match table.polar_inertia_kg_m2 {
-        Some(inertia) => {
-            let inertia = above_zero("rotor", "polar_inertia_kg_m2", inertia)?;
-            let ratio = inertia / solid;
-            if !limits::INERTIA_RATIO.contains(&ratio) {
-                let (low, high) = limits::INERTIA_RATIO.into_inner();
-                let rule = format!(
-                    "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
-                     ({solid:.3e}), is {inertia}"
-                );
-                return Err(Flaw::new("rotor", "polar_inertia_kg_m2", rule));
-            }
-            inertia
-        }
-        None => solid,
-    };
-    let speed = between("rotor", "speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
-    Ok(Rotor {
-        mass,
-        radius,
-        polar_inertia,
-        spin: RPM * speed,
-    })
-}
-
-fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
-    let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
-    let friction = zero_or_more("retainer", "friction", table.friction)?;
-    Ok(Retainer {
-        clearance: MILLI * between("retainer", "clearance_mm", clearance, limits::CLEARANCE_MM)?,
-        friction: between("retainer", "friction", friction, limits::FRICTION)?,
-        restitution: between("retainer", "restitution", table.restitution, 0.0..=1.0)?,
-    })
-}
-
-fn start(table: &StartTable, retainer: &Retainer) -> Result<Start, Flaw> {
-    let free = [
-        ("x_mm", table.x_mm),
-        ("y_mm", table.y_mm),
-        ("vx_mm_s", table.vx_mm_s),
-        ("vy_mm_s", table.vy_mm_s),
-    ];
-    let wall = [
-        ("angle_deg", table.angle_deg),
-        ("tangential_mm_s", table.tangential_mm_s),
-    ];
-    let first = |keys: &[(&'static str, Option<f64>)]| {
-        keys.iter()
-            .find(|(_, value)| value.is_some())
-            .map(|(key, _)| *key)
-    };
-    if let Some(wall_key) = first(&wall) {
-        if let Some(free_key) = first(&free) {
-            let rule = format!(
-                "{wall_key} starts the rotor on the wall, {free_key} starts it free: give one kind"
-            );
-            return Err(Flaw::new("start", wall_key, rule));
-        }
-        let angle = table.angle_deg.unwrap_or(0.0);
-        let angle = between("start", "angle_deg", angle, limits::ANGLE_DEG)?;
-        let speed = table.tangential_mm_s.unwrap_or(0.0);
-        let speed = between("start", "tangential_mm_s", speed, limits::SPEED_MM_S)?;
-        return Ok(Start::Wall {
-            angle: angle.to_radians(),
-            tangential: MILLI * speed,
-        });
-    }
-    for (key, speed) in &free[2..] {
-        between("start", key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
-    }
-    let [x, y, vx, vy] = free.map(|(_, value)| MILLI * value.unwrap_or(0.0));
-    let distance = x.hypot(y);
-    if distance > retainer.clearance * (1.0 + ON_THE_WALL) {
-        let key = if x.abs() > y.abs() { "x_mm" } else { "y_mm" };
-        let rule = format!(
-            "the start is outside the gap: {} mm from the centre, the clearance is {} mm",
-            distance / MILLI,
-            retainer.clearance / MILLI
-        );
-        return Err(Flaw::new("start", key, rule));
-    }
-    Ok(Start::Free {
-        position: [x, y],
-        velocity: [vx, vy],
-    })
-}
-
 fn run(table: &RunTable) -> Result<Run, Flaw> {
     let duration = above_zero("run", "duration_s", table.duration_s)?;
     if duration > 86_400.0 {
@@ -192,19 +114,76 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
         );
         return Err(Flaw::new("run", "gravity_m_s2", rule));
     }
+    let gravity = between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)?;
+    let inclination = table.inclination_deg;
+    let inclination = between(
+        "run",
+        "inclination_deg",
+        inclination,
+        limits::INCLINATION_DEG,
+    )?;
+    let across = gravity * inclination.to_radians().cos();
     Ok(Run {
         duration,
-        gravity: between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)?,
+        // A vertical axis leaves rounding only.
+        gravity: if across < limits::LEAST_GRAVITY_M_S2 {
+            0.0
+        } else {
+            across
+        },
         sample_rate: between("run", "sample_rate_hz", rate, 100.0..=200_000.0)?,
         seed: table.seed,
     })
 }
 
-fn model(table: &ModelTable, run: &Run) -> Result<Model, Flaw> {
+/// The lowest rung that has all parts of the machine.
+fn needed(file: &SceneFile) -> Result<Rung, Flaw> {
+    let gives_way = [
+        ("support", file.support.is_some()),
+        ("ball_bearing", file.ball_bearing.is_some()),
+    ];
+    let gives_way = gives_way.iter().find(|(_, given)| *given);
+    match (gives_way, file.two_plane.is_some()) {
+        (Some((table, _)), true) => {
+            let rule = format!("no rung has both [{table}] and [two_plane]: leave one out");
+            Err(Flaw::new(table, "", rule))
+        }
+        (Some(_), false) => Ok(Rung::Support),
+        (None, true) => Ok(Rung::TwoPlane),
+        (None, false) => Ok(Rung::Rigid),
+    }
+}
+
+fn two_plane(
+    file: &SceneFile,
+    rotor: &Rotor,
+    retainer: &Retainer,
+    start: &Start,
+) -> Result<Option<TwoPlane>, Flaw> {
+    let Some(table) = &file.two_plane else {
+        let without = [("ring", file.ring.len()), ("magnet", file.magnet.len())];
+        return match without.iter().find(|(_, count)| *count > 0) {
+            Some((table, _)) => {
+                let rule = format!("[[{table}]] needs [two_plane]");
+                Err(Flaw::new(table, "z_mm", rule))
+            }
+            None => Ok(None),
+        };
+    };
+    let two_plane = table.check(rotor, retainer, &file.ring, &file.magnet)?;
+    two_plane.check_start(start)?;
+    Ok(Some(two_plane))
+}
+
+fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
     let rung = match table.rung.as_deref() {
-        None => Rung::Rigid,
+        None => needed,
         Some(name) => named("model", "rung", name, &Rung::ALL, Rung::name)?,
     };
+    if rung == Rung::TwoPlane && needed != rung {
+        let rule = "rung = \"two-plane\" needs [two_plane] and [[ring]]";
+        return Err(Flaw::new("model", "rung", rule));
+    }
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
         Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::name)?,

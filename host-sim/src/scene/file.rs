@@ -3,6 +3,9 @@
 use serde::Deserialize;
 use touchdown_core::detect::Tuning;
 
+use super::support::{BallBearingTable, SupportTable};
+use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
@@ -11,6 +14,13 @@ pub(super) struct SceneFile {
     pub fidelity: Option<String>,
     pub rotor: RotorTable,
     pub retainer: RetainerTable,
+    pub support: Option<SupportTable>,
+    pub ball_bearing: Option<BallBearingTable>,
+    pub two_plane: Option<TwoPlaneTable>,
+    #[serde(default)]
+    pub ring: Vec<RingTable>,
+    #[serde(default)]
+    pub magnet: Vec<MagnetTable>,
     #[serde(default)]
     pub start: StartTable,
     pub run: RunTable,
@@ -59,6 +69,8 @@ pub(super) struct RunTable {
     pub duration_s: f64,
     #[serde(default = "standard_gravity")]
     pub gravity_m_s2: f64,
+    #[serde(default)]
+    pub inclination_deg: f64,
     #[serde(default = "default_rate")]
     pub sample_rate_hz: f64,
     #[serde(default = "default_seed")]

@@ -10,6 +10,8 @@ pub(super) struct Flaw {
     pub table: &'static str,
     pub key: &'static str,
     pub rule: String,
+    /// Where the table stands several times: which.
+    row: usize,
 }
 
 impl Flaw {
@@ -18,7 +20,13 @@ impl Flaw {
             table,
             key,
             rule: rule.into(),
+            row: 0,
         }
+    }
+
+    /// In the table of this name that stands at `row`, from 0.
+    pub fn in_row(self, row: usize) -> Self {
+        Self { row, ..self }
     }
 
     /// Where the key stands; its table, or the start of the text, where it is not written.
@@ -28,6 +36,10 @@ impl Flaw {
         };
         let Some((_, table)) = root.get_ref().get_key_value(self.table) else {
             return 0..0;
+        };
+        let table = match table.get_ref() {
+            DeValue::Array(rows) => rows.get(self.row).unwrap_or(table),
+            _ => table,
         };
         let key = table.get_ref().as_table().and_then(|t| {
             let (key, value) = t.get_key_value(self.key)?;

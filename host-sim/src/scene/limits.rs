@@ -30,3 +30,35 @@ pub const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;
 pub const LEAST_GRAVITY_M_S2: f64 = 1e-6;
 /// Length of a step, us.
 pub const STEP_US: RangeInclusive<f64> = 1.0..=1000.0;
+/// Stiffness of a support or magnet, N/m.
+pub const STIFFNESS_N_M: RangeInclusive<f64> = 1.0..=1e12;
+/// Damping of a support, N s/m.
+pub const DAMPING_N_S_M: RangeInclusive<f64> = 0.0..=1e9;
+/// Of a retainer ring to its hard stop, mm.
+pub const TRAVEL_MM: RangeInclusive<f64> = 1e-3..=100.0;
+/// Inertia of an inner ring, kg m^2.
+pub const RING_INERTIA_KG_M2: RangeInclusive<f64> = 1e-12..=1e6;
+/// Drag of a bearing, N m or N m s; loss of heat, W/K.
+pub const DRAG: RangeInclusive<f64> = 0.0..=1e6;
+/// Speed of a cage over that of the inner ring; 1/2 with balls of no size.
+pub const CAGE_RATIO: RangeInclusive<f64> = 0.05..=0.5;
+/// J/K.
+pub const HEAT_CAPACITY_J_K: RangeInclusive<f64> = 1e-3..=1e9;
+/// Marks on a turn, for an optical sensor.
+pub const MARKS: RangeInclusive<f64> = 1.0..=1000.0;
+/// Axial place on a rotor, mm.
+pub const PLACE_MM: RangeInclusive<f64> = -1e5..=1e5;
+/// Polar over transverse inertia; 2 for a thin disc.
+pub const GYROSCOPIC_RATIO: RangeInclusive<f64> = 1e-6..=2.0;
+/// Unbalance, g mm.
+pub const UNBALANCE_G_MM: RangeInclusive<f64> = 0.0..=1e9;
+/// Couple unbalance, g mm^2.
+pub const COUPLE_G_MM2: RangeInclusive<f64> = 0.0..=1e12;
+/// Force of a magnet, N.
+pub const FORCE_N: RangeInclusive<f64> = -1e9..=1e9;
+/// Slope of the rotor's axis, mrad, and its rate, rad/s.
+pub const TILT: RangeInclusive<f64> = -1e4..=1e4;
+/// First bending mode, Hz.
+pub const ELASTIC_MODE_HZ: RangeInclusive<f64> = 1.0..=1e6;
+/// Rotor's axis above the horizontal, deg.
+pub const INCLINATION_DEG: RangeInclusive<f64> = -90.0..=90.0;

@@ -8,15 +8,21 @@ mod explain;
 mod file;
 mod flaw;
 pub mod limits;
+mod machine;
 mod materials;
 mod model;
 mod outputs;
+pub mod parts;
+mod support;
+mod two_plane;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use explain::explain;
 pub use materials::{Contact, Materials};
 pub use model::{Math, Model, Precision, Rung, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
+pub use support::{BallBearing, Support};
+pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
 
 use std::path::Path;
 
@@ -42,6 +48,12 @@ pub struct Scene {
     pub rotor: Rotor,
     /// The retainer bearing.
     pub retainer: Retainer,
+    /// What the retainer ring stands on, where that gives way.
+    pub support: Option<Support>,
+    /// The retainer as a ball bearing, where its inner ring turns.
+    pub ball_bearing: Option<BallBearing>,
+    /// The rotor's two ends, where it tilts.
+    pub two_plane: Option<TwoPlane>,
     /// How it starts.
     pub start: Start,
     /// How long, and how often it is sampled.
@@ -87,7 +99,7 @@ pub struct Retainer {
 pub struct Run {
     /// From the release, s.
     pub duration: f64,
-    /// Downwards, m/s^2.
+    /// Across the rotor's axis: downwards, m/s^2.
     pub gravity: f64,
     /// Of the sensors, Hz.
     pub sample_rate: f64,
@@ -145,6 +157,17 @@ impl Scene {
                 self.retainer.clearance * 1e3,
                 self.sensors.range * 1e6
             ));
+        }
+        for part in parts::parts(self) {
+            if part.asked && !part.modelled {
+                warnings.push(format!(
+                    "{}: {}: {}, the scene has rung {}",
+                    self.name,
+                    part.name,
+                    part.reason,
+                    self.model.rung.name()
+                ));
+            }
         }
         warnings.extend(self.step_warning());
         warnings

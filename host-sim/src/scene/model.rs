@@ -12,6 +12,10 @@ pub enum Rung {
     Moreau,
     /// Contact force and its duration.
     Hertz,
+    /// A retainer ring on a spring, or one that turns.
+    Support,
+    /// A rotor that tilts, in several rings.
+    TwoPlane,
 }
 
 /// How a rung goes through time.
@@ -20,7 +24,7 @@ pub enum Rung {
 pub enum Scheme {
     /// From the launch to the next change, in closed form or by series. Rung `rigid`.
     Launch,
-    /// Impact laws at the middle of each step (Moreau, Jean). Rung `moreau`.
+    /// Impact laws at the middle of each step (Moreau, Jean). Rungs `moreau`, `support`, `two-plane`.
     Midpoint,
     /// Semi-implicit Euler. Rung `hertz`.
     Euler,
@@ -67,7 +71,13 @@ pub struct Model {
 
 impl Rung {
     /// All, by rising cost.
-    pub const ALL: [Self; 3] = [Self::Rigid, Self::Moreau, Self::Hertz];
+    pub const ALL: [Self; 5] = [
+        Self::Rigid,
+        Self::Moreau,
+        Self::Hertz,
+        Self::Support,
+        Self::TwoPlane,
+    ];
 
     /// As in a scene file.
     pub fn name(self) -> &'static str {
@@ -75,6 +85,8 @@ impl Rung {
             Self::Rigid => "rigid",
             Self::Moreau => "moreau",
             Self::Hertz => "hertz",
+            Self::Support => "support",
+            Self::TwoPlane => "two-plane",
         }
     }
 
@@ -82,7 +94,7 @@ impl Rung {
     pub fn schemes(self) -> &'static [Scheme] {
         match self {
             Self::Rigid => &[Scheme::Launch],
-            Self::Moreau => &[Scheme::Midpoint],
+            Self::Moreau | Self::Support | Self::TwoPlane => &[Scheme::Midpoint],
             Self::Hertz => &[Scheme::Euler, Scheme::Verlet],
         }
     }

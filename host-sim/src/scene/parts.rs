@@ -1,0 +1,129 @@
+//! The parts of a machine: which of them a scene has, and which its rung models.
+
+use super::{Rung, Scene};
+
+/// A part of the machine or of its physics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// For people.
+    pub name: &'static str,
+    /// Whether the scene's rung has it.
+    pub modelled: bool,
+    /// Whether the scene asks for it.
+    pub asked: bool,
+    /// Why it is in or out.
+    pub reason: &'static str,
+}
+
+/// All parts, in the order of the ladder.
+pub fn parts(scene: &Scene) -> Vec<Part> {
+    let rung = scene.model.rung;
+    let support = scene.support.as_ref();
+    let bearing = scene.ball_bearing.as_ref();
+    let two_plane = scene.two_plane.as_ref();
+    let laws = match rung {
+        Rung::Hertz => "as losses of a contact that takes time",
+        _ => "the laws that all rungs share",
+    };
+    let mut parts = vec![
+        Part {
+            name: "gap, restitution, friction, spin",
+            modelled: true,
+            asked: true,
+            reason: laws,
+        },
+        Part {
+            name: "contact force and its duration",
+            modelled: rung == Rung::Hertz,
+            asked: false,
+            reason: if rung == Rung::Hertz {
+                "rung hertz is asked for"
+            } else {
+                "rung hertz has them"
+            },
+        },
+    ];
+    let mut part = |name, asked: bool, needs: Rung, given, absent| {
+        let modelled = asked && rung == needs;
+        let reason = match (asked, modelled) {
+            (_, true) => given,
+            (true, false) => match needs {
+                Rung::Support => "given, but only rung support has it",
+                _ => "given, but only rung two-plane has it",
+            },
+            (false, _) => absent,
+        };
+        parts.push(Part {
+            name,
+            modelled,
+            asked,
+            reason,
+        });
+    };
+    let s = Rung::Support;
+    part(
+        "retainer's mass, spring, damper",
+        support.is_some(),
+        s,
+        "[support] is given",
+        "no [support]",
+    );
+    part(
+        "hard stop of the retainer",
+        support.is_some_and(|it| it.travel.is_some()),
+        s,
+        "travel_mm is given",
+        "no travel_mm in [support]",
+    );
+    part(
+        "inner ring, cage, drag, heat",
+        bearing.is_some(),
+        s,
+        "[ball_bearing] is given",
+        "no [ball_bearing]",
+    );
+    let t = Rung::TwoPlane;
+    part(
+        "tilt, gyroscopic effect, both ends",
+        two_plane.is_some(),
+        t,
+        "[two_plane] is given",
+        "no [two_plane]",
+    );
+    part(
+        "unbalance",
+        two_plane.is_some_and(|it| it.unbalance[0] > 0.0 || it.couple[0] > 0.0),
+        t,
+        "unbalance_g_mm or couple_g_mm2 is given",
+        "none given",
+    );
+    part(
+        "magnetic force that is left",
+        two_plane.is_some_and(|it| !it.magnets.is_empty()),
+        t,
+        "[[magnet]] is given",
+        "no [[magnet]]",
+    );
+    parts.push(Part {
+        name: "bending of the shaft, wear",
+        modelled: false,
+        asked: false,
+        reason: "no rung has them",
+    });
+    parts
+}
+
+/// Of the scene's rung.
+pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
+    let (ring, race) = (scene.support.is_some(), scene.ball_bearing.is_some());
+    match scene.model.rung {
+        Rung::Rigid | Rung::Moreau | Rung::Hertz => (3, "x, y, spin"),
+        Rung::TwoPlane => (5, "x, y, two tilts, spin"),
+        Rung::Support => match (ring, race) {
+            (false, false) => (3, "x, y, spin"),
+            (true, false) => (5, "x, y, spin; ring x, y"),
+            (false, true) => (4, "x, y, spin; inner ring's spin"),
+            (true, true) => (6, "x, y, spin; ring x, y; inner ring's spin"),
+        },
+    }
+}
