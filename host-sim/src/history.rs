@@ -187,11 +187,20 @@ impl Recorder {
         self.current = Some((phase, time));
     }
 
+    fn in_contact(&self) -> bool {
+        let contact = [PhaseKind::Sliding, PhaseKind::Rolling];
+        self.current
+            .is_some_and(|(kind, _)| contact.contains(&kind))
+    }
+
     /// Takes the next happening.
     pub fn take(&mut self, happening: Happening) {
         match happening {
             Happening::Impact(impact) => {
-                self.change(PhaseKind::Impact, impact.state.time);
+                // Another ring may hold the rotor all the while.
+                if !self.in_contact() {
+                    self.change(PhaseKind::Impact, impact.state.time);
+                }
                 self.impacts.push(impact);
             }
             Happening::Released { state, pulse } => {
@@ -225,10 +234,7 @@ impl Recorder {
 
     /// Closes the run. `still_speed` (m/s) is the speed below which a rotor in contact is at rest.
     pub fn finish(mut self, end: RotorState, still_speed: f64) -> History {
-        let in_contact = matches!(
-            self.current,
-            Some((PhaseKind::Sliding | PhaseKind::Rolling, _))
-        );
+        let in_contact = self.in_contact();
         if let Some((phase, start_s)) = self.current {
             self.phases.push(Phase {
                 phase,

@@ -24,6 +24,7 @@ pub mod reference;
 pub mod regions;
 pub mod replay;
 pub mod report;
+pub mod rings;
 pub mod scene;
 pub mod sensors;
 pub mod stream;

@@ -1,0 +1,97 @@
+//! Several rings seen as one: the rotor is in contact while it is in any, and slides while it does in any.
+
+use crate::history::Happening;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touch {
+    None,
+    Sliding,
+    Rolling,
+}
+
+/// Turns what happens in each ring into what happens to the rotor.
+#[derive(Clone, Debug)]
+pub struct Merge {
+    touches: Vec<Touch>,
+}
+
+impl Merge {
+    /// Of a rotor in flight in so many rings.
+    pub fn new(rings: usize) -> Self {
+        Self {
+            touches: vec![Touch::None; rings],
+        }
+    }
+
+    /// What `happening` in `ring` is to the rotor, if anything.
+    pub fn take(&mut self, ring: usize, happening: Happening) -> Option<Happening> {
+        let (touch, time) = match happening {
+            Happening::Impact(_) | Happening::Released { .. } => return Some(happening),
+            Happening::ContactStart {
+                time,
+                rolling: false,
+            }
+            | Happening::SlidingStart(time) => (Touch::Sliding, time),
+            Happening::ContactStart {
+                time,
+                rolling: true,
+            }
+            | Happening::RollingStart(time) => (Touch::Rolling, time),
+            Happening::LiftOff(time) => (Touch::None, time),
+        };
+        let before = self.overall();
+        *self.touches.get_mut(ring)? = touch;
+        match (before, self.overall()) {
+            (before, after) if before == after => None,
+            (_, Touch::None) => Some(Happening::LiftOff(time)),
+            (Touch::None, after) => Some(Happening::ContactStart {
+                time,
+                rolling: after == Touch::Rolling,
+            }),
+            (_, Touch::Rolling) => Some(Happening::RollingStart(time)),
+            (_, Touch::Sliding) => Some(Happening::SlidingStart(time)),
+        }
+    }
+
+    fn overall(&self) -> Touch {
+        if self.touches.contains(&Touch::Sliding) {
+            Touch::Sliding
+        } else if self.touches.contains(&Touch::Rolling) {
+            Touch::Rolling
+        } else {
+            Touch::None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(time: f64, rolling: bool) -> Happening {
+        Happening::ContactStart { time, rolling }
+    }
+
+    #[test]
+    fn contact_is_that_of_any_ring() {
+        let mut merge = Merge::new(2);
+        assert_eq!(merge.take(1, start(1.0, false)), Some(start(1.0, false)));
+        assert_eq!(merge.take(0, start(2.0, true)), None);
+        assert_eq!(
+            merge.take(1, Happening::RollingStart(3.0)),
+            Some(Happening::RollingStart(3.0))
+        );
+        assert_eq!(
+            merge.take(0, Happening::SlidingStart(4.0)),
+            Some(Happening::SlidingStart(4.0))
+        );
+        assert_eq!(
+            merge.take(0, Happening::LiftOff(5.0)),
+            Some(Happening::RollingStart(5.0))
+        );
+        assert_eq!(
+            merge.take(1, Happening::LiftOff(6.0)),
+            Some(Happening::LiftOff(6.0))
+        );
+    }
+}
