@@ -41,8 +41,8 @@ const TILTS: &str = "\
 transverse_inertia_kg_m2 = 0.03
 unbalance_g_mm = 2.7
 unbalance_deg = 10
-couple_g_mm2 = 5
-couple_deg = 20
+skew_mrad = 0.01
+skew_deg = 20
 elastic_mode_hz = 1520
 tilt_mrad = [0.1, 0.1]
 tilt_rate_rad_s = [0, 0]
@@ -191,17 +191,12 @@ fn two_planes_are_checked() {
             "1e9",
             "unbalance_deg must be -36000 to 36000",
         ),
+        ("two_plane", "skew_mrad", "-1", "skew_mrad must be 0 to"),
         (
             "two_plane",
-            "couple_g_mm2",
-            "-1",
-            "couple_g_mm2 must be 0 to",
-        ),
-        (
-            "two_plane",
-            "couple_deg",
+            "skew_deg",
             "nan",
-            "couple_deg must be a finite number",
+            "skew_deg must be a finite number",
         ),
         (
             "two_plane",

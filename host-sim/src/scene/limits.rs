@@ -52,8 +52,8 @@ pub const PLACE_MM: RangeInclusive<f64> = -1e5..=1e5;
 pub const GYROSCOPIC_RATIO: RangeInclusive<f64> = 1e-6..=2.0;
 /// Unbalance, g mm.
 pub const UNBALANCE_G_MM: RangeInclusive<f64> = 0.0..=1e9;
-/// Couple unbalance, g mm^2.
-pub const COUPLE_G_MM2: RangeInclusive<f64> = 0.0..=1e12;
+/// Principal axis against the rotor's axis, mrad.
+pub const SKEW_MRAD: RangeInclusive<f64> = 0.0..=100.0;
 /// Force of a magnet, N.
 pub const FORCE_N: RangeInclusive<f64> = -1e9..=1e9;
 /// Slope of the rotor's axis, mrad, and its rate, rad/s.

@@ -92,9 +92,9 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     );
     part(
         "unbalance",
-        two_plane.is_some_and(|it| it.unbalance[0] > 0.0 || it.couple[0] > 0.0),
+        two_plane.is_some_and(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0),
         t,
-        "unbalance_g_mm or couple_g_mm2 is given",
+        "unbalance_g_mm or skew_mrad is given",
         "none given",
     );
     part(

@@ -12,7 +12,6 @@ use super::{Retainer, Rotor, Start};
 pub const RINGS: usize = 4;
 const MAGNETS: usize = 2;
 const GRAM_MM: f64 = 1e-6;
-const GRAM_MM2: f64 = 1e-9;
 
 /// A rotor with two ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,8 +20,8 @@ pub struct TwoPlane {
     pub transverse_inertia: f64,
     /// Mass times distance of the centre of mass from the axis, kg m; its angle on the rotor, rad.
     pub unbalance: [f64; 2],
-    /// (transverse - polar inertia) times slope of the principal axis, kg m^2; its angle, rad.
-    pub couple: [f64; 2],
+    /// Slope of the principal axis against the rotor's, rad; its angle on the rotor, rad.
+    pub skew: [f64; 2],
     /// First bending mode of the rotor, Hz.
     pub elastic_mode: Option<f64>,
     /// Slope of the rotor's axis at the release: change of x and y along z.
@@ -100,8 +99,8 @@ pub(super) struct TwoPlaneTable {
     rotor_length_mm: Option<f64>,
     unbalance_g_mm: f64,
     unbalance_deg: f64,
-    couple_g_mm2: f64,
-    couple_deg: f64,
+    skew_mrad: f64,
+    skew_deg: f64,
     elastic_mode_hz: Option<f64>,
     tilt_mrad: [f64; 2],
     tilt_rate_rad_s: [f64; 2],
@@ -171,7 +170,7 @@ impl TwoPlaneTable {
         }
         for (key, angle) in [
             ("unbalance_deg", self.unbalance_deg),
-            ("couple_deg", self.couple_deg),
+            ("skew_deg", self.skew_deg),
             ("gravity_deg", self.gravity_deg),
         ] {
             between(TABLE, key, angle, limits::ANGLE_DEG)?;
@@ -182,16 +181,11 @@ impl TwoPlaneTable {
             self.unbalance_g_mm,
             limits::UNBALANCE_G_MM,
         )?;
-        let couple = between(
-            TABLE,
-            "couple_g_mm2",
-            self.couple_g_mm2,
-            limits::COUPLE_G_MM2,
-        )?;
+        let skew = between(TABLE, "skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
         Ok(TwoPlane {
             transverse_inertia: self.transverse_inertia(rotor)?,
             unbalance: [GRAM_MM * unbalance, self.unbalance_deg.to_radians()],
-            couple: [GRAM_MM2 * couple, self.couple_deg.to_radians()],
+            skew: [MILLI * skew, self.skew_deg.to_radians()],
             elastic_mode,
             tilt: self.tilt_mrad.map(|tilt| MILLI * tilt),
             tilt_rate: self.tilt_rate_rad_s,
