@@ -6,6 +6,7 @@
 //! clearance and of sqrt(clearance/g).
 
 mod contact;
+pub mod coupled;
 mod flight;
 mod impact;
 pub mod pulse;

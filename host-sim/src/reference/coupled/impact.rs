@@ -1,0 +1,152 @@
+//! Impacts at several links at once: Newton's restitution, Coulomb's impulse, by Gauss-Seidel to
+//! convergence. Also what keeps closed links closed against rounding.
+
+use super::step::Mode;
+use super::system::{Hold, SIZE, System};
+
+/// Passes over all links; near the end of its power (a light ring between two walls) the iteration
+/// needs thousands.
+const MAX_PASSES: usize = 100_000;
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// A link that takes part.
+#[derive(Clone, Copy, Debug)]
+pub struct Touching {
+    /// Its number.
+    pub link: usize,
+    /// Outward.
+    pub normal: [f64; 2],
+    /// Speed into the wall before, m/s.
+    pub closing: f64,
+    /// Normal impulse, N s.
+    pub impulse: f64,
+    rubbed: f64,
+}
+
+impl Touching {
+    /// Before the impact.
+    pub fn new(system: &System, link: usize, place: &[f64; SIZE], speed: &[f64; SIZE]) -> Self {
+        let [x, y] = system.links[link].lateral(place);
+        let distance = f64::hypot(x, y);
+        let normal = [x / distance, y / distance];
+        let touching = Self {
+            link,
+            normal,
+            closing: 0.0,
+            impulse: 0.0,
+            rubbed: 0.0,
+        };
+        Self {
+            closing: touching.outward(system, speed),
+            ..touching
+        }
+    }
+
+    /// Speed into the wall.
+    pub fn outward(&self, system: &System, speed: &[f64; SIZE]) -> f64 {
+        let w = system.links[self.link].lateral(speed);
+        w[0] * self.normal[0] + w[1] * self.normal[1]
+    }
+
+    /// Slip; that of a brake has no lateral part.
+    pub fn slip(&self, system: &System, speed: &[f64; SIZE]) -> f64 {
+        let link = &system.links[self.link];
+        let w = link.lateral(speed);
+        w[1] * self.normal[0] - w[0] * self.normal[1] + link.turning(speed)
+    }
+
+    fn press(&self, system: &System, impulse: f64, speed: &mut [f64; SIZE]) {
+        let vector = self.normal.map(|n| -n * impulse);
+        system.push(self.link, vector, 0.0, speed);
+    }
+
+    fn rub(&self, system: &System, impulse: f64, speed: &mut [f64; SIZE]) {
+        let vector = [-self.normal[1] * impulse, self.normal[0] * impulse];
+        system.push(self.link, vector, impulse, speed);
+    }
+}
+
+/// The impact: afterwards no link closes, and each that took an impulse leaves with its restitution.
+pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE]) {
+    for _ in 0..MAX_PASSES {
+        let mut settled = true;
+        for touch in touching.iter_mut() {
+            let link = &system.links[touch.link];
+            let Hold::Wall { friction, restitution, .. } = link.hold else {
+                continue;
+            };
+            let rounding = ROUNDING * link.slip_size(speed);
+            let wanted = -restitution * touch.closing.max(0.0);
+            let lateral = system.lateral(touch.link, touch.link);
+            let step = (touch.outward(system, speed) - wanted) / lateral;
+            let step = step.max(-touch.impulse);
+            touch.impulse += step;
+            touch.press(system, step, speed);
+            let mobility = lateral + system.turning(touch.link, touch.link);
+            let most = friction * touch.impulse;
+            let rubbed = touch.rubbed - touch.slip(system, speed) / mobility;
+            let rubbed = rubbed.clamp(-most, most);
+            let rub = rubbed - touch.rubbed;
+            touch.rubbed = rubbed;
+            touch.rub(system, rub, speed);
+            settled &= (step * lateral).abs() <= rounding && (rub * mobility).abs() <= rounding;
+        }
+        if settled || touching.len() == 1 {
+            return;
+        }
+    }
+}
+
+/// Takes what is left of normal speed and slip from links that have none.
+pub fn keep_speed(
+    system: &System,
+    modes: &[Mode],
+    place: &[f64; SIZE],
+    speed: &mut [f64; SIZE],
+) {
+    for _ in 0..MAX_PASSES {
+        let mut settled = true;
+        for (index, mode) in modes.iter().enumerate() {
+            let link = &system.links[index];
+            if *mode == Mode::Flight {
+                continue;
+            }
+            let touch = match link.hold {
+                Hold::Wall { .. } => Touching::new(system, index, place, speed),
+                Hold::Brake(_) => Touching {
+                    link: index,
+                    normal: [0.0; 2],
+                    closing: 0.0,
+                    impulse: 0.0,
+                    rubbed: 0.0,
+                },
+            };
+            let rounding = ROUNDING * link.slip_size(speed);
+            let lateral = system.lateral(index, index);
+            if lateral > 0.0 {
+                settled &= touch.closing.abs() <= rounding;
+                touch.press(system, touch.closing / lateral, speed);
+            }
+            if *mode == Mode::Stick {
+                let slip = touch.slip(system, speed);
+                settled &= slip.abs() <= rounding;
+                touch.rub(system, -slip / (lateral + system.turning(index, index)), speed);
+            }
+        }
+        if settled {
+            return;
+        }
+    }
+}
+
+/// Puts a link's displacement on its wall.
+pub fn keep_place(system: &System, index: usize, place: &mut [f64; SIZE]) {
+    let link = &system.links[index];
+    let Some(clearance) = link.clearance() else {
+        return;
+    };
+    let [x, y] = link.lateral(place);
+    let distance = f64::hypot(x, y);
+    let inward = (distance - clearance) / distance / system.lateral(index, index);
+    system.push(index, [-x * inward, -y * inward], 0.0, place);
+}
