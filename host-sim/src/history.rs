@@ -193,6 +193,11 @@ impl Recorder {
             .is_some_and(|(kind, _)| contact.contains(&kind))
     }
 
+    /// The present one.
+    pub fn phase(&self) -> PhaseKind {
+        self.current.map_or(PhaseKind::FreeFall, |(kind, _)| kind)
+    }
+
     /// Takes the next happening.
     pub fn take(&mut self, happening: Happening) {
         match happening {

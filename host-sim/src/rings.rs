@@ -1,6 +1,16 @@
 //! Several rings seen as one: the rotor is in contact while it is in any, and slides while it does in any.
 
-use crate::history::Happening;
+use crate::history::{Happening, History};
+
+/// What a drop did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histories {
+    /// The rotor, in contact while it is in any ring; positions of impacts are those in their ring, the
+    /// end is that of the centre of mass.
+    pub whole: History,
+    /// Each ring, where the rotor tilts; else none.
+    pub rings: Vec<History>,
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Touch {
