@@ -1,13 +1,15 @@
 //! The impact model.
 //!
 //! All of it is dimensionless (see [`crate::scales`]); x right, y up, angles from the bottom of the
-//! retainer, counter-clockwise. Three rungs, each a [`Stepper`] of its own:
+//! retainer, counter-clockwise. Three rungs in the plane, each a [`Stepper`] of its own:
 //!
 //! - [`Rigid`] integrates nothing step by step: a flight keeps its launch state and a contact its
 //!   Taylor series, and the moment at which each ends is solved for once. A step is then a comparison,
 //!   and the result does not depend on its length.
 //! - [`Moreau`] steps through the same laws: cheap, of first order, at any step.
 //! - [`Hertz`] gives each contact a force and a duration, and needs steps far shorter than it.
+//!
+//! [`TwoPlane`] is a model of its own, of a rotor that tilts in rings of their own axial places.
 
 mod clock;
 mod contact;
@@ -29,6 +31,7 @@ mod state;
 mod stepper;
 mod sum;
 mod turns;
+mod two_plane;
 mod whirl;
 
 pub use clock::Instant;
@@ -43,3 +46,7 @@ pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
 pub use state::{RigidState, Solved};
 pub use stepper::Stepper;
+pub use two_plane::{
+    Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,
+    UnbalanceConfig,
+};

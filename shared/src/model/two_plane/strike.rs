@@ -1,0 +1,226 @@
+//! Impacts: all rings that the rotor touches at one moment, together.
+//!
+//! Each follows restitution and Coulomb's law with the mobility of its place; the rings are solved for
+//! in turn until none changes. A ring that is held, or left, takes what the others drive into it
+//! without giving it back.
+
+use super::state::{Held, TwoPlaneState};
+use super::vector::Vector;
+use super::{Ring, TwoPlane};
+use crate::model::impulse::{Impulse, Mobility};
+use crate::model::kinematics::{Change, Happening};
+use crate::model::precision::Precision;
+use crate::real::Real;
+
+/// Passes over the rings; how much each gains is in docs/two-plane.md.
+const PASSES: usize = 64;
+/// Distance from the wall, in units of epsilon and the clearance, at which a ring takes part in an
+/// impact of another: what rounding leaves between two ends that fall alike.
+const TOGETHER: f64 = 1024.0;
+
+/// A ring that takes part.
+#[derive(Clone, Copy, Debug)]
+struct Meeting<R> {
+    normal: Vector<R>,
+    /// Speed into the wall before.
+    outward: R,
+    slip: R,
+    held: bool,
+    /// 0 where contact is permanent after it.
+    restitution: R,
+    impulse: Impulse<R>,
+}
+
+impl<R: Real> Meeting<R> {
+    /// Velocity that the impulse gives a unit mass.
+    fn push(&self) -> Vector<R> {
+        let parts = Vector::new([-self.impulse.normal, self.impulse.tangential]);
+        parts * self.normal
+    }
+
+    /// Whether the rotor arrives, or lies, on a wall that does not hold it yet.
+    fn is_new(&self) -> bool {
+        !self.held && self.outward >= R::ZERO
+    }
+}
+
+impl<R: Precision, const N: usize> TwoPlane<R, N> {
+    pub(super) fn together() -> R {
+        R::lit(TOGETHER) * R::EPSILON
+    }
+
+    /// The impact of all rings that touch, `part` of a step after the step's start, if one moves into
+    /// its wall; `arrived` is on its wall whatever its place. With `stays` no ring is left again.
+    pub(super) fn meet(
+        &self,
+        state: &mut TwoPlaneState<R, N>,
+        arrived: Option<usize>,
+        stays: bool,
+        part: R,
+        sink: &mut impl FnMut(usize, Happening<R>),
+    ) {
+        let mut meetings = [None; N];
+        for (i, (ring, meeting)) in self.rings.iter().zip(&mut meetings).enumerate() {
+            *meeting = self.meeting(state, ring, state.is_held(i), arrived == Some(i));
+        }
+        if !meetings.iter().flatten().any(Meeting::is_new) {
+            return;
+        }
+        let mut after = *state;
+        self.strike(&mut after, &mut meetings);
+        let mut returns = [stays; N];
+        if !stays {
+            self.find_returns(&after, &meetings, &mut returns);
+        }
+        if returns.contains(&true) {
+            for (meeting, returns) in meetings.iter_mut().zip(returns) {
+                if let Some(meeting) = meeting.as_mut().filter(|_| returns) {
+                    meeting.restitution = R::ZERO;
+                }
+            }
+            after = *state;
+            self.strike(&mut after, &mut meetings);
+        }
+        *state = after;
+        for (i, meeting) in meetings.iter().enumerate() {
+            let Some(meeting) = meeting.filter(Meeting::is_new) else {
+                continue;
+            };
+            if meeting.outward > R::CUTOFF_SPEED {
+                self.tell(state, i, part, Change::Impact(meeting.outward), sink);
+            }
+            if returns.get(i) == Some(&true) {
+                if let Some(held) = state.held.get_mut(i) {
+                    *held = Some(Held {
+                        rolling: meeting.impulse.stuck,
+                        ..Held::default()
+                    });
+                }
+                self.tell(state, i, part, Change::ContactStarts, sink);
+            }
+        }
+    }
+
+    fn meeting(
+        &self,
+        state: &TwoPlaneState<R, N>,
+        ring: &Ring<R>,
+        held: bool,
+        arrived: bool,
+    ) -> Option<Meeting<R>> {
+        let (place, velocity) = state.at(ring.zeta);
+        let distance = place.length();
+        if !(held || arrived) && distance < ring.limit * (R::ONE - Self::together()) {
+            return None;
+        }
+        let normal = place.times(R::ONE / distance);
+        let outward = normal.dot(velocity);
+        Some(Meeting {
+            normal,
+            outward: if arrived {
+                outward.most(R::ZERO)
+            } else {
+                outward
+            },
+            slip: normal.cross(velocity) + ring.surface * state.spin.value(),
+            held,
+            restitution: if held { R::ZERO } else { ring.restitution },
+            impulse: Impulse::default(),
+        })
+    }
+
+    fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
+        for _ in 0..PASSES {
+            let mut settled = true;
+            for (i, ring) in self.rings.iter().enumerate() {
+                let Some(meeting) = meetings.get(i).copied().flatten() else {
+                    continue;
+                };
+                let launch = meeting.restitution * meeting.outward.most(R::ZERO);
+                let (mut speed, mut slip) = (meeting.outward + launch, meeting.slip);
+                for (j, (other, also)) in self.rings.iter().zip(meetings.iter()).enumerate() {
+                    let Some(also) = also.filter(|_| i != j) else {
+                        continue;
+                    };
+                    let push = also.push().times(Self::mobility(ring, other));
+                    speed += meeting.normal.dot(push);
+                    slip += meeting.normal.cross(push)
+                        + self.spin_mobility(ring, other) * also.impulse.tangential;
+                }
+                let normal = Self::mobility(ring, ring);
+                let mobility = Mobility {
+                    normal,
+                    tangential: normal + self.spin_mobility(ring, ring),
+                };
+                let speed = speed.most(R::ZERO);
+                let impulse = mobility.strike(R::ZERO, ring.friction, speed, slip);
+                let moved = (impulse.normal - meeting.impulse.normal).abs()
+                    + (impulse.tangential - meeting.impulse.tangential).abs();
+                settled &= moved <= R::EPSILON * (impulse.normal + impulse.tangential.abs());
+                if let Some(Some(meeting)) = meetings.get_mut(i) {
+                    meeting.impulse = impulse;
+                }
+            }
+            if settled {
+                break;
+            }
+        }
+        self.take(state, meetings);
+    }
+
+    /// Gives the impulses to the rotor, and books their work: impulse times mean velocity.
+    fn take(&self, state: &mut TwoPlaneState<R, N>, meetings: &[Option<Meeting<R>>; N]) {
+        let before = *state;
+        for (ring, meeting) in self.rings.iter().zip(meetings) {
+            let Some(meeting) = meeting else {
+                continue;
+            };
+            let push = meeting.push();
+            state.velocity[0].add(push);
+            state.velocity[1].add(push.times(ring.zeta));
+            let turned = ring.surface * meeting.impulse.tangential / self.inertia_ratio;
+            state.spin.add(turned);
+        }
+        for (ring, meeting) in self.rings.iter().zip(meetings) {
+            let Some(meeting) = meeting else {
+                continue;
+            };
+            let mean = (before.at(ring.zeta).1 + state.at(ring.zeta).1).times(R::HALF);
+            let spin = R::HALF * (before.spin.value() + state.spin.value());
+            let slip = meeting.normal.cross(mean) + ring.surface * spin;
+            let ledger = &mut state.ledger;
+            ledger
+                .lost
+                .add(meeting.impulse.normal * meeting.normal.dot(mean));
+            ledger.heat.add(-(meeting.impulse.tangential * slip));
+        }
+    }
+
+    /// Rings whose next bounce would be no longer than a step: by a step without them.
+    fn find_returns(
+        &self,
+        state: &TwoPlaneState<R, N>,
+        meetings: &[Option<Meeting<R>>; N],
+        returns: &mut [bool; N],
+    ) {
+        let time = self.step.least(self.reach(state));
+        let Some(passage) = self.pass(state, time) else {
+            return;
+        };
+        for (i, (ring, meeting)) in self.rings.iter().zip(meetings).enumerate() {
+            let Some(meeting) = meeting.filter(Meeting::is_new) else {
+                continue;
+            };
+            let velocity = state.at(ring.zeta).1;
+            let moved = passage.moved_at(ring.zeta);
+            let bent = moved - velocity.times(time);
+            let round = meeting.normal.cross(moved);
+            let pressing = R::TWO * meeting.normal.dot(bent) + round * round / ring.limit;
+            let launch = -meeting.normal.dot(velocity);
+            if let Some(returns) = returns.get_mut(i) {
+                *returns =
+                    pressing > R::ZERO && R::TWO * launch * time * time <= pressing * self.step;
+            }
+        }
+    }
+}
