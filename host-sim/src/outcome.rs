@@ -2,6 +2,7 @@
 //! detector said.
 
 use crate::history::{History, PhaseKind, RotorState};
+use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
 
@@ -46,6 +47,8 @@ pub struct TracePoint {
     pub state: RotorState,
     /// The true phase.
     pub phase: PhaseKind,
+    /// What moves besides.
+    pub moving: Moving,
     /// What the sensors of plane a read, m; `None` where unusable.
     pub sensed: Option<[f64; 2]>,
 }
@@ -57,6 +60,8 @@ pub struct Outcome {
     pub model: History,
     /// The independent reference.
     pub truth: History,
+    /// Each ring, where the rotor tilts: the model's and the reference's.
+    pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.
     pub trace: Vec<TracePoint>,
     /// The detector.

@@ -73,6 +73,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         let [x, y] = state.position;
         let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
         trace.push(TracePoint {
+                moving: crate::truth::Moving::Nothing,
             state,
             phase,
             sensed,
@@ -81,6 +82,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     let end = reference.advance(subject.duration, &mut |it| recorder.take(it));
     let truth = recorder.finish(end, reference.still_speed());
     Outcome {
+        rings: Vec::new(),
         model: truth.clone(),
         detection: detection(&truth),
         truth,
