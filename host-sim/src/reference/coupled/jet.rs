@@ -40,11 +40,6 @@ impl Jet {
         self.terms[self.order] = term;
     }
 
-    /// The highest known term.
-    pub fn last(&self) -> f64 {
-        self.terms[self.order]
-    }
-
     /// In rising order.
     pub fn terms(&self) -> &[f64] {
         &self.terms[..=self.order]
