@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 use touchdown_sim::history::{Happening, Impact};
-use touchdown_sim::reference::coupled::{Mode, Mount, Race, SupportMachine, SupportReference, SupportStart};
+use touchdown_sim::reference::coupled::{
+    Mode, Mount, Race, SupportMachine, SupportReference, SupportStart,
+};
 use touchdown_sim::reference::{Machine, Reference, Start};
 
 const RIG: Machine = Machine {
@@ -44,25 +46,60 @@ fn without_support_it_is_the_planar_reference() {
         (0.2, 0.0, -SPIN, [1e-4, 5e-5], 0.2),
         (0.4, 0.7, -SPIN, [1e-4, 5e-5], 0.2),
     ] {
-        let machine = Machine { friction, restitution, ..RIG };
+        let machine = Machine {
+            friction,
+            restitution,
+            ..RIG
+        };
         let start = free(position, [0.0; 2]);
         let mut expected = Vec::new();
         let planar = Reference::new(&machine, &start, spin)
             .advance(end, &mut |happening| expected.push(happening));
-        let support = SupportMachine { rotor: machine, mount: None, race: None };
+        let support = SupportMachine {
+            rotor: machine,
+            mount: None,
+            race: None,
+        };
         let mut reference = SupportReference::new(&support, &SupportStart::new(start, spin));
         let mut found = Vec::new();
         let clock = std::time::Instant::now();
         let state = reference.advance(end, &mut |_, happening| found.push(happening));
         println!("took {:?}", clock.elapsed());
         let impacts = |list: &[Happening]| {
-            let impact = |h: &Happening| match h { Happening::Impact(i) => Some(*i), _ => None };
+            let impact = |h: &Happening| match h {
+                Happening::Impact(i) => Some(*i),
+                _ => None,
+            };
             list.iter().filter_map(impact).collect::<Vec<_>>()
         };
         let (a, b) = (impacts(&expected), impacts(&found));
-        let worst = a.iter().zip(&b).map(|(a, b)| difference(a, b)).collect::<Vec<_>>();
-        println!("{} {} {} {} {:?}", expected.len(), found.len(), a.len(), b.len(), worst.iter().copied().fold(0.0, f64::max));
-        println!("{:?}\n{:?}", expected.iter().filter(|h| !matches!(h, Happening::Impact(_))).collect::<Vec<_>>(), found.iter().filter(|h| !matches!(h, Happening::Impact(_))).collect::<Vec<_>>());
-        println!("{planar:?}\n{:?} {:?} {} {} {:?}", state.position, state.velocity, state.spin, state.turns_in_contact, state.modes);
+        let worst = a
+            .iter()
+            .zip(&b)
+            .map(|(a, b)| difference(a, b))
+            .collect::<Vec<_>>();
+        println!(
+            "{} {} {} {} {:?}",
+            expected.len(),
+            found.len(),
+            a.len(),
+            b.len(),
+            worst.iter().copied().fold(0.0, f64::max)
+        );
+        println!(
+            "{:?}\n{:?}",
+            expected
+                .iter()
+                .filter(|h| !matches!(h, Happening::Impact(_)))
+                .collect::<Vec<_>>(),
+            found
+                .iter()
+                .filter(|h| !matches!(h, Happening::Impact(_)))
+                .collect::<Vec<_>>()
+        );
+        println!(
+            "{planar:?}\n{:?} {:?} {} {} {:?}",
+            state.position, state.velocity, state.spin, state.turns_in_contact, state.modes
+        );
     }
 }
