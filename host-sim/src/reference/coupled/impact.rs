@@ -72,7 +72,12 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
         let mut settled = true;
         for touch in touching.iter_mut() {
             let link = &system.links[touch.link];
-            let Hold::Wall { friction, restitution, .. } = link.hold else {
+            let Hold::Wall {
+                friction,
+                restitution,
+                ..
+            } = link.hold
+            else {
                 continue;
             };
             let rounding = ROUNDING * link.slip_size(speed);
@@ -98,12 +103,7 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
 }
 
 /// Takes what is left of normal speed and slip from links that have none.
-pub fn keep_speed(
-    system: &System,
-    modes: &[Mode],
-    place: &[f64; SIZE],
-    speed: &mut [f64; SIZE],
-) {
+pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64; SIZE], speed: &mut [f64; SIZE]) {
     for _ in 0..MAX_PASSES {
         let mut settled = true;
         for (index, mode) in modes.iter().enumerate() {
@@ -130,7 +130,11 @@ pub fn keep_speed(
             if *mode == Mode::Stick {
                 let slip = touch.slip(system, speed);
                 settled &= slip.abs() <= rounding;
-                touch.rub(system, -slip / (lateral + system.turning(index, index)), speed);
+                touch.rub(
+                    system,
+                    -slip / (lateral + system.turning(index, index)),
+                    speed,
+                );
             }
         }
         if settled {

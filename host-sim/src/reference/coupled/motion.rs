@@ -175,8 +175,14 @@ impl<L: Law> Motion<L> {
             let wall = self.system.links[link].clearance().is_some();
             let happening = match (was, *is) {
                 _ if !wall => continue,
-                (Mode::Flight, Mode::Slide(_)) => Happening::ContactStart { time, rolling: false },
-                (Mode::Flight, Mode::Stick) => Happening::ContactStart { time, rolling: true },
+                (Mode::Flight, Mode::Slide(_)) => Happening::ContactStart {
+                    time,
+                    rolling: false,
+                },
+                (Mode::Flight, Mode::Stick) => Happening::ContactStart {
+                    time,
+                    rolling: true,
+                },
                 (Mode::Slide(_) | Mode::Stick, Mode::Flight) => Happening::LiftOff(time),
                 (Mode::Slide(_), Mode::Stick) => Happening::RollingStart(time),
                 (Mode::Stick, Mode::Slide(_)) => Happening::SlidingStart(time),

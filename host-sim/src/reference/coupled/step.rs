@@ -75,8 +75,8 @@ impl Step {
         for k in 1..=ORDER {
             let part = 1.0 / k as f64;
             for i in 0..SIZE {
-                let rate = speed[i].last();
-                speed[i].push(part * forces.acceleration[i].last());
+                let rate = speed[i].terms()[k - 1];
+                speed[i].push(part * forces.acceleration[i].terms()[k - 1]);
                 place[i].push(part * rate);
             }
             forces = Forces::new(system, law, modes, &place, &speed);
@@ -148,7 +148,12 @@ impl Step {
             }
             (_, Hold::Brake(limit)) => {
                 if mode == Mode::Stick {
-                    self.hold(index, &Jet::constant(limit), grip, ROUNDING * (size + limit));
+                    self.hold(
+                        index,
+                        &Jet::constant(limit),
+                        grip,
+                        ROUNDING * (size + limit),
+                    );
                 }
             }
         }
@@ -216,13 +221,19 @@ impl Forces {
         speed: &[Jet; SIZE],
     ) -> Self {
         let forces = law.forces(place, speed);
-        let mut acceleration: [Jet; SIZE] =
-            std::array::from_fn(|i| forces[i] * system.mobility[i]);
+        let mut acceleration: [Jet; SIZE] = std::array::from_fn(|i| forces[i] * system.mobility[i]);
         let mut unknowns = Vec::new();
         for (index, (link, mode)) in system.links.iter().zip(modes).enumerate() {
             match (link.hold, *mode) {
                 (_, Mode::Flight) => {}
-                (Hold::Wall { clearance, friction, .. }, mode) => {
+                (
+                    Hold::Wall {
+                        clearance,
+                        friction,
+                        ..
+                    },
+                    mode,
+                ) => {
                     let [x, y] = link.lateral(place).map(|q| q * (1.0 / clearance));
                     let w = link.lateral(speed);
                     let (inward, along) = ([-x, -y], [-y, x]);
@@ -254,7 +265,10 @@ impl Forces {
             }
         }
         let (mut matrix, mut right, mut size) = (Vec::new(), Vec::new(), 0.0);
-        for Unknown { link, row, target, .. } in &unknowns {
+        for Unknown {
+            link, row, target, ..
+        } in &unknowns
+        {
             let against = |other: &Unknown| {
                 let lateral = system.lateral(*link, other.link);
                 let turning = system.turning(*link, other.link) * row.1 * other.force.1;
@@ -290,13 +304,16 @@ impl Forces {
             for axis in 0..2 {
                 let i = 2 * k + axis;
                 let part = link.shares[k] * system.mobility[i];
-                self.acceleration[i] =
-                    self.acceleration[i] + force * unknown.force.0[axis] * part;
+                self.acceleration[i] = self.acceleration[i] + force * unknown.force.0[axis] * part;
             }
             let part = link.arms[k] * system.mobility[4 + k] * unknown.force.1;
             self.acceleration[4 + k] = self.acceleration[4 + k] + force * part;
         }
-        let list = if unknown.grips { &mut self.grip } else { &mut self.normal };
+        let list = if unknown.grips {
+            &mut self.grip
+        } else {
+            &mut self.normal
+        };
         list[unknown.link] = force;
     }
 }

@@ -181,7 +181,10 @@ impl SupportReference {
             hold: Hold::Brake(dry / bore),
             told: [0.0; 2],
         }));
-        let (body, ring) = (1.0 / rotor.mass, mount.map_or(0.0, |mount| 1.0 / mount.mass));
+        let (body, ring) = (
+            1.0 / rotor.mass,
+            mount.map_or(0.0, |mount| 1.0 / mount.mass),
+        );
         let system = System {
             mobility: [
                 body,
@@ -191,7 +194,14 @@ impl SupportReference {
                 1.0 / rotor.polar_inertia,
                 race.map_or(0.0, |race| 1.0 / race.inertia),
             ],
-            size: [scale.length, scale.length, scale.length, scale.length, 1.0, 1.0],
+            size: [
+                scale.length,
+                scale.length,
+                scale.length,
+                scale.length,
+                1.0,
+                1.0,
+            ],
             links,
         };
         let law = Support {
@@ -200,7 +210,12 @@ impl SupportReference {
             damping: mount.map_or(0.0, |mount| mount.damping),
             viscous_drag: race.map_or(0.0, |race| race.viscous_drag),
         };
-        let motion = Motion::new(system, law, (scale.time, scale.speed), coordinates(machine, start));
+        let motion = Motion::new(
+            system,
+            law,
+            (scale.time, scale.speed),
+            coordinates(machine, start),
+        );
         Self {
             motion,
             speed_unit: scale.speed,
@@ -209,11 +224,7 @@ impl SupportReference {
 
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
     /// happening on the way in order.
-    pub fn advance(
-        &mut self,
-        time: f64,
-        sink: &mut impl FnMut(usize, Happening),
-    ) -> SupportState {
+    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(usize, Happening)) -> SupportState {
         let moment = self.motion.advance(time, sink);
         let ([x, y, u, v, _, race_angle], [vx, vy, du, dv, spin, race_spin]) =
             (moment.place, moment.speed);
@@ -227,7 +238,10 @@ impl SupportReference {
             ring_velocity: [du, dv],
             race_spin,
             race_angle,
-            modes: [moment.modes[0], if stop { moment.modes[1] } else { Mode::Flight }],
+            modes: [
+                moment.modes[0],
+                if stop { moment.modes[1] } else { Mode::Flight },
+            ],
             normal_forces: [moment.normal[0], if stop { moment.normal[1] } else { 0.0 }],
             turns_in_contact: moment.turns[0],
             moment,
