@@ -7,19 +7,14 @@ pub use simulate::{ModelRun, run, simulate, steps_of_run};
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Compliance, Euler, Hertz, HertzConfig, Instant, Kinematics, Line, Moreau, Point,
-    Precision, Rigid, RigidConfig, Scheme as ContactScheme, Shape, Start as ScaledStart, Stepper,
-    Touch, Verlet,
+    Compliance, Euler, Hertz, HertzConfig, Line, Moreau, Point, Precision, Rigid, RigidConfig,
+    Scheme as ContactScheme, Shape, Start as ScaledStart, Stepper, Verlet,
 };
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
-use crate::history::{Happening, History, Impact, Pulse, Recorder, RotorState};
 use crate::reference::Start;
 use crate::scene::{self, Contact, Math, Rung, Scene, Scheme};
-
-/// Part of the speed scale below which a rotor in contact is at rest.
-const STILL: f64 = 1e-6;
 
 /// What is done with a model, whatever its rung and numbers.
 pub trait Use {

@@ -127,11 +127,7 @@ impl Seen {
         }
     }
 
-    pub(super) fn state<R: Real>(
-        k: &Kinematics<R>,
-        time: f64,
-        scales: &Scales<f64>,
-    ) -> RotorState {
+    pub(super) fn state<R: Real>(k: &Kinematics<R>, time: f64, scales: &Scales<f64>) -> RotorState {
         RotorState {
             time,
             position: k.position.map(|x| x.to_f64() * scales.length),

@@ -44,7 +44,7 @@ impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
     fn kinematics(&self, state: &Self::State) -> Kinematics<R> {
         let (position, velocity) = state.centre();
         let rings = (0..N).map(|ring| self.model.kinematics_at(state, ring));
-        let (mut touch, mut turns) = (Touch::None, (0, R::ZERO));
+        let (mut touch, mut turns) = (Touch::None, (0_i64, R::ZERO));
         for ring in rings {
             if ring.touch == Touch::Sliding || touch == Touch::None {
                 touch = ring.touch;
@@ -188,11 +188,13 @@ impl InNumbers for Run<'_> {
 fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, ConfigError> {
     let exact = TwoPlane::try_new(&config::<N>(scene)?)?;
     let scales = *exact.scales();
-    let (model, start) = (exact.rounded::<R>(), placement(scene, &exact)?.rounded::<R>());
+    let (model, start) = (
+        exact.rounded::<R>(),
+        placement(scene, &exact)?.rounded::<R>(),
+    );
     let machine = machine(scene)?;
     let recorder = Recorder::new(-scene.first_sample_time());
-    let (mut whole, mut rings, mut merge) =
-        (recorder.clone(), vec![recorder; N], Merge::new(N));
+    let (mut whole, mut rings, mut merge) = (recorder.clone(), vec![recorder; N], Merge::new(N));
     // Spin is told as surface speed in the ring.
     let at_ring = |ring: usize| Scales {
         spin: scales.speed / machine.rings[ring].radius,

@@ -73,7 +73,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         let [x, y] = state.position;
         let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
         trace.push(TracePoint {
-                moving: crate::truth::Moving::Nothing,
+            moving: crate::truth::Moving::Nothing,
             state,
             phase,
             sensed,
