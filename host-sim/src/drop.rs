@@ -8,7 +8,7 @@ use touchdown_core::sensing::Sensing;
 
 use crate::detection::{Timebase, detection};
 use crate::failure::Failure;
-use crate::model_run;
+use crate::model_run::{self, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
 use crate::progress::Progress;
 use crate::rings::Histories;
@@ -27,15 +27,16 @@ pub fn run<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
-    let model = model_run::run(scene).map_err(refused)?.histories;
+    let ModelRun { histories, ledger } = model_run::run(scene).map_err(refused)?;
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
     let answer = target.run(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
     let (truth, trace, stream) = feed.finish();
-    let rings = model.rings.into_iter().zip(truth.rings);
+    let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
-        model: model.whole,
+        model: histories.whole,
         truth: truth.whole,
+        ledger,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         detection: detection(&answer, timebase),

@@ -10,6 +10,7 @@ pub mod history;
 pub mod input_error;
 pub mod instructions;
 pub mod json;
+pub mod ledger;
 pub mod limits;
 pub mod matching;
 pub mod model_run;

@@ -2,6 +2,7 @@
 //! detector said.
 
 use crate::history::{History, PhaseKind, RotorState};
+use crate::ledger::Ledger;
 use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
@@ -60,6 +61,8 @@ pub struct Outcome {
     pub model: History,
     /// The independent reference.
     pub truth: History,
+    /// The model's energy, where its rung keeps account of it.
+    pub ledger: Option<Ledger>,
     /// Each ring, where the rotor tilts: the model's and the reference's.
     pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.

@@ -7,6 +7,7 @@ use touchdown_core::scales::Scales;
 
 use super::{Subject, Use, two_plane, with_model};
 use crate::history::{Happening, History, Impact, Pulse, Recorder, RotorState};
+use crate::ledger::Ledger;
 use crate::rings::Histories;
 use crate::scene::{Rung, Scene};
 
@@ -18,6 +19,8 @@ pub(super) const STILL: f64 = 1e-6;
 pub struct ModelRun {
     /// What happened.
     pub histories: Histories,
+    /// Its energy, where the rung keeps account of it.
+    pub ledger: Option<Ledger>,
 }
 
 /// Runs the scene's model from the release to the end.
@@ -29,6 +32,7 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
                 whole: with_model(scene, Simulate(scene))?,
                 rings: Vec::new(),
             },
+            ledger: None,
         }),
     }
 }

@@ -2,14 +2,16 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Happening, Kinematics, MagnetConfig, Placement, Precision, RingConfig, Start, Stepper, Touch,
-    TwoPlane, TwoPlaneConfig, TwoPlaneState, UnbalanceConfig,
+    Energy, Happening, Kinematics, MagnetConfig, Placement, Precision, RingConfig, Start, Stepper,
+    Touch, TwoPlane, TwoPlaneConfig, TwoPlaneState, UnbalanceConfig,
 };
+use touchdown_core::real::Real;
 use touchdown_core::scales::Scales;
 
 use super::simulate::{ModelRun, STILL, Seen, steps_of_run};
 use super::{InNumbers, Subject, Use, in_numbers, start_speed};
 use crate::history::{Recorder, RotorState};
+use crate::ledger::{Ledger, entries};
 use crate::rings::{Histories, Merge};
 use crate::scene::{self, Scene};
 
@@ -214,6 +216,7 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
         }
     };
     let mut state = model.start(&start, R::lit(scene.rotor.spin / scales.spin), &mut take)?;
+    let begun = model.energy(&state);
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
         model.step(&mut state, &mut take);
@@ -227,10 +230,14 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
             Seen::state(&kinematics, scene.run.duration, &at_ring(ring))
         })
         .collect();
-    let ends_as_one = Ends { model, start };
-    let end = Seen::state(&ends_as_one.kinematics(&state), scene.run.duration, &scales);
+    let end = {
+        let whole = Ends { model, start };
+        Seen::state(&whole.kinematics(&state), scene.run.duration, &scales)
+    };
     let still = STILL * scales.speed;
+    let unit = scene.rotor.mass * scales.speed * scales.speed;
     Ok(ModelRun {
+        ledger: Some(ledger(unit, &begun, &model.energy(&state))),
         histories: Histories {
             whole: whole.finish(end, still),
             rings: rings
@@ -240,4 +247,28 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
                 .collect(),
         },
     })
+}
+
+/// In units of `unit`, J.
+fn ledger<R: Real>(unit: f64, start: &Energy<R>, end: &Energy<R>) -> Ledger {
+    Ledger {
+        start_j: unit * start.stored().to_f64(),
+        stored: entries(
+            unit,
+            [
+                ("motion", end.motion.to_f64()),
+                ("spin", end.spin.to_f64()),
+                ("height", end.height.to_f64()),
+                ("magnets", end.magnets.to_f64()),
+            ],
+        ),
+        gone: entries(
+            unit,
+            [
+                ("friction heat", end.heat.to_f64()),
+                ("impacts", end.lost.to_f64()),
+                ("by the drive of the spin", -end.driven.to_f64()),
+            ],
+        ),
+    }
 }

@@ -83,6 +83,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     let truth = recorder.finish(end, reference.still_speed());
     Outcome {
         rings: Vec::new(),
+        ledger: None,
         model: truth.clone(),
         detection: detection(&truth),
         truth,
