@@ -1,7 +1,7 @@
 //! The model under test over a scene.
 
 mod simulate;
-mod two_plane;
+pub mod two_plane;
 
 pub use simulate::{ModelRun, run, simulate, steps_of_run};
 
@@ -102,7 +102,7 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
-        Rung::Support => todo!(),
+        Rung::Support => Err(ConfigError::OutOfRange("rung", "another")),
         Rung::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
     }
 }

@@ -5,7 +5,6 @@ use touchdown_core::model::{
     Energy, Happening, Kinematics, MagnetConfig, Placement, Precision, RingConfig, Start, Stepper,
     Touch, TwoPlane, TwoPlaneConfig, TwoPlaneState, UnbalanceConfig,
 };
-use touchdown_core::real::Real;
 use touchdown_core::scales::Scales;
 
 use super::simulate::{ModelRun, STILL, Seen, steps_of_run};
@@ -167,27 +166,46 @@ fn placement<const N: usize>(
     })
 }
 
-/// Runs the scene's model with what happens in each ring.
-pub(super) fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
-    in_numbers(scene, Run(scene))
+/// The rotor after a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// Farthest beyond the wall of any ring, its clearance; below 0 in flight.
+    pub beyond: f64,
+    /// What energy there is and was, in m V^2.
+    pub energy: Energy<f64>,
+    /// The sum of it all as the model's numbers give it, in m V^2.
+    pub total: f64,
 }
 
-struct Run<'a>(&'a Scene);
+/// Runs the scene's model with what happens in each ring.
+pub(super) fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
+    in_numbers(scene, Run(scene, &mut |_| ()))
+}
+
+/// The same, watched after each step.
+pub fn watch(scene: &Scene, each: &mut dyn FnMut(Sight)) -> Result<ModelRun, ConfigError> {
+    in_numbers(scene, Run(scene, each))
+}
+
+struct Run<'a>(&'a Scene, &'a mut dyn FnMut(Sight));
 
 impl InNumbers for Run<'_> {
     type Output = ModelRun;
 
     fn with<R: Precision>(self) -> Result<ModelRun, ConfigError> {
         match machine(self.0)?.rings.len() {
-            1 => in_rings::<R, 1>(self.0),
-            2 => in_rings::<R, 2>(self.0),
-            3 => in_rings::<R, 3>(self.0),
-            _ => in_rings::<R, 4>(self.0),
+            1 => in_rings::<R, 1>(self.0, self.1),
+            2 => in_rings::<R, 2>(self.0, self.1),
+            3 => in_rings::<R, 3>(self.0, self.1),
+            _ => in_rings::<R, 4>(self.0, self.1),
         }
     }
 }
 
-fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, ConfigError> {
+fn in_rings<R: Precision, const N: usize>(
+    scene: &Scene,
+    each: &mut dyn FnMut(Sight),
+) -> Result<ModelRun, ConfigError> {
     let exact = TwoPlane::try_new(&config::<N>(scene)?)?;
     let scales = *exact.scales();
     let (model, start) = (
@@ -216,10 +234,11 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
         }
     };
     let mut state = model.start(&start, R::lit(scene.rotor.spin / scales.spin), &mut take)?;
-    let begun = model.energy(&state);
+    let begun = model.energy(&state).to_f64();
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
         model.step(&mut state, &mut take);
+        each(sight(&model, &state, machine, scales.length));
     }
     if fraction > 0.0 {
         model.part_step(&mut state, R::lit(fraction), &mut take);
@@ -237,7 +256,7 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
     let still = STILL * scales.speed;
     let unit = scene.rotor.mass * scales.speed * scales.speed;
     Ok(ModelRun {
-        ledger: Some(ledger(unit, &begun, &model.energy(&state))),
+        ledger: Some(ledger(unit, &begun, &model.energy(&state).to_f64())),
         histories: Histories {
             whole: whole.finish(end, still),
             rings: rings
@@ -249,25 +268,53 @@ fn in_rings<R: Precision, const N: usize>(scene: &Scene) -> Result<ModelRun, Con
     })
 }
 
+fn sight<R: Precision, const N: usize>(
+    model: &TwoPlane<R, N>,
+    state: &TwoPlaneState<R, N>,
+    machine: &scene::TwoPlane,
+    length: f64,
+) -> Sight {
+    let reach = |(index, ring): (usize, &scene::Ring)| {
+        let [x, y] = model.kinematics_at(state, index).position.map(R::to_f64);
+        x.hypot(y) * length / ring.retainer.clearance - 1.0
+    };
+    let energy = model.energy(state);
+    Sight {
+        beyond: machine
+            .rings
+            .iter()
+            .enumerate()
+            .map(reach)
+            .fold(-1.0, worse),
+        energy: energy.to_f64(),
+        total: energy.total().to_f64(),
+    }
+}
+
+/// NaN is the worst there is.
+fn worse(worst: f64, value: f64) -> f64 {
+    if value <= worst { worst } else { value }
+}
+
 /// In units of `unit`, J.
-fn ledger<R: Real>(unit: f64, start: &Energy<R>, end: &Energy<R>) -> Ledger {
+fn ledger(unit: f64, start: &Energy<f64>, end: &Energy<f64>) -> Ledger {
     Ledger {
-        start_j: unit * start.stored().to_f64(),
+        start_j: unit * start.stored(),
         stored: entries(
             unit,
             [
-                ("motion", end.motion.to_f64()),
-                ("spin", end.spin.to_f64()),
-                ("height", end.height.to_f64()),
-                ("magnets", end.magnets.to_f64()),
+                ("motion", end.motion),
+                ("spin", end.spin),
+                ("height", end.height),
+                ("magnets", end.magnets),
             ],
         ),
         gone: entries(
             unit,
             [
-                ("friction heat", end.heat.to_f64()),
-                ("impacts", end.lost.to_f64()),
-                ("by the drive of the spin", -end.driven.to_f64()),
+                ("friction heat", end.heat),
+                ("impacts", end.lost),
+                ("by the drive of the spin", -end.driven),
             ],
         ),
     }

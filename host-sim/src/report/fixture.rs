@@ -31,6 +31,10 @@ pub fn subject() -> Subject {
         step: 20e-6,
         seed: 1,
         noise: 1e-6,
+        rings: Vec::new(),
+        cage_ratio: None,
+        parts: Vec::new(),
+        validity: None,
         versions: vec![("touchdown-core".to_owned(), "0.1.0".to_owned())],
     }
 }

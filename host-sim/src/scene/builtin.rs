@@ -25,4 +25,6 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "backward-whirl",
     "rolling",
     "lift-off",
+    "two-plane",
+    "vertical",
 ];
