@@ -9,10 +9,13 @@
 //! - [`Moreau`] steps through the same laws: cheap, of first order, at any step.
 //! - [`Hertz`] gives each contact a force and a duration, and needs steps far shorter than it.
 //!
+//! [`Support`] lets the ring move on a spring and turn in a ball bearing, by steps of its own scheme.
+//!
 //! [`TwoPlane`] is a model of its own, of a rotor that tilts in rings of their own axial places.
 
 mod clock;
 mod contact;
+mod crossing;
 mod flight;
 mod follow;
 mod hertz;
@@ -30,8 +33,10 @@ mod start;
 mod state;
 mod stepper;
 mod sum;
+mod support;
 mod turns;
 mod two_plane;
+mod vector;
 mod whirl;
 
 pub use clock::Instant;
@@ -46,6 +51,10 @@ pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
 pub use state::{RigidState, Solved};
 pub use stepper::Stepper;
+pub use support::{
+    BallBearing, BallBearingState, Bushing, Fixed, Ledger, Load, MountConfig, RaceConfig,
+    RaceMotion, RingMotion, Sprung, SprungState, Support, SupportConfig, SupportState,
+};
 pub use two_plane::{
     Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,
     UnbalanceConfig,

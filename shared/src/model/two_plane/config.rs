@@ -1,9 +1,9 @@
 //! A rotor in its rings, SI.
 
-use super::vector::Vector;
 use super::{Magnet, Ring, TwoPlane, Unbalance};
 use crate::error::ConfigError;
 use crate::model::precision::Precision;
+use crate::model::vector::Vector;
 use crate::real::Real;
 use crate::scales::{Scales, not_negative, positive};
 

@@ -8,9 +8,9 @@
 use super::TwoPlane;
 use super::passage::Passage;
 use super::state::TwoPlaneState;
+use crate::model::crossing::crossing;
 use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
-use crate::real::Real;
 
 /// Stretches in a step, tried ones included. Chosen, because 20 turns of whirl fit in.
 const MOST_STRETCHES: usize = 512;
@@ -179,19 +179,4 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         };
         sink(ring, happening);
     }
-}
-
-/// Where the parabola with this value and slope at 0 and this value (> 0) at 1 rises through 0; its
-/// lowest point if it never is below. 0 to 1.
-fn crossing<R: Real>(value: R, slope: R, end: R) -> R {
-    let bend = end - value - slope;
-    let discriminant = slope * slope - R::lit(4.0) * bend * value;
-    let share = if discriminant <= R::ZERO {
-        -slope / (R::TWO * bend)
-    } else if slope > R::ZERO {
-        -R::TWO * value / (slope + discriminant.sqrt())
-    } else {
-        (discriminant.sqrt() - slope) / (R::TWO * bend)
-    };
-    share.most(R::ZERO).least(R::ONE)
 }

@@ -19,16 +19,15 @@ mod passage;
 mod press;
 mod state;
 mod strike;
-mod vector;
 
 pub use config::{MagnetConfig, RingConfig, TwoPlaneConfig, UnbalanceConfig};
 pub use energy::Energy;
 pub use state::{Placement, TwoPlaneState};
 
 use crate::model::precision::Precision;
+use crate::model::vector::Vector;
 use crate::real::Real;
 use crate::scales::Scales;
-use vector::Vector;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ring<R> {

@@ -8,9 +8,9 @@
 
 use super::press::Press;
 use super::state::TwoPlaneState;
-use super::vector::Vector;
 use super::{Ring, TwoPlane};
 use crate::model::precision::Precision;
+use crate::model::vector::Vector;
 use crate::real::Real;
 
 /// The inverse of A: symmetric.

@@ -6,10 +6,10 @@
 
 use super::passage::Free;
 use super::state::TwoPlaneState;
-use super::vector::Vector;
 use super::{Ring, TwoPlane};
 use crate::model::hold::{Rub, hold};
 use crate::model::precision::Precision;
+use crate::model::vector::Vector;
 
 /// Passes over the rings; how much each gains is in docs/two-plane.md.
 const PASSES: usize = 64;

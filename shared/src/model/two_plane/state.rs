@@ -1,6 +1,5 @@
 //! The rotor's state: where its axis is, how it moves, and which rings hold it.
 
-use super::vector::Vector;
 use super::{Ring, TwoPlane};
 use crate::error::ConfigError;
 use crate::model::clock::Instant;
@@ -8,6 +7,7 @@ use crate::model::kinematics::{Happening, Kinematics, Touch};
 use crate::model::precision::Precision;
 use crate::model::sum::Sum;
 use crate::model::turns::Turns;
+use crate::model::vector::{Sums, Vector};
 use crate::real::Real;
 
 /// Where the rotor starts, in the model's units.
@@ -32,26 +32,6 @@ impl Placement<f64> {
             tilt: self.tilt.map(R::lit),
             tilt_rate: self.tilt_rate.map(R::lit),
         }
-    }
-}
-
-/// Compensated: in f32 a short step moves the rotor by less than half of a last digit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sums<R>([Sum<R>; 2]);
-
-impl<R: Real> Sums<R> {
-    fn new(value: [R; 2]) -> Self {
-        Self(value.map(Sum::new))
-    }
-
-    pub(super) fn value(&self) -> Vector<R> {
-        Vector::new(self.0.map(Sum::value))
-    }
-
-    pub(super) fn add(&mut self, term: Vector<R>) {
-        let [x, y] = &mut self.0;
-        x.add(term.x);
-        y.add(term.y);
     }
 }
 

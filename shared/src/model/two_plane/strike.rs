@@ -5,11 +5,11 @@
 //! without giving it back.
 
 use super::state::{Held, TwoPlaneState};
-use super::vector::Vector;
 use super::{Ring, TwoPlane};
 use crate::model::impulse::{Impulse, Mobility};
 use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
+use crate::model::vector::Vector;
 use crate::real::Real;
 
 /// Passes over the rings; how much each gains is in docs/two-plane.md.

@@ -1,0 +1,195 @@
+//! Impacts: of the rotor in the ring, of the ring at its stop, or of both at one moment, together.
+//!
+//! The rotor follows restitution and Coulomb's law; a rotor that is held already, and the ring at its
+//! stop, take what is driven into them without giving it back.
+
+use super::mount::Mount;
+use super::race::Race;
+use super::settle::Settling;
+use super::state::Held;
+use super::{Support, SupportState};
+use crate::model::impulse::{Impulse, Mobility};
+use crate::model::kinematics::{Change, Happening};
+use crate::model::precision::Precision;
+use crate::model::vector::Vector;
+use crate::real::Real;
+
+/// Passes over rotor and stop; two where nothing grips or lets go.
+const PASSES: usize = 24;
+/// Distance from a wall, in units of epsilon and the clearance, that counts as on it.
+const ON_WALL: f64 = 64.0;
+
+/// What the square of the distance from a wall of radius 1 may lack of being on it.
+pub(super) fn on_wall<R: Real>() -> R {
+    R::lit(ON_WALL) * R::EPSILON
+}
+
+/// Who arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arrival {
+    Rotor,
+    Ring,
+}
+
+/// What an impact finds.
+#[derive(Clone, Copy, Debug)]
+struct Meeting<R> {
+    /// Outward, of the ring's wall; none where the rotor is away from it.
+    wall: Option<Vector<R>>,
+    /// Outward, of the stop; none where the ring is away from it.
+    stop: Option<Vector<R>>,
+    /// Speed into the wall.
+    outward: R,
+}
+
+impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
+    /// The impact of whoever `arrived`, `part` of a step after the step's start. With `stays` the rotor
+    /// is not thrown back.
+    pub(super) fn meet(
+        &self,
+        state: &mut SupportState<R, M::State, B::State>,
+        arrived: Arrival,
+        stays: bool,
+        part: R,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let meeting = self.meeting(state, arrived);
+        let new = meeting.wall.is_some() && state.held.is_none();
+        let restitution = if new && !stays {
+            self.law.restitution
+        } else {
+            R::ZERO
+        };
+        let mut after = *state;
+        let mut impulse = self.strike(&mut after, &meeting, restitution);
+        let returns = new && (stays || self.returns(&after, &meeting));
+        if returns && restitution > R::ZERO {
+            after = *state;
+            impulse = self.strike(&mut after, &meeting, R::ZERO);
+        }
+        *state = after;
+        if meeting.stop.is_some() {
+            self.mount.hold(&mut state.ring, true);
+        }
+        if new && meeting.outward > R::CUTOFF_SPEED {
+            state.struck = true;
+            self.tell(state, part, Change::Impact(meeting.outward), sink);
+        }
+        if returns {
+            state.held = Some(Held {
+                rolling: impulse.stuck,
+                ..Held::default()
+            });
+            self.tell(state, part, Change::ContactStarts, sink);
+        }
+    }
+
+    fn meeting(&self, state: &SupportState<R, M::State, B::State>, arrived: Arrival) -> Meeting<R> {
+        let near = R::ONE - on_wall();
+        let place = state.place.value();
+        let touches = arrived == Arrival::Rotor || state.held.is_some() || place.square() >= near;
+        let ring = M::place(&state.ring);
+        let stops = arrived == Arrival::Ring
+            || M::is_stopped(&state.ring)
+            || self
+                .mount
+                .travel()
+                .is_some_and(|travel| ring.square() >= near * travel * travel);
+        let wall = touches.then(|| place.times(R::ONE / place.length()));
+        Meeting {
+            wall,
+            stop: stops.then(|| ring.times(R::ONE / ring.length())),
+            outward: wall.map_or(R::ZERO, |wall| wall.dot(Self::relative(state))),
+        }
+    }
+
+    fn strike(
+        &self,
+        state: &mut SupportState<R, M::State, B::State>,
+        meeting: &Meeting<R>,
+        restitution: R,
+    ) -> Impulse<R> {
+        self.mount.brace(&mut state.ring);
+        let yielding = self.mount.yielding();
+        let ring = M::velocity(&state.ring);
+        let surface = state.spin.value() - B::surface(&state.race);
+        let relative = state.velocity.value() - ring;
+        let normal = meeting.wall.unwrap_or_default();
+        let mobility = Mobility {
+            normal: R::ONE + yielding,
+            tangential: R::ONE + yielding + R::ONE / self.law.inertia_ratio + self.race.mobility(),
+        };
+        let launch = restitution * normal.dot(relative).most(R::ZERO);
+
+        let mut settling = Settling::new();
+        let (mut impulse, mut push) = (Impulse::default(), Vector::default());
+        let mut by_stop = Vector::default();
+        for _ in 0..PASSES {
+            if meeting.wall.is_some() {
+                let met = relative - by_stop.times(yielding);
+                let speed = (normal.dot(met) + launch).most(R::ZERO);
+                let slip = normal.cross(met) + surface;
+                impulse = mobility.strike(R::ZERO, self.law.friction, speed, slip);
+                push = Vector::new([-impulse.normal, impulse.tangential]) * normal;
+            }
+            let Some(stop) = meeting.stop else {
+                break;
+            };
+            let into = stop.dot(ring - push.times(yielding)) / yielding;
+            let found = stop.times(-into.most(R::ZERO));
+            let changed = found - by_stop;
+            let close = R::TWO * R::EPSILON * (found.length() + push.length());
+            if meeting.wall.is_none() || changed.length() <= close {
+                by_stop = found;
+                break;
+            }
+            by_stop = by_stop + settling.next(changed);
+        }
+        self.take(state, normal, impulse, push, by_stop);
+        impulse
+    }
+
+    /// Gives the impulses, and books their work: impulse times mean velocity.
+    fn take(
+        &self,
+        state: &mut SupportState<R, M::State, B::State>,
+        normal: Vector<R>,
+        impulse: Impulse<R>,
+        push: Vector<R>,
+        by_stop: Vector<R>,
+    ) {
+        let slides = |state: &SupportState<R, M::State, B::State>| {
+            state.spin.value() - B::surface(&state.race)
+        };
+        let (relative, surface) = (Self::relative(state), slides(state));
+        state.velocity.add(push);
+        state.spin.add(impulse.tangential / self.law.inertia_ratio);
+        self.mount
+            .strike(&mut state.ring, Vector::default() - push, by_stop);
+        let turned = impulse.tangential * self.race.mobility();
+        let mean = (relative + Self::relative(state)).times(R::HALF);
+        let slip = R::HALF * (surface + slides(state) + turned) + normal.cross(mean);
+        let heat = -(impulse.tangential * slip);
+        self.race.strike(&mut state.race, impulse.tangential, heat);
+        state.heat.add(heat);
+        state.lost.add(impulse.normal * normal.dot(mean));
+        state.impulse += impulse.normal;
+    }
+
+    /// Whether the next bounce would be no longer than a step: by a step without contact.
+    fn returns(&self, state: &SupportState<R, M::State, B::State>, meeting: &Meeting<R>) -> bool {
+        let Some(normal) = meeting.wall else {
+            return false;
+        };
+        let time = self.step;
+        let Some(passage) = self.pass(state, time) else {
+            return false;
+        };
+        let velocity = Self::relative(state);
+        let bent = passage.moved - velocity.times(time);
+        let round = normal.cross(passage.moved);
+        let pressing = R::TWO * normal.dot(bent) + round * round;
+        let launch = -normal.dot(velocity);
+        pressing > R::ZERO && R::TWO * launch * time <= pressing
+    }
+}
