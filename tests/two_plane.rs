@@ -66,9 +66,15 @@ fn a_symmetric_drop_is_the_drop_in_the_plane() {
             }
             let a = one.kinematics_at(&plane, 0);
             let b = two.kinematics_at(&space, 1);
-            println!("zeta {place}, mu {friction}: {worst:.1e}, tilt {tilt:.1e} {:?}", a.touch);
+            println!(
+                "zeta {place}, mu {friction}: {worst:.1e}, tilt {tilt:.1e} {:?}",
+                a.touch
+            );
             assert_eq!(a.touch, b.touch);
-            assert!(worst <= 1e-10 && tilt <= 1e-10, "{place}: {worst:e} {tilt:e}");
+            assert!(
+                worst <= 1e-10 && tilt <= 1e-10,
+                "{place}: {worst:e} {tilt:e}"
+            );
         }
     }
 }
@@ -180,7 +186,10 @@ fn magnets_that_hold_split_the_conical_modes() {
             println!("spin {spin}: mode {mode:.3}, {off:.1e}; in the plane {swing:.1e}");
             // (mode h)^2/12 of the phase each.
             let bound = 0.1 * 3.0 * mode.abs() * (half + root).powi(2) * step * step / 6.0;
-            assert!(off <= bound + 1e-9 && swing <= 1e-7, "{spin}: {off:e} {swing:e}");
+            assert!(
+                off <= bound + 1e-9 && swing <= 1e-7,
+                "{spin}: {off:e} {swing:e}"
+            );
         }
     }
 }
@@ -198,7 +207,11 @@ fn magnets_that_pull_and_push_follow_their_closed_form() {
     let state = run(&config, &Placement::default(), 3.0, 0.8);
     let grown = ((0.8 * 2f64.sqrt()).cosh() - 1.0) / 2.0;
     let want = [0.3 * grown, -0.9 * grown];
-    assert!(distance(state.centre().0, want) < 1e-8, "{:?}", state.centre());
+    assert!(
+        distance(state.centre().0, want) < 1e-8,
+        "{:?}",
+        state.centre()
+    );
 }
 
 /// p = p0 + g t^2/2 - e (exp(i (w t + d)) - exp(i d) (1 + i w t)), and the couple likewise in psi.
@@ -236,7 +249,11 @@ fn unbalance_in_flight_follows_its_closed_form() {
     ];
     let skew = distance(state.tilt().0, tilt);
     println!("static {off:.1e}, couple {skew:.1e}");
-    assert!(off < 1e-8 && skew < 1e-8, "{off:e} {skew:e}: {tilt:?} {:?}", state.tilt().0);
+    assert!(
+        off < 1e-8 && skew < 1e-8,
+        "{off:e} {skew:e}: {tilt:?} {:?}",
+        state.tilt().0
+    );
 }
 
 /// One end high, one low: each lands at sqrt(2 (1 - drop)), off the centre of mass.
@@ -293,7 +310,10 @@ fn an_impact_reaches_the_other_end_by_its_mobility() {
         for place in [zeta, 0.0, -1.0 / zeta, -zeta] {
             let gained = -1.7 * before(zeta) * (1.0 + zeta * place) / (1.0 + zeta * zeta);
             let now = state.axis_at(place).1[1];
-            assert!((now - before(place) - gained).abs() < 1e-14, "{zeta} {place}");
+            assert!(
+                (now - before(place) - gained).abs() < 1e-14,
+                "{zeta} {place}"
+            );
         }
         let other = state.axis_at(-1.0 / zeta).1[1];
         assert!((other - before(-1.0 / zeta)).abs() < 1e-14);
@@ -327,7 +347,10 @@ fn bad_values_are_refused_by_name() {
     };
     assert_eq!(name(|c| c.mass = 0.0), "mass");
     assert_eq!(name(|c| c.polar_inertia = 2.1), "polar_inertia");
-    assert_eq!(name(|c| c.transverse_inertia = f64::NAN), "transverse_inertia");
+    assert_eq!(
+        name(|c| c.transverse_inertia = f64::NAN),
+        "transverse_inertia"
+    );
     assert_eq!(name(|c| c.rings[1].clearance = -1.0), "clearance");
     assert_eq!(name(|c| c.rings[1].restitution = 1.1), "restitution");
     assert_eq!(name(|c| c.rings[0].place = f64::INFINITY), "place");
@@ -342,7 +365,11 @@ fn bad_values_are_refused_by_name() {
         ..Placement::default()
     };
     assert!(model.start(&outside, 0.0, |_, _| {}).is_err());
-    assert!(model.start(&Placement::default(), f64::NAN, |_, _| {}).is_err());
+    assert!(
+        model
+            .start(&Placement::default(), f64::NAN, |_, _| {})
+            .is_err()
+    );
     assert!(TwoPlane::try_new(&rotor([ring(0.0); 0], 0.4, 1e-3)).is_err());
     assert!(TwoPlane::try_new(&rotor([ring(0.0); 5], 0.4, 1e-3)).is_err());
 }

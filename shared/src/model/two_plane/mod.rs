@@ -17,6 +17,7 @@ mod energy;
 mod follow;
 mod passage;
 mod press;
+mod settle;
 mod state;
 mod strike;
 mod vector;

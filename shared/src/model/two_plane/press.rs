@@ -5,14 +5,14 @@
 //! moves; friction as [`hold`] knows it, by displacement, is turned back by the mobility's angle.
 
 use super::passage::Free;
+use super::settle::{PASSES, Settling};
 use super::state::TwoPlaneState;
 use super::vector::Vector;
 use super::{Ring, TwoPlane};
 use crate::model::hold::{Rub, hold};
 use crate::model::precision::Precision;
+use crate::real::Real;
 
-/// Passes over the rings; how much each gains is in docs/two-plane.md.
-const PASSES: usize = 64;
 /// Part of the mobility that friction across the gyroscopic moment may take.
 const MOST_TURNED: f64 = 0.5;
 
@@ -28,6 +28,15 @@ pub(super) struct Press<R> {
     /// Outward normal in the middle.
     pub(super) normal: Vector<R>,
     pub(super) stuck: bool,
+}
+
+impl<R: Real> Press<R> {
+    /// Takes this (normal, tangential) impulse for the next pass.
+    fn lead(&mut self, impulse: Vector<R>) {
+        self.pressed = impulse.x.most(R::ZERO);
+        self.rubbed = impulse.y;
+        self.push = Vector::new([-self.pressed, self.rubbed]) * self.normal;
+    }
 }
 
 /// One ring, as the others leave it.
@@ -51,9 +60,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         state: &TwoPlaneState<R, N>,
         free: &Free<R>,
     ) -> Option<[Option<Press<R>>; N]> {
-        let mut presses = [None; N];
+        let mut presses: [Option<Press<R>>; N] = [None; N];
+        let mut settling = Settling::new();
         let half = R::HALF * free.time;
-        for _ in 0..PASSES {
+        for pass in 1..=PASSES {
             let mut settled = true;
             for (i, ring) in self.rings.iter().enumerate() {
                 if !state.is_held(i) {
@@ -70,7 +80,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     half,
                 };
                 for (j, (other, press)) in self.rings.iter().zip(&presses).enumerate() {
-                    let Some(press): &Option<Press<R>> = press else {
+                    let Some(press) = press else {
                         continue;
                     };
                     if i != j {
@@ -90,6 +100,17 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
             if settled {
                 break;
+            }
+            let impulses = presses.map(|press| {
+                press.map_or(Vector::default(), |press| {
+                    Vector::new([press.pressed, press.rubbed])
+                })
+            });
+            let lead = settling.lead(&impulses).filter(|_| pass < PASSES);
+            for (press, lead) in presses.iter_mut().zip(lead.iter().flatten()) {
+                if let Some(press) = press {
+                    press.lead(*lead);
+                }
             }
         }
         Some(presses)

@@ -4,6 +4,7 @@
 //! in turn until none changes. A ring that is held, or left, takes what the others drive into it
 //! without giving it back.
 
+use super::settle::{PASSES, Settling};
 use super::state::{Held, TwoPlaneState};
 use super::vector::Vector;
 use super::{Ring, TwoPlane};
@@ -12,8 +13,6 @@ use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
 use crate::real::Real;
 
-/// Passes over the rings; how much each gains is in docs/two-plane.md.
-const PASSES: usize = 64;
 /// Distance from the wall, in units of epsilon and the clearance, at which a ring takes part in an
 /// impact of another: what rounding leaves between two ends that fall alike.
 const TOGETHER: f64 = 1024.0;
@@ -130,7 +129,8 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     }
 
     fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
-        for _ in 0..PASSES {
+        let mut settling = Settling::new();
+        for pass in 1..=PASSES {
             let mut settled = true;
             for (i, ring) in self.rings.iter().enumerate() {
                 let Some(meeting) = meetings.get(i).copied().flatten() else {
@@ -163,6 +163,18 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
             if settled {
                 break;
+            }
+            let impulses = meetings.map(|meeting| {
+                meeting.map_or(Vector::default(), |meeting| {
+                    Vector::new([meeting.impulse.normal, meeting.impulse.tangential])
+                })
+            });
+            let lead = settling.lead(&impulses).filter(|_| pass < PASSES);
+            for (meeting, lead) in meetings.iter_mut().zip(lead.iter().flatten()) {
+                if let Some(meeting) = meeting {
+                    meeting.impulse.normal = lead.x.most(R::ZERO);
+                    meeting.impulse.tangential = lead.y;
+                }
             }
         }
         self.take(state, meetings);
