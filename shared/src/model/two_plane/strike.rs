@@ -58,9 +58,19 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         part: R,
         sink: &mut impl FnMut(usize, Happening<R>),
     ) {
+        // As near to its wall as the ring that arrived is by the step's error.
+        let mut near = R::ONE;
+        if let Some(ring) = arrived.and_then(|ring| self.rings.get(ring)) {
+            near = near.least(state.at(ring.zeta).0.length() / ring.limit);
+        }
+        near = near - Self::together();
         let mut meetings = [None; N];
         for (i, (ring, meeting)) in self.rings.iter().zip(&mut meetings).enumerate() {
-            *meeting = self.meeting(state, ring, state.is_held(i), arrived == Some(i));
+            let touches = state.at(ring.zeta).0.length() >= near * ring.limit;
+            let held = state.is_held(i);
+            if held || touches || arrived == Some(i) {
+                *meeting = Some(self.meeting(state, ring, held, arrived == Some(i)));
+            }
         }
         if !meetings.iter().flatten().any(Meeting::is_new) {
             return;
@@ -106,15 +116,11 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         ring: &Ring<R>,
         held: bool,
         arrived: bool,
-    ) -> Option<Meeting<R>> {
+    ) -> Meeting<R> {
         let (place, velocity) = state.at(ring.zeta);
-        let distance = place.length();
-        if !(held || arrived) && distance < ring.limit * (R::ONE - Self::together()) {
-            return None;
-        }
-        let normal = place.times(R::ONE / distance);
+        let normal = place.times(R::ONE / place.length());
         let outward = normal.dot(velocity);
-        Some(Meeting {
+        Meeting {
             normal,
             outward: if arrived {
                 outward.most(R::ZERO)
@@ -125,7 +131,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             held,
             restitution: if held { R::ZERO } else { ring.restitution },
             impulse: Impulse::default(),
-        })
+        }
     }
 
     fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
