@@ -20,6 +20,7 @@ mod press;
 mod settle;
 mod state;
 mod strike;
+mod tangent;
 mod vector;
 
 pub use config::{MagnetConfig, RingConfig, TwoPlaneConfig, UnbalanceConfig};
