@@ -28,6 +28,8 @@ pub(super) struct Press<R> {
     /// Outward normal in the middle.
     pub(super) normal: Vector<R>,
     pub(super) stuck: bool,
+    /// What [`Rub::Given`] must be for a unit of friction.
+    gain: R,
 }
 
 impl<R: Real> Press<R> {
@@ -122,12 +124,12 @@ impl<R: Precision> Turn<R> {
     #[allow(clippy::option_option)]
     fn press(&self, ring: &Ring<R>, last: Option<Press<R>>) -> Option<Option<Press<R>>> {
         let mobility = self.mobility;
-        let (normal, pressed) = match last {
-            Some(last) => (last.normal, last.pressed),
+        let (normal, pressed, gain) = match last {
+            Some(last) => (last.normal, last.pressed, last.gain),
             None => {
                 let normal = self.place.times(R::ONE / self.place.length());
                 let pressed = normal.dot(self.free) / mobility.x;
-                (normal, pressed.most(R::ZERO))
+                (normal, pressed.most(R::ZERO), R::ONE)
             }
         };
         let along = normal.turned();
@@ -142,13 +144,19 @@ impl<R: Precision> Turn<R> {
             ring.friction
         };
         let stuck = stick.abs() <= friction * pressed;
+        let wanted = mobility.x * stick - mobility.y * pressed;
         let rub = if stuck {
-            Rub::Given(mobility.x * stick - mobility.y * pressed)
+            Rub::Given(gain * wanted)
         } else {
             let friction = if stick < R::ZERO { -friction } else { friction };
             Rub::Slides((friction * mobility.x - mobility.y) / (mobility.x + friction * mobility.y))
         };
         let hold = hold(self.place.parts(), self.free.parts(), ring.limit, rub)?;
+        let gain = if stuck && hold.rubbed * wanted > R::ZERO {
+            (gain * wanted / hold.rubbed).within(R::TWO)
+        } else {
+            R::ONE
+        };
         let normal = Vector::new(hold.normal);
         let parts = Vector::new([-hold.pressed, hold.rubbed]).over(mobility);
         if parts.x >= R::ZERO {
@@ -160,6 +168,7 @@ impl<R: Precision> Turn<R> {
             rubbed: parts.y,
             normal,
             stuck,
+            gain,
         }))
     }
 }

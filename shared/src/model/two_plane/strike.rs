@@ -13,10 +13,6 @@ use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
 use crate::real::Real;
 
-/// Distance from the wall, in units of epsilon and the clearance, at which a ring takes part in an
-/// impact of another: what rounding leaves between two ends that fall alike.
-const TOGETHER: f64 = 1024.0;
-
 /// A ring that takes part.
 #[derive(Clone, Copy, Debug)]
 struct Meeting<R> {
@@ -44,8 +40,11 @@ impl<R: Real> Meeting<R> {
 }
 
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
+    /// Distance from the wall, in clearances, at which a ring takes part in an impact of another: half
+    /// the digits. Chosen, because what rounding leaves between two ends that fall alike grows with
+    /// each impact.
     pub(super) fn together() -> R {
-        R::lit(TOGETHER) * R::EPSILON
+        R::EPSILON.sqrt()
     }
 
     /// The impact of all rings that touch, `part` of a step after the step's start, if one moves into
