@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use touchdown_core::model::{
-    Change, MagnetConfig, Placement, Precision, TwoPlane, TwoPlaneConfig, TwoPlaneState,
+    Change, MagnetConfig, Placement, Precision, Touch, TwoPlane, TwoPlaneConfig, TwoPlaneState,
 };
 use touchdown_tests::rotors::{built, ring, rotor, run};
 
@@ -61,7 +61,7 @@ fn energy_and_angular_momentum_are_kept_in_bounces() {
         tilt_rate: [0.4, 0.6],
     };
     for polar in [2.0, 0.4, 1e-4] {
-        for step in [1e-3, 0.03] {
+        for step in [1e-3, 5e-3] {
             let mut config = rotor([ring(1.2), ring(-0.7)], polar, step);
             config.gravity = [0.0; 2];
             for (place, magnet) in [0.9, -0.9].iter().zip(&mut config.magnets) {
@@ -133,8 +133,10 @@ fn a_held_ring_does_no_work_without_friction() {
         );
         assert!(worst <= 1e-11);
         for k in 0..2 {
-            let place = model.kinematics_at(&state, k).position;
-            assert!((place[0].hypot(place[1]) - 1.0).abs() < 1e-12);
+            let at = model.kinematics_at(&state, k);
+            let beyond = at.position[0].hypot(at.position[1]) - 1.0;
+            println!("ring {k}: {:?}, {beyond:.1e}", at.touch);
+            assert!(beyond < 1e-12 && (at.touch == Touch::None || beyond > -1e-12));
         }
     }
 }

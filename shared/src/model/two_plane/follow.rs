@@ -162,7 +162,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 _ => {}
             }
         }
-        self.turn_along(state);
+        self.calm(&before, state);
     }
 
     pub(super) fn tell(

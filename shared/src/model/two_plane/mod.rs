@@ -12,6 +12,7 @@
 //! shows (`follow`), all rings that touch at once together (`strike`). Without friction and with
 //! restitution 1 the energy and the angular momentum about the axis are kept to rounding.
 
+mod calm;
 mod config;
 mod energy;
 mod follow;
@@ -20,7 +21,6 @@ mod press;
 mod settle;
 mod state;
 mod strike;
-mod tangent;
 mod vector;
 
 pub use config::{MagnetConfig, RingConfig, TwoPlaneConfig, UnbalanceConfig};

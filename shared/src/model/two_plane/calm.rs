@@ -1,8 +1,10 @@
-//! Turns the velocity of held rings along their walls after a stretch.
+//! Ends the swing of held rings across their walls.
 //!
-//! The midpoint rule ends on the wall, but its velocity leaves the tangent by the square of the step,
-//! to the other side in each stretch, and friction lets that swing grow with the angle that is gone.
-//! What is taken across the wall is given back along the motion, so that the energy stays.
+//! The midpoint rule ends on the wall, but the mean of two velocities along it does not turn with it: what
+//! is missing, of the square of the step, is put into one stretch and taken from the next, and friction
+//! lets that swing grow with the angle that is gone. The mean of the speeds across the wall before and
+//! after a stretch has no swing; with it contact stays of second order. What that takes is given back
+//! along the motion, so that the energy stays.
 
 use super::TwoPlane;
 use super::settle::{PASSES, Settling};
@@ -10,7 +12,7 @@ use super::state::TwoPlaneState;
 use super::vector::Vector;
 use crate::model::precision::Precision;
 
-/// Part of the energy up to which it is given back; more is no error of a stretch, and is lost.
+/// Part of the energy up to which it is given back; more is no error of a stretch, and is booked as lost.
 const MOST_RETURNED: f64 = 0.01;
 
 /// A held ring after a stretch.
@@ -19,20 +21,26 @@ struct Leaving<R> {
     normal: Vector<R>,
     /// Speed across the wall.
     speed: R,
-    /// Impulse along the normal that ends it.
+    /// By how much it is to change.
+    change: R,
+    /// Impulse along the normal for that.
     push: R,
 }
 
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
-    pub(super) fn turn_along(&self, state: &mut TwoPlaneState<R, N>) {
+    pub(super) fn calm(&self, before: &TwoPlaneState<R, N>, state: &mut TwoPlaneState<R, N>) {
+        let across = |(place, velocity): (Vector<R>, Vector<R>)| {
+            let normal = place.times(R::ONE / place.length());
+            (normal, normal.dot(velocity))
+        };
         let mut leaving = [None; N];
         for (i, (ring, leaving)) in self.rings.iter().zip(&mut leaving).enumerate() {
             if state.is_held(i) {
-                let (place, velocity) = state.at(ring.zeta);
-                let normal = place.times(R::ONE / place.length());
+                let (normal, speed) = across(state.at(ring.zeta));
                 *leaving = Some(Leaving {
                     normal,
-                    speed: normal.dot(velocity),
+                    speed,
+                    change: R::HALF * (across(before.at(ring.zeta)).1 - speed),
                     push: R::ZERO,
                 });
             }
@@ -44,16 +52,17 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 let push = leaving.normal.times(leaving.push);
                 state.velocity[0].add(push);
                 state.velocity[1].add(push.times(ring.zeta));
-                taken += -(R::HALF * leaving.push * leaving.speed);
+                let mean = leaving.speed + R::HALF * leaving.change;
+                taken += -(leaving.push * mean);
             }
         }
         let velocity = [state.velocity[0].value(), state.velocity[1].value()];
         let left = R::HALF * (velocity[0].square() + velocity[1].square());
-        if taken <= R::ZERO {
+        if taken.abs() > R::lit(MOST_RETURNED) * left {
+            state.ledger.lost.add(taken);
             return;
         }
-        if taken > R::lit(MOST_RETURNED) * left {
-            state.ledger.lost.add(taken);
+        if left <= R::ZERO {
             return;
         }
         let part = taken / left;
@@ -71,14 +80,14 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 let Some(own) = leaving.get(i).copied().flatten() else {
                     continue;
                 };
-                let mut speed = own.speed;
+                let mut change = own.change;
                 for (j, (other, also)) in self.rings.iter().zip(leaving.iter()).enumerate() {
                     if let Some(also) = also.filter(|_| i != j) {
                         let facing = own.normal.dot(also.normal);
-                        speed += Self::mobility(ring, other) * facing * also.push;
+                        change += -(Self::mobility(ring, other) * facing * also.push);
                     }
                 }
-                let push = -speed / Self::mobility(ring, ring);
+                let push = change / Self::mobility(ring, ring);
                 settled &= (push - own.push).abs() <= R::EPSILON * push.abs();
                 if let Some(Some(own)) = leaving.get_mut(i) {
                     own.push = push;
