@@ -5,3 +5,4 @@ pub mod cases;
 pub mod counting;
 pub mod drops;
 pub mod growth;
+pub mod rotors;
