@@ -134,16 +134,17 @@ impl<R: Precision> Rigid<R> {
                 },
             });
         }
-        let rest = law.rest_of_series(hit.launch_speed, pressing);
         let ends = hit.launch_speed <= R::CUTOFF_SPEED
-            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO)
-            && rest <= R::lit(LONGEST_REST);
+            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO);
         if ends || hurry {
-            let onto = state.on_wall(sin, cos, hit.tangential);
-            self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
-        } else {
-            self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
+            let rest = law.rest_of_series(hit.launch_speed, pressing);
+            if rest <= R::lit(LONGEST_REST) || hurry {
+                let onto = state.on_wall(sin, cos, hit.tangential);
+                self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
+                return;
+            }
         }
+        self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
     }
 
     /// The rest of a bounce series from launch speed `launch` at once: `rest` would be its length if the
