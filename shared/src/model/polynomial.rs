@@ -102,14 +102,15 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize, end: R) -> [R; DEGREE] {
 /// In powers of a = c2 s/c1 and b = c3 s^2/c1, s = -c0/c1, the root is s (1 - a + 2 a^2 - b + ...). Newton's
 /// method goes on from there for as long as the bound on its error is above rounding: not at all for most
 /// of a bounce series, three times at most.
+#[inline]
 pub(crate) fn early_rise<R: Real>(c: &Quartic<R>, lost: R) -> Option<(R, R)> {
     let [constant, linear, c2, c3, _] = *c;
     if constant >= R::ZERO || linear <= R::lit(CERTAIN) * R::EPSILON * lost {
         return None;
     }
+    let straight = -constant / linear;
     let flat = R::ONE / linear;
-    let straight = -constant * flat;
-    let (a, b) = (c2 * straight * flat, c3 * straight * straight * flat);
+    let (a, b) = (c2 * flat * straight, c3 * flat * (straight * straight));
     let (a_size, b_size) = (a.abs(), b.abs());
     let bend = R::TWO * (a_size + R::lit(3.0) * b_size);
     // Then up to twice `straight` the slope keeps half of its first value: the rise comes before it.
@@ -118,7 +119,7 @@ pub(crate) fn early_rise<R: Real>(c: &Quartic<R>, lost: R) -> Option<(R, R)> {
         return None;
     }
     let hop = [constant, linear, c2, c3];
-    let mut t = straight - straight * (a - R::TWO * a * a + b);
+    let mut t = straight - straight * (a * (R::ONE - R::TWO * a) + b);
     // Bound on the error of t over `straight`: the next terms are 5 a^3, 5 a b and 3 b^2.
     let mut error = R::lit(8.0) * (a_size + b_size) * (a_size * a_size + b_size);
     while error > R::HALF * R::EPSILON {
