@@ -307,8 +307,11 @@ impl Detector {
             Phase::Starting => return,
             Phase::Levitated => {
                 // The mean of both need not move when the rotor only tilts.
-                let homes = state.ends.homes(&state.levitation);
-                let far = [0, 1].map(|end| self.ladder.is_far(ends[end].position, homes[end]));
+                let (homes, variance) = state.ends.homes(&state.levitation);
+                let far = [0, 1].map(|end| {
+                    let (position, home) = (ends[end].position, homes[end]);
+                    self.ladder.is_far(position, home) && Ends::is_off(position, home, variance)
+                });
                 if far == [false; PLANES] || !state.levitation.is_armed() {
                     return;
                 }
@@ -333,8 +336,16 @@ impl Detector {
     ) {
         let (ends, pending) = (&mut state.ends, &mut state.pending);
         let floating = (&state.levitation, state.listener.loudness());
-        self.ends
+        let is_caught = self
+            .ends
             .step(ends, fixes, signals, floating, pending, teller);
+        if is_caught {
+            teller.close(pending, false);
+            ends.unite();
+            state.release.restart();
+            state.rotor.phase = Phase::Levitated;
+            return;
+        }
         if let Some(rotor) = self.ends.join(ends, fixes) {
             state.rotor = rotor;
             if rotor.phase == Phase::Levitated {

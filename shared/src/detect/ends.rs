@@ -6,7 +6,7 @@
 use crate::detect::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
 use crate::detect::flight::Fix;
-use crate::detect::ladder::{Ladder, Phase, Rungs, square};
+use crate::detect::ladder::{Ladder, Phase, Rungs, is_home, square};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::signals::Signals;
 use crate::detect::teller::{Pending, Teller};
@@ -98,7 +98,7 @@ impl EndsTest {
             self.learning.take(&mut ends.levitation, e);
         }
         let sure = APART * APART * ends.levitation.learnt_variance().max(0.5 * ends.variance);
-        if square(e, ends.rest()) > self.tolerance.max(sure) {
+        if square(e, [0.0; 2]) > self.tolerance.max(sure) {
             ends.apart = ends.apart.saturating_add(1);
             ends.together = 0;
         } else {
@@ -131,7 +131,7 @@ impl EndsTest {
         ends.lifts = false;
     }
 
-    /// Each end takes its sample.
+    /// Each end takes its sample. True where a declared fall has been caught.
     pub(crate) fn step(
         &self,
         ends: &mut Ends,
@@ -140,9 +140,9 @@ impl EndsTest {
         floating: (&Levitation, f32),
         pending: &mut Option<Pending>,
         teller: &mut Teller,
-    ) {
+    ) -> bool {
         let (levitation, loudness) = floating;
-        let homes = ends.homes(levitation);
+        let (homes, variance) = ends.homes(levitation);
         let whole = teller.plane;
         let alone = ends.alone.iter_mut().flatten();
         for (((rungs, fix), home), plane) in alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B]) {
@@ -179,6 +179,11 @@ impl EndsTest {
             }
         }
         teller.plane = whole;
+        let mut seen = fixes.iter().zip(homes);
+        let are_home = seen.all(|(fix, home)| fix.is_some_and(|fix| is_home(&fix, home, variance)));
+        pending
+            .as_mut()
+            .is_some_and(|pending| self.ladder.is_caught(pending, are_home))
     }
 
     /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.
@@ -195,26 +200,29 @@ impl EndsTest {
             contact: joined.contact.of_both(),
             ..*joined
         };
-        ends.alone = None;
-        ends.apart = 0;
+        ends.unite();
         Some(joined)
     }
 }
 
 impl Ends {
-    /// e of a rotor whose ends are together, m.
-    fn rest(&self) -> [f32; 2] {
-        if self.levitation.is_armed() {
-            self.levitation.mean
-        } else {
-            [0.0; 2]
-        }
+    /// Where each end floats, m, and its variance on one axis, m^2.
+    pub(crate) fn homes(&self, levitation: &Levitation) -> ([[f32; 2]; PLANES], f32) {
+        let ([x, y], [u, v]) = (levitation.mean, self.levitation.mean);
+        let variance = levitation.variance + self.levitation.variance;
+        ([[x + u, y + v], [x - u, y - v]], variance)
     }
 
-    /// Where the ends float when the rotor does, m.
-    pub(crate) fn homes(&self, levitation: &Levitation) -> [[f32; 2]; PLANES] {
-        let ([x, y], [u, v]) = (levitation.mean, self.rest());
-        [[x + u, y + v], [x - u, y - v]]
+    /// Whether what is learnt of both the rotor and its tilt excludes that an end floats at
+    /// `position` (m) and not at `home`.
+    pub(crate) fn is_off(position: [f32; 2], home: [f32; 2], variance: f32) -> bool {
+        square(position, home) > APART * APART * variance
+    }
+
+    /// The rotor moves as one again.
+    pub(crate) fn unite(&mut self) {
+        self.alone = None;
+        self.apart = 0;
     }
 
     /// Each end's phase, while they are apart.

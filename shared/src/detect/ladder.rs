@@ -166,16 +166,17 @@ impl Ladder {
         if self.is_far(rungs.flight.track.position, home) {
             return Fall::Certain;
         }
-        let near = CAUGHT * CAUGHT * levitation.variance.max(fix.variance);
-        if square(fix.position, home) > near {
-            pending.back = 0;
-            return Fall::Open;
-        }
-        pending.back += 1;
-        if pending.back >= self.catch_samples {
+        let is_home = is_home(fix, home, levitation.variance);
+        if self.is_caught(pending, is_home) {
             return Fall::Caught;
         }
         Fall::Open
+    }
+
+    /// Takes whether the rotor is where it floated; whether it has been for long enough.
+    pub(crate) fn is_caught(&self, pending: &mut Pending, is_home: bool) -> bool {
+        pending.back = if is_home { pending.back + 1 } else { 0 };
+        pending.back >= self.catch_samples
     }
 
     /// Whether no caught disturbance goes from `home` to `position`, m.
@@ -260,6 +261,11 @@ impl Ladder {
         }
         true
     }
+}
+
+/// Whether `fix` is within noise of `home` (m), around which the rotor floats with this variance (m^2).
+pub(crate) fn is_home(fix: &Fix, home: [f32; 2], variance: f32) -> bool {
+    square(fix.position, home) <= CAUGHT * CAUGHT * variance.max(fix.variance)
 }
 
 /// Square of the distance, m^2.
