@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use touchdown_core::error::ConfigError;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::Sensing;
 
 use crate::detection::{Timebase, detection};
@@ -71,6 +71,9 @@ impl<'a, W: Write> Feed<'a, W> {
             planes: scene.sensors.planes,
             speed: scene.sensors.speed,
             levitated: scene.sensors.levitation_signal,
+            edges: (scene.sensors.tachometers).map_or([false; TACHOMETERS], |it| {
+                it.marks.map(|marks| marks.is_some())
+            }),
         };
         Ok(Self {
             scene,
@@ -111,6 +114,7 @@ impl<W: Write> Iterator for Feed<'_, W> {
             planes: state.sensed,
             spin: state.rotor.spin,
             levitated: time < 0.0,
+            bearing: None,
         };
         let sample = self.sensors.read(&mut self.seen, &motion);
         let [sensed, _] = self
@@ -124,7 +128,12 @@ impl<W: Write> Iterator for Feed<'_, W> {
             sensed: sensed.map(|plane| plane.map(f64::from)),
         });
         if let Some(Ok(stream)) = &mut self.stream {
-            let row = to_row(time, &sample, &self.scene.sensors);
+            let row = to_row(
+                time,
+                &sample,
+                &self.scene.sensors,
+                self.scene.run.sample_rate,
+            );
             if let Err(error) = stream.write(&row) {
                 self.stream = Some(Err(error));
             }

@@ -26,6 +26,8 @@ pub struct DetectedEvent {
     pub plane: &'static str,
     /// Speed into the wall, impacts only, m/s.
     pub normal_speed_m_s: Option<f64>,
+    /// `cylindrical` or `conical`: whether the ends of the rotor went the same way or against each other.
+    pub motion: &'static str,
 }
 
 /// What the detector said over a run.

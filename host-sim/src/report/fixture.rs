@@ -106,6 +106,7 @@ fn detection(truth: &History) -> Detection {
         sample: ((onset_s + latency + LEAD) * RATE) as u64,
         plane: "both",
         normal_speed_m_s: None,
+        motion: "cylindrical",
     };
     let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
         PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
@@ -124,6 +125,7 @@ fn detection(truth: &History) -> Detection {
         .filter(|impact| impact.normal_speed > 8e-3);
     let impacts = hard.map(|impact| DetectedEvent {
         normal_speed_m_s: Some(0.98 * impact.normal_speed),
+        motion: "cylindrical",
         ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
     });
     let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();

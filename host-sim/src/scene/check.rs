@@ -245,6 +245,7 @@ fn sensors(table: &SensorsTable) -> Result<SensorsConfig, Flaw> {
         runout_harmonic: table.runout_harmonic,
         speed: table.speed,
         levitation_signal: table.levitation_signal,
+        tachometers: None,
     };
     config.check().map_err(|error| translate(&error))?;
     Ok(config)
