@@ -6,6 +6,7 @@ mod clock;
 mod read;
 mod write;
 
+pub(crate) use clock::{Clock, Stamp};
 pub use clock::LOOK_AHEAD;
 pub use read::{Row, StreamReader};
 pub use write::StreamWriter;
