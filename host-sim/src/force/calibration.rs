@@ -101,10 +101,7 @@ impl Calibration {
             .hits
             .iter()
             .map(|(force, acceleration)| {
-                (
-                    transform.spectrum(force),
-                    transform.spectrum(acceleration),
-                )
+                (transform.spectrum(force), transform.spectrum(acceleration))
             })
             .collect();
         let sum = |of: &dyn Fn(Complex64, Complex64) -> Complex64| -> Vec<Complex64> {
@@ -166,7 +163,11 @@ fn prepare(hit: &Hit, rate: f64) -> Result<((Vec<f64>, Vec<f64>), f64), String> 
     let skirt = (SKIRT * rate).ceil() as usize;
     let quiet = |it: &f64| it.abs() < OVER * peak;
     let begin = pushed[..top].iter().rposition(quiet).unwrap_or(0);
-    let end = top + pushed[top..].iter().position(quiet).unwrap_or(pushed.len() - top);
+    let end = top
+        + pushed[top..]
+            .iter()
+            .position(quiet)
+            .unwrap_or(pushed.len() - top);
     let window = begin.saturating_sub(skirt)..(end + skirt).min(pushed.len());
     for (k, value) in pushed.iter_mut().enumerate() {
         if window.contains(&k) {

@@ -110,9 +110,8 @@ impl Inverse {
         let frequency = |k: usize| k as f64 * calibration.rate / transform.length() as f64;
         let band = |k: &usize| calibration.band.contains(&frequency(*k));
         let noise = signal.len() as f64 * quiet.noise * quiet.noise;
-        let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
-            (0..transform.bins()).filter(band).map(of).sum()
-        };
+        let sum =
+            |of: &dyn Fn(usize) -> f64| -> f64 { (0..transform.bins()).filter(band).map(of).sum() };
         let moved = sum(&|k| motion[k].norm_sqr());
         let silent = sum(&|_| noise);
         let answer = sum(&|k| response.h[k].norm_sqr());

@@ -8,6 +8,7 @@ pub mod calibration;
 pub mod deconvolution;
 mod filter;
 pub mod instrument;
+mod law;
 pub mod pulse;
 mod quiet;
 pub mod read;
@@ -15,6 +16,7 @@ pub mod recording;
 pub mod rehearsal;
 pub mod resolution;
 mod shape;
+mod simplex;
 pub mod spectrum;
 
 use calibration::Calibration;

@@ -6,8 +6,8 @@ mod clock;
 mod read;
 mod write;
 
-pub(crate) use clock::{Clock, Stamp};
 pub use clock::LOOK_AHEAD;
+pub(crate) use clock::{Clock, Stamp};
 pub use read::{Row, StreamReader};
 pub use write::StreamWriter;
 
