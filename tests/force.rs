@@ -46,9 +46,9 @@ fn experiment() {
                     print!(
                         "noise {noise} m {mass} v {speed} e {restitution} band {:.0?} n {}: ",
                         found.band,
-                        found.pulses.len()
+                        found.pulses().count()
                     );
-                    for p in &found.pulses {
+                    for p in found.pulses() {
                         print!(
                             " t0 {:+.1} us J {:+.2} % F {:+.2} % T {:+.2} % ({:.0} us) dir {:.2};",
                             1e6 * (p.time_s - 20.003e-3),

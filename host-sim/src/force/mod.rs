@@ -6,9 +6,11 @@
 
 pub mod calibration;
 pub mod deconvolution;
+pub mod example;
 mod filter;
 pub mod instrument;
 mod law;
+mod page;
 pub mod pulse;
 mod quiet;
 pub mod read;
@@ -18,10 +20,15 @@ pub mod resolution;
 mod shape;
 mod simplex;
 pub mod spectrum;
+mod text;
+pub mod write;
+
+pub use page::page;
+pub use text::{json, table};
 
 use calibration::Calibration;
 use deconvolution::Force;
-use pulse::Pulse;
+use pulse::{Contact, Pulse};
 use recording::{Axis, Hits, Recording};
 use resolution::Resolution;
 
@@ -37,13 +44,28 @@ pub struct Measurement {
     /// Recovered.
     pub force: Force,
     /// In order.
-    pub pulses: Vec<Pulse>,
+    pub contacts: Vec<Contact>,
+    /// Of the recording, Hz.
+    pub sample_rate: f64,
     /// Lowest and highest frequency that all axes are calibrated at, Hz.
     pub band: [f64; 2],
 }
 
+impl Measurement {
+    /// The numbers of the contacts.
+    pub fn pulses(&self) -> impl Iterator<Item = &Pulse> {
+        self.contacts.iter().map(|it| &it.pulse)
+    }
+}
+
 /// Finds the force in `recording`. Hits along one axis stand for both; of two sets, each has its own.
 pub fn measure(recording: &Recording, hits: &[Hits]) -> Result<Measurement, InputError> {
+    if let [first, second] = hits
+        && first.axis == second.axis
+    {
+        let rule = format!("is for the same axis as {}", first.file);
+        return Err(InputError::at_line(&second.file, 1, rule));
+    }
     let axes = [Axis::X, Axis::Y];
     let mut calibrations = Vec::new();
     for axis in &axes[..recording.acceleration.len()] {
@@ -64,12 +86,13 @@ pub fn measure(recording: &Recording, hits: &[Hits]) -> Result<Measurement, Inpu
     let quiet = recording::quiet(recording)?;
     let each: Vec<&Calibration> = calibrations.iter().collect();
     let force = deconvolution::deconvolve(recording, &quiet, &each, &resolution);
-    let pulses = pulse::pulses(recording, &force, &resolution);
+    let contacts = pulse::contacts(recording, &force, &resolution);
     Ok(Measurement {
         calibrations,
         resolution,
         force,
-        pulses,
+        contacts,
+        sample_rate: recording.rate,
         band,
     })
 }

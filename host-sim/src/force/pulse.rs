@@ -1,4 +1,4 @@
-//! The contacts in the recovered force, as numbers.
+//! The contacts in the recovered force, as numbers and curves.
 
 use serde::Serialize;
 
@@ -25,8 +25,19 @@ pub struct Pulse {
     pub direction_deg: f64,
 }
 
-/// The pulses of `force`.
-pub fn pulses(recording: &Recording, force: &Force, resolution: &Resolution) -> Vec<Pulse> {
+/// A contact.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Its numbers.
+    pub pulse: Pulse,
+    /// Recovered force along the direction: pairs of s, in the recording's time, and N.
+    pub recovered: Vec<(f64, f64)>,
+    /// The fitted pulse likewise; empty where none fits.
+    pub fitted: Vec<(f64, f64)>,
+}
+
+/// The contacts of `force`.
+pub fn contacts(recording: &Recording, force: &Force, resolution: &Resolution) -> Vec<Contact> {
     let rate = recording.rate;
     let each = force.contacts.iter().map(|contact| {
         let sum = |axis: usize| -> f64 {
@@ -46,12 +57,22 @@ pub fn pulses(recording: &Recording, force: &Force, resolution: &Resolution) -> 
         let fits = fit.misfit <= LOOSE;
         let highest = along.iter().copied().fold(0.0, f64::max);
         let begin = recording.start + contact.start as f64 / rate;
-        Pulse {
+        let pulse = Pulse {
             time_s: begin + if fits { fit.start } else { 0.0 },
             peak_force_n: if fits { fit.peak } else { highest },
             contact_time_s: fits.then_some(fit.duration),
             impulse_n_s: size,
             direction_deg: impulse[0].atan2(-impulse[1]).to_degrees(),
+        };
+        let moved = |(time, force): (f64, f64)| (begin + time, force);
+        let sampled = (along.iter().enumerate()).map(|(k, force)| (k as f64 / rate, *force));
+        Contact {
+            pulse,
+            recovered: sampled.map(moved).collect(),
+            fitted: (fit.curve.into_iter())
+                .filter(|_| fits)
+                .map(moved)
+                .collect(),
         }
     });
     each.collect()

@@ -11,7 +11,7 @@ use super::simplex::least;
 const STARTS: [f64; 3] = [0.2, 2.5, -1.0];
 
 /// A pulse found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Of the touch, from the first sample, s.
     pub start: f64,
@@ -21,6 +21,8 @@ pub struct Fit {
     pub peak: f64,
     /// Root mean square of what the pulse leaves of the force, part of its peak.
     pub misfit: f64,
+    /// Pairs of s and N.
+    pub curve: Vec<(f64, f64)>,
 }
 
 /// Fits a pulse to `force` (N), sampled at `rate` (Hz).
@@ -56,6 +58,9 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
         duration: trial.width * trial.law.duration,
         peak,
         misfit: (rest / force.len() as f64).sqrt() / peak.abs(),
+        curve: (trial.law.points())
+            .map(|(time, force)| (trial.peak_time + trial.width * time, peak * force))
+            .collect(),
     }
 }
 
