@@ -17,7 +17,7 @@ use crate::sensors::{Motion, Sensors, SensorsState};
 use crate::stream::{Columns, StreamWriter, to_row};
 use crate::target::Target;
 use crate::trace::Trace;
-use crate::truth::Truth;
+use crate::truth::{Moving, Truth};
 
 /// Drops the rotor of `scene`, with the detector on `target`. What the sensors read also goes to
 /// `stream`.
@@ -27,7 +27,11 @@ pub fn run<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
-    let ModelRun { histories, ledger } = model_run::run(scene).map_err(refused)?;
+    let ModelRun {
+        histories,
+        ledger,
+        ring,
+    } = model_run::run(scene).map_err(refused)?;
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
     let answer = target.run(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
@@ -37,6 +41,7 @@ pub fn run<W: Write>(
         model: histories.whole,
         truth: truth.whole,
         ledger,
+        ring,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         detection: detection(&answer, timebase),
@@ -114,7 +119,7 @@ impl<W: Write> Iterator for Feed<'_, W> {
             planes: state.sensed,
             spin: state.rotor.spin,
             levitated: time < 0.0,
-            bearing: None,
+            bearing: bearing(self.scene, state.moving),
         };
         let sample = self.sensors.read(&mut self.seen, &motion);
         let [sensed, _] = self
@@ -140,4 +145,13 @@ impl<W: Write> Iterator for Feed<'_, W> {
         }
         Some(sample)
     }
+}
+
+/// Angles of inner ring and cage since the release, rad.
+fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
+    let Moving::Ring { race_angle, .. } = moving else {
+        return None;
+    };
+    let bearing = scene.ball_bearing?;
+    Some([race_angle, bearing.cage_ratio * race_angle])
 }

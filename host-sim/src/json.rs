@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
+use crate::model_run::RingEnd;
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
@@ -21,6 +22,8 @@ struct DropJson<'a> {
     end: EndJson,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rings: Vec<RingJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring: Option<RingEndJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     energy: Option<EnergyJson<'a>>,
     detector: EventsJson<'a>,
@@ -74,6 +77,25 @@ struct RingJson<'a> {
     regime: Regime,
 }
 
+/// The retainer ring at the end.
+#[derive(Serialize)]
+struct RingEndJson {
+    x_m: f64,
+    y_m: f64,
+    vx_m_s: f64,
+    vy_m_s: f64,
+    held_peak_force_n: f64,
+    #[serde(flatten)]
+    race: Option<RaceJson>,
+}
+
+#[derive(Serialize)]
+struct RaceJson {
+    inner_ring_rad_s: f64,
+    cage_rad_s: f64,
+    temperature_rise_k: f64,
+}
+
 #[derive(Serialize)]
 struct EnergyJson<'a> {
     #[serde(flatten)]
@@ -110,6 +132,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         regime: model.regime,
         end: end(scene, outcome),
         rings: rings(scene, outcome),
+        ring: outcome.ring.as_ref().map(ring_end),
         energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
             ledger,
             imbalance_j: ledger.imbalance_j(),
@@ -165,6 +188,23 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
             regime: model.regime,
         })
         .collect()
+}
+
+fn ring_end(ring: &RingEnd) -> RingEndJson {
+    RingEndJson {
+        x_m: ring.position[0],
+        y_m: ring.position[1],
+        vx_m_s: ring.velocity[0],
+        vy_m_s: ring.velocity[1],
+        held_peak_force_n: ring.held_peak,
+        race: ring.race.map(
+            |[inner_ring_rad_s, cage_rad_s, temperature_rise_k]| RaceJson {
+                inner_ring_rad_s,
+                cage_rad_s,
+                temperature_rise_k,
+            },
+        ),
+    }
 }
 
 fn end(scene: &Scene, outcome: &Outcome) -> EndJson {

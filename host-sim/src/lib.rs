@@ -6,6 +6,7 @@ pub mod drop;
 pub mod emulator;
 pub mod failure;
 pub mod fidelity;
+pub mod force;
 pub mod history;
 pub mod input_error;
 pub mod instructions;

@@ -3,6 +3,7 @@
 
 use crate::history::{History, PhaseKind, RotorState};
 use crate::ledger::Ledger;
+use crate::model_run::RingEnd;
 use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
@@ -65,6 +66,8 @@ pub struct Outcome {
     pub truth: History,
     /// The model's energy, where its rung keeps account of it.
     pub ledger: Option<Ledger>,
+    /// The model's retainer ring at the end, where it moves or turns.
+    pub ring: Option<RingEnd>,
     /// Each ring, where the rotor tilts: the model's and the reference's.
     pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.

@@ -1,9 +1,10 @@
 //! The model under test over a scene.
 
 mod simulate;
+pub mod support;
 pub mod two_plane;
 
-pub use simulate::{ModelRun, run, simulate, steps_of_run};
+pub use simulate::{ModelRun, RingEnd, run, simulate, steps_of_run};
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
@@ -102,7 +103,7 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
-        Rung::Support => Err(ConfigError::OutOfRange("rung", "another")),
+        Rung::Support => support::with_parts::<R, U>(scene, what),
         Rung::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
     }
 }

@@ -5,7 +5,7 @@ use touchdown_core::model::{self, Change, Kinematics, Precision, Stepper, Touch}
 use touchdown_core::real::Real;
 use touchdown_core::scales::Scales;
 
-use super::{Subject, Use, two_plane, with_model};
+use super::{Subject, Use, support, two_plane, with_model};
 use crate::history::{Happening, History, Impact, Pulse, Recorder, RotorState};
 use crate::ledger::Ledger;
 use crate::rings::Histories;
@@ -21,11 +21,27 @@ pub struct ModelRun {
     pub histories: Histories,
     /// Its energy, where the rung keeps account of it.
     pub ledger: Option<Ledger>,
+    /// The retainer ring at the end, where it moves or turns.
+    pub ring: Option<RingEnd>,
+}
+
+/// A retainer ring at the end of a run, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingEnd {
+    /// From its rest place, m.
+    pub position: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+    /// Largest normal force in permanent contact, mean of a step, N.
+    pub held_peak: f64,
+    /// Of a ball bearing: spin of inner ring and cage, rad/s, and temperature above the surroundings, K.
+    pub race: Option<[f64; 3]>,
 }
 
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
+        Rung::Support => support::run(scene),
         Rung::TwoPlane => two_plane::run(scene),
         _ => Ok(ModelRun {
             histories: Histories {
@@ -33,6 +49,7 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
                 rings: Vec::new(),
             },
             ledger: None,
+            ring: None,
         }),
     }
 }

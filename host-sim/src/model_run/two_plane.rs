@@ -256,6 +256,7 @@ fn in_rings<R: Precision, const N: usize>(
     let still = STILL * scales.speed;
     let unit = scene.rotor.mass * scales.speed * scales.speed;
     Ok(ModelRun {
+        ring: None,
         ledger: Some(ledger(unit, &begun, &model.energy(&state).to_f64())),
         histories: Histories {
             whole: whole.finish(end, still),

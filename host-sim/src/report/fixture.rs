@@ -88,6 +88,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     Outcome {
         rings: Vec::new(),
         ledger: None,
+        ring: None,
         model: truth.clone(),
         detection: detection(&truth),
         truth,

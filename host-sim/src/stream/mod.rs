@@ -9,6 +9,7 @@ mod read;
 mod write;
 
 pub use clock::LOOK_AHEAD;
+pub(crate) use clock::{Clock, Stamp};
 pub use read::{Pulses, Row, StreamReader};
 pub use write::StreamWriter;
 
