@@ -144,7 +144,7 @@ fn a_ball_bearing_is_checked() {
         (
             "cage_ratio",
             "0.6",
-            "cage_ratio must be 0.05 to 0.5, is 0.6",
+            "cage_ratio must be 0.05 to 0.49, is 0.6",
         ),
         (
             "heat_capacity_j_k",

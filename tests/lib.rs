@@ -5,4 +5,5 @@ pub mod cases;
 pub mod counting;
 pub mod drops;
 pub mod growth;
+pub mod rotors;
 pub mod supports;

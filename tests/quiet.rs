@@ -24,6 +24,7 @@ fn watched_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -
             planes: [position(k as f64 / rate); 2],
             spin: scene.rotor.spin,
             levitated: true,
+            bearing: None,
         };
         sensors.read(&mut state, &motion)
     });

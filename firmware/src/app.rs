@@ -49,7 +49,7 @@ impl App {
 
 #[cfg(test)]
 mod tests {
-    use touchdown_core::sample::CHANNELS;
+    use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 
     use super::*;
     use crate::board::default_config;
@@ -72,6 +72,7 @@ mod tests {
         valid: 0x0f,
         spin: None,
         levitated: None,
+        edges: [None; TACHOMETERS],
     };
 
     #[test]

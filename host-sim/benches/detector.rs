@@ -14,7 +14,13 @@ fn samples(scene: &Scene) -> Vec<Sample> {
     let bytes = stream.expect("memory").expect("a stream");
     StreamReader::new("drop", &bytes[..])
         .expect("own stream")
-        .map(|row| to_sample(&row.expect("own row"), &scene.sensors))
+        .map(|row| {
+            to_sample(
+                &row.expect("own row"),
+                &scene.sensors,
+                scene.run.sample_rate,
+            )
+        })
         .collect()
 }
 

@@ -1,6 +1,6 @@
 //! From the monitor's notices, on the sample clock, to events in seconds.
 
-use touchdown_core::event::{EventKind, Notice, Plane};
+use touchdown_core::event::{EventKind, Motion, Notice, Plane};
 
 use crate::monitor_run::Answer;
 use crate::outcome::{DetectedEvent, Detection};
@@ -54,6 +54,10 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
                     },
                     normal_speed_m_s: (event.kind == EventKind::Impact)
                         .then_some(f64::from(event.normal_speed)),
+                    motion: match event.motion {
+                        Motion::Cylindrical => "cylindrical",
+                        Motion::Conical => "conical",
+                    },
                 });
             }
             Notice::Confirmed { number, sample } => {
@@ -101,6 +105,7 @@ mod tests {
                 declared: sample,
                 plane: Plane::Both,
                 normal_speed: 0.0,
+                motion: Motion::Cylindrical,
             })
         };
         let answer = Answer {

@@ -3,21 +3,21 @@
 use std::io::{self, Write};
 
 use touchdown_core::error::ConfigError;
-use touchdown_core::sample::Sample;
-use touchdown_core::sensing::{PLANES, Sensing};
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sensing::Sensing;
 
 use crate::detection::{Timebase, detection};
 use crate::failure::Failure;
-use crate::history::{History, PhaseKind, Recorder, RotorState};
-use crate::model_run;
+use crate::model_run::{self, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
 use crate::progress::Progress;
-use crate::reference::{Reference, Start};
+use crate::rings::Histories;
 use crate::scene::Scene;
 use crate::sensors::{Motion, Sensors, SensorsState};
 use crate::stream::{Columns, StreamWriter, to_row};
 use crate::target::Target;
 use crate::trace::Trace;
+use crate::truth::{Moving, Truth};
 
 /// Drops the rotor of `scene`, with the detector on `target`. What the sensors read also goes to
 /// `stream`.
@@ -27,14 +27,22 @@ pub fn run<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
-    let model = model_run::simulate(scene).map_err(refused)?;
+    let ModelRun {
+        histories,
+        ledger,
+        ring,
+    } = model_run::run(scene).map_err(refused)?;
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
     let answer = target.run(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
     let (truth, trace, stream) = feed.finish();
+    let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
-        model,
-        truth,
+        model: histories.whole,
+        truth: truth.whole,
+        ledger,
+        ring,
+        rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         detection: detection(&answer, timebase),
     };
@@ -44,8 +52,7 @@ pub fn run<W: Write>(
 /// The samples of a drop, one after the other.
 struct Feed<'a, W> {
     scene: &'a Scene,
-    reference: Reference,
-    recorder: Recorder,
+    truth: Truth<'a>,
     sensors: Sensors,
     seen: SensorsState,
     sensing: Sensing,
@@ -69,11 +76,13 @@ impl<'a, W: Write> Feed<'a, W> {
             planes: scene.sensors.planes,
             speed: scene.sensors.speed,
             levitated: scene.sensors.levitation_signal,
+            edges: (scene.sensors.tachometers).map_or([false; TACHOMETERS], |it| {
+                it.marks.map(|marks| marks.is_some())
+            }),
         };
         Ok(Self {
             scene,
-            reference: Reference::new(&scene.machine(), &scene.start, scene.rotor.spin),
-            recorder: Recorder::new(-scene.first_sample_time()),
+            truth: Truth::new(scene),
             seen: sensors.start(scene.run.seed),
             sensors,
             sensing: Sensing::try_new(&scene.sensors.sensing())?,
@@ -86,37 +95,12 @@ impl<'a, W: Write> Feed<'a, W> {
         })
     }
 
-    /// The rotor at `time` (s since the release) and its phase.
-    fn rotor(&mut self, time: f64) -> (RotorState, PhaseKind) {
-        if time >= 0.0 {
-            let recorder = &mut self.recorder;
-            let state = self.reference.advance(time, &mut |h| recorder.take(h));
-            return (state, self.reference.phase());
-        }
-        let position = match self.scene.start {
-            Start::Free { position, .. } => position,
-            Start::Wall { .. } => [0.0; 2],
-        };
-        let state = RotorState {
-            time,
-            position,
-            spin: self.scene.rotor.spin,
-            ..RotorState::default()
-        };
-        (state, PhaseKind::Levitated)
-    }
-
-    fn finish(mut self) -> (History, Vec<TracePoint>, io::Result<Option<W>>) {
-        let recorder = &mut self.recorder;
-        let end = self
-            .reference
-            .advance(self.scene.run.duration, &mut |h| recorder.take(h));
-        let truth = self.recorder.finish(end, self.reference.still_speed());
+    fn finish(self) -> (Histories, Vec<TracePoint>, io::Result<Option<W>>) {
         let stream = match self.stream {
             Some(stream) => stream.and_then(StreamWriter::finish).map(Some),
             None => Ok(None),
         };
-        (truth, self.trace.finish(), stream)
+        (self.truth.finish(), self.trace.finish(), stream)
     }
 }
 
@@ -130,11 +114,12 @@ impl<W: Write> Iterator for Feed<'_, W> {
         let time = (self.next as f64 - self.levitated as f64) / self.scene.run.sample_rate;
         self.next += 1;
         self.progress.at(self.next);
-        let (state, phase) = self.rotor(time);
+        let state = self.truth.advance(time);
         let motion = Motion {
-            planes: [state.position; PLANES],
-            spin: state.spin,
+            planes: state.sensed,
+            spin: state.rotor.spin,
             levitated: time < 0.0,
+            bearing: bearing(self.scene, state.moving),
         };
         let sample = self.sensors.read(&mut self.seen, &motion);
         let [sensed, _] = self
@@ -142,16 +127,31 @@ impl<W: Write> Iterator for Feed<'_, W> {
             .convert(&sample, self.scene.sensors.fitted())
             .planes;
         self.trace.push(TracePoint {
-            state,
-            phase,
+            state: state.rotor,
+            phase: state.phase,
+            moving: state.moving,
             sensed: sensed.map(|plane| plane.map(f64::from)),
         });
         if let Some(Ok(stream)) = &mut self.stream {
-            let row = to_row(time, &sample, &self.scene.sensors);
+            let row = to_row(
+                time,
+                &sample,
+                &self.scene.sensors,
+                self.scene.run.sample_rate,
+            );
             if let Err(error) = stream.write(&row) {
                 self.stream = Some(Err(error));
             }
         }
         Some(sample)
     }
+}
+
+/// Angles of inner ring and cage since the release, rad.
+fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
+    let Moving::Ring { race_angle, .. } = moving else {
+        return None;
+    };
+    let bearing = scene.ball_bearing?;
+    Some([race_angle, bearing.cage_ratio * race_angle])
 }

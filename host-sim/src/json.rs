@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::history::{History, Impact, Phase, Regime};
+use crate::history::{Impact, Phase, Regime};
+use crate::ledger::Ledger;
+use crate::model_run::RingEnd;
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
@@ -18,6 +20,12 @@ struct DropJson<'a> {
     regime: Regime,
     #[serde(rename = "final")]
     end: EndJson,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rings: Vec<RingJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring: Option<RingEndJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy: Option<EnergyJson<'a>>,
     detector: EventsJson<'a>,
 }
 
@@ -56,6 +64,45 @@ struct EndJson {
     energy_j: f64,
 }
 
+/// A ring of a rotor that tilts; its impacts with the state there.
+#[derive(Serialize)]
+struct RingJson<'a> {
+    name: &'a str,
+    z_m: f64,
+    impacts: Vec<ImpactJson>,
+    phases: &'a [Phase],
+    contact_starts_s: &'a [f64],
+    lift_offs_s: &'a [f64],
+    rolling_starts_s: &'a [f64],
+    regime: Regime,
+}
+
+/// The retainer ring at the end.
+#[derive(Serialize)]
+struct RingEndJson {
+    x_m: f64,
+    y_m: f64,
+    vx_m_s: f64,
+    vy_m_s: f64,
+    held_peak_force_n: f64,
+    #[serde(flatten)]
+    race: Option<RaceJson>,
+}
+
+#[derive(Serialize)]
+struct RaceJson {
+    inner_ring_rad_s: f64,
+    cage_rad_s: f64,
+    temperature_rise_k: f64,
+}
+
+#[derive(Serialize)]
+struct EnergyJson<'a> {
+    #[serde(flatten)]
+    ledger: &'a Ledger,
+    imbalance_j: f64,
+}
+
 #[derive(Serialize)]
 struct EventsJson<'a> {
     events: &'a [DetectedEvent],
@@ -83,7 +130,13 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         lift_offs_s: &model.lift_offs,
         rolling_starts_s: &model.rolling_starts,
         regime: model.regime,
-        end: end(scene, model),
+        end: end(scene, outcome),
+        rings: rings(scene, outcome),
+        ring: outcome.ring.as_ref().map(ring_end),
+        energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
+            ledger,
+            imbalance_j: ledger.imbalance_j(),
+        }),
         detector: EventsJson {
             events: &outcome.detection.events,
         },
@@ -120,8 +173,43 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
     }
 }
 
-fn end(scene: &Scene, history: &History) -> EndJson {
-    let state = &history.end;
+fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
+    let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
+    let rings = rings.zip(&outcome.rings);
+    rings
+        .map(|(ring, [model, _])| RingJson {
+            name: &ring.name,
+            z_m: ring.place,
+            impacts: model.impacts.iter().enumerate().map(impact).collect(),
+            phases: &model.phases,
+            contact_starts_s: &model.contact_starts,
+            lift_offs_s: &model.lift_offs,
+            rolling_starts_s: &model.rolling_starts,
+            regime: model.regime,
+        })
+        .collect()
+}
+
+fn ring_end(ring: &RingEnd) -> RingEndJson {
+    RingEndJson {
+        x_m: ring.position[0],
+        y_m: ring.position[1],
+        vx_m_s: ring.velocity[0],
+        vy_m_s: ring.velocity[1],
+        held_peak_force_n: ring.held_peak,
+        race: ring.race.map(
+            |[inner_ring_rad_s, cage_rad_s, temperature_rise_k]| RaceJson {
+                inner_ring_rad_s,
+                cage_rad_s,
+                temperature_rise_k,
+            },
+        ),
+    }
+}
+
+fn end(scene: &Scene, outcome: &Outcome) -> EndJson {
+    let state = &outcome.model.end;
+    let stored = outcome.ledger.as_ref().map(Ledger::stored_j);
     EndJson {
         time_s: state.time,
         x_m: state.position[0],
@@ -129,6 +217,6 @@ fn end(scene: &Scene, history: &History) -> EndJson {
         vx_m_s: state.velocity[0],
         vy_m_s: state.velocity[1],
         spin_rad_s: state.spin,
-        energy_j: energy(&scene.machine(), state),
+        energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), state)),
     }
 }

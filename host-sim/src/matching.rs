@@ -219,6 +219,7 @@ mod tests {
             sample: 0,
             plane: "a",
             normal_speed_m_s: None,
+            motion: "cylindrical",
         }
     }
 

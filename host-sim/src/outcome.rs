@@ -2,6 +2,9 @@
 //! detector said.
 
 use crate::history::{History, PhaseKind, RotorState};
+use crate::ledger::Ledger;
+use crate::model_run::RingEnd;
+use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
 
@@ -24,6 +27,8 @@ pub struct DetectedEvent {
     pub plane: &'static str,
     /// Speed into the wall, impacts only, m/s.
     pub normal_speed_m_s: Option<f64>,
+    /// `cylindrical` or `conical`: whether the ends of the rotor went the same way or against each other.
+    pub motion: &'static str,
 }
 
 /// What the detector said over a run.
@@ -46,6 +51,8 @@ pub struct TracePoint {
     pub state: RotorState,
     /// The true phase.
     pub phase: PhaseKind,
+    /// What moves besides.
+    pub moving: Moving,
     /// What the sensors of plane a read, m; `None` where unusable.
     pub sensed: Option<[f64; 2]>,
 }
@@ -57,6 +64,12 @@ pub struct Outcome {
     pub model: History,
     /// The independent reference.
     pub truth: History,
+    /// The model's energy, where its rung keeps account of it.
+    pub ledger: Option<Ledger>,
+    /// The model's retainer ring at the end, where it moves or turns.
+    pub ring: Option<RingEnd>,
+    /// Each ring, where the rotor tilts: the model's and the reference's.
+    pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.
     pub trace: Vec<TracePoint>,
     /// The detector.

@@ -27,11 +27,15 @@ pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Fai
     };
     let mut config = scene.monitor_config();
     config.fitted = sensors.fitted();
+    config.tachometers = config
+        .tachometers
+        .and_then(|tachometers| columns.of_tachometers(tachometers));
     config.detector.sample_rate = rate as f32;
     let mut flaw = None;
     let samples = Samples {
         rows: &mut reader,
         sensors: &sensors,
+        rate,
         flaw: &mut flaw,
         progress: Progress::new("replay", 0),
         seen: 0,
@@ -47,6 +51,7 @@ pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Fai
 struct Samples<'a, I> {
     rows: I,
     sensors: &'a SensorsConfig,
+    rate: f64,
     flaw: &'a mut Option<InputError>,
     progress: Progress,
     seen: u64,
@@ -60,7 +65,7 @@ impl<I: Iterator<Item = Result<Row, InputError>>> Iterator for Samples<'_, I> {
             Ok(row) => {
                 self.seen += 1;
                 self.progress.at(self.seen);
-                Some(to_sample(&row, self.sensors))
+                Some(to_sample(&row, self.sensors, self.rate))
             }
             Err(flaw) => {
                 *self.flaw = Some(flaw);

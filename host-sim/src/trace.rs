@@ -87,6 +87,7 @@ mod tests {
                 ..RotorState::default()
             };
             trace.push(TracePoint {
+                moving: crate::truth::Moving::Nothing,
                 state,
                 phase: PhaseKind::FreeFall,
                 sensed: None,

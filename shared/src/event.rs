@@ -95,6 +95,17 @@ pub enum Plane {
     Both = 2,
 }
 
+/// How the rotor moved, as far as both planes show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Motion {
+    /// Its ends went the same way; also where only one is seen.
+    #[default]
+    Cylindrical = 0,
+    /// Its ends went against each other.
+    Conical = 1,
+}
+
 /// One event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
@@ -110,6 +121,8 @@ pub struct Event {
     pub plane: Plane,
     /// Speed into the wall just before an impact, m/s; 0 for other kinds.
     pub normal_speed: f32,
+    /// How the rotor moved when it was declared.
+    pub motion: Motion,
 }
 
 /// What a tick says: a new event, or the fate of an earlier free fall.

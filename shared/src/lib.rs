@@ -16,4 +16,5 @@ pub mod real;
 pub mod sample;
 pub mod scales;
 pub mod sensing;
+pub mod tachometer;
 pub mod wire;

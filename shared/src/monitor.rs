@@ -2,11 +2,12 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
 
-use crate::detect::{Detector, DetectorConfig, DetectorState, Phase};
+use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip};
 use crate::error::ConfigError;
-use crate::event::Notices;
+use crate::event::{Motion, Notices};
 use crate::sample::Sample;
-use crate::sensing::{Sensing, SensingConfig};
+use crate::sensing::{PLANES, Sensing, SensingConfig};
+use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
 
 /// All that the monitor is told.
@@ -17,6 +18,8 @@ pub struct MonitorConfig {
     pub fitted: u8,
     /// Counts to displacement.
     pub sensing: SensingConfig,
+    /// Pulses to the inner ring's speed, where the retainer is a ball bearing that is watched.
+    pub tachometers: Option<TachometersConfig>,
     /// Displacement to events.
     pub detector: DetectorConfig,
 }
@@ -26,6 +29,7 @@ pub struct MonitorConfig {
 pub struct Monitor {
     fitted: u8,
     sensing: Sensing,
+    tachometers: Option<Tachometers>,
     detector: Detector,
 }
 
@@ -34,6 +38,8 @@ pub struct Monitor {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
+    tachometers: TachometersState,
+    inner_ring: Option<Speed>,
     detector: DetectorState,
 }
 
@@ -43,6 +49,10 @@ impl Monitor {
         Ok(Self {
             fitted: config.fitted,
             sensing: Sensing::try_new(&config.sensing)?,
+            tachometers: config
+                .tachometers
+                .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
+                .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
         })
     }
@@ -55,17 +65,35 @@ impl Monitor {
     /// One tick. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
         let reading = self.sensing.convert(sample, self.fitted);
+        let retainer = self.retainer(state, sample);
         state.samples += 1;
         state.faults += u64::from(reading.unusable.count_ones());
         let mut notices = Notices::new();
         self.detector.update(
             &mut state.detector,
             &reading,
-            sample.spin,
-            sample.levitated,
+            &Signals {
+                spin: sample.spin,
+                retainer,
+                levitated: sample.levitated,
+            },
             &mut notices,
         );
         notices
+    }
+
+    fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
+        let Some(tachometers) = &self.tachometers else {
+            return Retainer::Fixed;
+        };
+        let (edges, spin) = (&sample.edges, sample.spin);
+        state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
+        match spin {
+            Some(spin) => {
+                Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
+            }
+            None => Retainer::Fixed,
+        }
     }
 }
 
@@ -83,6 +111,26 @@ impl MonitorState {
     /// The present phase.
     pub fn phase(&self) -> Phase {
         self.detector.phase()
+    }
+
+    /// The present phase of each end of the rotor.
+    pub fn phases(&self) -> [Phase; PLANES] {
+        self.detector.phases()
+    }
+
+    /// How the rotor moves.
+    pub fn motion(&self) -> Motion {
+        self.detector.motion()
+    }
+
+    /// Speed of the ball bearing's inner ring, where known.
+    pub fn inner_ring(&self) -> Option<Speed> {
+        self.inner_ring
+    }
+
+    /// Slip on the wall, where it is measured: in contact, with rotor and inner ring speed known.
+    pub fn slip(&self) -> Option<Slip> {
+        self.detector.slip()
     }
 
     /// Whether noise and position have been learnt.

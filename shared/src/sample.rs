@@ -2,6 +2,17 @@
 
 /// Position channels: plane a x, plane a y, plane b x, plane b y.
 pub const CHANNELS: usize = 4;
+/// Optical pulse channels of a ball bearing: inner ring, cage.
+pub const TACHOMETERS: usize = 2;
+
+/// What a pulse channel's counter and capture timer show at a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edges {
+    /// Edges so far, modulo 2^16, whichever way it turns.
+    pub count: u16,
+    /// Time since the last one in 1/256 of a sample period, rounded down; 255 where it is longer.
+    pub age: u8,
+}
 
 /// What one tick gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +25,8 @@ pub struct Sample {
     pub spin: Option<f32>,
     /// Whether the magnetic bearings are commanded on, where that is wired.
     pub levitated: Option<bool>,
+    /// Pulses, in the order of [`TACHOMETERS`], where such a sensor is fitted.
+    pub edges: [Option<Edges>; TACHOMETERS],
 }
 
 impl Sample {

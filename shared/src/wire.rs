@@ -4,15 +4,15 @@
 //! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
 //! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, and last the one of [`Summary`].
 
-use crate::event::{Event, EventKind, Moment, Notice, Plane};
-use crate::sample::{CHANNELS, Sample};
+use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x01";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x02";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x01";
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x02";
 /// Bytes of a sample record.
-pub const SAMPLE_BYTES: usize = 16;
+pub const SAMPLE_BYTES: usize = 20;
 /// Bytes of a notice record.
 pub const NOTICE_BYTES: usize = 32;
 
@@ -20,7 +20,8 @@ const SPIN_PRESENT: u8 = 1 << 4;
 const LEVITATED_PRESENT: u8 = 1 << 5;
 const LEVITATED_ON: u8 = 1 << 6;
 
-/// Sample to bytes: four u16 counts, flags, three zero bytes, spin (f32).
+/// Sample to bytes: four u16 counts, flags, which pulse channels are there, their ages, spin (f32),
+/// their counts (u16).
 pub fn encode_sample(sample: &Sample) -> [u8; SAMPLE_BYTES] {
     let mut bytes = [0; SAMPLE_BYTES];
     for (pair, count) in bytes.chunks_exact_mut(2).zip(sample.counts) {
@@ -35,6 +36,13 @@ pub fn encode_sample(sample: &Sample) -> [u8; SAMPLE_BYTES] {
     }
     bytes[8] = flags;
     bytes[12..16].copy_from_slice(&sample.spin.unwrap_or(0.0).to_le_bytes());
+    for (channel, edges) in sample.edges.iter().enumerate() {
+        if let Some(Edges { count, age }) = edges {
+            bytes[9] |= 1 << channel;
+            bytes[10 + channel] = *age;
+            bytes[16 + 2 * channel..][..2].copy_from_slice(&count.to_le_bytes());
+        }
+    }
     bytes
 }
 
@@ -46,11 +54,18 @@ pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
     }
     let flags = bytes[8];
     let spin = f32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]);
+    let mut edges = [None; TACHOMETERS];
+    for (channel, edges) in edges.iter_mut().enumerate() {
+        let count = u16::from_le_bytes([bytes[16 + 2 * channel], bytes[17 + 2 * channel]]);
+        let age = bytes[10 + channel];
+        *edges = (bytes[9] & (1 << channel) != 0).then_some(Edges { count, age });
+    }
     Sample {
         counts,
         valid: flags & 0x0f,
         spin: (flags & SPIN_PRESENT != 0).then_some(spin),
         levitated: (flags & LEVITATED_PRESENT != 0).then_some(flags & LEVITATED_ON != 0),
+        edges,
     }
 }
 
@@ -79,13 +94,14 @@ const CONFIRMED: u8 = 2;
 const WITHDRAWN: u8 = 3;
 const SUMMARY: u8 = 4;
 
-/// Record to bytes: tag, kind, plane, zero, number (u16), two zero bytes, then three 8-byte fields.
+/// Record to bytes: tag, kind, plane, motion, number (u16), two zero bytes, then three 8-byte fields.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
     match *record {
         Record::Notice(Notice::Declared(event)) => {
-            put(0, &[DECLARED, event.kind as u8, event.plane as u8]);
+            let (kind, plane) = (event.kind as u8, event.plane as u8);
+            put(0, &[DECLARED, kind, plane, event.motion as u8]);
             put(4, &event.number.to_le_bytes());
             put(8, &event.onset.0.to_le_bytes());
             put(16, &event.declared.to_le_bytes());
@@ -111,7 +127,7 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     bytes
 }
 
-/// Bytes to record; `None` for an unknown tag, kind or plane.
+/// Bytes to record; `None` for an unknown tag, kind, plane or motion.
 pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
     let eight = |at: usize| {
         let mut field = [0; 8];
@@ -129,6 +145,7 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             declared: sample,
             plane: *[Plane::A, Plane::B, Plane::Both].get(usize::from(bytes[2]))?,
             normal_speed: f32::from_le_bytes(four),
+            motion: *[Motion::Cylindrical, Motion::Conical].get(usize::from(bytes[3]))?,
         })),
         CONFIRMED => Record::Notice(Notice::Confirmed { number, sample }),
         WITHDRAWN => Record::Notice(Notice::Withdrawn { number, sample }),

@@ -42,6 +42,7 @@ pub fn default_config() -> MonitorConfig {
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
         },
+        tachometers: None,
         detector: DetectorConfig {
             sample_rate: SAMPLE_RATE_HZ as f32,
             machine: MachineConfig {

@@ -21,6 +21,8 @@ Examples:
   touchdown paper                       the source paper's numbers: printed, right, ours
   touchdown scene explain my.toml       what is modelled and what is left out
   touchdown limits                      how the model holds at its extremes
+  touchdown force r.csv --calibration c.csv
+                                        the contact force from measured accelerations
 
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
 
@@ -35,6 +37,30 @@ in the page and the JSON. Whirl is counted over random drops: the paper conclude
 large gap avoids it, which its own equations do not bear out.
 
 Exit status: 0 ours is right in every row, whatever is printed; 1 it is not.";
+
+const FORCE: &str = "\
+The recording, one row a sample at a constant rate, 5 kHz to 1 MHz:
+  time_s,ax_m_s2[,ay_m_s2]            accelerometers, x right, y up
+
+The calibration, at the same rate: hits of an instrumented hammer along one axis, as
+many as there are. Each is recorded until its motion has died out; a new number in
+`hit` begins the next. Without `hit` all is one hit:
+  [hit,]time_s,force_n,ax_m_s2        or ay_m_s2 for hits along y
+One calibration stands for both axes; with two, each axis has its own.
+
+Both, and each hit, begin with 6 ms or more in which nothing happens: there zero and
+noise are measured.
+
+What comes out is the force on the retainer through both its contacts and its flights,
+0 in the flights. A steady force, as of a rotor that lies still, moves no accelerometer
+and is not seen.
+
+To see it work:
+  touchdown force --example try
+  touchdown force try/recording.csv --calibration try/calibration.csv --report try/force.html
+
+try/truth.json has what is right. docs/force.md tells how it is done and how exact it is.
+Exit status: 0 done, contacts or none; 2 bad usage or input.";
 
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.
@@ -59,6 +85,9 @@ pub(super) enum Command {
     /// Check every number of the source paper: as printed, as right, as ours
     #[command(after_help = PAPER)]
     Paper(PaperArgs),
+    /// Recover the contact force from accelerations, with a device calibrated by known hits
+    #[command(after_help = FORCE)]
+    Force(ForceArgs),
     /// Run the model at its extremes: what was measured, the limit, and whether it holds
     ///
     /// Steps of 1 us to 1 ms; restitution, friction, gap, spin and gravity at their ends; starts on,
@@ -152,6 +181,25 @@ pub(super) struct LimitsArgs {
     /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ForceArgs {
+    /// Recorded accelerations: CSV with the header time_s,ax_m_s2[,ay_m_s2]
+    #[arg(required_unless_present = "example")]
+    pub recording: Option<String>,
+    /// Known hits: CSV with the header [hit,]time_s,force_n,ax_m_s2 (or ay_m_s2); once or twice
+    #[arg(long, value_name = "FILE", required_unless_present = "example")]
+    pub calibration: Vec<String>,
+    /// Pulses, band and rate as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Force, contacts and device as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    /// Write calibration.csv, recording.csv and truth.json to a folder: simulated, to try this on
+    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    pub example: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod force;
 mod limits;
 mod paper;
 mod subject;
@@ -35,6 +36,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Replay(args)) => replay_stream(&args),
         Some(Command::Trade(args)) => trade::table(&args),
         Some(Command::Paper(args)) => paper::check(&args),
+        Some(Command::Force(args)) => force::measure(&args),
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Scene { what }) => {
             match what {

@@ -3,11 +3,18 @@
 use maud::{DOCTYPE, html};
 
 use crate::outcome::Detection;
-use crate::report::Subject;
-use crate::scene::Scene;
+use crate::report::{RingSubject, Subject};
+use crate::scene::parts::parts;
+use crate::scene::{Ring, Scene};
 use crate::timeline;
 
 pub(super) fn subject(scene: &Scene) -> Subject {
+    let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
+    let ring = |ring: &Ring| RingSubject {
+        name: ring.name.clone(),
+        clearance: ring.retainer.clearance,
+        place: ring.place,
+    };
     Subject {
         title: scene.heading().to_owned(),
         source: scene.source.clone().unwrap_or_else(|| scene.name.clone()),
@@ -19,6 +26,10 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         step: scene.model.step,
         seed: scene.run.seed,
         noise: scene.sensors.noise,
+        rings: rings.map(ring).collect(),
+        cage_ratio: scene.ball_bearing.map(|bearing| bearing.cage_ratio),
+        parts: parts(scene),
+        validity: None,
         versions: vec![("touchdown".to_owned(), env!("CARGO_PKG_VERSION").to_owned())],
     }
 }

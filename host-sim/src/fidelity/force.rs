@@ -14,7 +14,7 @@ pub(super) fn pulses(history: &History, truth: &History, scene: &Scene) -> Optio
 
 /// The rotor at the wall, with the stiffness of its contact: of two spheres by Hertz; of a cylinder in a ring
 /// the linear one that the model goes by, so that its own error is not seen.
-fn meeting(impact: &Impact, scene: &Scene) -> Option<Meeting> {
+pub(crate) fn meeting(impact: &Impact, scene: &Scene) -> Option<Meeting> {
     let (stiffness, exponent) = match scene.materials.contact {
         Contact::Point => (point(scene), 1.5),
         Contact::Line { .. } => (compliance(scene).ok()?.stiffness, 1.0),

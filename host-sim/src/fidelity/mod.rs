@@ -2,7 +2,7 @@
 
 mod error;
 mod explain;
-mod force;
+pub(crate) mod force;
 
 pub use error::error;
 pub use explain::explain;

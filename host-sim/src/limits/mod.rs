@@ -16,6 +16,7 @@ mod scenes;
 mod stepping;
 mod table;
 mod truth;
+mod two_plane;
 mod watch;
 
 use rayon::prelude::*;
@@ -61,6 +62,7 @@ pub fn run() -> Result<Vec<Row>, Failure> {
     rows.extend(bounce::rows()?);
     rows.extend(clock::rows(&mut progress).map_err(refused)?);
     rows.extend(refusal::rows().map_err(refused)?);
+    rows.extend(two_plane::rows()?);
     Ok(rows)
 }
 

@@ -37,6 +37,20 @@ pub struct Pulse {
 impl Meeting {
     /// The pulse, with the damping that gives the restitution where gravity has no part.
     pub fn pulse(&self) -> Pulse {
+        self.bounce(self.damping(), |_, _| {}).0
+    }
+
+    /// The force of that pulse from touch to release: pairs of s since the touch and N, some thousands.
+    pub fn history(&self) -> Vec<(f64, f64)> {
+        let mut history = vec![(0.0, 0.0)];
+        let pulse = self
+            .bounce(self.damping(), |time, force| history.push((time, force)))
+            .0;
+        history.push((pulse.duration, 0.0));
+        history
+    }
+
+    fn damping(&self) -> f64 {
         let free = Self {
             gravity: 0.0,
             ..*self
@@ -44,18 +58,18 @@ impl Meeting {
         let (mut low, mut high) = (0.0, MOST_DAMPING);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if free.bounce(middle).1 > self.restitution {
+            if free.bounce(middle, |_, _| {}).1 > self.restitution {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        self.bounce(if self.restitution < 1.0 { low } else { 0.0 })
-            .0
+        if self.restitution < 1.0 { low } else { 0.0 }
     }
 
-    /// The pulse under damping `a`, and the speed away from the wall over that into it.
-    fn bounce(&self, a: f64) -> (Pulse, f64) {
+    /// The pulse under damping `a`, and the speed away from the wall over that into it; `at` is given
+    /// time and force after each step.
+    fn bounce(&self, a: f64, mut at: impl FnMut(f64, f64)) -> (Pulse, f64) {
         let n = self.exponent;
         // Of the spring without damping: its deepest place, and half its period or so.
         let depth = (0.5 * (n + 1.0) * self.mass * self.speed * self.speed / self.stiffness)
@@ -90,6 +104,7 @@ impl Meeting {
             }
             (time, d, v) = (time + step, next_d, next_v);
             peak = f64::max(peak, force(d, v));
+            at(time, force(d, v));
         }
         (
             Pulse {
@@ -139,6 +154,20 @@ mod tests {
     }
 
     #[test]
+    fn the_force_over_time_is_the_change_of_momentum() {
+        for restitution in [0.3, 0.8, 1.0] {
+            let meeting = rig(restitution);
+            let pairs = meeting.history();
+            let trapezia = pairs
+                .windows(2)
+                .map(|it| 0.5 * (it[0].1 + it[1].1) * (it[1].0 - it[0].0));
+            let momentum = (1.0 + restitution) * meeting.mass * meeting.speed;
+            let off = trapezia.sum::<f64>() / momentum - 1.0;
+            assert!(off.abs() < 1e-5, "{restitution}: {off:e}");
+        }
+    }
+
+    #[test]
     fn damping_gives_the_restitution() {
         for restitution in [0.05, 0.3, 0.8, 0.99] {
             let meeting = rig(restitution);
@@ -149,7 +178,7 @@ mod tests {
                 let rest = (1.0 + restitution) * a - ((1.0 + a) / (1.0 - restitution * a)).ln();
                 if rest > 0.0 { low = a } else { high = a }
             }
-            let bounced = meeting.bounce(low).1;
+            let bounced = meeting.bounce(low, |_, _| {}).1;
             assert!(
                 (bounced - restitution).abs() < 1e-3,
                 "{restitution}: {bounced}"

@@ -31,6 +31,10 @@ pub fn subject() -> Subject {
         step: 20e-6,
         seed: 1,
         noise: 1e-6,
+        rings: Vec::new(),
+        cage_ratio: None,
+        parts: Vec::new(),
+        validity: None,
         versions: vec![("touchdown-core".to_owned(), "0.1.0".to_owned())],
     }
 }
@@ -73,6 +77,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         let [x, y] = state.position;
         let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
         trace.push(TracePoint {
+            moving: crate::truth::Moving::Nothing,
             state,
             phase,
             sensed,
@@ -81,6 +86,9 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     let end = reference.advance(subject.duration, &mut |it| recorder.take(it));
     let truth = recorder.finish(end, reference.still_speed());
     Outcome {
+        rings: Vec::new(),
+        ledger: None,
+        ring: None,
         model: truth.clone(),
         detection: detection(&truth),
         truth,
@@ -99,6 +107,7 @@ fn detection(truth: &History) -> Detection {
         sample: ((onset_s + latency + LEAD) * RATE) as u64,
         plane: "both",
         normal_speed_m_s: None,
+        motion: "cylindrical",
     };
     let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
         PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
@@ -117,6 +126,7 @@ fn detection(truth: &History) -> Detection {
         .filter(|impact| impact.normal_speed > 8e-3);
     let impacts = hard.map(|impact| DetectedEvent {
         normal_speed_m_s: Some(0.98 * impact.normal_speed),
+        motion: "cylindrical",
         ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
     });
     let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();

@@ -3,6 +3,8 @@
 mod accuracy;
 pub(crate) mod chart;
 mod displacement;
+mod energy;
+mod moving;
 pub(crate) mod orbit;
 mod parameters;
 mod phase_plane;
@@ -22,6 +24,7 @@ mod tests;
 use crate::matching::match_events;
 use crate::outcome::Outcome;
 use crate::reference::Machine;
+use crate::scene::parts::Part;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use window::Window;
 
@@ -48,8 +51,27 @@ pub struct Subject {
     pub seed: u64,
     /// Of a sensor, standard deviation, m.
     pub noise: f64,
+    /// Rings of a rotor that tilts; else none.
+    pub rings: Vec<RingSubject>,
+    /// Speed of a ball bearing's cage over that of its inner ring.
+    pub cage_ratio: Option<f64>,
+    /// Of the machine, in and out.
+    pub parts: Vec<Part>,
+    /// How far a rigid rotor can be trusted.
+    pub validity: Option<String>,
     /// Component and version.
     pub versions: Vec<(String, String)>,
+}
+
+/// A ring of a rotor that tilts; SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RingSubject {
+    /// For people.
+    pub name: String,
+    /// Radial, m.
+    pub clearance: f64,
+    /// From the centre of mass, m.
+    pub place: f64,
 }
 
 /// Writes the page.
@@ -69,10 +91,10 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             (timeline::legend())
             @if zoomed {
                 h3 { "First part" }
-                (timeline::timeline("Timeline, first part", window, outcome))
+                (timeline::timeline("Timeline, first part", window, subject, outcome))
                 h3 { "Whole run" }
             }
-            (timeline::timeline("Timeline, whole run", whole, outcome))
+            (timeline::timeline("Timeline, whole run", whole, subject, outcome))
             p.note { "Short strokes in the bars are impacts. Labels below the bars stand at the time of declaration." }
         }
         div.pair {
@@ -87,6 +109,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
                 p.note { "True motion where the rotor is beyond 80 % of the clearance. Inside a dashed curve the wall cannot hold the rotor: contact ends there. Shaded, where a full turn is shown and the spin is fast: contact is kept for ever in whirl (orange) or in a swing (green), as in Fig. 3 of the source paper." }
             }
         }
+        (parts_that_move(whole, subject, outcome))
         section {
             h2 { "Displacement" }
             (displacement::displacement(window, subject, outcome))
@@ -100,12 +123,42 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
         section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
         section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
+        @if let Some(ledger) = &outcome.ledger {
+            section { h2 { "Energy" } (energy::energy(ledger)) }
+        }
         section { h2 { "Parameters" } (parameters::parameters(subject)) }
-        section { h2 { "Not modelled" } (parameters::limits(outcome.model.has_forces())) }
+        section { h2 { "Not modelled" } (parameters::limits(subject, outcome.model.has_forces())) }
         section { h2 { "Versions" } (parameters::versions(subject)) }
     };
     let title = format!("{} \u{2013} touchdown report", subject.title);
     page(&title, &body).into_string()
+}
+
+/// Ends, ring and inner ring, where they are there.
+fn parts_that_move(whole: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+    let (ring, race) = moving::ring_moves(outcome);
+    html! {
+        @if !subject.rings.is_empty() { (moving::ends(subject, outcome)) }
+        @if ring {
+            div.pair {
+                section {
+                    h2 { "Orbit in the retainer ring" }
+                    (moving::in_ring(subject, outcome))
+                    p.note { "The rotor as seen from the ring, which moves." }
+                }
+                section {
+                    h2 { "Retainer ring" }
+                    (moving::ring(whole, outcome))
+                }
+            }
+        }
+        @if let (true, Some(cage)) = (race, subject.cage_ratio) {
+            section {
+                h2 { "Ball bearing" }
+                (moving::speeds(cage, whole, outcome))
+            }
+        }
+    }
 }
 
 /// A page in the report's style.

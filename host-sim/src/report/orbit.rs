@@ -12,15 +12,49 @@ use std::fmt::Write;
 /// Radius of the clearance circle in drawing units; the drawing is 488 of them wide.
 const RADIUS: f64 = 180.0;
 
-/// Draws the whole run with equal axes; clearance in m, spin in rad/s.
+/// A path in a gap.
+pub struct Orbit<'a> {
+    /// Its heading.
+    pub title: &'a str,
+    /// Of the gap, m.
+    pub clearance: f64,
+    /// rad/s.
+    pub spin: f64,
+    /// In the gap.
+    pub trace: &'a [TracePoint],
+    /// Where impacts were, m.
+    pub hits: Vec<[f64; 2]>,
+}
+
+/// Draws the rotor's whole run; clearance in m, spin in rad/s.
 pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
+    let impacts = outcome.truth.impacts.iter();
+    draw(&Orbit {
+        title: "Orbit",
+        clearance,
+        spin,
+        trace: &outcome.trace,
+        hits: impacts.map(|impact| impact.state.position).collect(),
+    })
+}
+
+/// Draws a path with equal axes.
+pub fn draw(orbit: &Orbit) -> Markup {
+    let Orbit {
+        title,
+        clearance,
+        spin,
+        trace,
+        hits: places,
+    } = orbit;
+    let (clearance, spin) = (*clearance, *spin);
     let scale = RADIUS / clearance;
     let micro = 1.25 * clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
         svg.orbit role="img" viewBox="-252 -226 488 472" {
-            title { "Orbit" }
+            title { (title) }
             desc {
                 "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
                 "circle; rings mark impacts, the outer arrow the direction of spin."
@@ -33,10 +67,10 @@ pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
             }
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
-            @for run in runs(&outcome.trace) {
+            @for run in runs(trace) {
                 path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
-            @for (x, y) in hits(outcome, scale) {
+            @for (x, y) in hits(places, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
             }
             (spin_arrow(spin))
@@ -95,19 +129,19 @@ fn turn(from: &TracePoint, to: &TracePoint) -> f64 {
     }
 }
 
-fn hits(outcome: &Outcome, scale: f64) -> Vec<(f64, f64)> {
-    let mut places: Vec<(f64, f64)> = Vec::new();
-    for impact in &outcome.truth.impacts {
-        let [x, y] = impact.state.position;
+/// In drawing units, those that fall on others left out.
+fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
+    let mut drawn: Vec<(f64, f64)> = Vec::new();
+    for [x, y] in places {
         let at = (x * scale, -y * scale);
-        if places
+        if drawn
             .iter()
             .all(|it| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5)
         {
-            places.push(at);
+            drawn.push(at);
         }
     }
-    places
+    drawn
 }
 
 fn spin_arrow(spin: f64) -> Markup {

@@ -2,6 +2,7 @@
 
 use super::Subject;
 use super::text::{si, significant};
+use crate::scene::parts::{Part, SPRING};
 use maud::{Markup, html};
 use std::f64::consts::PI;
 
@@ -97,20 +98,34 @@ fn list(name: &str, rows: &[(&str, String)]) -> Markup {
 }
 
 /// What the model leaves out; `forces`: it gives impacts a force and a duration.
-pub fn limits(forces: bool) -> Markup {
+pub fn limits(subject: &Subject, forces: bool) -> Markup {
+    let out = subject.parts.iter().filter(|part| !part.modelled);
     html! {
         ul {
-            li { "The retainer is rigid and fixed: no compliance or damping of its support, no inner ring that spins up, no heat." }
-            li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
+            @for part in out { li { (part.name) ": " (part.reason) "." } }
+            @if let Some(validity) = &subject.validity { li { (validity) } }
+            @if subject.machine_is_fixed() {
+                li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
+            }
             @if forces {
                 li { "In the reference an impact takes no time; the model's contact force is that of an elastic wall with damping, without tangential compliance or plastic flow." }
             } @else {
                 li { "An impact takes no time: impulses are given, contact forces and contact durations are not." }
             }
-            li { "Motion is planar, for a rigid rotor: no conical motion, no bending, no unbalance or magnetic force after the release." }
             li { "Friction is Coulomb's, with one constant coefficient; restitution does not depend on speed." }
             li { "Truth here is the reference solution of the same equations, not a measurement." }
         }
+    }
+}
+
+impl Subject {
+    /// Whether the retainer stands on no spring.
+    fn machine_is_fixed(&self) -> bool {
+        let spring = |part: &&Part| part.name == SPRING;
+        self.parts
+            .iter()
+            .find(spring)
+            .is_none_or(|part| !part.modelled)
     }
 }
 

@@ -39,6 +39,9 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     };
     let truth = Recorder::new(levitated).finish(end, 0.0);
     Outcome {
+        ledger: None,
+        ring: None,
+        rings: Vec::new(),
         model: truth.clone(),
         truth,
         trace: Vec::new(),

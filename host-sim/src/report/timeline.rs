@@ -1,9 +1,10 @@
 //! Phases over time: the truth above, the detector below.
 
+use super::Subject;
 use super::chart::{Axis, columns};
 use super::text::{PHASES, phase_class};
 use super::window::Window;
-use crate::history::{Phase, PhaseKind};
+use crate::history::{History, Phase, PhaseKind};
 use crate::names::{event_name, phase_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use maud::{Markup, html};
@@ -21,7 +22,7 @@ const NARROW: f64 = 330.0;
 const LETTER: f64 = 6.4;
 
 /// Draws the strip for a stretch of time.
-pub fn timeline(title: &str, window: Window, outcome: &Outcome) -> Markup {
+pub fn timeline(title: &str, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
     let events = &outcome.detection.events;
     let estimated = detected_phases(&outcome.detection, window.end, |event| event.onset_s);
@@ -30,25 +31,26 @@ pub fn timeline(title: &str, window: Window, outcome: &Outcome) -> Markup {
         let impacts = events.iter().filter(|it| it.event == EventKind::Impact);
         impacts.map(time).collect()
     };
-    let true_hits: Vec<f64> = outcome
-        .truth
-        .impacts
-        .iter()
-        .map(|it| it.state.time)
-        .collect();
-    let rows = [
-        ("Truth (reference)", &outcome.truth.phases, true_hits),
-        (
-            "Detector, by estimated onset",
-            &estimated,
-            hits(|it| it.onset_s),
-        ),
-        (
-            "Detector, as declared at the time",
-            &declared,
-            hits(|it| it.declared_s),
-        ),
-    ];
+    let true_row = |name: String, truth: &'_ History| {
+        let hits = truth.impacts.iter().map(|it| it.state.time);
+        (name, truth.phases.clone(), hits.collect())
+    };
+    let rings = subject.rings.iter().zip(&outcome.rings);
+    let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
+        vec![true_row("Truth (reference)".to_owned(), &outcome.truth)];
+    rows.extend(
+        rings.map(|(ring, [_, truth])| true_row(format!("Truth, ring {}", ring.name), truth)),
+    );
+    rows.push((
+        "Detector, by estimated onset".to_owned(),
+        estimated,
+        hits(|it| it.onset_s),
+    ));
+    rows.push((
+        "Detector, as declared at the time".to_owned(),
+        declared,
+        hits(|it| it.declared_s),
+    ));
     let (labels, lanes) = labels(events, &x, factor);
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;

@@ -25,4 +25,8 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "backward-whirl",
     "rolling",
     "lift-off",
+    "ball-bearing",
+    "soft-support",
+    "two-plane",
+    "vertical",
 ];

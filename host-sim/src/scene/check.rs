@@ -11,7 +11,7 @@ use super::limits;
 use super::machine::{retainer, rotor, start};
 use super::support::{BallBearingTable, SupportTable};
 use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
-use crate::sensors::SensorsConfig;
+use crate::sensors::{SensorsConfig, Tachometers};
 
 pub(super) const RPM: f64 = std::f64::consts::TAU / 60.0;
 pub(super) const MILLI: f64 = 1e-3;
@@ -30,6 +30,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let support = file.support.as_ref().map(SupportTable::check).transpose()?;
     let ball_bearing = file.ball_bearing.as_ref();
     let ball_bearing = ball_bearing.map(BallBearingTable::check).transpose()?;
+    let tachometers = ball_bearing.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
     let two_plane = two_plane(&file, &rotor, &retainer, &start)?;
     let needed = needed(&file)?;
     let model = model(&file.model, &run, needed)?;
@@ -49,7 +50,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         model,
         auto,
         materials,
-        sensors: sensors(&file.sensors)?,
+        sensors: sensors(&file.sensors, tachometers)?,
         tuning: file.detector,
     };
     if scene.model.rung == Rung::Hertz {
@@ -180,8 +181,13 @@ fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
         None => needed,
         Some(name) => named("model", "rung", name, &Rung::ALL, Rung::name)?,
     };
-    if rung == Rung::TwoPlane && needed != rung {
-        let rule = "rung = \"two-plane\" needs [two_plane] and [[ring]]";
+    let parts = match rung {
+        Rung::Support => "[support] or [ball_bearing]",
+        Rung::TwoPlane => "[two_plane] and [[ring]]",
+        Rung::Rigid | Rung::Moreau | Rung::Hertz => "",
+    };
+    if !parts.is_empty() && needed != rung {
+        let rule = format!("rung = \"{}\" needs {parts}", rung.name());
         return Err(Flaw::new("model", "rung", rule));
     }
     let scheme = match table.scheme.as_deref() {
@@ -230,7 +236,7 @@ pub(super) fn named<T: Copy>(
         })
 }
 
-fn sensors(table: &SensorsTable) -> Result<SensorsConfig, Flaw> {
+fn sensors(table: &SensorsTable, tachometers: Option<Tachometers>) -> Result<SensorsConfig, Flaw> {
     let config = SensorsConfig {
         planes: table.planes,
         bits: table.bits,
@@ -245,6 +251,7 @@ fn sensors(table: &SensorsTable) -> Result<SensorsConfig, Flaw> {
         runout_harmonic: table.runout_harmonic,
         speed: table.speed,
         levitation_signal: table.levitation_signal,
+        tachometers,
     };
     config.check().map_err(|error| translate(&error))?;
     Ok(config)
@@ -271,6 +278,8 @@ pub(super) fn translate(error: &ConfigError) -> Flaw {
         "spin" => ("rotor", "speed_rpm"),
         "length" => ("materials", "length_mm"),
         "fastest" => ("start", "vx_mm_s"),
+        "marks" => ("ball_bearing", "inner_ring_marks"),
+        "cage_ratio" => ("ball_bearing", "cage_ratio"),
         "planes" => ("sensors", "planes"),
         "bits" | "full_scale" | "zero_count" => ("sensors", "bits"),
         "range" | "resolution" => ("sensors", "range_um"),

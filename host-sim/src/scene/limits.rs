@@ -41,7 +41,7 @@ pub const RING_INERTIA_KG_M2: RangeInclusive<f64> = 1e-12..=1e6;
 /// Drag of a bearing, N m or N m s; loss of heat, W/K.
 pub const DRAG: RangeInclusive<f64> = 0.0..=1e6;
 /// Speed of a cage over that of the inner ring; 1/2 with balls of no size.
-pub const CAGE_RATIO: RangeInclusive<f64> = 0.05..=0.5;
+pub const CAGE_RATIO: RangeInclusive<f64> = 0.05..=0.49;
 /// J/K.
 pub const HEAT_CAPACITY_J_K: RangeInclusive<f64> = 1e-3..=1e9;
 /// Marks on a turn, for an optical sensor.

@@ -33,7 +33,7 @@ use crate::input_error::InputError;
 use crate::model_run::compliance;
 use crate::reference::Machine;
 pub use crate::reference::Start;
-use crate::sensors::SensorsConfig;
+use crate::sensors::{SensorsConfig, Tachometers};
 
 /// A valid scene; SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,6 +199,7 @@ impl Scene {
         MonitorConfig {
             fitted: self.sensors.fitted(),
             sensing: self.sensors.sensing(),
+            tachometers: self.sensors.tachometers.as_ref().map(Tachometers::config),
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,
                 machine: MachineConfig {

@@ -15,6 +15,9 @@ pub struct Part {
     pub reason: &'static str,
 }
 
+/// Name of the part that bounds whirl.
+pub const SPRING: &str = "retainer's mass, spring, damper";
+
 /// All parts, in the order of the ladder.
 pub fn parts(scene: &Scene) -> Vec<Part> {
     let rung = scene.model.rung;
@@ -62,7 +65,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     };
     let s = Rung::Support;
     part(
-        "retainer's mass, spring, damper",
+        SPRING,
         support.is_some(),
         s,
         "[support] is given",

@@ -5,6 +5,12 @@ use serde::Deserialize;
 use super::check::{MILLI, above_zero, between, zero_or_more};
 use super::flaw::Flaw;
 use super::limits;
+use crate::sensors::Tachometers;
+
+/// Of an optical mark, rad: 0.1 mm on a circle of 50 mm diameter.
+const EDGE_ERROR: f64 = 0.004;
+/// Time back that the speed of a ring is measured over, s.
+const SPEED_WINDOW: f64 = 0.005;
 
 /// What the retainer ring stands on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +42,22 @@ pub struct BallBearing {
     pub heat_loss: f64,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
     pub marks: [Option<u16>; 2],
+}
+
+impl BallBearing {
+    /// The optical sensors, where there are any, on a ring of this bore radius (m).
+    pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
+        self.marks
+            .iter()
+            .any(Option::is_some)
+            .then_some(Tachometers {
+                marks: self.marks,
+                cage_ratio: self.cage_ratio,
+                bore_radius,
+                edge_error: EDGE_ERROR,
+                window: SPEED_WINDOW,
+            })
+    }
 }
 
 #[derive(Deserialize)]

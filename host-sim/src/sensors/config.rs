@@ -4,6 +4,8 @@ use touchdown_core::error::ConfigError;
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{PLANES, SensingConfig};
 
+use super::Tachometers;
+
 /// Inductive position sensors and their converter; SI, all channels alike where not said.
 ///
 /// Only noise and the converter distort by default: everything else is 0 until a scene asks.
@@ -35,6 +37,8 @@ pub struct SensorsConfig {
     pub speed: bool,
     /// Whether "levitation on" is wired.
     pub levitation_signal: bool,
+    /// Optical sensors of a ball bearing, where the retainer is one that is watched.
+    pub tachometers: Option<Tachometers>,
 }
 
 impl SensorsConfig {
@@ -118,6 +122,9 @@ impl SensorsConfig {
         }
         if !(1..=1000).contains(&self.runout_harmonic) {
             return Err(OutOfRange("runout_harmonic", "1 to 1000"));
+        }
+        if let Some(tachometers) = &self.tachometers {
+            tachometers.config().validate()?;
         }
         Ok(())
     }

@@ -1,11 +1,13 @@
 //! The sensor chain, from true displacement to counts.
 //!
 //! Per channel: runout, first-order low-pass, cubic nonlinearity, gain error, offset, white noise,
-//! converter.
+//! converter. Beside them the pulses of a ball bearing.
 
 mod config;
+mod tachometer;
 
 pub use config::SensorsConfig;
+pub use tachometer::Tachometers;
 
 use std::f64::consts::TAU;
 
@@ -13,8 +15,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use touchdown_core::error::ConfigError;
-use touchdown_core::sample::{CHANNELS, Sample};
+use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_core::sensing::PLANES;
+
+use self::tachometer::TachometersState;
 
 /// The true motion at one sample.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +29,9 @@ pub struct Motion {
     pub spin: f64,
     /// Whether the magnetic bearings are on.
     pub levitated: bool,
+    /// Angles by which inner ring and cage of a ball bearing have turned since the first sample, whole
+    /// turns included, rad; `None` where there is none.
+    pub bearing: Option<[f64; TACHOMETERS]>,
 }
 
 /// Coefficients of the chain.
@@ -43,6 +50,7 @@ pub struct SensorsState {
     /// Angle of the shaft, rad, within a turn.
     shaft: f64,
     filtered: Option<[f64; CHANNELS]>,
+    tachometers: TachometersState,
 }
 
 impl Sensors {
@@ -65,6 +73,7 @@ impl Sensors {
             noise: ChaCha8Rng::seed_from_u64(seed),
             shaft: 0.0,
             filtered: None,
+            tachometers: TachometersState::new(seed),
         }
     }
 
@@ -85,11 +94,15 @@ impl Sensors {
                 + config.noise * noise;
             counts[channel] = quantise(config, reading);
         }
+        let edges = config.tachometers.as_ref().zip(motion.bearing);
         Sample {
             counts,
             valid: config.fitted(),
             spin: config.speed.then_some(motion.spin as f32),
             levitated: config.levitation_signal.then_some(motion.levitated),
+            edges: edges.map_or([None; TACHOMETERS], |(sensors, angles)| {
+                state.tachometers.read(sensors, angles)
+            }),
         }
     }
 

@@ -20,6 +20,7 @@ fn at(position: [f64; 2]) -> Motion {
         planes: [position; PLANES],
         spin: 0.0,
         levitated: true,
+        bearing: None,
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 use csv::StringRecord;
-use touchdown_core::sample::CHANNELS;
+use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 
 use super::Columns;
 use super::clock::{Clock, LOOK_AHEAD, Stamp};
@@ -15,6 +15,17 @@ use crate::input_error::{InputError, reason};
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
 const MICRO: f64 = 1e-6;
+/// Whole numbers up to here are exact.
+const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
+
+/// What a pulse channel's timer showed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulses {
+    /// Edges so far; may wrap at 65536.
+    pub count: u64,
+    /// Time since the last one, s.
+    pub age: f64,
+}
 
 /// One row; SI.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +38,8 @@ pub struct Row {
     pub spin: Option<f64>,
     /// `None` without the column.
     pub levitated: Option<bool>,
+    /// Of inner ring and cage; `None` without the columns or where one of them is NaN.
+    pub edges: [Option<Pulses>; TACHOMETERS],
 }
 
 /// A stream being read. The rate is that of the first [`LOOK_AHEAD`] rows; all later rows are held
@@ -70,8 +83,8 @@ impl<R: Read> StreamReader<R> {
         let names: Vec<_> = header.iter().collect();
         let Some(columns) = Columns::of_header(&names) else {
             let rule = format!(
-                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], is \
-                 {:?}",
+                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]\
+                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us], is {:?}",
                 names.join(",")
             );
             return Err(InputError::at_line(file, 1, rule));
@@ -252,23 +265,46 @@ fn parse(file: &str, record: &StringRecord, columns: Columns) -> Result<(Stamp, 
     for (channel, position) in positions[..channels].iter_mut().enumerate() {
         *position = MICRO * number(1 + channel)?;
     }
+    let mut column = 1 + channels;
     let mut spin = None;
     if columns.speed {
-        spin = Some(RPM * number(1 + channels)?).filter(|spin| !spin.is_nan());
+        spin = Some(RPM * number(column)?).filter(|spin| !spin.is_nan());
+        column += 1;
     }
     let mut levitated = None;
     if columns.levitated {
-        levitated = Some(match &record[header.len() - 1] {
+        levitated = Some(match &record[column] {
             "0" => false,
             "1" => true,
             other => return Err(fail(format!("levitated must be 0 or 1, is {other:?}"))),
         });
+        column += 1;
+    }
+    let mut edges = [None; TACHOMETERS];
+    for (pulses, _) in (edges.iter_mut().zip(columns.edges)).filter(|(_, there)| *there) {
+        let (count, age) = (number(column)?, MICRO * number(column + 1)?);
+        if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
+            let text = &record[column];
+            let rule = "must be a whole number from 0 to 2^53 or NaN";
+            return Err(fail(format!("{} {rule}, is {text:?}", header[column])));
+        }
+        if age < 0.0 {
+            let text = &record[column + 1];
+            let name = header[column + 1];
+            return Err(fail(format!("{name} must be 0 or more, is {text:?}")));
+        }
+        *pulses = (!count.is_nan() && !age.is_nan()).then_some(Pulses {
+            count: count as u64,
+            age,
+        });
+        column += 2;
     }
     let row = Row {
         time: stamp.time,
         positions,
         spin,
         levitated,
+        edges,
     };
     Ok((stamp, row))
 }

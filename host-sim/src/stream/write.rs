@@ -32,6 +32,12 @@ impl<W: Write> StreamWriter<W> {
         if self.columns.levitated {
             write!(self.out, ",{}", u8::from(row.levitated.unwrap_or(false)))?;
         }
+        for (pulses, _) in (row.edges.iter().zip(self.columns.edges)).filter(|(_, there)| *there) {
+            match pulses {
+                Some(pulses) => write!(self.out, ",{},{}", pulses.count, pulses.age / MICRO)?,
+                None => write!(self.out, ",NaN,NaN")?,
+            }
+        }
         writeln!(self.out)
     }
 

@@ -2,14 +2,18 @@
 
 use touchdown_core::sensing::PLANES;
 
-use crate::history::{Happening, History, PhaseKind, Recorder, RotorState};
+use super::Units;
+use crate::history::{Happening, PhaseKind, Recorder, RotorState};
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState, TwoPlaneReference,
-    TwoPlaneState,
+    Magnet, Mount, Race, Ring, SupportMachine, SupportReference, SupportStart, SupportState,
+    TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
 };
 use crate::rings::{Histories, Merge};
-use crate::scene::{RINGS, Scene, Start, TwoPlane};
+use crate::scene::{self, RINGS, Scene, Start, TwoPlane};
+
+/// Part of the speed scale below which a rotor in contact is at rest.
+const STILL: f64 = 1e-9;
 
 /// What moves besides the rotor's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +105,7 @@ impl<'a> Truth<'a> {
                         whole.take(happening);
                     }
                 });
-                of_ends(self.scene, &state)
+                of_ends(self.scene.two_plane.as_ref(), &state)
             }
         };
         TrueState {
@@ -114,24 +118,32 @@ impl<'a> Truth<'a> {
 
     /// Goes on to the end of the run.
     pub fn finish(mut self) -> Histories {
-        let end = self.advance(self.scene.run.duration).rotor;
+        let duration = self.scene.run.duration;
+        let end = self.advance(duration).rotor;
         let still = match &self.source {
             Source::Planar(reference) => reference.still_speed(),
-            Source::Support(reference) => reference.still_speed(),
-            Source::TwoPlane(reference) => reference.still_speed(),
+            _ => STILL * Units::of(self.scene).speed,
         };
-        let rings = match &mut self.source {
-            Source::TwoPlane(reference) => {
-                let state = reference.advance(self.scene.run.duration, &mut |_, _| ());
-                let ends = (0..).map(|ring| state.at_ring(ring));
-                let rings = self.rings.into_iter().zip(ends);
-                rings.map(|(ring, end)| ring.finish(end, still)).collect()
+        let ends = match (&mut self.source, &self.scene.two_plane) {
+            (Source::TwoPlane(reference), Some(machine)) => {
+                let state = reference.advance(duration, &mut |_, _| ());
+                let rings = machine.rings.iter().enumerate();
+                rings
+                    .map(|(index, ring)| RotorState {
+                        time: duration,
+                        position: state.displacement(ring.place),
+                        velocity: state.displacement_rate(ring.place),
+                        spin: state.spin,
+                        turns_in_contact: state.turns_in_contact[index],
+                    })
+                    .collect()
             }
             _ => Vec::new(),
         };
+        let rings = self.rings.into_iter().zip(ends);
         Histories {
             whole: self.whole.finish(end, still),
-            rings,
+            rings: rings.map(|(ring, end)| ring.finish(end, still)).collect(),
         }
     }
 }
@@ -139,8 +151,7 @@ impl<'a> Truth<'a> {
 fn source(scene: &Scene) -> Source {
     let spin = scene.rotor.spin;
     if let Some(machine) = &scene.two_plane {
-        let (machine, start) = two_plane(scene, machine);
-        return Source::TwoPlane(Box::new(TwoPlaneReference::new(&machine, &start)));
+        return Source::TwoPlane(Box::new(two_plane(scene, machine)));
     }
     if scene.support.is_none() && scene.ball_bearing.is_none() {
         let reference = Reference::new(&scene.machine(), &scene.start, spin);
@@ -162,6 +173,50 @@ fn source(scene: &Scene) -> Source {
     };
     let start = SupportStart::new(scene.start, spin);
     Source::Support(Box::new(SupportReference::new(&machine, &start)))
+}
+
+fn two_plane(scene: &Scene, machine: &TwoPlane) -> TwoPlaneReference {
+    let (sin, cos) = machine.gravity_angle.sin_cos();
+    let ring = |ring: &scene::Ring| Ring {
+        place: ring.place,
+        radius: ring.radius,
+        clearance: ring.retainer.clearance,
+        friction: ring.retainer.friction,
+        restitution: ring.retainer.restitution,
+    };
+    let magnet = |magnet: &scene::Magnet| Magnet {
+        place: magnet.place,
+        stiffness: magnet.stiffness,
+        force: magnet.force,
+    };
+    let (position, velocity) = match scene.start {
+        Start::Free { position, velocity } => (position, velocity),
+        // No valid scene of a rotor that tilts starts so.
+        Start::Wall { .. } => ([0.0; 2], [0.0; 2]),
+    };
+    TwoPlaneReference::new(
+        &TwoPlaneMachine {
+            mass: scene.rotor.mass,
+            polar_inertia: scene.rotor.polar_inertia,
+            transverse_inertia: machine.transverse_inertia,
+            gravity: [scene.run.gravity * sin, -scene.run.gravity * cos],
+            rings: machine.rings.iter().map(ring).collect(),
+            unbalance: Unbalance {
+                eccentricity: machine.unbalance[0] / scene.rotor.mass,
+                angle: machine.unbalance[1],
+                skew: machine.skew[0],
+                skew_angle: machine.skew[1],
+            },
+            magnets: machine.magnets.iter().map(magnet).collect(),
+        },
+        &TwoPlaneStart {
+            position,
+            velocity,
+            tilt: machine.tilt,
+            tilt_rate: machine.tilt_rate,
+        },
+        scene.rotor.spin,
+    )
 }
 
 /// By the magnetic bearings, before the release.
@@ -200,6 +255,29 @@ fn in_rings(machine: &TwoPlane, at: impl Fn(f64) -> [f64; 2]) -> [[f64; 2]; RING
         *end = at(ring.place);
     }
     ends
+}
+
+fn of_ends(
+    machine: Option<&TwoPlane>,
+    state: &TwoPlaneState,
+) -> (RotorState, [[f64; 2]; PLANES], Moving) {
+    let most = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
+    let rotor = RotorState {
+        time: state.time,
+        position: state.position,
+        velocity: state.velocity,
+        spin: state.spin,
+        turns_in_contact: state.turns_in_contact.iter().fold(0.0, most),
+    };
+    let Some(machine) = machine else {
+        return (rotor, [state.position; PLANES], Moving::Nothing);
+    };
+    let at = |place| state.displacement(place);
+    (
+        rotor,
+        machine.sensors.map(at),
+        Moving::Ends(in_rings(machine, at)),
+    )
 }
 
 fn of_support(state: &SupportState) -> (RotorState, [[f64; 2]; PLANES], Moving) {

@@ -50,6 +50,8 @@ pub struct Tuning {
     pub wall_tolerance: f32,
     /// Acceleration that the equations of flight may be wrong by, m/s^2.
     pub flight_error: f32,
+    /// Acceleration that the equations of flight may be wrong by at one end of a rotor that tilts, m/s^2.
+    pub tilt_error: f32,
     /// Acceleration that the equations of contact may be wrong by, m/s^2.
     pub contact_error: f32,
     /// Time without motion that counts as levitated again or at rest, s.
@@ -67,6 +69,7 @@ impl Default for Tuning {
             catch_time: 5e-3,
             wall_tolerance: 0.07,
             flight_error: 0.1,
+            tilt_error: 10.0,
             contact_error: 0.15,
             still_time: 0.05,
         }
@@ -130,6 +133,7 @@ impl Tuning {
             ("catch_time", self.catch_time),
             ("wall_tolerance", self.wall_tolerance),
             ("flight_error", self.flight_error),
+            ("tilt_error", self.tilt_error),
             ("contact_error", self.contact_error),
             ("still_time", self.still_time),
         ] {

@@ -5,12 +5,16 @@ use core::f32::consts::TAU;
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::flight::{Fix, direction};
 use crate::detect::lift_off::LiftOff;
+use crate::detect::signals::{Retainer, Signals};
+use crate::detect::slip::{Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
 use crate::real::sqrt;
 
 /// Slip, m/s, that a speed sensor resolves.
 const SLIP_RESOLUTION: f32 = 0.02;
+/// Standard deviations of the velocity along the wall that bound its error.
+const SURE: f32 = 3.0;
 /// Way back from the last turning point, in standard deviations of the position, that makes a swing.
 const CLEAR_SWING: f32 = 12.0;
 
@@ -59,6 +63,9 @@ pub(crate) struct Touching {
     /// Slip that friction cannot have used up yet, m/s.
     slip_left: f32,
     slow: u32,
+    /// Slip against an inner ring that turns, where measured.
+    pub(crate) slip: Option<Slip>,
+    verdict: Verdict,
 }
 
 /// The last turning point of a swing.
@@ -132,23 +139,34 @@ impl ContactTest {
         }
     }
 
-    /// Takes the next sample, or its absence, and the spin (rad/s) where measured.
+    /// Takes the next sample, or its absence.
     pub(crate) fn take(
         &self,
         state: &mut Touching,
         fix: Option<&Fix>,
-        spin: Option<f32>,
+        signals: &Signals,
     ) -> Findings {
         state.age = state.age.saturating_add(1);
+        let spin = signals.spin;
         let rate = state.swing().rate;
         let surface = self.machine.rotor_radius * spin.unwrap_or(self.machine.spin);
-        let slip = surface + rate * self.machine.clearance;
+        let mut slip = surface + rate * self.machine.clearance;
+        state.slip = None;
+        if let Retainer::Turning(Some(bore)) = signals.retainer {
+            slip -= bore.speed;
+            let spread = SURE * self.machine.clearance * state.track.rate_spread();
+            state.slip = Some(Slip {
+                speed: slip,
+                error: bore.error + spread,
+            });
+        }
         let sample = fix.map(|fix| (fix.position, fix.variance));
         self.filter.take(&mut state.track, sample, slip);
         if let Some(age) = fix.and_then(|fix| self.lift_off(state, fix)) {
             return [Some(Finding::LiftOff(age)), None];
         }
-        let kind = self.kind(state, spin.map(|_| slip));
+        let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
+        let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
         let on_wall = fix.filter(|_| state.lift.is_at_wall());
         let regime = on_wall.and_then(|fix| self.regime(state, fix, surface));
         [kind, regime]
@@ -159,13 +177,16 @@ impl ContactTest {
         state.lift.take(radius, fix.variance, self.threshold)
     }
 
+    /// `slip` as against a wall that does not turn, m/s, where measured.
     fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
         let swing = state.swing();
         let pressing =
             self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos;
         let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
-        state.slip_left -= per_impulse * pressing.max(0.0) * self.period;
+        let taken = per_impulse * pressing.max(0.0) * self.period;
+        state.slip_left -= taken;
         let (found, age) = match slip {
+            _ if state.slip.is_some() => self.by_slip(state, taken),
             Some(slip) if slip.abs() > SLIP_RESOLUTION => {
                 state.slow = 0;
                 (Some(Kind::Sliding), 0.0)
@@ -189,6 +210,18 @@ impl ContactTest {
         state.track.for_rolling = Evidence::default();
         state.track.for_sliding = Evidence::default();
         Some(Finding::Kind(found, age))
+    }
+
+    fn by_slip(&self, state: &mut Touching, taken: f32) -> (Option<Kind>, f32) {
+        let slip = state.slip.as_ref();
+        match slip.and_then(|slip| state.verdict.take(slip, taken, SLIP_RESOLUTION)) {
+            Some((kind, age)) => (Some(kind), age),
+            // Without friction or pressing there is no time to wait for.
+            None if state.kind.is_none() && state.age > self.still_samples => {
+                (Some(Kind::Rolling), 0.0)
+            }
+            None => (None, 0.0),
+        }
     }
 
     fn by_likelihood(&self, state: &Touching) -> (Option<Kind>, f32) {
@@ -241,6 +274,33 @@ impl Touching {
     /// Radius at which the wall seems to be, m.
     pub(crate) fn wall(&self) -> f32 {
         self.lift.wall
+    }
+
+    /// As it goes on at one end of the rotor alone, where the wall seems to be `shift` (m) farther.
+    pub(crate) fn at_one_end(&self, shift: f32) -> Self {
+        Self {
+            lift: self.lift.at_one_end(shift),
+            ..*self
+        }
+    }
+
+    /// As that of one end goes on for both: where the wall is must be learnt anew.
+    pub(crate) fn of_both(&self) -> Self {
+        Self {
+            lift: LiftOff::default(),
+            ..*self
+        }
+    }
+
+    /// Unit vector from the centre to the contact.
+    pub(crate) fn outward(&self) -> [f32; 2] {
+        let swing = self.swing();
+        [swing.sin, -swing.cos]
+    }
+
+    /// Distance from the wall, m, while it may be lifting off.
+    pub(crate) fn lifting(&self) -> Option<f32> {
+        (!self.lift.is_at_wall()).then_some(self.lift.gap)
     }
 
     /// The estimate of the likelier hypothesis.

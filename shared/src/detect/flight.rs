@@ -130,6 +130,22 @@ impl FlightTest {
         }
     }
 
+    /// The flight of one end that goes on from that of both; its velocity has to be found.
+    pub(crate) fn part(&self, both: &Airborne, fix: &Fix, loudness: f32) -> Airborne {
+        Airborne {
+            track: Track::new(
+                fix.position,
+                fix.variance,
+                both.track.velocity,
+                UNKNOWN_SPEED,
+            ),
+            bank: JumpBank::new(loudness),
+            series: both.series.anew(),
+            lies: both.lies,
+            ..Airborne::default()
+        }
+    }
+
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
     /// much so is learnt.
     pub(crate) fn listen(&self, listener: &mut Listener, fix: &Fix) {

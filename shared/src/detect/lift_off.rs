@@ -19,6 +19,8 @@ const LATEST_CROSSING: f32 = 0.75;
 pub(crate) struct LiftOff {
     /// Radius at which the wall seems to be, m.
     pub(crate) wall: f32,
+    /// Distance of the last sample from it, inward, m.
+    pub(crate) gap: f32,
     count: u16,
     sum: f32,
     age: u16,
@@ -30,11 +32,22 @@ impl LiftOff {
         self.age == 0
     }
 
+    /// At one end alone, where the wall seems to be `shift` (m) farther. Which end has left it, the next
+    /// samples decide.
+    pub(crate) fn at_one_end(&self, shift: f32) -> Self {
+        Self {
+            wall: self.wall + shift,
+            sum: 0.5 * self.sum,
+            ..*self
+        }
+    }
+
     /// Takes the distance from the centre (m), known to `variance` (m^2). Where the rotor has left the
     /// wall: samples since.
     pub(crate) fn take(&mut self, radius: f32, variance: f32, threshold: f32) -> Option<f32> {
         let sigma = sqrt(variance);
-        let inward = (self.wall - radius) / sigma;
+        self.gap = self.wall - radius;
+        let inward = self.gap / sigma;
         self.sum = (self.sum + SHIFT * (inward - 0.5 * SHIFT)).max(0.0);
         if self.count < WARM_UP {
             self.sum = 0.0;

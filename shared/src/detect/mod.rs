@@ -11,11 +11,17 @@
 //! | `wall` | angle on the wall; sliding or rolling |
 //! | `lift_off` | whether it has left the wall |
 //! | `still` | whether it moves at all |
+//! | `slip` | likewise, against an inner ring that turns |
 //! | `ladder` | which phase all this makes |
+//! | `ends` | whether the two ends move as one, and what each does |
+//! | `detector` | what is learnt, the release, and who follows from there |
+//! | `signals` | what it is told besides the position |
 //! | `teller` | the notices of a tick |
 
 mod config;
 mod contact;
+mod detector;
+mod ends;
 mod flight;
 mod jump;
 mod ladder;
@@ -24,10 +30,15 @@ mod lift_off;
 mod noise;
 mod release;
 mod series;
+mod signals;
+mod slip;
 mod still;
 mod teller;
 mod track;
 mod wall;
 
 pub use config::{DetectorConfig, MachineConfig, Tuning};
-pub use ladder::{Detector, DetectorState, Phase};
+pub use detector::{Detector, DetectorState};
+pub use ladder::Phase;
+pub use signals::{Retainer, Signals};
+pub use slip::Slip;

@@ -97,6 +97,15 @@ impl Series {
         (seen + PRIOR_WEIGHT * machine.restitution) / (weight + PRIOR_WEIGHT)
     }
 
+    /// Another series, with what has been learnt and taken in this one.
+    pub(crate) fn anew(&self) -> Self {
+        Self {
+            last: None,
+            ends: None,
+            ..*self
+        }
+    }
+
     /// The last impact.
     pub(crate) fn last(&self) -> Option<&Bounce> {
         self.last.as_ref()

@@ -1,6 +1,7 @@
 //! What a tick says.
 
-use crate::event::{Event, EventKind, Moment, Notice, Notices, Plane};
+use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
+use crate::sensing::PLANES;
 
 /// A declared fall that is neither confirmed nor withdrawn.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,7 @@ pub(crate) struct Pending {
 pub(crate) struct Teller<'a> {
     pub(crate) sample: u64,
     pub(crate) plane: Plane,
+    pub(crate) motion: Motion,
     pub(crate) next_number: &'a mut u16,
     pub(crate) notices: &'a mut Notices,
 }
@@ -31,7 +33,21 @@ impl Teller<'_> {
             declared: self.sample,
             plane: self.plane,
             normal_speed,
+            motion: self.motion,
         }));
+        number
+    }
+
+    /// Declares an event of now at those ends that have it; its number.
+    pub(crate) fn tell_of(&mut self, ends: [bool; PLANES], kind: EventKind) -> u16 {
+        let whole = self.plane;
+        self.plane = match ends {
+            [true, false] => Plane::A,
+            [false, true] => Plane::B,
+            _ => Plane::Both,
+        };
+        let number = self.tell(kind, 0.0, 0.0);
+        self.plane = whole;
         number
     }
 

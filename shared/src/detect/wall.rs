@@ -5,6 +5,7 @@
 //! their log-likelihoods is summed up as a CUSUM in each direction.
 
 use crate::detect::config::{MachineConfig, Tuning};
+use crate::real::sqrt;
 
 /// Time over which an error of the equations keeps its sign, s.
 const ERROR_TIME: f32 = 1e-3;
@@ -140,6 +141,13 @@ impl WallFilter {
         let for_rolling = for_rolling.clamp(-LOUDEST, LOUDEST);
         track.for_rolling.add(for_rolling);
         track.for_sliding.add(-for_rolling);
+    }
+}
+
+impl WallTrack {
+    /// Standard deviation of the rates, rad/s.
+    pub(crate) fn rate_spread(&self) -> f32 {
+        sqrt(self.covariance[2].max(0.0))
     }
 }
 

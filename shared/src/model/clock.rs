@@ -24,6 +24,10 @@ impl<R: Real> StepLength<R> {
     /// Whole steps in `time` and the fraction beyond them; the fraction is as accurate as after a short
     /// time.
     fn split(&self, time: R) -> (R, R) {
+        if time < self.length {
+            let part = time / self.length;
+            return (R::ZERO, part - part * self.rest);
+        }
         let whole = (time / self.length).floor();
         let left = (time - whole * self.length) - product_error(whole, self.length);
         (whole, left / self.length - (time / self.length) * self.rest)

@@ -46,6 +46,13 @@ pub(crate) struct WallState<R> {
     pub(crate) spin: Sum<R>,
 }
 
+impl<R: Real> WallState<R> {
+    /// Velocity of the contact point along the wall: exactly 0 where it rolls.
+    fn slip(&self) -> R {
+        self.spin.plus(self.tangential.value()) + self.tangential.rest()
+    }
+}
+
 /// Why a series ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Ending {
@@ -103,7 +110,7 @@ impl<R: Precision> Contact<R> {
 
     fn find_end_of_slip(&mut self, friction: R, law: &Law<R>) {
         let start_speed = self.series.tangential[0];
-        let start = self.base.spin.plus(start_speed);
+        let start = self.base.slip();
         let per_force = friction / law.inertia_ratio;
         let turn = per_force.abs() * reach(&self.series.impulse, self.span);
         if start.abs() > reach(&self.series.tangential, self.span) + turn {
@@ -263,7 +270,7 @@ impl<R: Precision> Contact<R> {
 
 /// How the contact point moves at the start of a contact.
 pub(crate) fn mode_of<R: Real>(base: &WallState<R>, grip: Grip, law: &Law<R>) -> Mode<R> {
-    let slip = base.spin.plus(base.tangential.value());
+    let slip = base.slip();
     let speed = base.tangential.value();
     let force = speed * speed + law.gravity * base.cos.value();
     let needed = law.rolling_friction(base.sin.value());

@@ -1,7 +1,7 @@
 //! Free flight: a parabola from its launch to its next contact, solved for once.
 
 use crate::model::law::Law;
-use crate::model::polynomial::{early_rise, first_rise};
+use crate::model::polynomial::{Quartic, early_rise, first_rise};
 use crate::real::Real;
 
 /// Over the time in which a flight crosses the whole gap.
@@ -104,10 +104,13 @@ impl<R: Real> Flight<R> {
         let [u, v] = self.velocity;
         let c = [-R::TWO * launch, c2, c3, c4, R::ZERO];
         let lost = u * u + v * v;
-        self.resting_on(
-            early_rise(&c, lost)
-                .unwrap_or_else(|| first_rise(&c, [R::ZERO, lost], self.outside_at(law))),
-        )
+        self.resting_on(early_rise(&c, lost).unwrap_or_else(|| self.rise_across(&c, lost, law)))
+    }
+
+    /// Of a flight that may go far.
+    #[cold]
+    fn rise_across(&self, c: &Quartic<R>, lost: R, law: &Law<R>) -> (R, R) {
+        first_rise(c, [R::ZERO, lost], self.outside_at(law))
     }
 
     /// Next contact after a lift-off, where the wall had just ceased to press: exactly 4 v_y/g.

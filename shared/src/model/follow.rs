@@ -9,6 +9,7 @@ use crate::model::period::Round;
 use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState};
+use crate::model::turns::Turns;
 use crate::model::whirl::whirl;
 
 /// Most impacts followed in one step; beyond it the rest of a bounce series is summed. Chosen, because a
@@ -134,16 +135,17 @@ impl<R: Precision> Rigid<R> {
                 },
             });
         }
-        let rest = law.rest_of_series(hit.launch_speed, pressing);
         let ends = hit.launch_speed <= R::CUTOFF_SPEED
-            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO)
-            && rest <= R::lit(LONGEST_REST);
+            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO);
         if ends || hurry {
-            let onto = state.on_wall(sin, cos, hit.tangential);
-            self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
-        } else {
-            self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
+            let rest = law.rest_of_series(hit.launch_speed, pressing);
+            if rest <= R::lit(LONGEST_REST) || hurry {
+                let onto = state.on_wall(sin, cos, hit.tangential);
+                self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
+                return;
+            }
         }
+        self.launch(state, sin, cos, hit.launch_speed, hit.tangential);
     }
 
     /// The rest of a bounce series from launch speed `launch` at once: `rest` would be its length if the
@@ -199,7 +201,7 @@ impl<R: Precision> Rigid<R> {
     ) {
         let to = next(&flight, &self.law);
         state.solved.flights = state.solved.flights.wrapping_add(1);
-        state.turns = (0, R::ZERO);
+        state.turns = Turns::default();
         state.ends = state.begun.after(to.after, &self.step);
         state.motion = Motion::Flight { flight, to };
     }
@@ -211,7 +213,7 @@ impl<R: Precision> Rigid<R> {
         grip: Grip,
         sink: &mut impl FnMut(Happening<R>),
     ) {
-        state.turns = (0, R::ZERO);
+        state.turns = Turns::default();
         self.touch(state, onto, grip);
         self.tell(state, Change::ContactStarts, sink);
     }
@@ -232,7 +234,7 @@ impl<R: Precision> Rigid<R> {
         sink: &mut impl FnMut(Happening<R>),
     ) {
         let onto = contact.wall_state(contact.span, &self.law);
-        state.turn(contact.turned(contact.span));
+        state.turns.add(contact.turned(contact.span));
         state.begun = state.ends;
         state.spin = onto.spin;
         let was_rolling = contact.mode == Mode::Rolling;
@@ -281,7 +283,7 @@ impl<R: Precision> Rigid<R> {
         let now = state.now;
         let time = self.step.time(now.since(state.begun));
         let (onto, angle, stuck) = whirl(&contact.base, contact.mode, time, &self.law);
-        state.turn(angle);
+        state.turns.add(angle);
         state.begun = now;
         let was_rolling = contact.mode == Mode::Rolling;
         self.touch(state, onto, grip(stuck));

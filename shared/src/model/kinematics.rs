@@ -108,12 +108,13 @@ impl<R: Precision> Rigid<R> {
             }
             Motion::Contact(contact) => {
                 let mut point = contact.at(time.least(contact.span), law);
-                point[4] += state.turns.1;
+                let (whole, rest) = state.turns.parts();
+                point[4] += rest;
                 let touch = match contact.mode {
                     Mode::Sliding(_) => Touch::Sliding,
                     Mode::Rolling => Touch::Rolling,
                 };
-                on_wall(point, touch, state.turns.0)
+                on_wall(point, touch, whole)
             }
         }
     }

@@ -58,15 +58,14 @@ impl<R: Real> Law<R> {
         let beta = self.inertia_ratio;
         let stick = -spin.plus(tangential) * beta / (R::ONE + beta);
         let limit = self.friction * impulse;
-        let stuck = stick.abs() <= limit;
-        let rub = stick.within(limit);
-        let after = tangential + rub;
-        if stuck {
+        if stick.abs() <= limit {
+            let after = tangential + stick;
             *spin = Sum::new(-after);
-        } else {
-            spin.add(rub / beta);
+            return (after, true);
         }
-        (after, stuck)
+        let rub = if stick > R::ZERO { limit } else { -limit };
+        spin.add(rub / beta);
+        (tangential + rub, false)
     }
 
     /// Friction (per mass, along the wall) that rolling needs where sin phi is `sin`.

@@ -53,7 +53,8 @@ pub use state::{RigidState, Solved};
 pub use stepper::Stepper;
 pub use support::{
     BallBearing, BallBearingState, Bushing, Fixed, Ledger, Load, Mount, MountConfig, Race,
-    RaceConfig, RaceMotion, RingMotion, Sprung, SprungState, Support, SupportConfig, SupportState,
+    RaceConfig, RaceMotion, RingMotion, Rounded, Sprung, SprungState, Support, SupportConfig,
+    SupportState,
 };
 pub use two_plane::{
     Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,

@@ -15,7 +15,7 @@ const ITERATIONS: usize = 64;
 pub(crate) type Quartic<R> = [R; DEGREE + 1];
 
 /// Value and derivative.
-fn evaluate<R: Real>(c: &Quartic<R>, t: R) -> (R, R) {
+fn evaluate<R: Real, const TERMS: usize>(c: &[R; TERMS], t: R) -> (R, R) {
     c.iter()
         .rev()
         .fold((R::ZERO, R::ZERO), |(value, slope), &k| {
@@ -95,23 +95,39 @@ fn sign_changes<R: Real>(c: &Quartic<R>, degree: usize, end: R) -> [R; DEGREE] {
     found
 }
 
-/// The first t above 0 at which a polynomial that is negative there becomes positive, and its slope,
-/// where bounds alone show that it rises all the way to there and well beyond rounding: a short hop.
-/// `lost` is the size of what cancelled in the linear coefficient.
+/// The first t above 0 at which a polynomial of degree 3 that is negative there becomes positive, and its
+/// slope, where bounds alone show that it rises all the way to there and well beyond rounding: a short
+/// hop. `lost` is the size of what cancelled in the linear coefficient.
+///
+/// In powers of a = c2 s/c1 and b = c3 s^2/c1, s = -c0/c1, the root is s (1 - a + 2 a^2 - b + ...). Newton's
+/// method goes on from there for as long as the bound on its error is above rounding: not at all for most
+/// of a bounce series, three times at most.
+#[inline]
 pub(crate) fn early_rise<R: Real>(c: &Quartic<R>, lost: R) -> Option<(R, R)> {
-    let [constant, linear, c2, c3, c4] = *c;
+    let [constant, linear, c2, c3, _] = *c;
     if constant >= R::ZERO || linear <= R::lit(CERTAIN) * R::EPSILON * lost {
         return None;
     }
-    // Up to `end` the slope keeps half of its first value, so the rise comes before it.
-    let first = -constant / linear;
-    let end = first + first;
-    let bend = R::TWO * c2.abs() + (R::lit(3.0) * c3.abs() + R::lit(4.0) * c4.abs() * end) * end;
-    if bend * end > R::HALF * linear {
+    let straight = -constant / linear;
+    let flat = R::ONE / linear;
+    let (a, b) = (c2 * flat * straight, c3 * flat * (straight * straight));
+    let (a_size, b_size) = (a.abs(), b.abs());
+    let bend = R::TWO * (a_size + R::lit(3.0) * b_size);
+    // Then up to twice `straight` the slope keeps half of its first value: the rise comes before it.
+    let is_short = bend <= R::lit(0.25);
+    if !is_short {
         return None;
     }
-    let t = bracketed(c, R::ZERO, end, first);
-    Some((t, evaluate(c, t).1))
+    let hop = [constant, linear, c2, c3];
+    let mut t = straight - straight * (a * (R::ONE - R::TWO * a) + b);
+    // Bound on the error of t over `straight`: the next terms are 5 a^3, 5 a b and 3 b^2.
+    let mut error = R::lit(8.0) * (a_size + b_size) * (a_size * a_size + b_size);
+    while error > R::HALF * R::EPSILON {
+        let (value, slope) = evaluate(&hop, t);
+        t = t - value / slope;
+        error = bend * error * error;
+    }
+    Some((t, evaluate(&hop, t).1))
 }
 
 /// The first t in (0, `end`) at which a polynomial that is negative just above 0 becomes positive, and

@@ -12,9 +12,9 @@ use crate::model::precision::{Precision, SERIES_LENGTH};
 use crate::real::Real;
 
 /// Shortenings of a series' span until its last terms are small enough.
-const SHORTENINGS: usize = 24;
+const SHORTENINGS: usize = 64;
 /// One of them.
-const SHORTER: f64 = 0.75;
+const SHORTER: f64 = 0.9;
 
 /// Coefficients from the constant term up.
 pub(crate) type Terms<R> = [R; SERIES_LENGTH];

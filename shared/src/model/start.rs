@@ -9,6 +9,7 @@ use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState, Solved};
 use crate::model::sum::Sum;
+use crate::model::turns::Turns;
 
 /// Distance from the wall, in units of epsilon, at which a start counts as on it.
 const ON_WALL: f64 = 64.0;
@@ -109,7 +110,7 @@ impl<R: Precision> Rigid<R> {
             begun: Instant::default(),
             ends: Instant::NEVER,
             spin: Sum::new(spin),
-            turns: (0, R::ZERO),
+            turns: Turns::default(),
             shortened: 0,
             solved: Solved::default(),
         };

@@ -5,6 +5,7 @@ use crate::model::contact::{Contact, Mode, WallState};
 use crate::model::flight::{Flight, Landing};
 use crate::model::precision::Precision;
 use crate::model::sum::Sum;
+use crate::model::turns::Turns;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Motion<R> {
@@ -33,7 +34,7 @@ pub struct RigidState<R> {
     pub(crate) begun: Instant<R>,
     pub(crate) ends: Instant<R>,
     pub(crate) spin: Sum<R>,
-    pub(crate) turns: (i64, R),
+    pub(crate) turns: Turns<R>,
     pub(crate) shortened: u32,
     pub(crate) solved: Solved,
 }
@@ -66,13 +67,5 @@ impl<R: Precision> RigidState<R> {
             tangential: Sum::new(tangential),
             spin: self.spin,
         }
-    }
-
-    pub(crate) fn turn(&mut self, angle: R) {
-        let full = R::lit(core::f64::consts::TAU);
-        let sum = self.turns.1 + angle;
-        let whole = (sum / full).floor();
-        self.turns.0 += whole.to_i64();
-        self.turns.1 = sum - whole * full;
     }
 }

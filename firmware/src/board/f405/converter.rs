@@ -5,7 +5,7 @@
 //! sample are up to 5.7 us apart.
 
 use stm32f4::stm32f405::{ADC_COMMON, ADC1, GPIOA, RCC, TIM2};
-use touchdown_core::sample::{CHANNELS, Sample};
+use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::board::SAMPLE_RATE_HZ;
@@ -75,6 +75,7 @@ impl Converter {
             valid: 0b1111,
             spin: None,
             levitated: None,
+            edges: [None; TACHOMETERS],
         }
     }
 }

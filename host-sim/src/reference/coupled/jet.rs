@@ -40,11 +40,6 @@ impl Jet {
         self.terms[self.order] = term;
     }
 
-    /// The highest known term.
-    pub fn last(&self) -> f64 {
-        self.terms[self.order]
-    }
-
     /// In rising order.
     pub fn terms(&self) -> &[f64] {
         &self.terms[..=self.order]
@@ -171,13 +166,13 @@ pub fn solve(mut matrix: Vec<Vec<Jet>>, mut right: Vec<Jet>) -> Vec<Jet> {
             .filter(|row| weight(*row) > SUPERFLUOUS);
         row_of[column] = pivot;
         let Some(pivot) = pivot else { continue };
+        let (line, known) = (matrix[pivot].clone(), right[pivot]);
         for row in (0..size).filter(|row| *row != pivot) {
-            let factor = matrix[row][column].over(&matrix[pivot][column]);
-            for k in column..size {
-                let taken = factor * matrix[pivot][k];
-                matrix[row][k] = matrix[row][k] - taken;
+            let factor = matrix[row][column].over(&line[column]);
+            for (entry, taken) in matrix[row].iter_mut().zip(&line).skip(column) {
+                *entry = *entry - factor * *taken;
             }
-            right[row] = right[row] - factor * right[pivot];
+            right[row] = right[row] - factor * known;
         }
     }
     (0..size)

@@ -26,6 +26,10 @@ mod motion;
 mod step;
 mod support;
 mod system;
+mod two_plane;
 
 pub use step::Mode;
 pub use support::{Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState};
+pub use two_plane::{
+    Magnet, Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
+};

@@ -75,8 +75,8 @@ impl Step {
         for k in 1..=ORDER {
             let part = 1.0 / k as f64;
             for i in 0..SIZE {
-                let rate = speed[i].last();
-                speed[i].push(part * forces.acceleration[i].last());
+                let rate = speed[i].terms()[k - 1];
+                speed[i].push(part * forces.acceleration[i].terms()[k - 1]);
                 place[i].push(part * rate);
             }
             forces = Forces::new(system, law, modes, &place, &speed);

@@ -114,9 +114,9 @@ impl System {
     pub fn push(&self, link: usize, vector: [f64; 2], turn: f64, speed: &mut [f64; SIZE]) {
         let Link { shares, arms, .. } = self.links[link];
         for k in 0..2 {
-            for axis in 0..2 {
+            for (axis, part) in vector.into_iter().enumerate() {
                 let i = 2 * k + axis;
-                speed[i] += self.mobility[i] * shares[k] * vector[axis];
+                speed[i] += self.mobility[i] * shares[k] * part;
             }
             speed[4 + k] += self.mobility[4 + k] * arms[k] * turn;
         }

@@ -59,6 +59,25 @@ impl<R: Real> Ledger<R> {
     }
 }
 
+impl<R: Real> Ledger<R> {
+    /// Every number widened.
+    pub fn to_f64(&self) -> Ledger<f64> {
+        Ledger {
+            motion: self.motion.to_f64(),
+            spin: self.spin.to_f64(),
+            height: self.height.to_f64(),
+            ring: self.ring.to_f64(),
+            spring: self.spring.to_f64(),
+            race: self.race.to_f64(),
+            heat: self.heat.to_f64(),
+            lost: self.lost.to_f64(),
+            damped: self.damped.to_f64(),
+            stop: self.stop.to_f64(),
+            drag: self.drag.to_f64(),
+        }
+    }
+}
+
 fn sum<R: Real, const N: usize>(parts: [R; N]) -> R {
     let mut sum = Sum::default();
     for part in parts {

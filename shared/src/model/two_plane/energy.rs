@@ -43,6 +43,21 @@ impl<R: Real> Energy<R> {
     }
 }
 
+impl<R: Real> Energy<R> {
+    /// Every number widened.
+    pub fn to_f64(&self) -> Energy<f64> {
+        Energy {
+            motion: self.motion.to_f64(),
+            spin: self.spin.to_f64(),
+            height: self.height.to_f64(),
+            magnets: self.magnets.to_f64(),
+            heat: self.heat.to_f64(),
+            lost: self.lost.to_f64(),
+            driven: self.driven.to_f64(),
+        }
+    }
+}
+
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
     /// The energy now, and what became of the rest.
     pub fn energy(&self, state: &TwoPlaneState<R, N>) -> Energy<R> {

@@ -162,6 +162,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 _ => {}
             }
         }
+        self.calm(&before, state);
     }
 
     pub(super) fn tell(

@@ -12,11 +12,13 @@
 //! shows (`follow`), all rings that touch at once together (`strike`). Without friction and with
 //! restitution 1 the energy and the angular momentum about the axis are kept to rounding.
 
+mod calm;
 mod config;
 mod energy;
 mod follow;
 mod passage;
 mod press;
+mod settle;
 mod state;
 mod strike;
 

@@ -5,14 +5,14 @@
 //! moves; friction as [`hold`] knows it, by displacement, is turned back by the mobility's angle.
 
 use super::passage::Free;
+use super::settle::{PASSES, Settling};
 use super::state::TwoPlaneState;
 use super::{Ring, TwoPlane};
 use crate::model::hold::{Rub, hold};
 use crate::model::precision::Precision;
 use crate::model::vector::Vector;
+use crate::real::Real;
 
-/// Passes over the rings; how much each gains is in docs/two-plane.md.
-const PASSES: usize = 64;
 /// Part of the mobility that friction across the gyroscopic moment may take.
 const MOST_TURNED: f64 = 0.5;
 
@@ -28,6 +28,17 @@ pub(super) struct Press<R> {
     /// Outward normal in the middle.
     pub(super) normal: Vector<R>,
     pub(super) stuck: bool,
+    /// What [`Rub::Given`] must be for a unit of friction.
+    gain: R,
+}
+
+impl<R: Real> Press<R> {
+    /// Takes this (normal, tangential) impulse for the next pass.
+    fn lead(&mut self, impulse: Vector<R>) {
+        self.pressed = impulse.x.most(R::ZERO);
+        self.rubbed = impulse.y;
+        self.push = Vector::new([-self.pressed, self.rubbed]) * self.normal;
+    }
 }
 
 /// One ring, as the others leave it.
@@ -51,9 +62,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         state: &TwoPlaneState<R, N>,
         free: &Free<R>,
     ) -> Option<[Option<Press<R>>; N]> {
-        let mut presses = [None; N];
+        let mut presses: [Option<Press<R>>; N] = [None; N];
+        let mut settling = Settling::new();
         let half = R::HALF * free.time;
-        for _ in 0..PASSES {
+        for pass in 1..=PASSES {
             let mut settled = true;
             for (i, ring) in self.rings.iter().enumerate() {
                 if !state.is_held(i) {
@@ -70,7 +82,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     half,
                 };
                 for (j, (other, press)) in self.rings.iter().zip(&presses).enumerate() {
-                    let Some(press): &Option<Press<R>> = press else {
+                    let Some(press) = press else {
                         continue;
                     };
                     if i != j {
@@ -91,6 +103,17 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             if settled {
                 break;
             }
+            let impulses = presses.map(|press| {
+                press.map_or(Vector::default(), |press| {
+                    Vector::new([press.pressed, press.rubbed])
+                })
+            });
+            let lead = settling.lead(&impulses).filter(|_| pass < PASSES);
+            for (press, lead) in presses.iter_mut().zip(lead.iter().flatten()) {
+                if let Some(press) = press {
+                    press.lead(*lead);
+                }
+            }
         }
         Some(presses)
     }
@@ -101,12 +124,12 @@ impl<R: Precision> Turn<R> {
     #[allow(clippy::option_option)]
     fn press(&self, ring: &Ring<R>, last: Option<Press<R>>) -> Option<Option<Press<R>>> {
         let mobility = self.mobility;
-        let (normal, pressed) = match last {
-            Some(last) => (last.normal, last.pressed),
+        let (normal, pressed, gain) = match last {
+            Some(last) => (last.normal, last.pressed, last.gain),
             None => {
                 let normal = self.place.times(R::ONE / self.place.length());
                 let pressed = normal.dot(self.free) / mobility.x;
-                (normal, pressed.most(R::ZERO))
+                (normal, pressed.most(R::ZERO), R::ONE)
             }
         };
         let along = normal.turned();
@@ -121,13 +144,19 @@ impl<R: Precision> Turn<R> {
             ring.friction
         };
         let stuck = stick.abs() <= friction * pressed;
+        let wanted = mobility.x * stick - mobility.y * pressed;
         let rub = if stuck {
-            Rub::Given(mobility.x * stick - mobility.y * pressed)
+            Rub::Given(gain * wanted)
         } else {
             let friction = if stick < R::ZERO { -friction } else { friction };
             Rub::Slides((friction * mobility.x - mobility.y) / (mobility.x + friction * mobility.y))
         };
         let hold = hold(self.place.parts(), self.free.parts(), ring.limit, rub)?;
+        let gain = if stuck && hold.rubbed * wanted > R::ZERO {
+            (gain * wanted / hold.rubbed).within(R::TWO)
+        } else {
+            R::ONE
+        };
         let normal = Vector::new(hold.normal);
         let parts = Vector::new([-hold.pressed, hold.rubbed]).over(mobility);
         if parts.x >= R::ZERO {
@@ -139,6 +168,7 @@ impl<R: Precision> Turn<R> {
             rubbed: parts.y,
             normal,
             stuck,
+            gain,
         }))
     }
 }

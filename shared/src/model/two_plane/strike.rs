@@ -4,6 +4,7 @@
 //! in turn until none changes. A ring that is held, or left, takes what the others drive into it
 //! without giving it back.
 
+use super::settle::{PASSES, Settling};
 use super::state::{Held, TwoPlaneState};
 use super::{Ring, TwoPlane};
 use crate::model::impulse::{Impulse, Mobility};
@@ -11,12 +12,6 @@ use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
 use crate::model::vector::Vector;
 use crate::real::Real;
-
-/// Passes over the rings; how much each gains is in docs/two-plane.md.
-const PASSES: usize = 64;
-/// Distance from the wall, in units of epsilon and the clearance, at which a ring takes part in an
-/// impact of another: what rounding leaves between two ends that fall alike.
-const TOGETHER: f64 = 1024.0;
 
 /// A ring that takes part.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +40,11 @@ impl<R: Real> Meeting<R> {
 }
 
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
+    /// Distance from the wall, in clearances, at which a ring takes part in an impact of another: half
+    /// the digits. Chosen, because what rounding leaves between two ends that fall alike grows with
+    /// each impact.
     pub(super) fn together() -> R {
-        R::lit(TOGETHER) * R::EPSILON
+        R::EPSILON.sqrt()
     }
 
     /// The impact of all rings that touch, `part` of a step after the step's start, if one moves into
@@ -59,9 +57,19 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         part: R,
         sink: &mut impl FnMut(usize, Happening<R>),
     ) {
+        // As near to its wall as the ring that arrived is by the step's error.
+        let mut near = R::ONE;
+        if let Some(ring) = arrived.and_then(|ring| self.rings.get(ring)) {
+            near = near.least(state.at(ring.zeta).0.length() / ring.limit);
+        }
+        near = near - Self::together();
         let mut meetings = [None; N];
         for (i, (ring, meeting)) in self.rings.iter().zip(&mut meetings).enumerate() {
-            *meeting = self.meeting(state, ring, state.is_held(i), arrived == Some(i));
+            let touches = state.at(ring.zeta).0.length() >= near * ring.limit;
+            let held = state.is_held(i);
+            if held || touches || arrived == Some(i) {
+                *meeting = Some(self.meeting(state, ring, held, arrived == Some(i)));
+            }
         }
         if !meetings.iter().flatten().any(Meeting::is_new) {
             return;
@@ -107,15 +115,11 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         ring: &Ring<R>,
         held: bool,
         arrived: bool,
-    ) -> Option<Meeting<R>> {
+    ) -> Meeting<R> {
         let (place, velocity) = state.at(ring.zeta);
-        let distance = place.length();
-        if !(held || arrived) && distance < ring.limit * (R::ONE - Self::together()) {
-            return None;
-        }
-        let normal = place.times(R::ONE / distance);
+        let normal = place.times(R::ONE / place.length());
         let outward = normal.dot(velocity);
-        Some(Meeting {
+        Meeting {
             normal,
             outward: if arrived {
                 outward.most(R::ZERO)
@@ -126,11 +130,12 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             held,
             restitution: if held { R::ZERO } else { ring.restitution },
             impulse: Impulse::default(),
-        })
+        }
     }
 
     fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
-        for _ in 0..PASSES {
+        let mut settling = Settling::new();
+        for pass in 1..=PASSES {
             let mut settled = true;
             for (i, ring) in self.rings.iter().enumerate() {
                 let Some(meeting) = meetings.get(i).copied().flatten() else {
@@ -163,6 +168,18 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
             if settled {
                 break;
+            }
+            let impulses = meetings.map(|meeting| {
+                meeting.map_or(Vector::default(), |meeting| {
+                    Vector::new([meeting.impulse.normal, meeting.impulse.tangential])
+                })
+            });
+            let lead = settling.lead(&impulses).filter(|_| pass < PASSES);
+            for (meeting, lead) in meetings.iter_mut().zip(lead.iter().flatten()) {
+                if let Some(meeting) = meeting {
+                    meeting.impulse.normal = lead.x.most(R::ZERO);
+                    meeting.impulse.tangential = lead.y;
+                }
             }
         }
         self.take(state, meetings);

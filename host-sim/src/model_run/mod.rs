@@ -1,20 +1,21 @@
 //! The model under test over a scene.
 
+mod simulate;
+pub mod support;
+pub mod two_plane;
+
+pub use simulate::{ModelRun, RingEnd, run, simulate, steps_of_run};
+
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Change, Compliance, Euler, Hertz, HertzConfig, Instant, Kinematics, Line, Moreau, Point,
-    Precision, Rigid, RigidConfig, Scheme as ContactScheme, Shape, Start as ScaledStart, Stepper,
-    Touch, Verlet,
+    Compliance, Euler, Hertz, HertzConfig, Line, Moreau, Point, Precision, Rigid, RigidConfig,
+    Scheme as ContactScheme, Shape, Start as ScaledStart, Stepper, Verlet,
 };
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
-use crate::history::{Happening, History, Impact, Pulse, Recorder, RotorState};
 use crate::reference::Start;
 use crate::scene::{self, Contact, Math, Rung, Scene, Scheme};
-
-/// Part of the speed scale below which a rotor in contact is at rest.
-const STILL: f64 = 1e-6;
 
 /// What is done with a model, whatever its rung and numbers.
 pub trait Use {
@@ -40,14 +41,21 @@ pub struct Subject<R, M> {
     pub scales: Scales<f64>,
 }
 
-/// Builds the scene's rung in the scene's numbers, for `what`.
-pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
+/// What is done with numbers of a kind.
+trait InNumbers {
+    type Output;
+
+    fn with<R: Precision>(self) -> Result<Self::Output, ConfigError>;
+}
+
+/// Calls `what` with the scene's kind of numbers.
+fn in_numbers<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output, ConfigError> {
     match (scene.model.precision, scene.model.math) {
-        (scene::Precision::F64, Math::Libm) => in_numbers::<f64, U>(scene, what),
-        (scene::Precision::F32, Math::Libm) => in_numbers::<f32, U>(scene, what),
-        (scene::Precision::F64, Math::Polynomial) => in_numbers::<Poly64, U>(scene, what),
-        (scene::Precision::F32, Math::Polynomial) => in_numbers::<Poly32, U>(scene, what),
-        (scene::Precision::F32, Math::Micromath) => in_numbers::<Micro32, U>(scene, what),
+        (scene::Precision::F64, Math::Libm) => what.with::<f64>(),
+        (scene::Precision::F32, Math::Libm) => what.with::<f32>(),
+        (scene::Precision::F64, Math::Polynomial) => what.with::<Poly64>(),
+        (scene::Precision::F32, Math::Polynomial) => what.with::<Poly32>(),
+        (scene::Precision::F32, Math::Micromath) => what.with::<Micro32>(),
         (scene::Precision::F64, Math::Micromath) => Err(ConfigError::OutOfRange(
             "math",
             "\"libm\" or \"polynomial\" in f64",
@@ -55,7 +63,25 @@ pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigErr
     }
 }
 
-fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
+/// Builds the scene's rung in the scene's numbers, for `what`.
+pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
+    in_numbers(scene, InRung { scene, what })
+}
+
+struct InRung<'a, U> {
+    scene: &'a Scene,
+    what: U,
+}
+
+impl<U: Use> InNumbers for InRung<'_, U> {
+    type Output = U::Output;
+
+    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
+        in_rung::<R, U>(self.scene, self.what)
+    }
+}
+
+fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
     match scene.model.rung {
         Rung::Rigid => {
             let model = Rigid::try_new(&config(scene))?;
@@ -77,7 +103,8 @@ fn in_numbers<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output,
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
-        Rung::Support | Rung::TwoPlane => todo!(),
+        Rung::Support => support::with_parts::<R, U>(scene, what),
+        Rung::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
     }
 }
 
@@ -157,11 +184,6 @@ fn config(scene: &Scene) -> RigidConfig<f64> {
     }
 }
 
-/// Runs the scene's model from the release to the end.
-pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
-    with_model(scene, Simulate(scene))
-}
-
 /// Sets the scale where there is no gravity.
 pub(crate) fn start_speed(scene: &Scene) -> f64 {
     let speed = speed_of(&scene.start);
@@ -182,86 +204,5 @@ fn scaled(start: &Start, scales: &Scales<f64>) -> ScaledStart<f64> {
                 tangential: tangential / scales.speed,
             }
         }
-    }
-}
-
-struct Simulate<'a>(&'a Scene);
-
-impl Use for Simulate<'_> {
-    type Output = History;
-
-    fn with<R: Precision, M: Stepper<R>>(
-        self,
-        subject: &Subject<R, M>,
-    ) -> Result<History, ConfigError> {
-        let scene = self.0;
-        let Subject {
-            model,
-            start,
-            spin,
-            scales,
-        } = subject;
-        let step = scene.model.step;
-        let mut recorder = Recorder::new(-scene.first_sample_time());
-        let mass = scene.rotor.mass;
-        let mut take = |happening: touchdown_core::model::Happening<R>| {
-            let time = seconds(happening.at, step);
-            let after = to_si(&happening.after, time, scales);
-            recorder.take(match happening.change {
-                Change::Impact(normal) => {
-                    let normal_speed = normal.to_f64() * scales.speed;
-                    Happening::Impact(Impact {
-                        state: after,
-                        normal_speed,
-                        normal_impulse: mass * (1.0 + scene.retainer.restitution) * normal_speed,
-                        pulse: None,
-                    })
-                }
-                Change::Released(pulse) => Happening::Released {
-                    state: after,
-                    pulse: Pulse {
-                        peak_force: pulse.peak_force.to_f64() * mass * scales.speed / scales.time,
-                        duration: pulse.duration.to_f64() * scales.time,
-                        impulse: pulse.impulse.to_f64() * mass * scales.speed,
-                    },
-                },
-                Change::ContactStarts => Happening::ContactStart {
-                    time,
-                    rolling: happening.after.touch == Touch::Rolling,
-                },
-                Change::RollingStarts => Happening::RollingStart(time),
-                Change::SlidingStarts => Happening::SlidingStart(time),
-                Change::LiftsOff => Happening::LiftOff(time),
-            });
-        };
-        let mut state = model.start(start, *spin, &mut take)?;
-        let (steps, fraction) = steps_of_run(scene.run.duration / step);
-        model.run(&mut state, steps, R::lit(fraction), &mut take);
-        let last = to_si(&model.kinematics(&state), scene.run.duration, scales);
-        Ok(recorder.finish(last, STILL * scales.speed))
-    }
-}
-
-/// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
-/// rounding ends on the last of them.
-pub(crate) fn steps_of_run(steps: f64) -> (u64, f64) {
-    let nearest = steps.round();
-    if (steps - nearest).abs() <= 1e-9 * nearest {
-        return (nearest as u64, 0.0);
-    }
-    (steps.floor() as u64, steps.fract())
-}
-
-fn seconds<R: Precision>(at: Instant<R>, step: f64) -> f64 {
-    (at.tick as f64 + at.fraction.to_f64()) * step
-}
-
-fn to_si<R: Precision>(k: &Kinematics<R>, time: f64, scales: &Scales<f64>) -> RotorState {
-    RotorState {
-        time,
-        position: k.position.map(|x| x.to_f64() * scales.length),
-        velocity: k.velocity.map(|v| v.to_f64() * scales.speed),
-        spin: k.spin.to_f64() * scales.spin,
-        turns_in_contact: k.turns.0 as f64 + k.turns.1.to_f64() / std::f64::consts::TAU,
     }
 }

@@ -1,0 +1,104 @@
+//! How long a contact lasts: a pulse fitted to the recovered force.
+//!
+//! The pulse is that of [`Law`]. It is seen through the resolution of the recovered force, as that is, so a
+//! blunt edge does not lengthen it.
+
+use super::law::Law;
+use super::resolution::Resolution;
+use super::simplex::least;
+
+/// Dampings that the search starts from: near elastic, much, and backwards.
+const STARTS: [f64; 3] = [0.2, 2.5, -1.0];
+
+/// A pulse found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Of the touch, from the first sample, s.
+    pub start: f64,
+    /// s.
+    pub duration: f64,
+    /// Greatest force, N.
+    pub peak: f64,
+    /// Root mean square of what the pulse leaves of the force, part of its peak.
+    pub misfit: f64,
+    /// Pairs of s and N.
+    pub curve: Vec<(f64, f64)>,
+}
+
+/// Fits a pulse to `force` (N), sampled at `rate` (Hz).
+pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
+    let top = (0..force.len())
+        .max_by(|a, b| force[*a].total_cmp(&force[*b]))
+        .unwrap_or(0);
+    let low = |k: &usize| force[*k] < 0.5 * force[top];
+    let before = (0..top).rev().find(low).unwrap_or(0);
+    let after = (top..force.len()).find(low).unwrap_or(force.len());
+    let width = (after - before) as f64 / rate;
+    let seen = Seen {
+        force,
+        rate,
+        resolution,
+    };
+    // Time of the peak, width at half of it, exponent, damping.
+    let place = |[time, wide, exponent, damping]: [f64; 4]| Trial {
+        law: Law::new(exponent, damping),
+        peak_time: top as f64 / rate + time * width,
+        width: wide.abs().max(0.05) * width,
+    };
+    let cost = |at| seen.match_with(&place(at)).1;
+    let searched = STARTS.map(|damping| {
+        let at = least([0.0, 0.9, 1.4, damping], [0.1, 0.1, 0.2, 0.3], cost);
+        (cost(at), at)
+    });
+    let best = searched.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    let trial = place(best.map_or([0.0, 1.0, 1.5, 0.0], |it| it.1));
+    let (peak, rest) = seen.match_with(&trial);
+    Fit {
+        start: trial.peak_time + trial.width * trial.law.start,
+        duration: trial.width * trial.law.duration,
+        peak,
+        misfit: (rest / force.len() as f64).sqrt() / peak.abs(),
+        curve: (trial.law.points())
+            .map(|(time, force)| (trial.peak_time + trial.width * time, peak * force))
+            .collect(),
+    }
+}
+
+struct Seen<'a> {
+    force: &'a [f64],
+    rate: f64,
+    resolution: &'a Resolution,
+}
+
+struct Trial {
+    law: Law,
+    /// s.
+    peak_time: f64,
+    /// s.
+    width: f64,
+}
+
+impl Seen<'_> {
+    /// The peak (N) with which the trial is nearest to the force, and the sum of squares that it leaves.
+    fn match_with(&self, trial: &Trial) -> (f64, f64) {
+        let part = trial.width * trial.law.duration / trial.law.force.len() as f64;
+        let points: Vec<(f64, f64)> = (trial.law.points())
+            .map(|(time, force)| (trial.peak_time + trial.width * time, part * force))
+            .collect();
+        let through = |k: usize| -> f64 {
+            let now = k as f64 / self.rate;
+            let answers = points.iter();
+            answers
+                .map(|(time, force)| force * self.resolution.answer(now - time))
+                .sum()
+        };
+        let shape: Vec<f64> = (0..self.force.len()).map(through).collect();
+        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let peak = product(&shape, self.force) / product(&shape, &shape).max(f64::MIN_POSITIVE);
+        let rest = shape
+            .iter()
+            .zip(self.force)
+            .map(|(shape, force)| force - peak * shape);
+        (peak, rest.map(|it| it * it).sum())
+    }
+}

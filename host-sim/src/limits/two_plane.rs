@@ -1,0 +1,207 @@
+//! The extremes of a rotor that tilts, watched step by step.
+
+use touchdown_core::error::ConfigError;
+
+use super::extreme::STEPS;
+use super::row::{Row, Worst};
+use crate::failure::Failure;
+use crate::input_error::InputError;
+use crate::model_run::two_plane::watch;
+use crate::scene::{Magnet, Precision, Scene, TwoPlane};
+use crate::truth::{Units, simulate};
+
+/// Longest part of a scene, s.
+const LONGEST: f64 = 0.1;
+/// Of a place, in units of the last digit.
+const ROUNDED: f64 = 64.0;
+
+type Change = fn(&mut Scene, &mut TwoPlane);
+
+/// Name, and what differs from the scene `two-plane`.
+const EXTREMES: [(&str, Change); 18] = [
+    ("as it is", |_, _| ()),
+    ("nearly a needle", |s, it| {
+        it.transverse_inertia = 1e4 * s.rotor.polar_inertia;
+    }),
+    ("a thin disc", |s, it| {
+        it.transverse_inertia = 0.5 * s.rotor.polar_inertia;
+        shorten(it, 0.1);
+    }),
+    ("one end high, one low", |_, it| it.tilt = [0.0, 2.4e-3]),
+    ("one end at its wall, one free", |_, it| {
+        it.tilt = [0.0, -2.5e-3];
+    }),
+    ("one ring, at the centre of mass", |_, it| {
+        it.rings.truncate(1);
+        it.rings[0].place = 0.0;
+    }),
+    ("one ring, beyond the other end", |_, it| {
+        it.rings.truncate(1);
+        it.rings[0].place = -0.3;
+        it.tilt = [0.0; 2];
+    }),
+    ("four rings of one gap", |_, it| {
+        let ring = it.rings[0].clone();
+        it.rings = [-0.12, -0.04, 0.05, 0.12]
+            .map(|place| scene_ring(&ring, place))
+            .to_vec();
+    }),
+    ("restitution 0", |_, it| {
+        each_ring(it, |r| r.restitution = 0.0)
+    }),
+    ("restitution 1 without friction", |_, it| {
+        each_ring(it, |r| {
+            r.restitution = 1.0;
+            r.friction = 0.0;
+        });
+    }),
+    ("friction 2", |_, it| each_ring(it, |r| r.friction = 2.0)),
+    ("no spin", |s, _| s.rotor.spin = 0.0),
+    ("spin of 1 000 000 rpm", |s, it| {
+        s.rotor.spin = 1e6 * std::f64::consts::TAU / 60.0;
+        it.unbalance[0] = 0.0;
+    }),
+    ("unbalance of 1 mm g a gram of rotor", |_, it| {
+        it.unbalance[0] = 3.42e-3 * 1e-1;
+    }),
+    ("principal axis 1 mrad askew", |_, it| it.skew = [1e-3, 1.0]),
+    ("magnets that pull with ten times the weight", |s, it| {
+        it.magnets = magnets(10.0 * s.rotor.mass * 9.81 / 0.3e-3);
+    }),
+    ("magnets that hold as much", |s, it| {
+        it.magnets = magnets(-10.0 * s.rotor.mass * 9.81 / 0.3e-3);
+    }),
+    ("vertical", |s, it| {
+        s.run.gravity = 0.0;
+        it.tilt_rate = [0.1, 0.0];
+    }),
+];
+
+fn each_ring(machine: &mut TwoPlane, change: impl Fn(&mut crate::scene::Retainer)) {
+    for ring in &mut machine.rings {
+        change(&mut ring.retainer);
+    }
+}
+
+fn scene_ring(ring: &crate::scene::Ring, place: f64) -> crate::scene::Ring {
+    crate::scene::Ring {
+        place,
+        ..ring.clone()
+    }
+}
+
+fn shorten(machine: &mut TwoPlane, part: f64) {
+    for ring in &mut machine.rings {
+        ring.place *= part;
+    }
+}
+
+/// Half the stiffness (N/m) at each end.
+fn magnets(stiffness: f64) -> Vec<Magnet> {
+    let magnet = |place| Magnet {
+        place,
+        stiffness: 0.5 * stiffness,
+        force: [0.0; 2],
+    };
+    vec![magnet(-0.1), magnet(0.1)]
+}
+
+fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
+    let rig = Scene::load("two-plane")?;
+    let made = EXTREMES.iter().map(|(name, change)| {
+        let mut scene = rig.clone();
+        scene.run.duration = LONGEST;
+        if let Some(mut machine) = scene.two_plane.take() {
+            change(&mut scene, &mut machine);
+            scene.two_plane = Some(machine);
+        }
+        (*name, scene)
+    });
+    Ok(made.collect())
+}
+
+/// All measures of all extremes.
+pub fn rows() -> Result<Vec<Row>, Failure> {
+    let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
+    let mut rows = Vec::new();
+    for (name, scene) in scenes()? {
+        for precision in super::PRECISIONS {
+            rows.extend(of(name, &scene, precision).map_err(refused)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, ConfigError> {
+    let epsilon = match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f64::from(f32::EPSILON),
+    };
+    let units = Units::of(scene);
+    let first = simulate(scene)
+        .impacts
+        .first()
+        .map(|impact| impact.state.time);
+    let (mut beyond, mut made, mut missing, mut late, mut broken) = (
+        Worst::default(),
+        Worst::default(),
+        Worst::default(),
+        Worst::default(),
+        0_u32,
+    );
+    for step in STEPS {
+        let mut scene = scene.clone();
+        scene.model.precision = precision;
+        scene.model.step = step;
+        let (mut start, mut most_gone, mut farthest, mut fell, mut off, mut size) =
+            (None, f64::MIN, -1.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let run = watch(&scene, &mut |sight| {
+            let energy = sight.energy;
+            let numbers = [sight.beyond, sight.total, energy.motion, energy.spin];
+            broken += u32::from(numbers.iter().any(|x| !x.is_finite()));
+            let gone = energy.heat + energy.lost;
+            most_gone = most_gone.max(gone);
+            fell = fell.max(most_gone - gone);
+            farthest = farthest.max(sight.beyond);
+            let start = *start.get_or_insert(sight.total);
+            off = off.max((sight.total - start).abs());
+            let parts = [
+                energy.spin,
+                energy.motion,
+                energy.driven,
+                energy.magnets,
+                gone,
+            ];
+            size = parts.iter().fold(size, |size, part| size.max(part.abs()));
+        })?;
+        let rounding = super::rounding(precision) + ROUNDED * epsilon * size;
+        beyond.take(farthest.max(0.0), ROUNDED * epsilon);
+        made.take(fell, rounding);
+        missing.take(off, rounding);
+        let h = step / units.time;
+        if let (Some(truth), Some(ours)) = (first, run.histories.whole.impacts.first()) {
+            late.take(
+                (ours.state.time - truth).abs() / units.time,
+                h * h + ROUNDED * epsilon,
+            );
+        }
+    }
+    let row = |measure: &str, worst: Worst, unit| {
+        let name = format!("two-plane: {name}: {measure}");
+        Row::new(name, precision, worst.measured, worst.limit, unit)
+    };
+    let none = Worst {
+        measured: f64::from(broken),
+        limit: 0.0,
+    };
+    let mut rows = vec![
+        row("farthest beyond a wall", beyond, "of its gap"),
+        row("energy made by contacts", made, "m g rho0"),
+        row("energy not accounted for", missing, "m g rho0"),
+        row("steps with NaN or infinity", none, "steps"),
+    ];
+    if first.is_some() {
+        rows.push(row("first impact, off the reference", late, "T"));
+    }
+    Ok(rows)
+}

@@ -1,0 +1,274 @@
+//! The two ends of the rotor: whether they move as one, and what each does where they do not.
+//!
+//! With a and b the positions of the planes, h = (a + b)/2 is what the ends share and e = (a - b)/2
+//! how far they are from it. Both have the same noise.
+
+use crate::detect::config::{DetectorConfig, Tuning};
+use crate::detect::contact::Touching;
+use crate::detect::flight::Fix;
+use crate::detect::ladder::{Ladder, Phase, Rungs, is_home, square};
+use crate::detect::levitation::{Learning, Levitation};
+use crate::detect::signals::Signals;
+use crate::detect::teller::{Pending, Teller};
+use crate::event::{Motion, Plane};
+use crate::sensing::PLANES;
+
+/// Standard deviations by which the ends are apart for certain.
+const APART: f32 = 8.0;
+/// Samples in a row that they must be: a spike of one channel is no motion.
+const IN_A_ROW: u32 = 4;
+/// How many times the noise, and what the ends share, the power of e must be for conical motion.
+const ABOVE_NOISE: f32 = 4.0;
+const DOMINANT: f32 = 2.0;
+/// Part of the rotor's lift-off that e must be for it to be that of one end, where it is all of it.
+const ONE_SIDED: f32 = 0.5;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EndsTest {
+    learning: Learning,
+    ladder: Ladder,
+    /// Square of the e that sensors may show of ends that are together, m^2.
+    tolerance: f32,
+    /// Samples over which the mean runs, and part of the way that the power goes in one.
+    mean_samples: u32,
+    power_gain: f32,
+}
+
+/// What is known of the ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ends {
+    /// e while floating.
+    levitation: Levitation,
+    /// h and e now and on average, m, and the power of what they move, m^2.
+    now: [[f32; 2]; 2],
+    mean: [[f32; 2]; 2],
+    count: u32,
+    power: [f32; 2],
+    /// Of one axis of one plane, m^2.
+    variance: f32,
+    /// Samples in a row that the ends have been apart, and together.
+    apart: u32,
+    together: u32,
+    /// Regression of e on the way from the wall in a lift-off: products and squares.
+    lean: [f32; 2],
+    lifts: bool,
+    /// Each end's own, while they are apart.
+    alone: Option<[Rungs; PLANES]>,
+}
+
+impl EndsTest {
+    pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
+        let (tuning, rate) = (&config.tuning, config.sample_rate);
+        let tolerance = tuning.wall_tolerance * config.machine.clearance;
+        let alone = DetectorConfig {
+            tuning: Tuning {
+                flight_error: tuning.tilt_error,
+                ..*tuning
+            },
+            ..*config
+        };
+        let mean_samples = (tuning.still_time * rate).max(16.0) as u32;
+        Self {
+            learning: Learning::new(tuning, rate),
+            ladder: Ladder::new(&alone, threshold),
+            tolerance: tolerance * tolerance,
+            mean_samples,
+            power_gain: 1.0 / (tuning.catch_time * rate).max(1.0),
+        }
+    }
+
+    /// Takes both ends; `floats` while the rotor does.
+    pub(crate) fn take(&self, ends: &mut Ends, [a, b]: [&Fix; PLANES], floats: bool) {
+        let half =
+            |sign: f32| [0, 1].map(|axis| 0.5 * (a.position[axis] + sign * b.position[axis]));
+        ends.now = [half(1.0), half(-1.0)];
+        ends.variance = a.variance;
+        let now = ends.now;
+        ends.count = (ends.count + 1).min(self.mean_samples);
+        let gain = 1.0 / ends.count as f32;
+        for ((now, mean), power) in now.iter().zip(&mut ends.mean).zip(&mut ends.power) {
+            for (now, mean) in now.iter().zip(mean.iter_mut()) {
+                *mean += gain * (now - *mean);
+            }
+            *power += self.power_gain * (square(*now, *mean) - *power);
+        }
+        let [_, e] = now;
+        if floats {
+            self.learning.take(&mut ends.levitation, e);
+        }
+        let sure = APART * APART * ends.levitation.learnt_variance().max(0.5 * ends.variance);
+        if square(e, [0.0; 2]) > self.tolerance.max(sure) {
+            ends.apart = ends.apart.saturating_add(1);
+            ends.together = 0;
+        } else {
+            ends.apart = 0;
+            ends.together = ends.together.saturating_add(1);
+        }
+    }
+
+    /// Gives each end a ladder of its own, that goes on as the rotor's.
+    pub(crate) fn part(
+        &self,
+        ends: &mut Ends,
+        rotor: &Rungs,
+        fixes: [&Fix; PLANES],
+        loudness: f32,
+    ) {
+        let outward = rotor.contact.outward();
+        let [_, e] = ends.mean;
+        let wall = e[0] * outward[0] + e[1] * outward[1];
+        let mut alone = [*rotor; PLANES];
+        for ((rungs, fix), wall) in alone.iter_mut().zip(fixes).zip([wall, -wall]) {
+            if rotor.phase.is_contact() {
+                rungs.contact = rotor.contact.at_one_end(wall);
+            } else {
+                self.ladder.part(rungs, fix, loudness);
+            }
+        }
+        ends.alone = Some(alone);
+        ends.together = 0;
+        ends.lifts = false;
+    }
+
+    /// Each end takes its sample. True where a declared fall has been caught.
+    pub(crate) fn step(
+        &self,
+        ends: &mut Ends,
+        fixes: &[Option<Fix>; PLANES],
+        signals: &Signals,
+        floating: (&Levitation, f32),
+        pending: &mut Option<Pending>,
+        teller: &mut Teller,
+    ) -> bool {
+        let (levitation, loudness) = floating;
+        let (homes, variance) = ends.homes(levitation);
+        let whole = teller.plane;
+        let alone = ends.alone.iter_mut().flatten();
+        for (((rungs, fix), home), plane) in alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B]) {
+            teller.plane = plane;
+            match (rungs.phase, fix) {
+                (Phase::Sliding | Phase::Rolling, fix) => {
+                    let fix = fix.map(|fix| Fix {
+                        variance: fix.variance.max(levitation.learnt_variance()),
+                        ..fix
+                    });
+                    self.ladder
+                        .touching(rungs, fix.as_ref(), signals, loudness, |_| false, teller);
+                }
+                (Phase::FreeFall | Phase::Impact, Some(fix)) => {
+                    self.ladder.land(rungs, fix, signals, pending, teller);
+                    if rungs.phase.is_contact() {
+                        continue;
+                    }
+                    if self.ladder.is_far(rungs.flight.track.position, home) {
+                        teller.close(pending, true);
+                    }
+                    if self.ladder.floats(rungs, fix) {
+                        rungs.phase = Phase::Levitated;
+                        self.ladder.tell_levitated(teller);
+                    }
+                }
+                (Phase::FreeFall | Phase::Impact, None) => self.ladder.skip(rungs),
+                (Phase::Starting | Phase::Levitated, Some(fix)) => {
+                    if self.ladder.is_near(fix) {
+                        self.ladder.fly(rungs, fix, None, loudness);
+                    }
+                }
+                (Phase::Starting | Phase::Levitated, None) => {}
+            }
+        }
+        teller.plane = whole;
+        let mut seen = fixes.iter().zip(homes);
+        let are_home = seen.all(|(fix, home)| fix.is_some_and(|fix| is_home(&fix, home, variance)));
+        pending
+            .as_mut()
+            .is_some_and(|pending| self.ladder.is_caught(pending, are_home))
+    }
+
+    /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.
+    pub(crate) fn join(&self, ends: &mut Ends, fixes: &[Option<Fix>; PLANES]) -> Option<Rungs> {
+        let [a, b] = ends.alone.as_ref()?;
+        let joined = match fixes {
+            [Some(_), None] => a,
+            [None, Some(_)] => b,
+            _ if a.phase == b.phase && ends.together >= self.mean_samples => a,
+            _ if a.phase == Phase::Levitated && b.phase == Phase::Levitated => a,
+            _ => return None,
+        };
+        let joined = Rungs {
+            contact: joined.contact.of_both(),
+            ..*joined
+        };
+        ends.unite();
+        Some(joined)
+    }
+}
+
+impl Ends {
+    /// Where each end floats, m, and its variance on one axis, m^2.
+    pub(crate) fn homes(&self, levitation: &Levitation) -> ([[f32; 2]; PLANES], f32) {
+        let ([x, y], [u, v]) = (levitation.mean, self.levitation.mean);
+        let variance = levitation.variance + self.levitation.variance;
+        ([[x + u, y + v], [x - u, y - v]], variance)
+    }
+
+    /// Whether what is learnt of both the rotor and its tilt excludes that an end floats at
+    /// `position` (m) and not at `home`.
+    pub(crate) fn is_off(position: [f32; 2], home: [f32; 2], variance: f32) -> bool {
+        square(position, home) > APART * APART * variance
+    }
+
+    /// The rotor moves as one again.
+    pub(crate) fn unite(&mut self) {
+        self.alone = None;
+        self.apart = 0;
+    }
+
+    /// Each end's phase, while they are apart.
+    pub(crate) fn phases(&self) -> Option<[Phase; PLANES]> {
+        let alone = self.alone.as_ref()?;
+        Some([alone[0].phase, alone[1].phase])
+    }
+
+    /// Each end's own, while they are apart.
+    pub(crate) fn alone(&self) -> &[Rungs] {
+        self.alone.as_ref().map_or(&[], |alone| alone.as_slice())
+    }
+
+    /// How the rotor moves.
+    pub(crate) fn motion(&self) -> Motion {
+        let [shared, opposed] = self.power;
+        if opposed > ABOVE_NOISE * self.variance && opposed > DOMINANT * shared {
+            Motion::Conical
+        } else {
+            Motion::Cylindrical
+        }
+    }
+
+    /// In contact: whether the lift-off under way, if there is one, is that of one end.
+    pub(crate) fn lean(&mut self, contact: &Touching) -> bool {
+        let Some(inward) = contact.lifting() else {
+            self.lean = [0.0; 2];
+            return false;
+        };
+        let outward = contact.outward();
+        let [_, e] = self.now;
+        let [_, mean] = self.mean;
+        let lean = (e[0] - mean[0]) * outward[0] + (e[1] - mean[1]) * outward[1];
+        self.lean[0] += lean * inward;
+        self.lean[1] += inward * inward;
+        let [product, square] = self.lean;
+        product.abs() > ONE_SIDED * square
+    }
+
+    /// One end has lifted off.
+    pub(crate) fn lift_one(&mut self) {
+        self.lifts = true;
+    }
+
+    /// Whether the ends have just moved apart.
+    pub(crate) fn have_parted(&self) -> bool {
+        self.lifts || self.apart >= IN_A_ROW
+    }
+}
