@@ -59,7 +59,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             match self.beyond(state, &passage) {
                 None => {
                     left -= time;
-                    (longest, crossings) = (whole, 0);
+                    (longest, crossings) = (R::TWO * time, 0);
                     self.accept(state, &passage, (whole - left) / self.step, &mut sink);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
@@ -208,15 +208,17 @@ impl<R: Precision> Flyer<R> {
         let square = self.radius * self.radius;
         let end = self.place + self.moved;
         let over = end.square() - square;
-        if over <= R::ZERO || end.dot(self.arriving) <= R::ZERO {
+        let value = self.place.square() - square;
+        let near = on_wall::<R>() * square;
+        let inward = end.dot(self.arriving) <= R::ZERO;
+        if over <= R::ZERO || (inward && over <= value.most(R::ZERO) + near) {
             return None;
         }
-        let value = self.place.square() - square;
         let outward = self.place.dot(self.velocity);
         Some(Beyond {
             who: self.who,
             share: crossing(value, R::TWO * time * outward, over),
-            now: value >= -on_wall::<R>() * square && outward > R::ZERO,
+            now: value >= -near && outward > R::ZERO,
         })
     }
 }

@@ -18,6 +18,9 @@ use crate::model::vector::{Sums, Vector};
 use crate::real::Real;
 use crate::scales::positive;
 
+/// How far round its stop the ring goes in a stretch, rad.
+const REACH: f64 = 0.5;
+
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Fixed {}
@@ -209,6 +212,11 @@ impl<R: Real> Mount<R> for Sprung<R> {
         };
         let place = state.place.value().parts();
         let hold = hold(place, moved.parts(), travel, Rub::Slides(R::ZERO))?;
+        let [x, y] = hold.moved;
+        let farthest = R::lit(REACH) * travel;
+        if x * x + y * y > farthest * farthest {
+            return None;
+        }
         let held = hold.pressed > R::ZERO;
         Some(held.then(|| Vector::new(hold.normal).times(-hold.pressed)))
     }

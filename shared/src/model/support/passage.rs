@@ -13,6 +13,8 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
+/// Distance from the walls that the passes leave, in units of epsilon and the clearance.
+const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
 /// How far round its wall a held rotor goes in a stretch, rad.
@@ -101,7 +103,10 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             place: state.place.value(),
             velocity: Self::relative(state),
             free,
-            surface: state.spin.value() - turning.free,
+            surface: [
+                state.spin.value() - B::surface(&state.race),
+                state.spin.value() - turning.free,
+            ],
             mobility: R::ONE + ride.mobility,
             spin_mobility: R::ONE / self.law.inertia_ratio + turning.mobility,
             friction: self.law.friction,
@@ -110,7 +115,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         let mut settling = Settling::new();
         let (mut press, mut by_rotor, mut by_stop) = (None, Vector::default(), Vector::default());
         let mut halt = None;
-        for _ in 0..PASSES {
+        for pass in 1..=PASSES {
             if state.held.is_some() {
                 approach.free = free - by_stop;
                 press = approach.press()?;
@@ -120,10 +125,12 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
             let found = halt.unwrap_or_default();
             let changed = found - by_stop;
-            let close = R::TWO * R::EPSILON * (found.length() + by_rotor.length());
-            if state.held.is_none() || changed.length() <= close {
+            if state.held.is_none() || changed.length() <= R::lit(CLOSE) * R::EPSILON {
                 by_stop = found;
                 break;
+            }
+            if pass == PASSES {
+                return None;
             }
             by_stop = by_stop + settling.next(changed);
         }

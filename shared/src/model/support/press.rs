@@ -30,8 +30,8 @@ pub(super) struct Approach<R> {
     pub(super) velocity: Vector<R>,
     /// Displacement of the rotor in the ring without contact.
     pub(super) free: Vector<R>,
-    /// Surface speed against the inner ring without friction, at the end.
-    pub(super) surface: R,
+    /// Surface speed against the inner ring at the start, and at the end without friction.
+    pub(super) surface: [R; 2],
     /// Displacement in the ring by a push.
     pub(super) mobility: R,
     /// Surface speed by a unit of tangential impulse.
@@ -52,8 +52,7 @@ impl<R: Real> Approach<R> {
         let mut press = Press::default();
         for _ in 0..PASSES {
             let along = normal.turned();
-            let slip = along.dot(self.free - self.velocity.times(self.half));
-            let stick = -(slip + self.half * self.surface) / (self.mobility + self.spin_mobility);
+            let stick = self.stick(along);
             let stuck = stick.abs() <= self.friction * pressed;
             let rub = if stuck {
                 Rub::Given(self.mobility * stick)
@@ -78,5 +77,18 @@ impl<R: Real> Approach<R> {
             };
         }
         Some(Some(press))
+    }
+
+    /// Friction that ends the slip, but no more than what makes its mean 0 and nothing where the slip
+    /// turns by itself: friction takes energy, however coarse the step.
+    fn stick(&self, along: Vector<R>) -> R {
+        let mobility = self.mobility + self.spin_mobility;
+        let swept = along.dot(self.velocity.times(self.half));
+        let starts = swept + self.half * self.surface[0];
+        let ends = along.dot(self.free) - swept + self.half * self.surface[1];
+        let mean = -(starts + ends) / mobility;
+        (-ends / mobility)
+            .most(mean.least(R::ZERO))
+            .least(mean.most(R::ZERO))
     }
 }

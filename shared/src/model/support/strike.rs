@@ -87,7 +87,11 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     fn meeting(&self, state: &SupportState<R, M::State, B::State>, arrived: Arrival) -> Meeting<R> {
         let near = R::ONE - on_wall();
         let place = state.place.value();
-        let touches = arrived == Arrival::Rotor || state.held.is_some() || place.square() >= near;
+        let wall = place.times(R::ONE / place.length());
+        let outward = wall.dot(Self::relative(state));
+        let arrives = arrived == Arrival::Rotor;
+        let touches = place.square() >= near && outward >= R::ZERO;
+        let takes_part = arrives || touches || state.held.is_some();
         let ring = M::place(&state.ring);
         let stops = arrived == Arrival::Ring
             || M::is_stopped(&state.ring)
@@ -95,11 +99,10 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
                 .mount
                 .travel()
                 .is_some_and(|travel| ring.square() >= near * travel * travel);
-        let wall = touches.then(|| place.times(R::ONE / place.length()));
         Meeting {
-            wall,
+            wall: takes_part.then_some(wall),
             stop: stops.then(|| ring.times(R::ONE / ring.length())),
-            outward: wall.map_or(R::ZERO, |wall| wall.dot(Self::relative(state))),
+            outward,
         }
     }
 
