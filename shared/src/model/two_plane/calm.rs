@@ -46,14 +46,18 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
         }
         self.solve(&mut leaving);
-        let mut taken = R::ZERO;
         for (ring, leaving) in self.rings.iter().zip(&leaving) {
             if let Some(leaving) = leaving {
                 let push = leaving.normal.times(leaving.push);
                 state.velocity[0].add(push);
                 state.velocity[1].add(push.times(ring.zeta));
-                let mean = leaving.speed + R::HALF * leaving.change;
-                taken += -(leaving.push * mean);
+            }
+        }
+        let mut taken = R::ZERO;
+        for (ring, leaving) in self.rings.iter().zip(&leaving) {
+            if let Some(leaving) = leaving {
+                let after = leaving.normal.dot(state.at(ring.zeta).1);
+                taken += -(R::HALF * leaving.push * (leaving.speed + after));
             }
         }
         let velocity = [state.velocity[0].value(), state.velocity[1].value()];
