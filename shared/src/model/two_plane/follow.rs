@@ -163,6 +163,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
         }
         self.calm(&before, state);
+        self.seat(state);
     }
 
     pub(super) fn tell(

@@ -1,15 +1,15 @@
 //! Rings in permanent contact during a stretch: each ends on its wall, by impulses along the mean of
-//! the places before and after, which do no work without friction (see [`hold`]).
+//! the places before and after, which do no work without friction (see [`crate::model::hold`]).
 //!
 //! The rings are solved for in turn until none changes. The gyroscopic moment turns what an impulse
-//! moves; friction as [`hold`] knows it, by displacement, is turned back by the mobility's angle.
+//! moves; friction as [`keep`] knows it, by displacement, is turned back by the mobility's angle.
 
 use super::passage::Free;
 use super::settle::{PASSES, Settling};
 use super::state::TwoPlaneState;
 use super::vector::Vector;
 use super::{Ring, TwoPlane};
-use crate::model::hold::{Rub, hold};
+use crate::model::hold::{Rub, keep};
 use crate::model::precision::Precision;
 use crate::real::Real;
 
@@ -151,7 +151,7 @@ impl<R: Precision> Turn<R> {
             let friction = if stick < R::ZERO { -friction } else { friction };
             Rub::Slides((friction * mobility.x - mobility.y) / (mobility.x + friction * mobility.y))
         };
-        let hold = hold(self.place.parts(), self.free.parts(), ring.limit, rub)?;
+        let hold = keep(self.place.parts(), self.free.parts(), rub)?;
         let gain = if stuck && hold.rubbed * wanted > R::ZERO {
             (gain * wanted / hold.rubbed).within(R::TWO)
         } else {

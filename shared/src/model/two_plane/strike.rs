@@ -91,21 +91,25 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
         *state = after;
         for (i, meeting) in meetings.iter().enumerate() {
-            let Some(meeting) = meeting.filter(Meeting::is_new) else {
-                continue;
-            };
-            if meeting.outward > R::CUTOFF_SPEED {
+            if let Some(meeting) = meeting.filter(Meeting::is_new)
+                && meeting.outward > R::CUTOFF_SPEED
+            {
                 self.tell(state, i, part, Change::Impact(meeting.outward), sink);
             }
-            if returns.get(i) == Some(&true) {
-                if let Some(held) = state.held.get_mut(i) {
-                    *held = Some(Held {
-                        rolling: meeting.impulse.stuck,
-                        ..Held::default()
-                    });
-                }
-                self.tell(state, i, part, Change::ContactStarts, sink);
+        }
+        for (i, (meeting, returns)) in meetings.iter().zip(&mut returns).enumerate() {
+            let meeting = meeting.filter(|meeting| *returns && meeting.is_new());
+            *returns = meeting.is_some();
+            if let (Some(held), Some(meeting)) = (state.held.get_mut(i), meeting) {
+                *held = Some(Held {
+                    rolling: meeting.impulse.stuck,
+                    ..Held::default()
+                });
             }
+        }
+        self.seat(state);
+        for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
+            self.tell(state, i, part, Change::ContactStarts, sink);
         }
     }
 
