@@ -35,6 +35,7 @@ pub(crate) struct Hold<R> {
     pub(crate) rubbed: R,
 }
 
+#[allow(dead_code)]
 /// Goes from `at` on the wall of this `radius` by what is left of `free`; none where one step cannot.
 /// What rounding took off the wall before is put back.
 pub(crate) fn hold<R: Real>(at: [R; 2], free: [R; 2], radius: R, rub: Rub<R>) -> Option<Hold<R>> {

@@ -8,22 +8,22 @@ use super::settle::{PASSES, Settling};
 use super::state::{Held, TwoPlaneState};
 use super::vector::Vector;
 use super::{Ring, TwoPlane};
-use crate::model::impulse::{Impulse, Mobility};
+use crate::model::impulse::Impulse;
 use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
 use crate::real::Real;
 
 /// A ring that takes part.
 #[derive(Clone, Copy, Debug)]
-struct Meeting<R> {
-    normal: Vector<R>,
+pub(super) struct Meeting<R> {
+    pub(super) normal: Vector<R>,
     /// Speed into the wall before.
     outward: R,
     slip: R,
     held: bool,
     /// 0 where contact is permanent after it.
-    restitution: R,
-    impulse: Impulse<R>,
+    pub(super) restitution: R,
+    pub(super) impulse: Impulse<R>,
 }
 
 impl<R: Real> Meeting<R> {
@@ -138,6 +138,20 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     }
 
     fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
+        let before = *state;
+        self.solve_impulses(meetings);
+        self.take(state, meetings);
+        let (now, then) = (&state.ledger, &before.ledger);
+        let gone = now.heat.minus(then.heat).value() + now.lost.minus(then.lost).value();
+        let [velocity, rate] = [before.velocity[0].value(), before.velocity[1].value()];
+        let most = R::EPSILON.sqrt() * (velocity.square() + rate.square());
+        if gone < -most {
+            *state = before;
+            self.strike_in_turn(state, meetings);
+        }
+    }
+
+    fn solve_impulses(&self, meetings: &mut [Option<Meeting<R>>; N]) {
         let mut settling = Settling::new();
         for pass in 1..=PASSES {
             let mut settled = true;
@@ -156,13 +170,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     slip += meeting.normal.cross(push)
                         + self.spin_mobility(ring, other) * also.impulse.tangential;
                 }
-                let normal = Self::mobility(ring, ring);
-                let mobility = Mobility {
-                    normal,
-                    tangential: normal + self.spin_mobility(ring, ring),
-                };
                 let speed = speed.most(R::ZERO);
-                let impulse = mobility.strike(R::ZERO, ring.friction, speed, slip);
+                let impulse = self
+                    .own_mobility(ring)
+                    .strike(R::ZERO, ring.friction, speed, slip);
                 let moved = (impulse.normal - meeting.impulse.normal).abs()
                     + (impulse.tangential - meeting.impulse.tangential).abs();
                 settled &= moved <= R::EPSILON * (impulse.normal + impulse.tangential.abs());
@@ -186,7 +197,6 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 }
             }
         }
-        self.take(state, meetings);
     }
 
     /// Gives the impulses to the rotor, and books their work: impulse times mean velocity.
