@@ -35,9 +35,9 @@ pub(crate) struct Hold<R> {
     pub(crate) rubbed: R,
 }
 
-#[allow(dead_code)]
 /// Goes from `at` on the wall of this `radius` by what is left of `free`; none where one step cannot.
 /// What rounding took off the wall before is put back.
+#[cfg_attr(not(test), allow(dead_code))]
 pub(crate) fn hold<R: Real>(at: [R; 2], free: [R; 2], radius: R, rub: Rub<R>) -> Option<Hold<R>> {
     let square = radius * radius;
     go(at, free, square, dot(at, at) - square, rub)

@@ -54,7 +54,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 continue;
             };
             let Some((ring, share)) = self.arrival(state, &passage) else {
-                left = left - time;
+                left -= time;
                 self.accept(state, &passage, (whole - left) / self.step, &mut sink);
                 continue;
             };
@@ -64,7 +64,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     longest = R::HALF * until;
                     continue;
                 };
-                left = left - until;
+                left -= until;
                 self.accept(state, &passage, (whole - left) / self.step, &mut sink);
             }
             let now = (whole - left) / self.step;

@@ -62,7 +62,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         if let Some(ring) = arrived.and_then(|ring| self.rings.get(ring)) {
             near = near.least(state.at(ring.zeta).0.length() / ring.limit);
         }
-        near = near - Self::together();
+        near -= Self::together();
         let mut meetings = [None; N];
         for (i, (ring, meeting)) in self.rings.iter().zip(&mut meetings).enumerate() {
             let touches = state.at(ring.zeta).0.length() >= near * ring.limit;
