@@ -177,8 +177,8 @@ mod tests {
     fn what_rounding_took_off_the_wall_is_put_back() {
         let mut at = [1e-6, -(1.0 + 1e-6)];
         let hold = hold(at, [0.01, -0.01], 1.0, Rub::Slides(0.1)).unwrap();
-        for k in 0..2 {
-            at[k] += hold.moved[k];
+        for (at, moved) in at.iter_mut().zip(hold.moved) {
+            *at += moved;
         }
         // What is left is the square of k, 3e-5, times what it was off.
         assert!((dot(at, at) - 1.0).abs() < 1e-10);
