@@ -17,15 +17,17 @@ pub const CUTOFF: f64 = 1e-10;
 const FAST_CUTOFF: f64 = 1e-12;
 /// Impacts within a unit of time after which the cut-off is doubled, until that time is over: what
 /// bounds the hops that are flown.
-const MANY_IMPACTS: u32 = 1000;
-/// Changes of mode at one moment before a short step is forced.
-const MAX_CHANGES: u32 = 12;
-/// Length of the forced step, in units of time.
+const MANY_IMPACTS: u32 = 250;
+/// Changes of mode at one moment before all sets of modes are tried.
+const MAX_CHANGES: u32 = 8;
+/// Length of a step forced where no set of modes lasts, in units of time; doubled with each that
+/// follows on another.
 const FORCED_STEP: f64 = 1e-7;
+const LONGEST_FORCED: f64 = 1e-3;
 /// Size of the last terms of a series, in parts of the coordinates' sizes.
 const ACCURACY: f64 = 1e-18;
 /// Longest step, in units of time.
-const LONGEST: f64 = 8.0;
+const LONGEST: f64 = 1.0;
 
 /// A system that moves.
 #[derive(Clone, Debug)]
@@ -43,6 +45,8 @@ pub struct Motion<L> {
     turns: Vec<f64>,
     step: Step,
     started: bool,
+    /// Length of the next forced step, in units of time.
+    forced: f64,
     /// Impacts since a time.
     busy: (u32, f64),
 }
@@ -90,6 +94,7 @@ impl<L: Law> Motion<L> {
             speed,
             turns: vec![0.0; links],
             started: false,
+            forced: FORCED_STEP,
             busy: (0, 0.0),
         }
     }
@@ -297,6 +302,7 @@ impl<L: Law> Motion<L> {
         for _ in 0..MAX_CHANGES {
             self.begin();
             if self.step.end > 0.0 {
+                self.forced = FORCED_STEP;
                 return;
             }
             if let Ending::Touch(link) = self.step.ending {
@@ -307,11 +313,53 @@ impl<L: Law> Motion<L> {
             }
             self.change(self.step.ending);
         }
-        self.begin();
-        if self.step.end == 0.0 {
-            self.step.end = (FORCED_STEP * self.units.0 / self.step.span).min(1.0);
-            self.step.ending = Ending::Step;
+        if self.search() {
+            return;
         }
+        let part = self.forced * self.units.0 / self.step.span;
+        (self.step.end, self.step.ending) = (part.min(1.0), Ending::Step);
+        self.forced = (2.0 * self.forced).min(LONGEST_FORCED);
+    }
+
+    /// Tries all modes of the links that touch until a set of them lasts.
+    fn search(&mut self) -> bool {
+        let links = 0..self.modes.len();
+        let choices: Vec<Vec<Mode>> = links.map(|link| self.choices(link)).collect();
+        let sets = choices.iter().map(Vec::len).product();
+        for set in 0..sets {
+            let mut rest: usize = set;
+            for (mode, choices) in self.modes.iter_mut().zip(&choices) {
+                *mode = choices[rest % choices.len()];
+                rest /= choices.len();
+            }
+            self.begin();
+            if self.step.end > 0.0 {
+                self.forced = FORCED_STEP;
+                return true;
+            }
+        }
+        false
+    }
+
+    fn choices(&self, link: usize) -> Vec<Mode> {
+        let any = [Mode::Stick, Mode::Slide(1.0), Mode::Slide(-1.0)];
+        let Some(clearance) = self.system.links[link].clearance() else {
+            return match self.modes[link] {
+                Mode::Stick => any.to_vec(),
+                mode => vec![mode],
+            };
+        };
+        let touch = Touching::new(&self.system, link, &self.place, &self.speed);
+        let apart = self.distance(link) < (1.0 - ON_WALL) * clearance;
+        if apart || touch.closing.abs() > self.cutoff(link) {
+            return vec![Mode::Flight];
+        }
+        let mut choices = match self.closed(link) {
+            Mode::Stick => any.to_vec(),
+            mode => vec![mode],
+        };
+        choices.push(Mode::Flight);
+        choices
     }
 
     fn begin(&mut self) {

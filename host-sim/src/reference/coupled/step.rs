@@ -133,14 +133,15 @@ impl Step {
                 let q = link.lateral(&self.place).map(|q| q * unit);
                 let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
                 let [x, y] = link.lateral(&start);
-                let (way, push) = (f64::hypot(x, y) * self.span, push * self.span);
-                let size = 1.0 + unit * (way + unit * way * way + push);
-                self.earlier(&gap, GAP_ROUNDING * size, Ending::Touch(index));
+                let way = unit * f64::hypot(x, y) * self.span;
+                let sizes = [1.0, way, way * way + unit * push * self.span];
+                let tolerances = sizes.map(|size| GAP_ROUNDING * size);
+                self.earlier(&gap, tolerances, Ending::Touch(index));
             }
             (Mode::Flight, Hold::Brake(_)) => {}
             (_, Hold::Wall { friction, .. }) => {
                 let normal = self.normal[index];
-                self.earlier(&normal, ROUNDING * size, Ending::LiftOff(index));
+                self.earlier(&normal, [ROUNDING * size; 3], Ending::LiftOff(index));
                 if mode == Mode::Stick {
                     let most = normal * friction;
                     self.hold(index, &most, grip, ROUNDING * size * (1.0 + friction));
@@ -167,19 +168,19 @@ impl Step {
                 None => Jet::ZERO,
             };
             let slip = (along + link.turning(&self.speed)) * sign;
-            self.earlier(&slip, slip_rounding, Ending::SlipEnds(index));
+            self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
         }
     }
 
     fn hold(&mut self, link: usize, most: &Jet, grip: &Jet, rounding: f64) {
         for sign in [-1.0, 1.0] {
             let left = *most + *grip * sign;
-            self.earlier(&left, rounding, Ending::GripLost(link, sign));
+            self.earlier(&left, [rounding; 3], Ending::GripLost(link, sign));
         }
     }
 
-    fn earlier(&mut self, falls: &Jet, tolerance: f64, ending: Ending) {
-        let (end, ending) = match first_fall(falls.terms(), tolerance) {
+    fn earlier(&mut self, falls: &Jet, tolerances: [f64; 3], ending: Ending) {
+        let (end, ending) = match first_fall(falls.terms(), tolerances) {
             Fall::Never => return,
             Fall::At(end) => (end, ending),
             Fall::After(end) => (end, Ending::Step),
