@@ -3,7 +3,7 @@
 
 use super::jet::{Jet, solve};
 use super::step::Mode;
-use super::system::{Hold, SIZE, System};
+use super::system::{Hold, Link, SIZE, System};
 
 /// Passes over all links; for a light ring between the rotor and its stop thousands are needed.
 const MAX_PASSES: usize = 100_000;
@@ -69,8 +69,15 @@ impl Touching {
 
 /// The impact: afterwards no link closes, and each that took an impulse leaves with its restitution.
 pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE]) {
-    let size = |touch: &Touching| system.links[touch.link].slip_size(speed);
-    let rounding = ROUNDING * touching.iter().map(size).fold(0.0, f64::max);
+    let largest = |size: &dyn Fn(&Link) -> f64| {
+        let sizes = touching.iter().map(|touch| size(&system.links[touch.link]));
+        ROUNDING * sizes.fold(0.0, f64::max)
+    };
+    let slip_rounding = largest(&|link| link.slip_size(speed));
+    let rounding = largest(&|link| {
+        let [x, y] = link.lateral(speed);
+        f64::hypot(x, y)
+    });
     for _ in 0..MAX_PASSES {
         let mut settled = true;
         for touch in touching.iter_mut() {
@@ -96,7 +103,8 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
             let rub = rubbed - touch.rubbed;
             touch.rubbed = rubbed;
             touch.rub(system, rub, speed);
-            settled &= (step * lateral).abs() <= rounding && (rub * mobility).abs() <= rounding;
+            settled &=
+                (step * lateral).abs() <= rounding && (rub * mobility).abs() <= slip_rounding;
         }
         if settled || touching.len() == 1 {
             return;

@@ -16,7 +16,8 @@
 //!
 //! Cut-offs: a wall left slower than 1e-10 of the unit of speed, sqrt(g clearance), or than 1e-12
 //! of the speed along it, is not left; the time of permanent contact is early by what the
-//! rest of the bounce series would take. More than 250 impacts in a unit of time double that cut-off.
+//! rest of the bounce series would take. More than 250 impacts in a
+//! unit of time double that cut-off, again and again as long as they go on.
 //! A wall that falls away in the very moment of a start on it is no contact.
 
 mod fall;

@@ -15,9 +15,9 @@ const NO_SLIP: f64 = 64.0 * f64::EPSILON;
 pub const CUTOFF: f64 = 1e-10;
 /// The same in parts of the speed along the wall, whose rounding it must exceed.
 const FAST_CUTOFF: f64 = 1e-12;
-/// Impacts within a unit of time after which the cut-off is doubled, until that time is over: what
-/// bounds the hops that are flown.
-const MANY_IMPACTS: u32 = 250;
+/// Impacts that are forgotten in a unit of time; each time as many are not, the cut-off is doubled:
+/// what bounds the hops that are flown.
+const MANY_IMPACTS: f64 = 250.0;
 /// Changes of mode at one moment before all sets of modes are tried.
 const MAX_CHANGES: u32 = 8;
 /// Length of a step forced where no set of modes lasts, in units of time; doubled with each that
@@ -47,8 +47,8 @@ pub struct Motion<L> {
     started: bool,
     /// Length of the next forced step, in units of time.
     forced: f64,
-    /// Impacts since a time.
-    busy: (u32, f64),
+    /// Impacts that are not forgotten, and the time of the last.
+    busy: (f64, f64),
 }
 
 /// A moment of it.
@@ -95,7 +95,7 @@ impl<L: Law> Motion<L> {
             turns: vec![0.0; links],
             started: false,
             forced: FORCED_STEP,
-            busy: (0, 0.0),
+            busy: (0.0, 0.0),
         }
     }
 
@@ -284,17 +284,16 @@ impl<L: Law> Motion<L> {
     }
 
     fn count(&mut self) {
+        let (count, last) = self.busy;
         let time = self.since.value;
-        if time > self.busy.1 + self.units.0 {
-            self.busy = (0, time);
-        }
-        self.busy.0 += 1;
+        let forgotten = MANY_IMPACTS * (time - last) / self.units.0;
+        self.busy = ((count - forgotten).max(0.0) + 1.0, time);
     }
 
     fn cutoff(&self, link: usize) -> f64 {
         let [x, y] = self.system.links[link].lateral(&self.speed);
-        let patience = f64::from(1u32 << (self.busy.0 / MANY_IMPACTS).min(31));
-        patience * (CUTOFF * self.units.1 + FAST_CUTOFF * f64::hypot(x, y))
+        let haste = (self.busy.0 / MANY_IMPACTS).floor().exp2();
+        haste * (CUTOFF * self.units.1 + FAST_CUTOFF * f64::hypot(x, y))
     }
 
     /// Begins the next step, with the modes that are possible now.
