@@ -148,6 +148,7 @@ fn without_support_it_is_the_planar_reference() {
         let worst = worst_difference(&impacts(&have, 0), &impacts(&want, 0), 1.0);
         let place = [0, 1].map(|k| (state.position[k] - planar.position[k]) / rotor.clearance);
         println!("{} impacts: {worst:.1e}, end {place:?}", want.len() - 1);
+        // Rounding, grown over a series by 30 at most.
         assert!(worst < 1e-12);
         assert_eq!(have.len(), want.len());
         // The series is cut at 1e-10 of the unit of speed.
@@ -172,14 +173,12 @@ fn two_like_ends_are_the_planar_reference() {
             ..TwoPlaneStart::default()
         };
         let mut reference = TwoPlaneReference::new(&long(&rotor, &[-0.1, 0.1]), &start, spin);
-        let clock = std::time::Instant::now();
         let state = reference.advance(end, &mut |i, h| have.push((i, h)));
-        let took = clock.elapsed();
         for ring in 0..2 {
             let worst = worst_difference(&impacts(&have, ring), &impacts(&want, 0), 2.0);
             let place = [0, 1].map(|k| (state.position[k] - planar.position[k]) / rotor.clearance);
             println!(
-                "{} impacts: {worst:.1e}, end {place:?}, tilt {:?}, {took:?}",
+                "{} impacts: {worst:.1e}, end {place:?}, tilt {:?}",
                 want.len() - 1,
                 state.tilt
             );
@@ -633,23 +632,54 @@ fn one_end_lands_first_and_its_percussion_centre_feels_nothing() {
 fn walls_are_started_on() {
     let mut machine = long(&RIG, &[-0.1, 0.15]);
     machine.rings[1].clearance = 2e-4;
-    let start = TwoPlaneStart::on_walls(&machine, [0, 1], 0.3, 1.0);
+    let (angle, rate) = (0.3, 20.0);
+    let start = TwoPlaneStart::on_walls(&machine, [0, 1], angle, rate);
     let mut happenings = Vec::new();
     let mut reference = TwoPlaneReference::new(&machine, &start, SPIN);
-    let state = reference.advance(1e-3, &mut |i, h| happenings.push((i, h)));
+    let state = reference.advance(0.0, &mut |i, h| happenings.push((i, h)));
     let started = |ring| {
+        let time = 0.0;
         (
             ring,
             Happening::ContactStart {
-                time: 0.0,
+                time,
                 rolling: false,
             },
         )
     };
     assert_eq!(happenings, [started(0), started(1)]);
-    let weight: f64 = state.normal_forces.iter().sum();
-    println!("{state:?}");
-    assert!((weight / RIG.mass / RIG.gravity - 0.95).abs() < 0.1);
+    // Along the common normal: what turns the rotor round, its weight and its gyroscopic moment.
+    let (middle, slope) = (2.6e-4, -4e-4);
+    let polar = machine.polar_inertia * SPIN * rate;
+    let force = RIG.mass * (RIG.gravity * angle.cos() + middle * rate * rate);
+    let moment = slope * (TRANSVERSE_INERTIA * rate * rate - polar);
+    let second = (moment + 0.1 * force) / 0.25;
+    close(state.normal_forces[0], force - second, 1e-12);
+    close(state.normal_forces[1], second, 1e-12);
+}
+
+#[test]
+fn heavy_rings_are_fixed_ones() {
+    let start = SupportStart::new(free([1e-4, 5e-5], [0.0; 2]), SPIN);
+    let mount = Mount {
+        mass: 1e15,
+        stiffness: 1e12,
+        damping: 0.0,
+        travel: Some(1e-4),
+    };
+    let race = Race {
+        inertia: 1e15,
+        dry_drag: 1e-3,
+        viscous_drag: 1e-3,
+    };
+    let machine = support(RIG, Some(mount), Some(race));
+    let fixed = Reference::new(&RIG, &start.rotor, SPIN).advance(0.3, &mut |_| {});
+    let heavy = SupportReference::new(&machine, &start).advance(0.3, &mut |_, _| {});
+    for k in 0..2 {
+        let error = (heavy.position[k] - fixed.position[k]) / RIG.clearance;
+        close(error, 0.0, 1e-9);
+    }
+    close(heavy.spin, fixed.spin, 1e-9 * SPIN);
 }
 
 #[test]
@@ -675,14 +705,10 @@ fn series_converge() {
     let run = |accuracy: f64| {
         let mut reference = SupportReference::new(&support(RIG, Some(MOUNT), None), &start);
         reference.set_accuracy(accuracy);
-        let clock = std::time::Instant::now();
-        let mut count = 0;
-        let position = reference.advance(0.05, &mut |_, _| count += 1).position;
-        println!("{count} {:?}", clock.elapsed());
-        position
+        reference.advance(0.05, &mut |_, _| {}).position
     };
     let exact = run(1e-18);
-    for (accuracy, most) in [(1e-6, 1e-4), (1e-9, 1e-7), (1e-12, 1e-9), (1e-16, 1e-10)] {
+    for (accuracy, most) in [(1e-6, 1e-5), (1e-9, 1e-8), (1e-12, 1e-11), (1e-16, 1e-13)] {
         let position = run(accuracy);
         let error = [0, 1].map(|k| (position[k] - exact[k]) / RIG.clearance);
         println!("{accuracy:.0e}: {error:?}");
