@@ -6,3 +6,4 @@ pub mod counting;
 pub mod drops;
 pub mod growth;
 pub mod rotors;
+pub mod supports;

@@ -58,7 +58,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             };
             match self.beyond(state, &passage) {
                 None => {
-                    left = left - time;
+                    left -= time;
                     (longest, crossings) = (whole, 0);
                     self.accept(state, &passage, (whole - left) / self.step, &mut sink);
                 }
