@@ -159,7 +159,10 @@ impl<R: Precision> Contact<R> {
         let (start, mut slope) = margin(series, R::ZERO);
         // Slip grows from zero with its second derivative only: its sign at the start says nothing.
         let grows = ending == Ending::SlipEnds && start == R::ZERO;
-        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO && !grows) {
+        if grows {
+            slope = R::ZERO;
+        }
+        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO) {
             self.span = R::ZERO;
             self.ending = ending;
             return;
