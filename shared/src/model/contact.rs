@@ -205,12 +205,12 @@ impl<R: Precision> Contact<R> {
         if self.series.cos[0] + friction * self.series.sin[0] <= R::ZERO {
             return None;
         }
-        let beyond = |at: R| {
-            let [sin, cos] = [&self.series.sin, &self.series.cos].map(|c| horner(c, at));
-            (sin.0 - friction * cos.0, sin.1 - friction * cos.1)
-        };
+        let mut beyond = self.series.sin;
+        for (term, &cos) in beyond.iter_mut().zip(&self.series.cos) {
+            *term -= friction * cos;
+        }
         let end = self.span * self.series.pace;
-        let (first, last) = (beyond(R::ZERO).0, beyond(end).0);
+        let (first, last) = (beyond[0], horner(&beyond, end).0);
         let end_beyond = last >= R::ZERO;
         if (first >= R::ZERO) == end_beyond {
             return None;
@@ -218,7 +218,7 @@ impl<R: Precision> Contact<R> {
         // Newton's method: in a stretch the rotor turns by less than a radian, and this hardly bends.
         let mut at = end * (first / (first - last));
         for _ in 0..PASSAGE_ITERATIONS {
-            let (value, slope) = beyond(at);
+            let (value, slope) = horner(&beyond, at);
             at = (at - value / slope).most(R::ZERO).least(end);
         }
         Some((at / self.series.pace, end_beyond))
