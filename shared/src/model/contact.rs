@@ -4,7 +4,7 @@
 
 use crate::model::law::Law;
 use crate::model::precision::Precision;
-use crate::model::series::{Series, horner, reach};
+use crate::model::series::{Series, horner, reach, value};
 use crate::model::sum::Sum;
 use crate::real::Real;
 
@@ -210,7 +210,7 @@ impl<R: Precision> Contact<R> {
             *term -= friction * cos;
         }
         let end = self.span * self.series.pace;
-        let (first, last) = (beyond[0], horner(&beyond, end).0);
+        let (first, last) = (beyond[0], value(&beyond, end));
         let end_beyond = last >= R::ZERO;
         if (first >= R::ZERO) == end_beyond {
             return None;

@@ -125,6 +125,11 @@ pub(crate) fn reach<R: Precision>(c: &Terms<R>, at: R) -> R {
     without_constant(c, at, R::abs)
 }
 
+/// The series at `at`, in the series' unit.
+pub(crate) fn value<R: Precision>(c: &Terms<R>, at: R) -> R {
+    c[0] + without_constant(c, at, |term| term)
+}
+
 /// The series without its constant term, each term as `read`. Odd and even powers apart: two sums that do not wait for each
 /// other.
 #[inline]
