@@ -1,8 +1,9 @@
 //! The force from the acceleration.
 //!
-//! A first estimate is A conj(H)/(|H|^2 + lambda) within the calibrated band (Tikhonov); it keeps the part
-//! |H|^2/(|H|^2 + lambda) of the force. lambda is the median of |H|^2 in the band, so a frequency below the flat
-//! part counts as |H|^2, which is as far as white noise of the acceleration lets it be known.
+//! A first estimate is w A/H within the calibrated band. w = |H|^2/(|H|^2 + lambda) makes the error least where
+//! force and noise are white (Wiener); lambda is the noise's energy over the force's, plus the variance of H. Noise is
+//! measured in the quiet part and the force's energy in the band, so nothing is left to choose. Below the
+//! flat part of H, where white noise would come out as 1/|H|, w is multiplied by |H|^2 over its median in the band.
 //!
 //! What is lost by that, above all below the band, where the device hardly answers, comes back from what is
 //! known in time: outside the contacts the force is 0. Sought is the force within the contacts that is the first
@@ -110,24 +111,32 @@ impl Inverse {
         let response = calibration.response(transform);
         let frequency = |k: usize| k as f64 * calibration.rate / transform.length() as f64;
         let band = |k: &usize| calibration.band.contains(&frequency(*k));
-        let mut powers: Vec<f64> = (0..transform.bins())
+        let power: Vec<f64> = response.h.iter().map(Complex64::norm_sqr).collect();
+        let sum =
+            |of: &dyn Fn(usize) -> f64| -> f64 { (0..transform.bins()).filter(band).map(of).sum() };
+        let noise = signal.len() as f64 * quiet.noise * quiet.noise;
+        let (moved, silent) = (sum(&|k| motion[k].norm_sqr()), sum(&|_| noise));
+        // Of the force, at each frequency; where all is noise, a hundredth of that.
+        let energy = (moved - silent).max(0.01 * silent) / sum(&|k| power[k]);
+        let mut sorted: Vec<f64> = (0..transform.bins())
             .filter(band)
-            .map(|k| response.h[k].norm_sqr())
+            .map(|k| power[k])
             .collect();
-        powers.sort_by(f64::total_cmp);
-        let flat = powers.get(powers.len() / 2).copied().unwrap_or(0.0);
+        sorted.sort_by(f64::total_cmp);
+        let flat = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let lambda = if energy > 0.0 { noise / energy } else { 0.0 };
+        let mut weak = true;
         let mut spectrum = vec![Complex64::default(); transform.bins()];
         let (mut kept, mut lost) = (vec![0.0; spectrum.len()], vec![0.0; spectrum.len()]);
         for k in 0..spectrum.len() {
             let passes = resolution.passes(frequency(k));
-            lost[k] = passes;
-            let h = response.h[k];
-            let sum = h.norm_sqr() + flat;
-            if passes > 0.0 && band(&k) && sum > 0.0 {
-                spectrum[k] = passes * motion[k] * h.conj() / sum;
-                kept[k] = passes * h.norm_sqr() / sum;
-                lost[k] -= kept[k];
+            if passes > 0.0 && power[k] > 0.0 && band(&k) {
+                weak &= power[k] < flat;
+                let part = power[k] / (power[k] + lambda + response.variance[k]);
+                kept[k] = passes * if weak { part * power[k] / flat } else { part };
+                spectrum[k] = kept[k] * motion[k] / response.h[k];
             }
+            lost[k] = passes - kept[k];
         }
         Self {
             estimate: transform.signal(&spectrum),
