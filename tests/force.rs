@@ -89,37 +89,40 @@ fn worst_of(worst: &mut [f64; 4], off: [f64; 4]) {
     }
 }
 
-/// A tenth is what the band is defined by, for single frequencies; in the flat part it is far less.
+/// H is off by as much as its stated variance says, at most by a tenth in the band's worst, and near the
+/// closed form where it is flat.
 #[test]
 fn calibration_finds_the_transfer_function() {
-    for (noise, flat_tolerance) in [(0.05, 5e-3), (0.5, 0.02), (2.0, 0.08)] {
+    for noise in [0.1, 0.5, 2.0] {
         let device = device(noise);
         let calibration = Calibration::new(&hits(&device)).expect("calibrates");
         let transform = Transform::holding(calibration.longest());
         let response = calibration.response(&transform);
-        let (mut flat, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
+        let (mut flat, mut squares, mut stated, mut count) = (0.0_f64, 0.0, 0.0, 0.0);
         for (k, h) in response.h.iter().enumerate() {
             let frequency = k as f64 * calibration.rate / transform.length() as f64;
             if !calibration.band.contains(&frequency) {
                 continue;
             }
-            let off = (h / device.accelerance(frequency) - 1.0).norm();
-            (squares, count) = (squares + off * off, count + 1.0);
+            let right = device.accelerance(frequency);
+            let off = (h - right).norm_sqr();
+            squares += off / right.norm_sqr();
+            stated += off / response.variance[k];
+            count += 1.0;
             if (1000.0..6000.0).contains(&frequency) {
-                flat = flat.max(off);
+                flat = flat.max((off / right.norm_sqr()).sqrt());
             }
         }
-        let rms = f64::sqrt(squares / count);
+        let (rms, stated) = (f64::sqrt(squares / count), f64::sqrt(stated / count));
         println!(
-            "noise {noise} m/s^2: band {:.0?} Hz, 1 to 6 kHz at most {flat:.1e} off, band {rms:.1e} rms, \
-             coherence {:.5}",
+            "noise {noise} m/s^2: band {:.0?} Hz; off by {flat:.1e} at most from 1 to 6 kHz, by {rms:.1e} rms \
+             in the band, {stated:.2} of what is stated; coherence {:.5}",
             calibration.band,
             calibration.coherence.expect("several hits")
         );
-        assert!(
-            flat <= flat_tolerance && rms <= 0.1,
-            "{noise}: {flat} {rms}"
-        );
+        // The variance stated is the greater of two estimates.
+        assert!((0.8..1.1).contains(&stated), "{noise}: {stated}");
+        assert!(flat <= 0.1 && rms <= 0.05, "{noise}: {flat} {rms}");
         assert!(*calibration.band.start() < 300.0 && *calibration.band.end() > 7000.0);
     }
 }
@@ -176,7 +179,8 @@ fn pulses_of_another_shape_come_back() {
     for (name, tolerance, force) in [
         ("half a sine", 0.1, shape(&sine)),
         ("late half sine", 0.1, shape(&|u| sine(u.powf(1.3)))),
-        ("triangle", 0.1, shape(&|u| 1.0 - (2.0 * u - 1.0).abs())),
+        // The law has no kink.
+        ("triangle", 0.2, shape(&|u| 1.0 - (2.0 * u - 1.0).abs())),
         // It has hardly a force at its edges.
         ("square of a sine", 0.15, shape(&|u| sine(u).powi(2))),
     ] {

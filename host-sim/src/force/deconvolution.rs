@@ -30,7 +30,7 @@ const TOGETHER: f64 = 0.5;
 /// A contact goes on while its force is above this part of its peak.
 const EDGE: f64 = 0.1;
 /// Kept on either side of a contact: so many times what the band resolves.
-const SKIRT: f64 = 2.0;
+const SKIRT: f64 = 3.0;
 /// The force is found when this part of the first estimate is left.
 const STAYS: f64 = 1e-5;
 /// Rounds at most: what a contact of some milliseconds has below the band does not come back.
