@@ -127,10 +127,15 @@ fn calibration_finds_the_transfer_function() {
     }
 }
 
-/// 0.02 to 0.5 m/s, half the rotor and all of it.
+/// 0.02 to 0.5 m/s, half the rotor and all of it. A noise of 5 m/s^2 is too much for the targets.
 #[test]
 fn contacts_of_the_rig_come_back() {
-    for noise in [0.05, 0.5, 2.0] {
+    for (noise, impulse_tolerance, time_tolerance) in [
+        (0.05, IMPULSE, CONTACT_TIME),
+        (0.5, IMPULSE, CONTACT_TIME),
+        (2.0, IMPULSE, CONTACT_TIME),
+        (5.0, 0.05, 0.2),
+    ] {
         let device = device(noise);
         let hits = [hits(&device)];
         let mut worst = [0.0; 4];
@@ -157,10 +162,44 @@ fn contacts_of_the_rig_come_back() {
              direction {angle:.2} degrees"
         );
         assert!(
-            impulse <= IMPULSE && time <= CONTACT_TIME && peak <= 0.05,
+            impulse <= impulse_tolerance && time <= time_tolerance && peak <= 0.05,
             "{worst:?}"
         );
-        assert!(angle <= 1.0, "{angle}");
+        assert!(angle <= 2.0, "{angle}");
+    }
+}
+
+/// Much loss leaves a tail with hardly a force: impulse and peak come back, contact time less and less. A line
+/// contact likewise, by a spring of 0.15 ms.
+#[test]
+fn contacts_with_much_loss_come_back() {
+    let device = device(0.5);
+    let hits = [hits(&device)];
+    let line = 1.71 * (std::f64::consts::PI / 0.15e-3).powi(2);
+    for (restitution, tolerance) in [(0.8, CONTACT_TIME), (0.5, CONTACT_TIME), (0.3, 0.25)] {
+        let mut worst = [0.0; 4];
+        for speed in [0.02, 0.0767, 0.2, 0.5] {
+            let point = meeting(1.71, speed, restitution);
+            let line = Meeting {
+                stiffness: line,
+                exponent: 1.0,
+                ..point
+            };
+            for meeting in [point, line] {
+                let truth = meeting.pulse();
+                let force = meeting.history();
+                let impulse = area(&force);
+                let pulse = only(&measure(&strike(&device, force, 9), &hits).expect("measures"));
+                let off = off(&pulse, impulse, truth.peak_force, truth.duration);
+                println!(
+                    "{restitution} at {speed} m/s, {:.0} us: {off:.4?}",
+                    1e6 * truth.duration
+                );
+                worst_of(&mut worst, off);
+            }
+        }
+        println!("restitution {restitution}: worst {worst:.4?}");
+        assert!(worst[0] <= IMPULSE && worst[1] <= 0.05 && worst[2] <= tolerance);
     }
 }
 
@@ -179,10 +218,9 @@ fn pulses_of_another_shape_come_back() {
     for (name, tolerance, force) in [
         ("half a sine", 0.1, shape(&sine)),
         ("late half sine", 0.1, shape(&|u| sine(u.powf(1.3)))),
-        // The law has no kink.
-        ("triangle", 0.2, shape(&|u| 1.0 - (2.0 * u - 1.0).abs())),
+        ("triangle", 0.1, shape(&|u| 1.0 - (2.0 * u - 1.0).abs())),
         // It has hardly a force at its edges.
-        ("square of a sine", 0.15, shape(&|u| sine(u).powi(2))),
+        ("square of a sine", 0.1, shape(&|u| sine(u).powi(2))),
     ] {
         let impulse = area(&force);
         let pulse = only(&measure(&strike(&device, force, 3), &hits).expect("measures"));
