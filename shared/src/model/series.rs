@@ -132,7 +132,6 @@ pub(crate) fn value<R: Precision>(c: &Terms<R>, at: R) -> R {
 
 /// The series without its constant term, each term as `read`. Odd and even powers apart: two sums that do not wait for each
 /// other.
-#[inline]
 fn without_constant<R: Precision>(c: &Terms<R>, at: R, read: impl Fn(R) -> R) -> R {
     let square = at * at;
     let (pairs, last) = c[1..=R::SERIES_ORDER].as_chunks();
