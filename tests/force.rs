@@ -323,6 +323,57 @@ fn an_impulse_comes_back_as_what_the_band_shows_of_it() {
     }
 }
 
+/// Two contacts of 0.2 ms, and the impulse of both; a long one.
+#[test]
+fn near_and_long_contacts() {
+    let device = device(0.5);
+    let hits = [hits(&device)];
+    for (apart, count) in [(0.4e-3, 1), (1e-3, 2), (3e-3, 2)] {
+        let blows = [0.0, apart].map(|later| Blow {
+            time: BEGIN + later,
+            direction: DIRECTION,
+            force: half_sine(1000.0, 0.2e-3),
+        });
+        let found =
+            measure(&rehearsal::recording(&device, &blows, 0.1, 3), &hits).expect("measures");
+        let impulse: f64 = found.pulses().map(|it| it.impulse_n_s).sum();
+        let times: Vec<_> = found.pulses().map(|it| it.contact_time_s).collect();
+        let right = 2.0 * area(&half_sine(1000.0, 0.2e-3));
+        println!(
+            "{:.1} ms apart: impulse {:+.2e}, {times:?}",
+            1e3 * apart,
+            impulse / right - 1.0
+        );
+        assert_eq!(found.pulses().count(), count);
+        assert!((impulse / right - 1.0).abs() <= IMPULSE);
+        assert!(
+            times.iter().all(|time| time.is_some() == (count == 2)),
+            "{times:?}"
+        );
+    }
+    // From some milliseconds on, all but the ends of a contact is below the band: that is lost.
+    for (duration, lost) in [(1e-3, false), (2e-3, false), (5e-3, true)] {
+        let force = half_sine(500.0, duration);
+        let impulse = area(&force);
+        let found = measure(&strike(&device, force, 3), &hits).expect("measures");
+        let sum: f64 = found.pulses().map(|it| it.impulse_n_s).sum();
+        let off = sum / impulse - 1.0;
+        println!(
+            "{:.0} ms long: {} pulses, impulse {off:+.2e}",
+            1e3 * duration,
+            found.pulses().count()
+        );
+        assert!(
+            if lost {
+                off < -0.5
+            } else {
+                off.abs() <= IMPULSE
+            },
+            "{duration}: {off}"
+        );
+    }
+}
+
 /// Offset and slow drift are below the band; a steady force is too, and is not seen.
 #[test]
 fn drift_of_the_accelerometer_does_not_matter() {
