@@ -169,6 +169,52 @@ fn contacts_of_the_rig_come_back() {
     }
 }
 
+/// Cases that nothing was chosen by: other devices, speeds, places between the samples, directions and seeds,
+/// spread evenly by multiples of irrational numbers.
+#[test]
+fn contacts_on_other_devices_come_back() {
+    let spread = |k: u32, step: f64| (f64::from(k) * step).fract();
+    let mut worst = [0.0; 4];
+    for k in 1..=30 {
+        let mut config = InstrumentConfig::default();
+        let [mount, elastic] = &mut config.modes;
+        mount.frequency = 350.0 + 300.0 * spread(k, 0.618_034);
+        mount.mass = 2.0 + 3.0 * spread(k, 0.414_214);
+        mount.damping = 0.02 + 0.08 * spread(k, 0.732_051);
+        elastic.frequency = 7000.0 + 3000.0 * spread(k, 0.236_068);
+        elastic.mass = mount.mass * (6.0 + 8.0 * spread(k, 0.645_751));
+        elastic.damping = 0.005 + 0.02 * spread(k, 0.316_625);
+        let device = Instrument::try_new(&config).expect("valid");
+        let hits = [rehearsal::hits(&device, Axis::X, u64::from(100 + k))];
+        let speed = 0.02 * 25_f64.powf(spread(k, 0.605_551));
+        let restitution = 0.75 + 0.25 * spread(k, 0.123_106);
+        let meeting = meeting(1.71, speed, restitution);
+        let angle = std::f64::consts::TAU * spread(k, 0.358_899);
+        let blow = Blow {
+            time: 15e-3 + 20e-6 * spread(k, 0.795_832),
+            direction: [angle.sin(), -angle.cos()],
+            force: meeting.history(),
+        };
+        let recording = rehearsal::recording(&device, &[blow], 0.1, u64::from(200 + k));
+        let pulse = only(&measure(&recording, &hits).expect("measures"));
+        let truth = meeting.pulse();
+        let impulse = (1.0 + restitution) * 1.71 * speed;
+        let mut off = off(&pulse, impulse, truth.peak_force, truth.duration);
+        let turned = (pulse.direction_deg.to_radians() - angle)
+            .sin()
+            .asin()
+            .to_degrees();
+        off[3] = turned;
+        println!(
+            "{k}: {speed:.3} m/s, {restitution:.2}, {:.0} us: {off:.4?}",
+            1e6 * truth.duration
+        );
+        worst_of(&mut worst, off);
+    }
+    println!("other devices: worst {worst:.4?}");
+    assert!(worst[0] <= IMPULSE && worst[1] <= 0.05 && worst[2] <= CONTACT_TIME && worst[3] <= 1.0);
+}
+
 /// Much loss leaves a tail with hardly a force: impulse and peak come back, contact time less and less. A line
 /// contact likewise, by a spring of 0.15 ms.
 #[test]
@@ -274,6 +320,57 @@ fn an_impulse_comes_back_as_what_the_band_shows_of_it() {
                 "{recovered} {shown}"
             );
         }
+    }
+}
+
+/// Two contacts of 0.2 ms, and the impulse of both; a long one.
+#[test]
+fn near_and_long_contacts() {
+    let device = device(0.5);
+    let hits = [hits(&device)];
+    for (apart, count) in [(0.4e-3, 1), (1e-3, 2), (3e-3, 2)] {
+        let blows = [0.0, apart].map(|later| Blow {
+            time: BEGIN + later,
+            direction: DIRECTION,
+            force: half_sine(1000.0, 0.2e-3),
+        });
+        let found =
+            measure(&rehearsal::recording(&device, &blows, 0.1, 3), &hits).expect("measures");
+        let impulse: f64 = found.pulses().map(|it| it.impulse_n_s).sum();
+        let times: Vec<_> = found.pulses().map(|it| it.contact_time_s).collect();
+        let right = 2.0 * area(&half_sine(1000.0, 0.2e-3));
+        println!(
+            "{:.1} ms apart: impulse {:+.2e}, {times:?}",
+            1e3 * apart,
+            impulse / right - 1.0
+        );
+        assert_eq!(found.pulses().count(), count);
+        assert!((impulse / right - 1.0).abs() <= IMPULSE);
+        assert!(
+            times.iter().all(|time| time.is_some() == (count == 2)),
+            "{times:?}"
+        );
+    }
+    // From some milliseconds on, all but the ends of a contact is below the band: that is lost.
+    for (duration, lost) in [(1e-3, false), (2e-3, false), (5e-3, true)] {
+        let force = half_sine(500.0, duration);
+        let impulse = area(&force);
+        let found = measure(&strike(&device, force, 3), &hits).expect("measures");
+        let sum: f64 = found.pulses().map(|it| it.impulse_n_s).sum();
+        let off = sum / impulse - 1.0;
+        println!(
+            "{:.0} ms long: {} pulses, impulse {off:+.2e}",
+            1e3 * duration,
+            found.pulses().count()
+        );
+        assert!(
+            if lost {
+                off < -0.5
+            } else {
+                off.abs() <= IMPULSE
+            },
+            "{duration}: {off}"
+        );
     }
 }
 
