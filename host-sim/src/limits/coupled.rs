@@ -14,6 +14,9 @@ use crate::{limits::support, limits::two_plane};
 /// Of a place or an energy, in units of the last digit.
 const ROUNDED: f64 = 64.0;
 
+/// How long the reference runs beyond the model's first impact, s.
+const AFTER: f64 = 20e-6;
+
 /// A machine after a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Glance {
@@ -58,14 +61,20 @@ struct Seen {
 }
 
 fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, ConfigError> {
-    let impacts = simulate(scene).impacts;
-    let first = impacts.first().map(|impact| impact.state.time);
     let mut seen = Seen::default();
+    let mut first = None;
     for step in STEPS {
         let mut scene = scene.clone();
         scene.model.precision = precision;
         scene.model.step = step;
-        look(&scene, first, &mut seen)?;
+        let Some(ours) = look(&scene, &mut seen)? else {
+            continue;
+        };
+        let units = Units::of(&scene);
+        let truth = *first.get_or_insert_with(|| first_impact(&scene, ours));
+        let step = step / units.time;
+        let limit = step * step + ROUNDED * epsilon(precision);
+        seen.late.take((ours - truth).abs() / units.time, limit);
     }
     let row = |measure: &str, worst: Worst, unit| {
         let name = format!("{}: {name}: {measure}", scene.model.rung.name());
@@ -87,11 +96,24 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
     Ok(rows)
 }
 
-fn look(scene: &Scene, first: Option<f64>, seen: &mut Seen) -> Result<(), ConfigError> {
-    let epsilon = match scene.model.precision {
+/// Of the reference, s; infinite where it has none at about this time. What follows may be costly.
+fn first_impact(scene: &Scene, about: f64) -> f64 {
+    let mut scene = scene.clone();
+    scene.run.duration = about + AFTER;
+    let first = simulate(&scene).impacts.first().map(|it| it.state.time);
+    first.unwrap_or(f64::INFINITY)
+}
+
+fn epsilon(precision: Precision) -> f64 {
+    match precision {
         Precision::F64 => f64::EPSILON,
         Precision::F32 => f64::from(f32::EPSILON),
-    };
+    }
+}
+
+/// Watches one run; the time of its first impact, s.
+fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<f64>, ConfigError> {
+    let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     let run = run(scene, &mut |glance| {
@@ -112,11 +134,6 @@ fn look(scene: &Scene, first: Option<f64>, seen: &mut Seen) -> Result<(), Config
     seen.beyond.take(farthest, ROUNDED * epsilon);
     seen.made.take(made, rounding);
     seen.missing.take(missing, rounding);
-    let units = Units::of(scene);
-    let step = scene.model.step / units.time;
-    if let (Some(truth), Some(ours)) = (first, run.histories.whole.impacts.first()) {
-        let late = (ours.state.time - truth).abs() / units.time;
-        seen.late.take(late, step * step + ROUNDED * epsilon);
-    }
-    Ok(())
+    let first = run.histories.whole.impacts.first();
+    Ok(first.map(|impact| impact.state.time))
 }

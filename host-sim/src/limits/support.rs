@@ -10,7 +10,7 @@ use crate::reference::Start;
 use crate::scene::{BallBearing, Model, Scene, Support};
 
 /// Longest part of a scene, s.
-const LONGEST: f64 = 0.1;
+const LONGEST: f64 = 0.03;
 
 type Change = fn(&mut Scene);
 

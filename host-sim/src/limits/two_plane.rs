@@ -9,7 +9,7 @@ use crate::model_run::two_plane::watch;
 use crate::scene::{Magnet, Scene, TwoPlane};
 
 /// Longest part of a scene, s.
-const LONGEST: f64 = 0.1;
+const LONGEST: f64 = 0.03;
 type Change = fn(&mut Scene, &mut TwoPlane);
 
 /// Name, and what differs from the scene `two-plane`.
