@@ -160,7 +160,7 @@ fn each_end_of_a_tilted_drop_has_its_own_impacts() {
                 if near < 1e-3 {
                     errors.push(near * RATE);
                     found += 1;
-                } else if speed > 0.03 {
+                } else if speed > 0.02 {
                     missed += 1;
                 }
             }
@@ -178,7 +178,7 @@ fn each_end_of_a_tilted_drop_has_its_own_impacts() {
     errors.sort_by(f64::total_cmp);
     let median = errors[errors.len() / 2];
     println!(
-        "{found} found, {missed} above 30 mm/s missed, {false_ones} false, median {median:.2} samples"
+        "{found} found, {missed} above 20 mm/s missed, {false_ones} false, median {median:.2} samples"
     );
     assert_eq!((missed, false_ones), (0, 0));
     assert!(median <= 1.0, "{median}");
@@ -186,6 +186,7 @@ fn each_end_of_a_tilted_drop_has_its_own_impacts() {
 
 #[test]
 fn one_end_lies_while_the_other_flies() {
+    let mut errors = Vec::new();
     for low_end in [0, 1] {
         for seed in 0..20 {
             let watched = tilted_drop(seed, low_end);
@@ -195,8 +196,7 @@ fn one_end_lies_while_the_other_flies() {
             assert_eq!(phases[1 - low_end], Phase::Impact, "{seed}");
             let first = watched.of(EventKind::Sliding).next().expect("lies");
             assert_eq!(first.plane, [Plane::A, Plane::B][low_end], "{seed}");
-            let error = first.onset.samples() / RATE - BEFORE - LOW.end();
-            assert!(error.abs() < 2e-3, "{seed}: contact off by {error} s");
+            errors.push((first.onset.samples() / RATE - BEFORE - LOW.end()).abs());
             let last = watched.phases.last().expect("samples");
             assert!(
                 last.iter().all(|phase| phase.is_contact()),
@@ -204,13 +204,21 @@ fn one_end_lies_while_the_other_flies() {
             );
         }
     }
+    errors.sort_by(f64::total_cmp);
+    let [median, worst] = [errors[errors.len() / 2], errors[errors.len() - 1]];
+    println!(
+        "contact: median {:.2} ms, worst {:.2} ms",
+        median * 1e3,
+        worst * 1e3
+    );
+    assert!(median <= 1.5e-3 && worst <= 3e-3, "{median} {worst}");
 }
 
 #[test]
 fn one_end_lifts_off_while_the_other_lies() {
     for (end, plane) in [(0, Plane::A), (1, Plane::B)] {
-        let mut late = 0.0_f64;
-        for seed in 0..20 {
+        let (mut late, mut of_both) = (0.0_f64, 0);
+        for seed in 0..100 {
             let mut scene = scene();
             scene.run.seed = seed;
             // Both lie; from 0.3 s on one end is lifted, with the third power of time to 0.2 mm in 20 ms.
@@ -221,16 +229,29 @@ fn one_end_lifts_off_while_the_other_lies() {
                 ends
             });
             let lift_offs: Vec<_> = watched.of(EventKind::LiftOff).collect();
-            assert_eq!(lift_offs.len(), 1, "{seed}: {lift_offs:?}");
-            assert_eq!(lift_offs[0].plane, plane, "{seed}");
-            let onset = lift_offs[0].onset.samples() / RATE - 0.3;
+            let [lift_off] = lift_offs[..] else {
+                panic!("{seed}: {lift_offs:?}");
+            };
+            let onset = lift_off.onset.samples() / RATE - 0.3;
             late = late.max(onset.abs());
+            if lift_off.plane == Plane::Both {
+                of_both += 1;
+                continue;
+            }
+            assert_eq!(lift_off.plane, plane, "{seed}");
             let last = watched.phases.last().expect("samples");
             assert_eq!(last[end], Phase::FreeFall, "{seed}");
             assert!(last[1 - end].is_contact(), "{seed}: {last:?}");
         }
-        println!("end {end}: lift-off dated within {:.2} ms", late * 1e3);
-        assert!(late < 4e-3, "{late}");
+        println!(
+            "end {end}: dated within {:.2} ms, {of_both} told of both",
+            late * 1e3
+        );
+        // By then it is 4 um away, four standard deviations.
+        let visible = 0.02 * (4e-6_f64 / 0.2e-3).cbrt();
+        assert!(late < visible, "{late} {visible}");
+        // Even odds at the first sign of it decide for both: 1 of 300 in longer runs.
+        assert!(of_both <= 2, "{of_both}");
     }
 }
 
@@ -256,12 +277,12 @@ fn ends_that_fall_together_stay_one() {
 fn ends_that_have_landed_are_one_again() {
     let watched = tilted_drop(1, 0);
     // The high end lies from 81 ms on, and one `still_time` (50 ms) and a margin later they are one.
-    let united = watched
+    let mut united = watched
         .of(EventKind::Rest)
         .chain(watched.of(EventKind::Pendulum))
         .filter(|event| event.declared as f64 / RATE > BEFORE + 0.25);
     assert!(
-        united.clone().all(|event| event.plane == Plane::Both),
+        united.all(|event| event.plane == Plane::Both),
         "{:?}",
         watched.events
     );
@@ -269,13 +290,14 @@ fn ends_that_have_landed_are_one_again() {
     assert_eq!(a, b);
 }
 
-/// Floats, then both ends go round on opposite sides (or the same), out to the wall within 50 ms, where
-/// they bounce off and in.
+/// Floats, then both ends go round on opposite sides (or the same), out to the wall within 6 ms, where
+/// they bounce off, and through the centre.
 fn spiral(side: f64) -> impl Fn(f64) -> [[f64; 2]; 2] {
     move |t| {
         let since = (t - BEFORE).max(0.0);
-        let out = (since / 0.05 * TAU / 4.0).sin().abs();
-        let (sin, cos) = (TAU * 40.0 * since).sin_cos();
+        let way = (since / 0.006) % 2.0;
+        let out = if way < 1.0 { way } else { 2.0 - way };
+        let (sin, cos) = (TAU * 10.0 * since).sin_cos();
         let [x, y] = [CLEARANCE * out * cos, CLEARANCE * out * sin];
         [[x, y], [side * x, side * y]]
     }
@@ -300,9 +322,9 @@ fn ends_that_go_against_each_other_are_conical() {
     );
     let fall = conical.of(EventKind::FreeFall).next().expect("a fall");
     assert_eq!(fall.motion, Motion::Conical);
-    // At 51 um, `confirm_travel`, of a way that begins with 9.4 um/ms.
+    // At 51 um, `confirm_travel`, of a way of 50 um/ms: 1.02 ms.
     let latency = fall.declared as f64 / RATE - BEFORE;
-    assert!(latency < 6.5e-3, "{latency}");
+    assert!(latency < 1.3e-3, "{latency}");
     assert_eq!(conical.confirmed, [fall.number]);
     let impacts: Vec<_> = conical.of(EventKind::Impact).collect();
     for plane in [Plane::A, Plane::B] {

@@ -77,8 +77,8 @@ fn energy_and_angular_momentum_are_kept_in_bounces() {
                 "{polar} {step}: {impacts} impacts, energy {energy:.1e}, momentum {turned:.1e}; f32 {single:.1e} {single_turned:.1e}"
             );
             assert!(impacts > 10);
-            assert!(energy <= 1e-11 && turned <= 1e-11);
-            assert!(single <= 1e-3 && single_turned <= 1e-3);
+            assert!(energy <= 1e-13 && turned <= 1e-13);
+            assert!(single <= 1e-4 && single_turned <= 1e-5);
         }
     }
 }
@@ -93,7 +93,7 @@ fn energy_is_kept_under_gravity() {
     let config = rotor([ring(1.2), ring(-0.7)], 0.4, 1e-3);
     let (energy, _, impacts) = swing::<f64>(&config, &start, 20.0, 50_000);
     println!("{impacts} impacts, energy {energy:.1e}");
-    assert!(energy <= 1e-11 && impacts > 20, "{energy:e} {impacts}");
+    assert!(energy <= 1e-13 && impacts > 20, "{energy:e} {impacts}");
 }
 
 /// One end held without friction: a pendulum that tilts.
@@ -131,7 +131,7 @@ fn a_held_ring_does_no_work_without_friction() {
             "step {step}: ledger {worst:.1e}, lost {:.3}",
             last.lost - first.lost
         );
-        assert!(worst <= 1e-11);
+        assert!(worst <= 1e-13);
         for k in 0..2 {
             let at = model.kinematics_at(&state, k);
             let beyond = at.position[0].hypot(at.position[1]) - 1.0;
@@ -205,10 +205,10 @@ fn the_ledger_closes_with_unbalance() {
     assert!(off <= 1e-12 && end.driven.abs() > 1e-3);
 }
 
-/// v' = mu v^2 in one ring at the centre, without gravity: t* = 1/(mu v).
+/// v' = mu v^2 in one ring at the centre, without gravity: 1/v falls evenly.
 #[test]
 fn whirl_without_gravity_grows_by_its_law() {
-    for step in [1e-3, 0.1] {
+    let off = |step: f64| {
         let mut config = rotor([ring(0.0)], 0.5, step);
         config.gravity = [0.0; 2];
         config.rings[0].friction = 0.1;
@@ -218,21 +218,25 @@ fn whirl_without_gravity_grows_by_its_law() {
             ..Placement::default()
         };
         let state = run(&config, &start, -1e4, 8.0);
+        assert_eq!(state.shortened(), 0);
         let [u, v] = state.centre().1;
-        let want = 1.0 / (1.0 - 0.8);
-        let off = u.hypot(v) / want - 1.0;
-        println!("step {step}: {off:+.1e}");
-        assert!(off.abs() <= 2.0 * step * step + 1e-10, "{off:e}");
-    }
+        u.hypot(v) * (1.0 - 0.8) - 1.0
+    };
+    let [fine, coarse, long] = [1e-3, 4e-3, 0.4].map(off);
+    println!("{fine:+.1e}, {coarse:+.1e}, {long:+.1e}");
+    // From 1 to 5 V: 4.5 and 72 steps' squares. The longest step is cut to a quarter of a radian.
+    assert!(fine.abs() <= 6e-6 && (coarse / fine - 16.0).abs() < 2.0);
+    assert!(long.abs() <= 0.06);
 }
 
-/// The end of a slide of a tilted rotor, by halving the step.
+/// The end of a slide of a tilted rotor on both walls. With friction the nutation is that of the spin
+/// at the step's start, which is of first order in what the spin loses.
 #[test]
 fn contact_is_of_second_order() {
     let end = |step: f64| {
         let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, step);
         for ring in &mut config.rings {
-            (ring.friction, ring.restitution) = (0.2, 0.0);
+            (ring.friction, ring.restitution) = (0.0, 0.0);
         }
         // Both on the wall, one end 0.2 rad further round.
         let (a, b) = (
@@ -247,8 +251,8 @@ fn contact_is_of_second_order() {
         };
         let mut lifted = 0;
         let model = built(&config);
-        let mut state = model.start(&start, -300.0, |_, _| {}).expect("valid");
-        for _ in 0..(2.0 / step).round() as u32 {
+        let mut state = model.start(&start, -6.0, |_, _| {}).expect("valid");
+        for _ in 0..(1.0 / step).round() as u32 {
             model.step(&mut state, |_, h| {
                 lifted += u32::from(h.change == Change::LiftsOff)
             });
@@ -344,6 +348,7 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
     };
     let first = model.energy(&state).total().to_f64();
     let size = model.energy(&state).stored().to_f64().abs().max(1.0);
+    let mut speeds = [0.0_f64; 3];
     for _ in 0..steps {
         let mut changes = 0;
         model.step(&mut state, |_, _| changes += 1);
@@ -353,20 +358,22 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
             (total - first).abs() <= rounding * size,
             "ledger {first} -> {total}"
         );
-        prop_assert!(
-            energy.heat.to_f64() >= -rounding * size,
-            "heat {:?}",
-            energy.heat
-        );
+        // A rolling ring has no slip at the end of a step, in its mean one of the square of the step.
+        let gained = -(energy.heat.to_f64() + energy.lost.to_f64());
+        let most = rounding + 0.5 * case.config.step * case.config.step;
+        prop_assert!(gained <= most * size, "{gained} gained");
         prop_assert!(changes <= 200, "{changes} changes in a step");
         for (k, ring) in case.config.rings.iter().enumerate() {
             let at = model.kinematics_at(&state, k);
             let [x, y] = at.position.map(R::to_f64);
             let [u, v] = at.velocity.map(R::to_f64);
             let beyond = x.hypot(y) - ring.clearance;
-            let path = case.config.step * (u.hypot(v) + case.config.step);
+            let speed = u.hypot(v);
+            // Beyond its wall until the end of the step that turned it round.
+            let path = case.config.step * (speed.max(speeds[k]) + case.config.step);
+            speeds[k] = speed;
             prop_assert!(
-                beyond <= 0.5 * path + rounding,
+                beyond <= path + rounding,
                 "ring {k}: {beyond} beyond, path {path}"
             );
         }
@@ -375,17 +382,17 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None,
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None,
                                         rng_seed: prop::test_runner::RngSeed::Fixed(1),
                                         ..ProptestConfig::default() })]
 
     #[test]
     fn extremes_in_f64(case in cases()) {
-        check::<f64>(&case, 1000, 1e-9)?;
+        check::<f64>(&case, 400, 1e-9)?;
     }
 
     #[test]
     fn extremes_in_f32(case in cases()) {
-        check::<f32>(&case, 1000, 1e-3)?;
+        check::<f32>(&case, 400, 1e-3)?;
     }
 }

@@ -40,8 +40,17 @@ pub struct Calibration {
     pub band: RangeInclusive<f64>,
     /// Mean coherence of acceleration and force in the band; none of a single hit.
     pub coherence: Option<f64>,
-    hits: Vec<(Vec<f64>, Vec<f64>)>,
-    /// Energy of the acceleration's noise in a hit, (m/s^2)^2.
+    hits: Vec<Clean>,
+    /// Mean energy of the acceleration's noise in a hit, (m/s^2)^2.
+    noise: f64,
+}
+
+/// Force (N) and acceleration (m/s^2) of a hit from their zeros, the force alone in its time.
+#[derive(Clone, Debug)]
+struct Clean {
+    force: Vec<f64>,
+    acceleration: Vec<f64>,
+    /// Energy of the acceleration's noise, (m/s^2)^2.
     noise: f64,
 }
 
@@ -57,21 +66,17 @@ pub struct Response {
 impl Calibration {
     /// Evaluates the hits.
     pub fn new(hits: &Hits) -> Result<Self, InputError> {
-        let mut noise = 0.0;
-        let mut pairs = Vec::new();
-        for hit in &hits.hits {
-            let (pair, energy) = prepare(hit, hits.rate)
-                .map_err(|rule| InputError::at_line(&hits.file, hit.line, rule))?;
-            pairs.push(pair);
-            noise += energy / hits.hits.len() as f64;
-        }
+        let clean = |hit| {
+            prepare(hit, hits.rate).map_err(|rule| InputError::at_line(&hits.file, hit.line, rule))
+        };
+        let clean: Vec<Clean> = hits.hits.iter().map(clean).collect::<Result<_, _>>()?;
         let mut calibration = Self {
             axis: hits.axis,
             rate: hits.rate,
             band: 0.0..=0.0,
             coherence: None,
-            hits: pairs,
-            noise,
+            noise: clean.iter().map(|it| it.noise).sum::<f64>() / clean.len() as f64,
+            hits: clean,
         };
         let transform = Transform::holding(calibration.longest());
         let response = calibration.response(&transform);
@@ -90,7 +95,7 @@ impl Calibration {
 
     /// Samples of the longest hit.
     pub fn longest(&self) -> usize {
-        let lengths = self.hits.iter().map(|(force, _)| force.len());
+        let lengths = self.hits.iter().map(|it| it.force.len());
         lengths.max().unwrap_or(0)
     }
 
@@ -100,8 +105,11 @@ impl Calibration {
         let spectra: Vec<_> = self
             .hits
             .iter()
-            .map(|(force, acceleration)| {
-                (transform.spectrum(force), transform.spectrum(acceleration))
+            .map(|it| {
+                (
+                    transform.spectrum(&it.force),
+                    transform.spectrum(&it.acceleration),
+                )
             })
             .collect();
         let sum = |of: &dyn Fn(Complex64, Complex64) -> Complex64| -> Vec<Complex64> {
@@ -141,9 +149,7 @@ impl Calibration {
     }
 }
 
-/// Force and acceleration of a hit from their zeros, the force alone in its time; and the energy of
-/// the acceleration's noise.
-fn prepare(hit: &Hit, rate: f64) -> Result<((Vec<f64>, Vec<f64>), f64), String> {
+fn prepare(hit: &Hit, rate: f64) -> Result<Clean, String> {
     let force = Quiet::find(&hit.force, rate)?;
     let motion = Quiet::of(&hit.acceleration, force.samples);
     let from_zero = |signal: &[f64], zero: f64| signal.iter().map(|it| it - zero).collect();
@@ -186,8 +192,11 @@ fn prepare(hit: &Hit, rate: f64) -> Result<((Vec<f64>, Vec<f64>), f64), String> 
     if rms > (DIED_OUT * greatest(&moved, 0.0)).max(3.0 * motion.noise) {
         return Err("the hit is cut off: its acceleration must die out before it ends".to_owned());
     }
-    let energy = moved.len() as f64 * motion.noise * motion.noise;
-    Ok(((pushed, moved), energy))
+    Ok(Clean {
+        force: pushed,
+        noise: moved.len() as f64 * motion.noise * motion.noise,
+        acceleration: moved,
+    })
 }
 
 /// First and last frequency around the clearest where the error of H is small, below `highest`.

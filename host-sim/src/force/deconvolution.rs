@@ -1,20 +1,16 @@
 //! The force from the acceleration.
 //!
-//! A first estimate is A conj(H)/(|H|^2 + lambda) within the calibrated band, lambda being what makes the
-//! error least where force and noise are white (Wiener): the noise's energy over the force's, plus the variance
-//! of H. Noise is measured in the quiet part and the force's energy in the band, so nothing is left to choose.
-//!
-//! What that loses, above all below the band, where the device hardly answers, comes back from what is known
-//! in time: outside the contacts the force is 0. The estimate is cut to the contacts, the lost part of what is left
-//! is added to the first estimate, and so on (Papoulis and Gerchberg) until it stays. Contacts are found
-//! strongest first, in what those found so far do not explain. At the end the force is the true one
-//! through [`Resolution`] alone.
+//! The first estimate of [`Inverse`] has lost a part of the force, above all below the band, where the
+//! device hardly answers. It comes back from what is known in time: outside the contacts the force is 0.
+//! Sought is the force within the contacts that is the first estimate and its own lost part, as Papoulis and
+//! Gerchberg continue a spectrum; its answer is the nearest to the recording. Contacts are found strongest
+//! first, in what those found so far do not explain. At the end the force is the true one through
+//! [`Resolution`] alone.
 
 use std::ops::Range;
 
-use rustfft::num_complex::Complex64;
-
 use super::calibration::Calibration;
+use super::inverse::Inverse;
 use super::quiet::Quiet;
 use super::recording::Recording;
 use super::resolution::Resolution;
@@ -29,10 +25,10 @@ const TOGETHER: f64 = 0.5;
 /// A contact goes on while its force is above this part of its peak.
 const EDGE: f64 = 0.1;
 /// Kept on either side of a contact: so many times what the band resolves.
-const SKIRT: f64 = 2.0;
-/// The force stays when a round changes it by less than this part of its peak.
-const STAYS: f64 = 1e-4;
-/// Rounds at most: a contact that lasts as long as the band's lowest period does not come back.
+const SKIRT: f64 = 3.0;
+/// The force is found when this part of the first estimate is left.
+const STAYS: f64 = 1e-5;
+/// Rounds at most: what a contact of some milliseconds has below the band does not come back.
 const ROUNDS: usize = 200;
 /// Searches at most.
 const SEARCHES: usize = 20;
@@ -67,7 +63,6 @@ pub fn deconvolve(
     let mut search = Search {
         transform: &transform,
         inverses: &inverses,
-        first: inverses.iter().map(|it| it.estimate.clone()).collect(),
         force: vec![vec![0.0; transform.length()]; inverses.len()],
         contacts: Vec::new(),
         samples,
@@ -75,10 +70,12 @@ pub fn deconvolve(
     };
     let noise = search.noise(quiet[0].samples);
     search.run(noise);
+    search.contacts.retain(|it| it.end <= samples);
+    let end = search.end();
     for axis in &mut search.force {
         axis.truncate(samples);
+        axis[end..].fill(0.0);
     }
-    search.contacts.retain(|it| it.end <= samples);
     Force {
         axes: search.force,
         contacts: search.contacts,
@@ -86,62 +83,9 @@ pub fn deconvolve(
     }
 }
 
-/// The inverse of an axis, and what it makes of the recording.
-struct Inverse {
-    /// N.
-    estimate: Vec<f64>,
-    /// Part of the force that the estimate keeps, by frequency.
-    kept: Vec<f64>,
-    /// What the resolution lets pass and the estimate has lost.
-    lost: Vec<f64>,
-}
-
-impl Inverse {
-    fn new(
-        transform: &Transform,
-        signal: &[f64],
-        quiet: &Quiet,
-        calibration: &Calibration,
-        resolution: &Resolution,
-    ) -> Self {
-        let from_zero: Vec<f64> = signal.iter().map(|it| it - quiet.mean).collect();
-        let motion = transform.spectrum(&from_zero);
-        let response = calibration.response(transform);
-        let frequency = |k: usize| k as f64 * calibration.rate / transform.length() as f64;
-        let band = |k: &usize| calibration.band.contains(&frequency(*k));
-        let noise = signal.len() as f64 * quiet.noise * quiet.noise;
-        let sum =
-            |of: &dyn Fn(usize) -> f64| -> f64 { (0..transform.bins()).filter(band).map(of).sum() };
-        let moved = sum(&|k| motion[k].norm_sqr());
-        let silent = sum(&|_| noise);
-        let answer = sum(&|k| response.h[k].norm_sqr());
-        // Of the force, at each frequency; where all is noise, a hundredth of that.
-        let energy = (moved - silent).max(0.01 * silent) / answer;
-        let mut spectrum = vec![Complex64::default(); transform.bins()];
-        let (mut kept, mut lost) = (vec![0.0; spectrum.len()], vec![0.0; spectrum.len()]);
-        for k in 0..spectrum.len() {
-            let passes = resolution.passes(frequency(k));
-            lost[k] = passes;
-            let h = response.h[k];
-            let sum = h.norm_sqr() + noise / energy + response.variance[k];
-            if passes > 0.0 && band(&k) && sum > 0.0 {
-                spectrum[k] = passes * motion[k] * h.conj() / sum;
-                kept[k] = passes * h.norm_sqr() / sum;
-                lost[k] -= kept[k];
-            }
-        }
-        Self {
-            estimate: transform.signal(&spectrum),
-            kept,
-            lost,
-        }
-    }
-}
-
 struct Search<'a> {
     transform: &'a Transform,
     inverses: &'a [Inverse],
-    first: Vec<Vec<f64>>,
     force: Vec<Vec<f64>>,
     contacts: Vec<Range<usize>>,
     samples: usize,
@@ -151,20 +95,26 @@ struct Search<'a> {
 impl Search<'_> {
     fn noise(&self, quiet: usize) -> f64 {
         let squares = |signal: &Vec<f64>| signal[..quiet].iter().map(|it| it * it).sum::<f64>();
-        (self.first.iter().map(squares).sum::<f64>() / quiet as f64).sqrt()
+        let estimates = self.inverses.iter().map(|it| &it.estimate);
+        (estimates.map(squares).sum::<f64>() / quiet as f64).sqrt()
+    }
+
+    /// A record that ends while the device still moves looks like a force from about there on.
+    fn end(&self) -> usize {
+        self.samples - self.skirt.min(self.samples)
     }
 
     fn run(&mut self, noise: f64) {
-        // A record that ends while the device still moves looks like a force after its end.
-        let end = self.samples - self.skirt.min(self.samples);
-        self.contacts = vec![end..self.transform.length() - self.skirt];
-        let mut rest = self.first.clone();
+        let end = self.end();
+        let wrap = self.transform.length().saturating_sub(self.skirt);
+        self.contacts.push(end..wrap.max(self.samples + 1));
+        let mut rest = self.unexplained();
         let mut floor = CLEAR * noise;
         for _ in 0..SEARCHES {
             let size = |k: usize| rest.iter().map(|it| it[k] * it[k]).sum::<f64>().sqrt();
             let free = |k: &usize| !self.contacts.iter().any(|it| it.contains(k));
             let peak = (0..end).filter(free).map(size).fold(0.0, f64::max);
-            floor = floor.max(FLOOR * peak.max(self.peak()));
+            floor = floor.max(FLOOR * peak);
             if peak <= floor {
                 break;
             }
@@ -180,11 +130,6 @@ impl Search<'_> {
             self.restore();
             rest = self.unexplained();
         }
-    }
-
-    fn peak(&self) -> f64 {
-        let values = self.force.iter().flat_map(|axis| &axis[..self.samples]);
-        values.fold(0.0, |most, it| most.max(it.abs()))
     }
 
     /// The contact around a strong sample: from it up to its peak, then down both sides of that.
@@ -211,43 +156,68 @@ impl Search<'_> {
         });
     }
 
-    /// The force that is 0 outside the contacts and whose kept part is the first estimate.
+    /// The force that is 0 outside the contacts and to which, within them, the first estimate and its
+    /// lost part add up: by conjugate gradients.
     fn restore(&mut self) {
-        for _ in 0..ROUNDS {
-            let mut change: f64 = 0.0;
-            for axis in 0..self.inverses.len() {
-                let lost = self.pass(axis, &self.inverses[axis].lost);
-                let mut next = vec![0.0; lost.len()];
-                for k in self.contacts.iter().cloned().flatten() {
-                    next[k] = self.first[axis][k] + lost[k];
-                    if k < self.samples {
-                        change = change.max((next[k] - self.force[axis][k]).abs());
-                    }
+        for axis in 0..self.inverses.len() {
+            let lost = &self.inverses[axis].lost;
+            let mut force = vec![0.0; self.transform.length()];
+            let mut rest = self.cut(&self.inverses[axis].estimate);
+            let mut way = rest.clone();
+            let begin = product(&rest, &rest);
+            let mut left = begin;
+            for _ in 0..ROUNDS {
+                if left <= STAYS * STAYS * begin {
+                    break;
                 }
-                self.force[axis] = next;
+                let through = self.pass(&way, lost);
+                let through: Vec<f64> = way.iter().zip(through).map(|(a, b)| a - b).collect();
+                let through = self.cut(&through);
+                let length = left / product(&way, &through);
+                let before = left;
+                for k in 0..force.len() {
+                    force[k] += length * way[k];
+                    rest[k] -= length * through[k];
+                }
+                left = product(&rest, &rest);
+                for (way, rest) in way.iter_mut().zip(&rest) {
+                    *way = rest + left / before * *way;
+                }
             }
-            if change <= STAYS * self.peak() {
-                break;
-            }
+            self.force[axis] = force;
         }
+    }
+
+    /// 0 outside the contacts.
+    fn cut(&self, signal: &[f64]) -> Vec<f64> {
+        let mut cut = vec![0.0; signal.len()];
+        for contact in &self.contacts {
+            cut[contact.clone()].copy_from_slice(&signal[contact.clone()]);
+        }
+        cut
     }
 
     fn unexplained(&self) -> Vec<Vec<f64>> {
         (0..self.inverses.len())
             .map(|axis| {
-                let kept = self.pass(axis, &self.inverses[axis].kept);
-                let pairs = self.first[axis].iter().zip(kept);
+                let inverse = &self.inverses[axis];
+                let kept = self.pass(&self.force[axis], &inverse.kept);
+                let pairs = inverse.estimate.iter().zip(kept);
                 pairs.map(|(first, kept)| first - kept).collect()
             })
             .collect()
     }
 
-    /// The force of an axis through a filter.
-    fn pass(&self, axis: usize, filter: &[f64]) -> Vec<f64> {
-        let mut spectrum = self.transform.spectrum(&self.force[axis]);
+    /// A force through a filter.
+    fn pass(&self, force: &[f64], filter: &[f64]) -> Vec<f64> {
+        let mut spectrum = self.transform.spectrum(force);
         for (value, filter) in spectrum.iter_mut().zip(filter) {
             *value *= filter;
         }
         self.transform.signal(&spectrum)
     }
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

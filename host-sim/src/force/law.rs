@@ -11,8 +11,8 @@ const POINTS: usize = 64;
 const MOST_STEPS: usize = 1000;
 /// Greatest damping: a restitution of 0.2.
 pub const DAMPING: f64 = 4.0;
-/// Least and greatest exponent.
-pub const EXPONENTS: [f64; 2] = [1.0, 2.0];
+/// Of a line and of a point.
+pub const EXPONENTS: [f64; 2] = [1.0, 1.5];
 
 /// A pulse whose greatest force is 1, at time 0, and whose width at half of it is 1.
 #[derive(Clone, Debug)]

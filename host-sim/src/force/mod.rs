@@ -9,6 +9,7 @@ pub mod deconvolution;
 pub mod example;
 mod filter;
 pub mod instrument;
+mod inverse;
 mod law;
 mod page;
 pub mod pulse;

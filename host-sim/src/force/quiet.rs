@@ -46,7 +46,7 @@ impl Quiet {
             return Err(too_loud("here something happens in it"));
         }
         let level = (LOUD * most).max(CLEAR * begin.noise);
-        let loud = (signal.iter()).position(|it| (it - begin.mean).abs() >= level);
+        let loud = (signal.iter()).position(|it| (it - begin.mean).abs() > level);
         let margin = (MARGIN * rate).ceil() as usize;
         match loud {
             None => Ok(Self::of(signal, signal.len())),

@@ -47,7 +47,7 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
     };
     let cost = |at| seen.match_with(&place(at)).1;
     let searched = STARTS.map(|damping| {
-        let at = least([0.0, 0.9, 1.4, damping], [0.1, 0.1, 0.2, 0.3], cost);
+        let at = least([0.0, 0.9, 1.4, damping], [0.1, 0.1, -0.2, 0.3], cost);
         (cost(at), at)
     });
     let best = searched.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));

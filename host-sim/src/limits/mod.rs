@@ -8,12 +8,14 @@ mod bounce;
 mod clock;
 mod closed_form;
 mod compliant;
+mod coupled;
 mod extreme;
 mod press;
 mod refusal;
 mod row;
 mod scenes;
 mod stepping;
+mod support;
 mod table;
 mod truth;
 mod two_plane;
@@ -62,7 +64,7 @@ pub fn run() -> Result<Vec<Row>, Failure> {
     rows.extend(bounce::rows()?);
     rows.extend(clock::rows(&mut progress).map_err(refused)?);
     rows.extend(refusal::rows().map_err(refused)?);
-    rows.extend(two_plane::rows()?);
+    rows.extend(coupled::rows()?);
     Ok(rows)
 }
 

@@ -69,7 +69,7 @@ impl Default for Tuning {
             catch_time: 5e-3,
             wall_tolerance: 0.07,
             flight_error: 0.1,
-            tilt_error: 10.0,
+            tilt_error: 3.0,
             contact_error: 0.15,
             still_time: 0.05,
         }

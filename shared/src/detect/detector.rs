@@ -124,6 +124,8 @@ impl Detector {
             let floats = state.rotor.phase == Phase::Levitated;
             self.ends.take(&mut state.ends, [a, b], floats);
             teller.motion = state.ends.motion();
+        } else {
+            state.ends.lose_sight();
         }
         if state.ends.phases().is_some() {
             self.apart(state, &ends, signals, &mut teller);
@@ -287,11 +289,11 @@ impl Detector {
         });
         let loudness = state.listener.loudness();
         let ends = &mut state.ends;
-        let one_sided = |contact: &Touching| ends.lean(contact);
+        let whose = |contact: &Touching| ends.lifting(contact);
         let (rotor, fix) = (&mut state.rotor, fix.as_ref());
         if !self
             .ladder
-            .touching(rotor, fix, signals, loudness, one_sided, teller)
+            .touching(rotor, fix, signals, loudness, whose, teller)
         {
             state.ends.lift_one();
         }

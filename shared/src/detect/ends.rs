@@ -6,7 +6,7 @@
 use crate::detect::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
 use crate::detect::flight::Fix;
-use crate::detect::ladder::{Ladder, Phase, Rungs, is_home, square};
+use crate::detect::ladder::{Ladder, Lifting, Phase, Rungs, is_home, square};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::signals::Signals;
 use crate::detect::teller::{Pending, Teller};
@@ -20,8 +20,9 @@ const IN_A_ROW: u32 = 4;
 /// How many times the noise, and what the ends share, the power of e must be for conical motion.
 const ABOVE_NOISE: f32 = 4.0;
 const DOMINANT: f32 = 2.0;
-/// Part of the rotor's lift-off that e must be for it to be that of one end, where it is all of it.
-const ONE_SIDED: f32 = 0.5;
+/// Log of the odds at which it is clear that one end has lifted off; up to there, and from even odds on,
+/// the next samples are waited for.
+const CLEAR: f32 = 3.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +51,7 @@ pub(crate) struct Ends {
     /// Samples in a row that the ends have been apart, and together.
     apart: u32,
     together: u32,
-    /// Regression of e on the way from the wall in a lift-off: products and squares.
+    /// In a lift-off, with x of h and y of e as the way from the wall: sums of 2 x y and x^2 - y^2.
     lean: [f32; 2],
     lifts: bool,
     /// Each end's own, while they are apart.
@@ -153,8 +154,14 @@ impl EndsTest {
                         variance: fix.variance.max(levitation.learnt_variance()),
                         ..fix
                     });
-                    self.ladder
-                        .touching(rungs, fix.as_ref(), signals, loudness, |_| false, teller);
+                    self.ladder.touching(
+                        rungs,
+                        fix.as_ref(),
+                        signals,
+                        loudness,
+                        |_| Lifting::Both,
+                        teller,
+                    );
                 }
                 (Phase::FreeFall | Phase::Impact, Some(fix)) => {
                     self.ladder.land(rungs, fix, signals, pending, teller);
@@ -246,20 +253,36 @@ impl Ends {
         }
     }
 
-    /// In contact: whether the lift-off under way, if there is one, is that of one end.
-    pub(crate) fn lean(&mut self, contact: &Touching) -> bool {
-        let Some(inward) = contact.lifting() else {
+    /// In contact: whose lift-off it is that may be under way. With x the way of h from the wall and y
+    /// that of e, y is x or -x for one end and 0 for both: the log likelihood of the first exceeds that of
+    /// the second by (2 |x y| - x^2 + y^2)/(4 sigma^2), whatever the way.
+    pub(crate) fn lifting(&mut self, contact: &Touching) -> Lifting {
+        let Some(x) = contact.lifting().filter(|_| self.count > 0) else {
             self.lean = [0.0; 2];
-            return false;
+            return Lifting::Both;
         };
         let outward = contact.outward();
-        let [_, e] = self.now;
-        let [_, mean] = self.mean;
-        let lean = (e[0] - mean[0]) * outward[0] + (e[1] - mean[1]) * outward[1];
-        self.lean[0] += lean * inward;
-        self.lean[1] += inward * inward;
-        let [product, square] = self.lean;
-        product.abs() > ONE_SIDED * square
+        let ([_, e], [_, mean]) = (self.now, self.mean);
+        let y = (e[0] - mean[0]) * outward[0] + (e[1] - mean[1]) * outward[1];
+        self.lean[0] += 2.0 * x * y;
+        self.lean[1] += x * x - y * y;
+        let [products, difference] = self.lean;
+        let for_one = products.abs() - difference;
+        let clear = CLEAR * 2.0 * self.variance;
+        if for_one > clear {
+            Lifting::One
+        } else if for_one < 0.0 {
+            Lifting::Both
+        } else {
+            Lifting::Unclear
+        }
+    }
+
+    /// Only one plane is seen, or none.
+    pub(crate) fn lose_sight(&mut self) {
+        self.count = 0;
+        self.apart = 0;
+        self.together = 0;
     }
 
     /// One end has lifted off.

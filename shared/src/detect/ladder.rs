@@ -72,6 +72,17 @@ pub(crate) enum Fall {
     Caught,
 }
 
+/// What a lift-off is that of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lifting {
+    /// Of both ends, or of one that has a ladder of its own.
+    Both,
+    /// Of one end.
+    One,
+    /// The next samples will tell.
+    Unclear,
+}
+
 impl Rungs {
     /// What the next tick goes on from.
     pub(crate) fn words(&self) -> [f32; 10] {
@@ -216,7 +227,7 @@ impl Ladder {
         rungs.phase = Phase::Sliding;
     }
 
-    /// In contact. False where it seems to lift off, but only one end does (`one_sided`): nothing is
+    /// In contact; `whose` says whose lift-off it would be. False where it is that of one end: nothing is
     /// told then.
     pub(crate) fn touching(
         &self,
@@ -224,13 +235,13 @@ impl Ladder {
         fix: Option<&Fix>,
         signals: &Signals,
         loudness: f32,
-        one_sided: impl FnOnce(&Touching) -> bool,
+        whose: impl FnOnce(&Touching) -> Lifting,
         teller: &mut Teller,
     ) -> bool {
         let findings = self.contact.take(&mut rungs.contact, fix, signals);
-        let one_sided = one_sided(&rungs.contact);
-        if one_sided && matches!(findings, [Some(Finding::LiftOff(_)), _]) {
-            return false;
+        let lifting = whose(&rungs.contact);
+        if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
+            return lifting == Lifting::Unclear;
         }
         for finding in findings.into_iter().flatten() {
             let (kind, age) = match finding {

@@ -4,7 +4,7 @@
 
 use crate::model::law::Law;
 use crate::model::precision::Precision;
-use crate::model::series::{Series, horner, reach};
+use crate::model::series::{Series, horner, reach, value};
 use crate::model::sum::Sum;
 use crate::real::Real;
 
@@ -159,7 +159,10 @@ impl<R: Precision> Contact<R> {
         let (start, mut slope) = margin(series, R::ZERO);
         // Slip grows from zero with its second derivative only: its sign at the start says nothing.
         let grows = ending == Ending::SlipEnds && start == R::ZERO;
-        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO && !grows) {
+        if grows {
+            slope = R::ZERO;
+        }
+        if start < R::ZERO || (start == R::ZERO && slope < R::ZERO) {
             self.span = R::ZERO;
             self.ending = ending;
             return;
@@ -202,12 +205,12 @@ impl<R: Precision> Contact<R> {
         if self.series.cos[0] + friction * self.series.sin[0] <= R::ZERO {
             return None;
         }
-        let beyond = |at: R| {
-            let [sin, cos] = [&self.series.sin, &self.series.cos].map(|c| horner(c, at));
-            (sin.0 - friction * cos.0, sin.1 - friction * cos.1)
-        };
+        let mut beyond = self.series.sin;
+        for (term, &cos) in beyond.iter_mut().zip(&self.series.cos) {
+            *term -= friction * cos;
+        }
         let end = self.span * self.series.pace;
-        let (first, last) = (beyond(R::ZERO).0, beyond(end).0);
+        let (first, last) = (beyond[0], value(&beyond, end));
         let end_beyond = last >= R::ZERO;
         if (first >= R::ZERO) == end_beyond {
             return None;
@@ -215,7 +218,7 @@ impl<R: Precision> Contact<R> {
         // Newton's method: in a stretch the rotor turns by less than a radian, and this hardly bends.
         let mut at = end * (first / (first - last));
         for _ in 0..PASSAGE_ITERATIONS {
-            let (value, slope) = beyond(at);
+            let (value, slope) = horner(&beyond, at);
             at = (at - value / slope).most(R::ZERO).least(end);
         }
         Some((at / self.series.pace, end_beyond))

@@ -67,25 +67,26 @@ impl<R: Precision> Rigid<R> {
     ) {
         let (mut impacts, mut stretches) = (0, 0);
         while state.ends.is_reached_at(state.now) && impacts < CHANGES_PER_STEP {
-            match state.motion {
-                Motion::Flight { flight, to } => {
+            match &state.motion {
+                &Motion::Flight { flight, to } => {
                     impacts += 1;
                     let hurry = impacts > IMPACTS_PER_STEP;
                     self.impact(state, &flight, to, hurry, sink);
                 }
-                Motion::Settling { onto, stuck } => {
+                &Motion::Settling { onto, stuck } => {
                     state.begun = state.ends;
                     self.enter_contact(state, onto, grip(stuck), sink);
                 }
-                Motion::Contact(contact) if stretches < STRETCHES_PER_STEP => {
+                Motion::Contact(_) if stretches < STRETCHES_PER_STEP => {
                     if watch(state) {
                         continue;
                     }
                     stretches += 1;
-                    self.end_of_stretch(state, &contact, sink);
+                    self.end_of_stretch(state, sink);
                 }
                 Motion::Contact(contact) => {
-                    self.hurry_on(state, &contact, sink);
+                    let (base, mode) = (contact.base, contact.mode);
+                    self.hurry_on(state, &base, mode, sink);
                     break;
                 }
             }
@@ -227,22 +228,21 @@ impl<R: Precision> Rigid<R> {
         state.motion = Motion::Contact(contact);
     }
 
-    fn end_of_stretch(
-        &self,
-        state: &mut RigidState<R>,
-        contact: &Contact<R>,
-        sink: &mut impl FnMut(Happening<R>),
-    ) {
-        let onto = contact.wall_state(contact.span, &self.law);
-        state.turns.add(contact.turned(contact.span));
+    fn end_of_stretch(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {
+        let Motion::Contact(contact) = &state.motion else {
+            return;
+        };
+        let (span, ending) = (contact.span, contact.ending);
+        let was_rolling = contact.mode == Mode::Rolling;
+        let onto = contact.wall_state(span, &self.law);
+        state.turns.add(contact.turned(span));
         state.begun = state.ends;
         state.spin = onto.spin;
-        let was_rolling = contact.mode == Mode::Rolling;
-        match contact.ending {
+        match ending {
             Ending::LiftsOff => {
                 let (sin, cos) = (onto.sin.value(), onto.cos.value());
                 let speed = onto.tangential.value();
-                if contact.span > R::ZERO {
+                if span > R::ZERO {
                     let flight = Flight::from_wall(sin, cos, R::ZERO, speed);
                     self.fly(state, flight, |flight, law| {
                         flight.landing_from_lift_off(law)
@@ -273,19 +273,20 @@ impl<R: Precision> Rigid<R> {
     fn hurry_on(
         &self,
         state: &mut RigidState<R>,
-        contact: &Contact<R>,
+        base: &WallState<R>,
+        mode: Mode<R>,
         sink: &mut impl FnMut(Happening<R>),
     ) {
-        let speed = contact.base.tangential.value();
+        let speed = base.tangential.value();
         if speed * speed < R::lit(WHIRL) {
             return;
         }
         let now = state.now;
         let time = self.step.time(now.since(state.begun));
-        let (onto, angle, stuck) = whirl(&contact.base, contact.mode, time, &self.law);
+        let (onto, angle, stuck) = whirl(base, mode, time, &self.law);
         state.turns.add(angle);
         state.begun = now;
-        let was_rolling = contact.mode == Mode::Rolling;
+        let was_rolling = mode == Mode::Rolling;
         self.touch(state, onto, grip(stuck));
         if stuck && !was_rolling && state.is_rolling() {
             self.tell(state, Change::RollingStarts, sink);

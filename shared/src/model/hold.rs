@@ -37,12 +37,23 @@ pub(crate) struct Hold<R> {
 
 /// Goes from `at` on the wall of this `radius` by what is left of `free`; none where one step cannot.
 /// What rounding took off the wall before is put back.
+#[cfg_attr(not(test), allow(dead_code))]
 pub(crate) fn hold<R: Real>(at: [R; 2], free: [R; 2], radius: R, rub: Rub<R>) -> Option<Hold<R>> {
     let square = radius * radius;
+    go(at, free, square, dot(at, at) - square, rub)
+}
+
+/// The same at the distance of `at` from the centre: in a short step, what puts rounding back is more
+/// than what the wall gives.
+pub(crate) fn keep<R: Real>(at: [R; 2], free: [R; 2], rub: Rub<R>) -> Option<Hold<R>> {
+    go(at, free, dot(at, at), R::ZERO, rub)
+}
+
+/// `off` is how far the square of the distance is beyond `square`.
+fn go<R: Real>(at: [R; 2], free: [R; 2], square: R, off: R, rub: Rub<R>) -> Option<Hold<R>> {
     let along = dot(at, at) + dot(at, free);
     let across = at[0] * free[1] - at[1] * free[0];
-    let excess =
-        (dot(at, at) - square) + dot(free, at) + dot(free, [at[0] + free[0], at[1] + free[1]]);
+    let excess = off + dot(free, at) + dot(free, [at[0] + free[0], at[1] + free[1]]);
     let least = R::lit(LEAST_STIFFNESS) * square;
     let (press, turn) = match rub {
         Rub::Slides(friction) => {
@@ -166,11 +177,21 @@ mod tests {
     fn what_rounding_took_off_the_wall_is_put_back() {
         let mut at = [1e-6, -(1.0 + 1e-6)];
         let hold = hold(at, [0.01, -0.01], 1.0, Rub::Slides(0.1)).unwrap();
-        for k in 0..2 {
-            at[k] += hold.moved[k];
+        for (at, moved) in at.iter_mut().zip(hold.moved) {
+            *at += moved;
         }
         // What is left is the square of k, 3e-5, times what it was off.
         assert!((dot(at, at) - 1.0).abs() < 1e-10);
+    }
+
+    /// In f32 the distance is right to 1e-7, in units of the free step 0.1.
+    #[test]
+    fn a_short_step_keeps_its_distance_without_a_kick() {
+        let at = [0.6_f32, -0.8 + 1e-6];
+        let free = [0.8e-6, 0.6e-6];
+        let kept = keep(at, free, Rub::Slides(0.0)).unwrap();
+        let put_back = hold(at, free, 1.0, Rub::Slides(0.0)).unwrap();
+        assert!(kept.pressed.abs() < 2e-12 && put_back.pressed.abs() > 2e-7);
     }
 
     #[test]

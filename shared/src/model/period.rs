@@ -22,7 +22,18 @@ use crate::model::sum::Sum;
 /// Most periods passed over at once: a count that f32 still holds exactly.
 const MOST_PERIODS: f64 = 16_777_216.0;
 
-/// A passage of the place of balance, and the way from there.
+/// A passage of the place of balance, in a stretch.
+#[derive(Clone, Copy, Debug)]
+struct Passage<R> {
+    /// Time since the stretch began.
+    at: R,
+    rising: bool,
+    spin: Sum<R>,
+    mode: Mode<R>,
+    fastest: R,
+}
+
+/// The way from a passage.
 #[derive(Clone, Copy, Debug)]
 struct Lap<R> {
     rising: bool,
@@ -54,7 +65,7 @@ impl<R: Precision> Round<R> {
 
     /// Takes note of the stretch at hand; whether it has put it off by whole periods.
     pub(crate) fn take(&mut self, model: &Rigid<R>, state: &mut RigidState<R>) -> bool {
-        let Motion::Contact(contact) = state.motion else {
+        let Motion::Contact(contact) = &state.motion else {
             return false;
         };
         if self.last != Some((contact.mode, state.begun)) {
@@ -64,24 +75,38 @@ impl<R: Precision> Round<R> {
             self.last = None;
             return false;
         }
-        if let Some(crossing) = contact.crossing()
-            && self.pass(crossing, &contact, model, state)
-        {
-            *self = Self::new(self.until);
-            return true;
+        let (mode, span, fastest) = (contact.mode, contact.span, fastest(contact));
+        if let Some((at, rising)) = contact.crossing() {
+            let spin = contact.wall_state(at, &model.law).spin;
+            let passage = Passage {
+                at,
+                rising,
+                spin,
+                mode,
+                fastest,
+            };
+            if self.pass(&passage, model, state) {
+                *self = Self::new(self.until);
+                return true;
+            }
         }
         if let Some(lap) = &mut self.lap {
-            lap.time.add(contact.span);
-            lap.fastest = lap.fastest.most(fastest(&contact));
+            lap.time.add(span);
+            lap.fastest = lap.fastest.most(fastest);
         }
-        self.last = Some((contact.mode, state.ends));
+        self.last = Some((mode, state.ends));
         false
     }
 
     fn pass(
         &mut self,
-        (at, rising): (R, bool),
-        contact: &Contact<R>,
+        &Passage {
+            at,
+            rising,
+            spin,
+            mode,
+            fastest,
+        }: &Passage<R>,
         model: &Rigid<R>,
         state: &mut RigidState<R>,
     ) -> bool {
@@ -91,17 +116,16 @@ impl<R: Precision> Round<R> {
             lap.halfway = true;
             return false;
         }
-        let spin = contact.wall_state(at, &model.law).spin;
         if let Some(mut lap) = self.lap
             && lap.halfway
         {
             lap.time.add(at);
-            lap.fastest = lap.fastest.most(fastest(contact));
-            let lost = match contact.mode {
+            lap.fastest = lap.fastest.most(fastest);
+            let lost = match mode {
                 Mode::Sliding(friction) if friction != R::ZERO => spin.minus(lap.spin),
                 _ => Sum::new(R::ZERO),
             };
-            if lap.skip(contact.mode, lost, self.until, model, state) {
+            if lap.skip(mode, lost, self.until, model, state) {
                 return true;
             }
         }

@@ -124,7 +124,7 @@ pub(crate) fn early_rise<R: Real>(c: &Quartic<R>, lost: R) -> Option<(R, R)> {
     let mut error = R::lit(8.0) * (a_size + b_size) * (a_size * a_size + b_size);
     while error > R::HALF * R::EPSILON {
         let (value, slope) = evaluate(&hop, t);
-        t = t - value / slope;
+        t -= value / slope;
         error = bend * error * error;
     }
     Some((t, evaluate(&hop, t).1))

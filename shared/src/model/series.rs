@@ -116,24 +116,29 @@ impl<R: Precision> Series<R> {
             &self.impulse,
             &self.angle,
         ];
-        terms.map(|c| without_constant(c, at))
+        terms.map(|c| without_constant(c, at, |term| term))
     }
 }
 
 /// The most by which the series can differ from its constant term up to `at`.
 pub(crate) fn reach<R: Precision>(c: &Terms<R>, at: R) -> R {
-    without_constant(&c.map(R::abs), at)
+    without_constant(c, at, R::abs)
 }
 
-/// The series without its constant term. Odd and even powers apart: two sums that do not wait for each
+/// The series at `at`, in the series' unit.
+pub(crate) fn value<R: Precision>(c: &Terms<R>, at: R) -> R {
+    c[0] + without_constant(c, at, |term| term)
+}
+
+/// The series without its constant term, each term as `read`. Odd and even powers apart: two sums that do not wait for each
 /// other.
-fn without_constant<R: Precision>(c: &Terms<R>, at: R) -> R {
+fn without_constant<R: Precision>(c: &Terms<R>, at: R, read: impl Fn(R) -> R) -> R {
     let square = at * at;
     let (pairs, last) = c[1..=R::SERIES_ORDER].as_chunks();
-    let first = (last.first().copied().unwrap_or(R::ZERO), R::ZERO);
+    let first = (last.first().map_or(R::ZERO, |&a| read(a)), R::ZERO);
     let sums = pairs.iter().rev();
     let (odd, even) = sums.fold(first, |(odd, even), &[a, b]| {
-        (odd * square + a, even * square + b)
+        (odd * square + read(a), even * square + read(b))
     });
     (odd + even * at) * at
 }

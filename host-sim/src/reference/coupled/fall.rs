@@ -1,6 +1,7 @@
 //! The first fall of a polynomial below zero, without passing one by.
 
 use crate::reference::roots::value_and_slope;
+use std::iter::repeat;
 
 const MAX_ITERATIONS: usize = 200;
 
@@ -17,10 +18,13 @@ pub enum Fall {
 
 /// Finds it for a function that is not negative at 0.
 ///
-/// Leading coefficients within `tolerance` are taken as zero, so a function that starts on zero is
-/// judged by the way it leaves it. A bound of the curvature gives steps that can't pass a root.
-pub fn first_fall(coefficients: &[f64], tolerance: f64) -> Fall {
-    let Some(first) = coefficients.iter().position(|c| c.abs() > tolerance) else {
+/// Leading coefficients within `tolerances` (the last is that of all further ones too) are taken as
+/// zero, so a function that starts on zero is judged by the way it leaves it. A bound of the curvature gives steps that can't pass a root.
+pub fn first_fall(coefficients: &[f64], tolerances: [f64; 3]) -> Fall {
+    let [first, second, further] = tolerances;
+    let tolerances = [first, second].into_iter().chain(repeat(further));
+    let matters = |(c, tolerance): (&f64, f64)| c.abs() > tolerance;
+    let Some(first) = coefficients.iter().zip(tolerances).position(matters) else {
         return Fall::Never;
     };
     let rest = &coefficients[first..];

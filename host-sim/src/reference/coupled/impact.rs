@@ -1,13 +1,14 @@
 //! Impacts at several links at once: Newton's restitution, Coulomb's impulse, by Gauss-Seidel to
 //! convergence. Also what keeps closed links closed against rounding.
 
+use super::jet::{Jet, solve};
 use super::step::Mode;
-use super::system::{Hold, SIZE, System};
+use super::system::{Hold, Link, SIZE, System};
 
-/// Passes over all links; near the end of its power (a light ring between two walls) the iteration
-/// needs thousands.
+/// Passes over all links; for a light ring between the rotor and its stop thousands are needed.
 const MAX_PASSES: usize = 100_000;
-const ROUNDING: f64 = 2.0 * f64::EPSILON;
+/// Change of speeds at which the passes end, in parts of the speeds.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A link that takes part.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,15 @@ impl Touching {
 
 /// The impact: afterwards no link closes, and each that took an impulse leaves with its restitution.
 pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE]) {
+    let largest = |size: &dyn Fn(&Link) -> f64| {
+        let sizes = touching.iter().map(|touch| size(&system.links[touch.link]));
+        ROUNDING * sizes.fold(0.0, f64::max)
+    };
+    let slip_rounding = largest(&|link| link.slip_size(speed));
+    let rounding = largest(&|link| {
+        let [x, y] = link.lateral(speed);
+        f64::hypot(x, y)
+    });
     for _ in 0..MAX_PASSES {
         let mut settled = true;
         for touch in touching.iter_mut() {
@@ -80,7 +90,6 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
             else {
                 continue;
             };
-            let rounding = ROUNDING * link.slip_size(speed);
             let wanted = -restitution * touch.closing.max(0.0);
             let lateral = system.lateral(touch.link, touch.link);
             let step = (touch.outward(system, speed) - wanted) / lateral;
@@ -94,7 +103,8 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
             let rub = rubbed - touch.rubbed;
             touch.rubbed = rubbed;
             touch.rub(system, rub, speed);
-            settled &= (step * lateral).abs() <= rounding && (rub * mobility).abs() <= rounding;
+            settled &=
+                (step * lateral).abs() <= rounding && (rub * mobility).abs() <= slip_rounding;
         }
         if settled || touching.len() == 1 {
             return;
@@ -104,42 +114,36 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
 
 /// Takes what is left of normal speed and slip from links that have none.
 pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64; SIZE], speed: &mut [f64; SIZE]) {
-    for _ in 0..MAX_PASSES {
-        let mut settled = true;
-        for (index, mode) in modes.iter().enumerate() {
-            let link = &system.links[index];
-            if *mode == Mode::Flight {
-                continue;
-            }
-            let touch = match link.hold {
-                Hold::Wall { .. } => Touching::new(system, index, place, speed),
-                Hold::Brake(_) => Touching {
-                    link: index,
-                    normal: [0.0; 2],
-                    closing: 0.0,
-                    impulse: 0.0,
-                    rubbed: 0.0,
-                },
-            };
-            let rounding = ROUNDING * link.slip_size(speed);
-            let lateral = system.lateral(index, index);
-            if lateral > 0.0 {
-                settled &= touch.closing.abs() <= rounding;
-                touch.press(system, touch.closing / lateral, speed);
-            }
-            if *mode == Mode::Stick {
-                let slip = touch.slip(system, speed);
-                settled &= slip.abs() <= rounding;
-                touch.rub(
-                    system,
-                    -slip / (lateral + system.turning(index, index)),
-                    speed,
-                );
+    // Direction, part that turns, and speed of each condition.
+    let mut kept = Vec::new();
+    for (index, mode) in modes.iter().enumerate() {
+        let link = &system.links[index];
+        let turning = link.turning(speed);
+        match (link.hold, mode) {
+            (_, Mode::Flight) | (Hold::Brake(_), Mode::Slide(_)) => {}
+            (Hold::Brake(_), Mode::Stick) => kept.push((index, [0.0; 2], 1.0, turning)),
+            (Hold::Wall { .. }, mode) => {
+                let touch = Touching::new(system, index, place, speed);
+                let [x, y] = touch.normal;
+                kept.push((index, [x, y], 0.0, touch.closing));
+                if *mode == Mode::Stick {
+                    kept.push((index, [-y, x], 1.0, touch.slip(system, speed)));
+                }
             }
         }
-        if settled {
-            return;
-        }
+    }
+    let line = |(a, [ax, ay], at, _): &(usize, [f64; 2], f64, f64)| {
+        let against = |(b, [bx, by], bt, _): &(usize, [f64; 2], f64, f64)| {
+            let lateral = system.lateral(*a, *b) * (ax * bx + ay * by);
+            Jet::start(lateral + system.turning(*a, *b) * at * bt)
+        };
+        kept.iter().map(against).collect()
+    };
+    let matrix = kept.iter().map(line).collect();
+    let right = kept.iter().map(|kept| Jet::start(-kept.3)).collect();
+    for ((link, direction, turn, _), impulse) in kept.iter().zip(solve(matrix, right)) {
+        let impulse = impulse.value();
+        system.push(*link, direction.map(|d| d * impulse), turn * impulse, speed);
     }
 }
 

@@ -1,7 +1,8 @@
 //! A step of smooth motion: its Taylor series, and where it ends.
 
 use super::fall::{Fall, first_fall};
-use super::jet::{Jet, ORDER, dot, solve};
+use super::forces::Forces;
+use super::jet::{Jet, ORDER, dot};
 use super::system::{Hold, Law, SIZE, System};
 
 /// Rounding of what a contact's forces and slips are made of, relative.
@@ -133,14 +134,15 @@ impl Step {
                 let q = link.lateral(&self.place).map(|q| q * unit);
                 let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
                 let [x, y] = link.lateral(&start);
-                let (way, push) = (f64::hypot(x, y) * self.span, push * self.span);
-                let size = 1.0 + unit * (way + unit * way * way + push);
-                self.earlier(&gap, GAP_ROUNDING * size, Ending::Touch(index));
+                let way = unit * f64::hypot(x, y) * self.span;
+                let sizes = [1.0, way, way * way + unit * push * self.span];
+                let tolerances = sizes.map(|size| GAP_ROUNDING * size);
+                self.earlier(&gap, tolerances, Ending::Touch(index));
             }
             (Mode::Flight, Hold::Brake(_)) => {}
             (_, Hold::Wall { friction, .. }) => {
                 let normal = self.normal[index];
-                self.earlier(&normal, ROUNDING * size, Ending::LiftOff(index));
+                self.earlier(&normal, [ROUNDING * size; 3], Ending::LiftOff(index));
                 if mode == Mode::Stick {
                     let most = normal * friction;
                     self.hold(index, &most, grip, ROUNDING * size * (1.0 + friction));
@@ -167,165 +169,25 @@ impl Step {
                 None => Jet::ZERO,
             };
             let slip = (along + link.turning(&self.speed)) * sign;
-            self.earlier(&slip, slip_rounding, Ending::SlipEnds(index));
+            self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
         }
     }
 
     fn hold(&mut self, link: usize, most: &Jet, grip: &Jet, rounding: f64) {
         for sign in [-1.0, 1.0] {
             let left = *most + *grip * sign;
-            self.earlier(&left, rounding, Ending::GripLost(link, sign));
+            self.earlier(&left, [rounding; 3], Ending::GripLost(link, sign));
         }
     }
 
-    fn earlier(&mut self, falls: &Jet, tolerance: f64, ending: Ending) {
-        let (end, ending) = match first_fall(falls.terms(), tolerance) {
+    fn earlier(&mut self, falls: &Jet, tolerances: [f64; 3], ending: Ending) {
+        let (end, ending) = match first_fall(falls.terms(), tolerances) {
             Fall::Never => return,
             Fall::At(end) => (end, ending),
             Fall::After(end) => (end, Ending::Step),
         };
         if end < self.end {
             (self.end, self.ending) = (end, ending);
-        }
-    }
-}
-
-/// Accelerations under the links' forces.
-struct Forces {
-    acceleration: [Jet; SIZE],
-    /// Normal force of each link, N.
-    normal: Vec<Jet>,
-    /// Friction of each link without slip, N.
-    grip: Vec<Jet>,
-    /// What the links' forces are made of, without their signs, N.
-    size: f64,
-}
-
-/// An unknown force and the condition that it keeps.
-struct Unknown {
-    link: usize,
-    grips: bool,
-    /// The condition's direction, and its part of the turning.
-    row: ([Jet; 2], f64),
-    /// The force's direction, and its part of the turning.
-    force: ([Jet; 2], f64),
-    target: Jet,
-}
-
-impl Forces {
-    fn new(
-        system: &System,
-        law: &impl Law,
-        modes: &[Mode],
-        place: &[Jet; SIZE],
-        speed: &[Jet; SIZE],
-    ) -> Self {
-        let forces = law.forces(place, speed);
-        let mut acceleration: [Jet; SIZE] = std::array::from_fn(|i| forces[i] * system.mobility[i]);
-        let mut unknowns = Vec::new();
-        for (index, (link, mode)) in system.links.iter().zip(modes).enumerate() {
-            match (link.hold, *mode) {
-                (_, Mode::Flight) => {}
-                (
-                    Hold::Wall {
-                        clearance,
-                        friction,
-                        ..
-                    },
-                    mode,
-                ) => {
-                    let [x, y] = link.lateral(place).map(|q| q * (1.0 / clearance));
-                    let w = link.lateral(speed);
-                    let (inward, along) = ([-x, -y], [-y, x]);
-                    let rubbed = match mode {
-                        Mode::Slide(sign) => -sign * friction,
-                        _ => 0.0,
-                    };
-                    let rubbing = [0, 1].map(|k| inward[k] + along[k] * rubbed);
-                    unknowns.push(Unknown {
-                        link: index,
-                        grips: false,
-                        row: (inward, 0.0),
-                        force: (rubbing, rubbed),
-                        target: dot(&w, &w) * (1.0 / clearance),
-                    });
-                    if mode == Mode::Stick {
-                        unknowns.push(Unknown::without_slip(index, along));
-                    }
-                }
-                (Hold::Brake(_), Mode::Stick) => {
-                    unknowns.push(Unknown::without_slip(index, [Jet::ZERO; 2]));
-                }
-                (Hold::Brake(limit), Mode::Slide(sign)) => {
-                    for k in 0..2 {
-                        let braked = -sign * limit * link.arms[k] * system.mobility[4 + k];
-                        acceleration[4 + k] = acceleration[4 + k] + Jet::constant(braked);
-                    }
-                }
-            }
-        }
-        let (mut matrix, mut right, mut size) = (Vec::new(), Vec::new(), 0.0);
-        for Unknown {
-            link, row, target, ..
-        } in &unknowns
-        {
-            let against = |other: &Unknown| {
-                let lateral = system.lateral(*link, other.link);
-                let turning = system.turning(*link, other.link) * row.1 * other.force.1;
-                dot(&row.0, &other.force.0) * lateral + Jet::constant(turning)
-            };
-            let line: Vec<Jet> = unknowns.iter().map(against).collect();
-            let link_at = &system.links[*link];
-            let free = link_at.lateral(&acceleration);
-            let turning = link_at.turning(&acceleration) * row.1;
-            right.push(*target - dot(&row.0, &free) - turning);
-            let diagonal = system.lateral(*link, *link) + system.turning(*link, *link) * row.1;
-            let parts: f64 = (0..4)
-                .map(|i| (link_at.shares[i / 2] * acceleration[i].value()).abs())
-                .sum();
-            size += (target.value().abs() + parts + turning.value().abs()) / diagonal;
-            matrix.push(line);
-        }
-        let mut result = Self {
-            acceleration,
-            normal: vec![Jet::ZERO; modes.len()],
-            grip: vec![Jet::ZERO; modes.len()],
-            size,
-        };
-        for (unknown, force) in unknowns.iter().zip(solve(matrix, right)) {
-            result.apply(system, unknown, force);
-        }
-        result
-    }
-
-    fn apply(&mut self, system: &System, unknown: &Unknown, force: Jet) {
-        let link = &system.links[unknown.link];
-        for k in 0..2 {
-            for axis in 0..2 {
-                let i = 2 * k + axis;
-                let part = link.shares[k] * system.mobility[i];
-                self.acceleration[i] = self.acceleration[i] + force * unknown.force.0[axis] * part;
-            }
-            let part = link.arms[k] * system.mobility[4 + k] * unknown.force.1;
-            self.acceleration[4 + k] = self.acceleration[4 + k] + force * part;
-        }
-        let list = if unknown.grips {
-            &mut self.grip
-        } else {
-            &mut self.normal
-        };
-        list[unknown.link] = force;
-    }
-}
-
-impl Unknown {
-    fn without_slip(link: usize, along: [Jet; 2]) -> Self {
-        Self {
-            link,
-            grips: true,
-            row: (along, 1.0),
-            force: (along, 1.0),
-            target: Jet::ZERO,
         }
     }
 }

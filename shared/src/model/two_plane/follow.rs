@@ -150,12 +150,8 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             let end = place + moved;
             held.turns.add(place.cross(end).atan2(place.dot(end)));
             let rolled = core::mem::replace(&mut held.rolling, press.stuck);
-            let rate = R::TWO / time;
-            let slipped = press.normal.cross(moved) + time * ring.surface * spin;
-            let ledger = &mut state.ledger;
-            ledger.heat.add(-(rate * press.rubbed * slipped / time));
-            let into = press.normal.dot(moved);
-            ledger.lost.add(rate * press.pressed * into / time);
+            state.ledger.heat.add(press.heat);
+            state.ledger.lost.add(press.lost);
             match (rolled, press.stuck) {
                 (false, true) => self.tell(state, i, part, Change::RollingStarts, sink),
                 (true, false) => self.tell(state, i, part, Change::SlidingStarts, sink),
@@ -163,6 +159,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             }
         }
         self.calm(&before, state);
+        if !passage.rubs {
+            self.rub_in_turn(state, passage);
+        }
+        self.seat(state);
     }
 
     pub(super) fn tell(

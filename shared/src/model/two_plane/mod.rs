@@ -16,6 +16,7 @@ mod calm;
 mod config;
 mod energy;
 mod follow;
+mod jam;
 mod passage;
 mod press;
 mod settle;

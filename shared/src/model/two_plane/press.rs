@@ -1,14 +1,14 @@
 //! Rings in permanent contact during a stretch: each ends on its wall, by impulses along the mean of
-//! the places before and after, which do no work without friction (see [`hold`]).
+//! the places before and after, which do no work without friction (see [`crate::model::hold`]).
 //!
 //! The rings are solved for in turn until none changes. The gyroscopic moment turns what an impulse
-//! moves; friction as [`hold`] knows it, by displacement, is turned back by the mobility's angle.
+//! moves; friction as [`keep`] knows it, by displacement, is turned back by the mobility's angle.
 
+use super::TwoPlane;
 use super::passage::Free;
 use super::settle::{PASSES, Settling};
 use super::state::TwoPlaneState;
-use super::{Ring, TwoPlane};
-use crate::model::hold::{Rub, hold};
+use crate::model::hold::{Rub, keep};
 use crate::model::precision::Precision;
 use crate::model::vector::Vector;
 use crate::real::Real;
@@ -28,6 +28,9 @@ pub(super) struct Press<R> {
     /// Outward normal in the middle.
     pub(super) normal: Vector<R>,
     pub(super) stuck: bool,
+    /// Turned into heat, and lost across the wall.
+    pub(super) heat: R,
+    pub(super) lost: R,
     /// What [`Rub::Given`] must be for a unit of friction.
     gain: R,
 }
@@ -53,14 +56,17 @@ struct Turn<R> {
     /// Surface speed by a unit of tangential impulse.
     spin_mobility: R,
     half: R,
+    friction: R,
 }
 
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
-    /// The contacts of the held rings; none where one goes too far round its wall.
+    /// The contacts of the held rings, with friction or without; none where one goes too far round
+    /// its wall.
     pub(super) fn press(
         &self,
         state: &TwoPlaneState<R, N>,
         free: &Free<R>,
+        rubs: bool,
     ) -> Option<[Option<Press<R>>; N]> {
         let mut presses: [Option<Press<R>>; N] = [None; N];
         let mut settling = Settling::new();
@@ -80,6 +86,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     mobility: free.inverse.mobility(ring, ring),
                     spin_mobility: self.spin_mobility(ring, ring),
                     half,
+                    friction: if rubs { ring.friction } else { R::ZERO },
                 };
                 for (j, (other, press)) in self.rings.iter().zip(&presses).enumerate() {
                     let Some(press) = press else {
@@ -92,7 +99,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     }
                 }
                 if let Some(last) = presses.get_mut(i) {
-                    let next = turn.press(ring, *last)?;
+                    let next = turn.press(*last)?;
                     let moved = next.map_or(Vector::default(), |press| press.push)
                         - last.map_or(Vector::default(), |press| press.push);
                     let close = R::EPSILON * (turn.free.length() + velocity.length() * half);
@@ -122,7 +129,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
 impl<R: Precision> Turn<R> {
     /// The contact, from what it was a pass before: inner none where the wall would have to pull.
     #[allow(clippy::option_option)]
-    fn press(&self, ring: &Ring<R>, last: Option<Press<R>>) -> Option<Option<Press<R>>> {
+    fn press(&self, last: Option<Press<R>>) -> Option<Option<Press<R>>> {
         let mobility = self.mobility;
         let (normal, pressed, gain) = match last {
             Some(last) => (last.normal, last.pressed, last.gain),
@@ -138,10 +145,10 @@ impl<R: Precision> Turn<R> {
                 + self.surface;
         let stick = -slip / (mobility.x + self.spin_mobility);
         let most = R::lit(MOST_TURNED) * mobility.x;
-        let friction = if ring.friction * mobility.y.abs() > most {
+        let friction = if self.friction * mobility.y.abs() > most {
             most / mobility.y.abs()
         } else {
-            ring.friction
+            self.friction
         };
         let stuck = stick.abs() <= friction * pressed;
         let wanted = mobility.x * stick - mobility.y * pressed;
@@ -151,7 +158,7 @@ impl<R: Precision> Turn<R> {
             let friction = if stick < R::ZERO { -friction } else { friction };
             Rub::Slides((friction * mobility.x - mobility.y) / (mobility.x + friction * mobility.y))
         };
-        let hold = hold(self.place.parts(), self.free.parts(), ring.limit, rub)?;
+        let hold = keep(self.place.parts(), self.free.parts(), rub)?;
         let gain = if stuck && hold.rubbed * wanted > R::ZERO {
             (gain * wanted / hold.rubbed).within(R::TWO)
         } else {
@@ -168,6 +175,8 @@ impl<R: Precision> Turn<R> {
             rubbed: parts.y,
             normal,
             stuck,
+            heat: R::ZERO,
+            lost: R::ZERO,
             gain,
         }))
     }

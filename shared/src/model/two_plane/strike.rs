@@ -7,7 +7,7 @@
 use super::settle::{PASSES, Settling};
 use super::state::{Held, TwoPlaneState};
 use super::{Ring, TwoPlane};
-use crate::model::impulse::{Impulse, Mobility};
+use crate::model::impulse::Impulse;
 use crate::model::kinematics::{Change, Happening};
 use crate::model::precision::Precision;
 use crate::model::vector::Vector;
@@ -15,15 +15,15 @@ use crate::real::Real;
 
 /// A ring that takes part.
 #[derive(Clone, Copy, Debug)]
-struct Meeting<R> {
-    normal: Vector<R>,
+pub(super) struct Meeting<R> {
+    pub(super) normal: Vector<R>,
     /// Speed into the wall before.
     outward: R,
     slip: R,
     held: bool,
     /// 0 where contact is permanent after it.
-    restitution: R,
-    impulse: Impulse<R>,
+    pub(super) restitution: R,
+    pub(super) impulse: Impulse<R>,
 }
 
 impl<R: Real> Meeting<R> {
@@ -62,7 +62,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         if let Some(ring) = arrived.and_then(|ring| self.rings.get(ring)) {
             near = near.least(state.at(ring.zeta).0.length() / ring.limit);
         }
-        near = near - Self::together();
+        near -= Self::together();
         let mut meetings = [None; N];
         for (i, (ring, meeting)) in self.rings.iter().zip(&mut meetings).enumerate() {
             let touches = state.at(ring.zeta).0.length() >= near * ring.limit;
@@ -91,21 +91,25 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
         *state = after;
         for (i, meeting) in meetings.iter().enumerate() {
-            let Some(meeting) = meeting.filter(Meeting::is_new) else {
-                continue;
-            };
-            if meeting.outward > R::CUTOFF_SPEED {
+            if let Some(meeting) = meeting.filter(Meeting::is_new)
+                && meeting.outward > R::CUTOFF_SPEED
+            {
                 self.tell(state, i, part, Change::Impact(meeting.outward), sink);
             }
-            if returns.get(i) == Some(&true) {
-                if let Some(held) = state.held.get_mut(i) {
-                    *held = Some(Held {
-                        rolling: meeting.impulse.stuck,
-                        ..Held::default()
-                    });
-                }
-                self.tell(state, i, part, Change::ContactStarts, sink);
+        }
+        for (i, (meeting, returns)) in meetings.iter().zip(&mut returns).enumerate() {
+            let meeting = meeting.filter(|meeting| *returns && meeting.is_new());
+            *returns = meeting.is_some();
+            if let (Some(held), Some(meeting)) = (state.held.get_mut(i), meeting) {
+                *held = Some(Held {
+                    rolling: meeting.impulse.stuck,
+                    ..Held::default()
+                });
             }
+        }
+        self.seat(state);
+        for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
+            self.tell(state, i, part, Change::ContactStarts, sink);
         }
     }
 
@@ -134,6 +138,20 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     }
 
     fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
+        let before = *state;
+        self.solve_impulses(meetings);
+        self.take(state, meetings);
+        let (now, then) = (&state.ledger, &before.ledger);
+        let gone = now.heat.minus(then.heat).value() + now.lost.minus(then.lost).value();
+        let [velocity, rate] = [before.velocity[0].value(), before.velocity[1].value()];
+        let most = R::EPSILON.sqrt() * (velocity.square() + rate.square());
+        if gone < -most {
+            *state = before;
+            self.strike_in_turn(state, meetings);
+        }
+    }
+
+    fn solve_impulses(&self, meetings: &mut [Option<Meeting<R>>; N]) {
         let mut settling = Settling::new();
         for pass in 1..=PASSES {
             let mut settled = true;
@@ -152,13 +170,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     slip += meeting.normal.cross(push)
                         + self.spin_mobility(ring, other) * also.impulse.tangential;
                 }
-                let normal = Self::mobility(ring, ring);
-                let mobility = Mobility {
-                    normal,
-                    tangential: normal + self.spin_mobility(ring, ring),
-                };
                 let speed = speed.most(R::ZERO);
-                let impulse = mobility.strike(R::ZERO, ring.friction, speed, slip);
+                let impulse = self
+                    .own_mobility(ring)
+                    .strike(R::ZERO, ring.friction, speed, slip);
                 let moved = (impulse.normal - meeting.impulse.normal).abs()
                     + (impulse.tangential - meeting.impulse.tangential).abs();
                 settled &= moved <= R::EPSILON * (impulse.normal + impulse.tangential.abs());
@@ -182,7 +197,6 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 }
             }
         }
-        self.take(state, meetings);
     }
 
     /// Gives the impulses to the rotor, and books their work: impulse times mean velocity.
