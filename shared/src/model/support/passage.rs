@@ -13,7 +13,7 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
-/// Distance from the walls that the passes leave, in units of epsilon and the clearance.
+/// Most that the passes may leave of the distance from the wall, in units of epsilon and the clearance.
 const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -125,7 +125,8 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
             let found = halt.unwrap_or_default();
             let changed = found - by_stop;
-            if state.held.is_none() || changed.length() <= R::lit(CLOSE) * R::EPSILON {
+            let close = R::TWO * R::EPSILON * (found.length() + by_rotor.length());
+            if state.held.is_none() || changed.length() <= close.least(R::lit(CLOSE) * R::EPSILON) {
                 by_stop = found;
                 break;
             }
