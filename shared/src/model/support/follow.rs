@@ -136,13 +136,14 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     ) {
         let time = passage.time;
         let place = state.place.value();
+        let relative = Self::relative(state);
         let surface = state.spin.value() - B::surface(&state.race);
         state.place.add(passage.moved);
         state.velocity.add(passage.kick);
         self.mount
             .advance(&mut state.ring, &passage.ride, time, passage.pushed);
         if M::is_stopped(&state.ring) && !passage.stopped {
-            self.mount.hold(&mut state.ring, false);
+            self.mount.release(&mut state.ring);
         }
         let rub = passage.rub();
         state.spin.add(rub / self.law.inertia_ratio);
@@ -158,12 +159,14 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             state.impulse += impulse;
         }
         self.race.advance(&mut state.race, time, turned, rub, heat);
-        let Some(held) = &mut state.held else {
+        let Some(press) = &passage.press else {
+            if state.held.take().is_some() {
+                self.tell(state, part, Change::LiftsOff, sink);
+            }
             return;
         };
-        let Some(press) = &passage.press else {
-            state.held = None;
-            self.tell(state, part, Change::LiftsOff, sink);
+        self.calm(state, place, relative);
+        let Some(held) = &mut state.held else {
             return;
         };
         let end = place + passage.moved;
@@ -174,6 +177,27 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             (true, false) => self.tell(state, part, Change::SlidingStarts, sink),
             _ => {}
         }
+    }
+
+    /// Takes the swing across the wall from the velocities, after a stretch from `place` with `velocity` in
+    /// the ring. The mean of two velocities along the wall does not turn with it: what is missing, of the
+    /// square of the step, is put into one stretch and taken from the next, and friction lets it grow.
+    fn calm(
+        &self,
+        state: &mut SupportState<R, M::State, B::State>,
+        place: Vector<R>,
+        velocity: Vector<R>,
+    ) {
+        let before = place.dot(velocity) / place.length();
+        let end = state.place.value();
+        let normal = end.times(R::ONE / end.length());
+        let after = normal.dot(Self::relative(state));
+        let change = R::HALF * (before - after);
+        let push = normal.times(change / (R::ONE + self.mount.mobility()));
+        state.velocity.add(push);
+        self.mount.kick(&mut state.ring, Vector::default() - push);
+        let mean = after + R::HALF * change;
+        state.lost.add(-(normal.dot(push) * mean));
     }
 
     /// Tells of `change`, `part` of a step after the step's start.

@@ -2,7 +2,7 @@
 //!
 //! The ring obeys M u'' = -K u - C u' by the midpoint rule: u+ - u = h (u' + u'+)/2 and forces at the
 //! middle, so an impulse P/(h/2) of the rotor moves it by P/m with m = M + h C/2 + h^2 K/4, whatever
-//! the stiffness. At its stop it is held as the rotor is on its wall (see [`hold`]), without friction.
+//! the stiffness. At its stop it is held as the rotor is on its wall (see [`keep`]), without friction.
 //!
 //! An impact is shorter than a step, and meets the ring's own mass. Where the step does not resolve
 //! the ring on its spring and damper, x = h C/2 + h^2 K/4 of the same size as M or above, these take
@@ -12,7 +12,7 @@
 
 use super::config::{MountConfig, Units};
 use crate::error::ConfigError;
-use crate::model::hold::{Rub, hold};
+use crate::model::hold::{Rub, keep};
 use crate::model::sum::Sum;
 use crate::model::vector::{Sums, Vector};
 use crate::real::Real;
@@ -55,6 +55,10 @@ pub trait Mount<R: Real>: sealed::Sealed + Copy + core::fmt::Debug + PartialEq {
     fn halt(&self, state: &Self::State, moved: Vector<R>) -> Option<Option<Vector<R>>>;
     /// Way to the stop.
     fn travel(&self) -> Option<R>;
+    /// Velocity by an impulse.
+    fn mobility(&self) -> R;
+    /// Takes an impulse.
+    fn kick(&self, state: &mut Self::State, push: Vector<R>);
     /// Velocity by an impulse in an impact.
     fn yielding(&self) -> R;
     /// Makes the ring ready for an impact.
@@ -63,7 +67,9 @@ pub trait Mount<R: Real>: sealed::Sealed + Copy + core::fmt::Debug + PartialEq {
     fn strike(&self, state: &mut Self::State, push: Vector<R>, stop: Vector<R>);
     /// Goes on by `ride`, moved by the rotor and by the stop.
     fn advance(&self, state: &mut Self::State, ride: &Ride<R>, time: R, pushed: [Vector<R>; 2]);
-    fn hold(&self, state: &mut Self::State, stopped: bool);
+    /// Puts the ring onto its stop; the way there.
+    fn seat(&self, state: &mut Self::State) -> Vector<R>;
+    fn release(&self, state: &mut Self::State);
     /// Kinetic, in the spring; taken by support and stop.
     fn energy(&self, state: &Self::State) -> [R; 4];
 }
@@ -104,6 +110,12 @@ impl<R: Real> Mount<R> for Fixed {
         None
     }
 
+    fn mobility(&self) -> R {
+        R::ZERO
+    }
+
+    fn kick(&self, (): &mut (), _: Vector<R>) {}
+
     fn yielding(&self) -> R {
         R::ZERO
     }
@@ -114,7 +126,11 @@ impl<R: Real> Mount<R> for Fixed {
 
     fn advance(&self, (): &mut (), _: &Ride<R>, _: R, _: [Vector<R>; 2]) {}
 
-    fn hold(&self, (): &mut (), _: bool) {}
+    fn seat(&self, (): &mut ()) -> Vector<R> {
+        Vector::default()
+    }
+
+    fn release(&self, (): &mut ()) {}
 
     fn energy(&self, (): &()) -> [R; 4] {
         [R::ZERO; 4]
@@ -211,7 +227,7 @@ impl<R: Real> Mount<R> for Sprung<R> {
             return Some(None);
         };
         let place = state.place.value().parts();
-        let hold = hold(place, moved.parts(), travel, Rub::Slides(R::ZERO))?;
+        let hold = keep(place, moved.parts(), Rub::Slides(R::ZERO))?;
         let [x, y] = hold.moved;
         let farthest = R::lit(REACH) * travel;
         if x * x + y * y > farthest * farthest {
@@ -223,6 +239,14 @@ impl<R: Real> Mount<R> for Sprung<R> {
 
     fn travel(&self) -> Option<R> {
         self.travel
+    }
+
+    fn mobility(&self) -> R {
+        R::ONE / self.mass
+    }
+
+    fn kick(&self, state: &mut SprungState<R>, push: Vector<R>) {
+        state.velocity.add(push.times(R::ONE / self.mass));
     }
 
     fn yielding(&self) -> R {
@@ -266,8 +290,21 @@ impl<R: Real> Mount<R> for Sprung<R> {
             .add(-(rate / ride.mobility * by_stop.dot(mean)));
     }
 
-    fn hold(&self, state: &mut SprungState<R>, stopped: bool) {
-        state.stopped = stopped;
+    fn seat(&self, state: &mut SprungState<R>) -> Vector<R> {
+        let place = state.place.value();
+        let (Some(travel), false) = (self.travel, state.stopped) else {
+            return Vector::default();
+        };
+        let moved = place.times(travel / place.length() - R::ONE);
+        let middle = place + moved.times(R::HALF);
+        state.place.add(moved);
+        state.stopped = true;
+        state.stopping.add(-(self.stiffness * middle.dot(moved)));
+        moved
+    }
+
+    fn release(&self, state: &mut SprungState<R>) {
+        state.stopped = false;
     }
 
     fn energy(&self, state: &SprungState<R>) -> [R; 4] {

@@ -13,7 +13,7 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
-/// Distance from the walls that the passes leave, in units of epsilon and the clearance.
+/// What the passes may leave of the pushes and of the clearance, in units of epsilon.
 const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -112,7 +112,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             friction: self.law.friction,
             half,
         };
-        let mut settling = Settling::new();
+        let mut settling = Settling::default();
         let (mut press, mut by_rotor, mut by_stop) = (None, Vector::default(), Vector::default());
         let mut halt = None;
         for pass in 1..=PASSES {
@@ -125,14 +125,15 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
             let found = halt.unwrap_or_default();
             let changed = found - by_stop;
-            if state.held.is_none() || changed.length() <= R::lit(CLOSE) * R::EPSILON {
+            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + by_rotor.length());
+            if state.held.is_none() || changed.length() <= close.least(R::lit(CLOSE) * R::EPSILON) {
                 by_stop = found;
                 break;
             }
             if pass == PASSES {
                 return None;
             }
-            by_stop = by_stop + settling.next(changed);
+            by_stop = settling.next(by_stop, changed);
         }
         let push = press.map_or(Vector::default(), |press: Press<R>| press.push);
         kick = kick + push.times(R::TWO / time);

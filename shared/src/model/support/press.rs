@@ -1,7 +1,7 @@
 //! Rotor and ring in permanent contact during a stretch: the rotor ends on the ring's wall, by an
-//! impulse along the mean of its places in the ring before and after (see [`hold`]).
+//! impulse along the mean of its places in the ring before and after (see [`keep`]).
 
-use crate::model::hold::{Rub, hold};
+use crate::model::hold::{Rub, keep};
 use crate::model::vector::Vector;
 use crate::real::Real;
 
@@ -61,7 +61,7 @@ impl<R: Real> Approach<R> {
             } else {
                 Rub::Slides(self.friction)
             };
-            let hold = hold(self.place.parts(), self.free.parts(), R::ONE, rub)?;
+            let hold = keep(self.place.parts(), self.free.parts(), rub)?;
             normal = Vector::new(hold.normal);
             pressed = hold.pressed / self.mobility;
             if pressed <= R::ZERO {

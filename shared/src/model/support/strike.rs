@@ -16,6 +16,8 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
+/// What the passes may leave of the impulses, in units of epsilon.
+const CLOSE: f64 = 8.0;
 /// Distance from a wall, in units of epsilon and the clearance, that counts as on it.
 const ON_WALL: f64 = 64.0;
 
@@ -69,13 +71,18 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         }
         *state = after;
         if meeting.stop.is_some() {
-            self.mount.hold(&mut state.ring, true);
+            let raised = self.law.gravity * self.mount.seat(&mut state.ring).y;
+            state.lost.add(-raised);
         }
         if new && meeting.outward > R::CUTOFF_SPEED {
             state.struck = true;
             self.tell(state, part, Change::Impact(meeting.outward), sink);
         }
         if returns {
+            let place = state.place.value();
+            let moved = place.times(R::ONE / place.length() - R::ONE);
+            state.place.add(moved);
+            state.lost.add(-(self.law.gravity * moved.y));
             state.held = Some(Held {
                 rolling: impulse.stuck,
                 ..Held::default()
@@ -124,7 +131,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         };
         let launch = restitution * normal.dot(relative).most(R::ZERO);
 
-        let mut settling = Settling::new();
+        let mut settling = Settling::default();
         let (mut impulse, mut push) = (Impulse::default(), Vector::default());
         let mut by_stop = Vector::default();
         for _ in 0..PASSES {
@@ -141,12 +148,12 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             let into = stop.dot(ring - push.times(yielding)) / yielding;
             let found = stop.times(-into.most(R::ZERO));
             let changed = found - by_stop;
-            let close = R::TWO * R::EPSILON * (found.length() + push.length());
+            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + push.length());
             if meeting.wall.is_none() || changed.length() <= close {
                 by_stop = found;
                 break;
             }
-            by_stop = by_stop + settling.next(changed);
+            by_stop = settling.next(by_stop, changed);
         }
         self.take(state, normal, impulse, push, by_stop);
         impulse
