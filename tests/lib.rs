@@ -6,4 +6,3 @@ pub mod counting;
 pub mod drops;
 pub mod growth;
 pub mod rotors;
-pub mod supports;
