@@ -190,6 +190,14 @@ fn optional_keys_are_checked_too() {
             "scene.toml:13: step_us must be no more than 128.0407, the limit of stability 2/omega_c",
         ),
         (
+            "[model]\ncutoff_mm_s = -0.1",
+            "scene.toml:12: cutoff_mm_s must be 0 to 1, is -0.1",
+        ),
+        (
+            "[model]\nrung = \"moreau\"\ncutoff_mm_s = 0.1",
+            "scene.toml:13: cutoff_mm_s is that of rung = \"rigid\"",
+        ),
+        (
             "[materials]\ncontact = \"line\"",
             "scene.toml:12: contact = \"line\" needs length_mm",
         ),

@@ -56,6 +56,7 @@ fn model(row: &Value) -> Model {
             .find(|it| it.name() == name("math"))
             .unwrap(),
         step: row["step_s"].as_f64().unwrap(),
+        cutoff: 0.0,
     }
 }
 

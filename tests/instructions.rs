@@ -179,6 +179,7 @@ fn models(model: &Model) -> Vec<Model> {
                     precision,
                     math,
                     step: model.step,
+                    cutoff: 0.0,
                 }));
             }
         }

@@ -31,11 +31,14 @@ class Peer:
     tells: bool = False
 
 
-def ours(rung, precision, step_us, way, repeats=101):
+def ours(rung, precision, step_us, way, repeats=101, cutoff=None):
     model = f'rung = "{rung}"\nprecision = "{precision}"\nstep_us = {step_us}'
     setting = f"{rung} {precision}, " + (
         f"steps of {step_us} us" if way == "steps" else "changes alone"
     )
+    if cutoff:
+        model += f"\ncutoff_mm_s = {cutoff}"
+        setting += f", cutoff {cutoff} mm/s"
 
     def command(variant, file, repeats):
         return [RUST / "ours", variant, model, way, DURATION, file, repeats]
@@ -106,6 +109,7 @@ PEERS = [
     ),
     ours("rigid", "f64", 100, "changes"),
     ours("rigid", "f32", 100, "changes"),
+    ours("rigid", "f64", 100, "changes", cutoff=0.1),
     ours("moreau", "f64", 100, "steps", 51),
     ours("moreau", "f64", 10, "steps", 51),
     ours("hertz", "f64", 10, "steps", 51),

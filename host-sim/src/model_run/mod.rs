@@ -85,7 +85,7 @@ impl<U: Use> InNumbers for InRung<'_, U> {
 fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
     match scene.model.rung {
         Rung::Rigid => {
-            let model = Rigid::try_new(&config(scene))?;
+            let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
             what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
         }
         Rung::Moreau => {

@@ -44,6 +44,7 @@ fn fixed(table: &ModelTable, model: &Model) -> Fixed {
         precision: table.precision.is_some().then_some(model.precision),
         math: table.math.is_some().then_some(model.math),
         step: table.step_us.is_some().then_some(model.step),
+        cutoff: model.cutoff,
     }
 }
 

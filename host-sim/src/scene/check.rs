@@ -206,12 +206,21 @@ fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
         Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
     };
+    let cutoff = match table.cutoff_mm_s {
+        None => 0.0,
+        Some(_) if rung != Rung::Rigid => {
+            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
+            return Err(Flaw::new("model", "cutoff_mm_s", rule));
+        }
+        Some(speed) => MILLI * between("model", "cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+    };
     Ok(Model {
         rung,
         scheme,
         precision,
         math,
         step,
+        cutoff,
     })
 }
 

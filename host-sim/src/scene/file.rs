@@ -97,6 +97,7 @@ pub(super) struct ModelTable {
     pub math: Option<String>,
     pub precision: Option<String>,
     pub step_us: Option<f64>,
+    pub cutoff_mm_s: Option<f64>,
     pub fidelity: Option<String>,
 }
 

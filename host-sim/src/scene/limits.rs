@@ -30,6 +30,8 @@ pub const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;
 pub const LEAST_GRAVITY_M_S2: f64 = 1e-6;
 /// Length of a step, us.
 pub const STEP_US: RangeInclusive<f64> = 1.0..=1000.0;
+/// Cut-off of a bounce series, mm/s.
+pub const CUTOFF_MM_S: RangeInclusive<f64> = 0.0..=1.0;
 /// Stiffness of a support or magnet, N/m.
 pub const STIFFNESS_N_M: RangeInclusive<f64> = 1.0..=1e12;
 /// Damping of a support, N s/m.

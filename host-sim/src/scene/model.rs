@@ -67,6 +67,9 @@ pub struct Model {
     pub math: Math,
     /// Output interval, and where the scheme needs one, length of a step, s.
     pub step: f64,
+    /// Launch speed from which on the rest of a bounce series is summed, m/s; 0: as low as the number
+    /// format resolves. Rung `rigid`.
+    pub cutoff: f64,
 }
 
 impl Rung {

@@ -53,6 +53,8 @@ pub struct Fixed {
     pub math: Option<Math>,
     /// s.
     pub step: Option<f64>,
+    /// m/s.
+    pub cutoff: f64,
 }
 
 impl Fixed {
@@ -64,6 +66,11 @@ impl Fixed {
             && self.math.is_none_or(|math| math == model.math);
         fits.then(|| Model {
             step: self.step.unwrap_or(model.step),
+            cutoff: if model.rung == Rung::Rigid {
+                self.cutoff
+            } else {
+                0.0
+            },
             ..model
         })
     }

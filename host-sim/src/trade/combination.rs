@@ -18,6 +18,7 @@ pub fn all() -> Vec<Model> {
                         precision,
                         math,
                         step: f64::from(step) / 1e6,
+                        cutoff: 0.0,
                     }));
                 }
             }

@@ -68,7 +68,7 @@ pub(crate) enum Ending {
 
 /// A stretch of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Contact<R> {
+pub(crate) struct Contact<R: Precision> {
     pub(crate) base: WallState<R>,
     pub(crate) mode: Mode<R>,
     pub(crate) ending: Ending,
@@ -206,7 +206,7 @@ impl<R: Precision> Contact<R> {
             return None;
         }
         let mut beyond = self.series.sin;
-        for (term, &cos) in beyond.iter_mut().zip(&self.series.cos) {
+        for (term, &cos) in beyond.as_mut().iter_mut().zip(self.series.cos.as_ref()) {
             *term -= friction * cos;
         }
         let end = self.span * self.series.pace;

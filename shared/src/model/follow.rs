@@ -136,7 +136,7 @@ impl<R: Precision> Rigid<R> {
                 },
             });
         }
-        let ends = hit.launch_speed <= R::CUTOFF_SPEED
+        let ends = hit.launch_speed <= self.cutoff
             && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO);
         if ends || hurry {
             let rest = law.rest_of_series(hit.launch_speed, pressing);

@@ -1,15 +1,26 @@
 //! What depends on the number of digits.
 
-use crate::real::{Micro32, Poly32, Poly64, Real};
+use core::fmt::Debug;
+use core::ops::IndexMut;
 
-/// Longest Taylor series of a contact.
-pub(crate) const SERIES_LENGTH: usize = 16;
+use crate::real::{Micro32, Poly32, Poly64, Real};
 
 /// Constants of the model that follow the precision.
 pub trait Precision: Real {
-    /// Order of the Taylor series of a contact, at most 15. Chosen, because the cost for each unit of
-    /// time is lowest there at the accuracy of `SERIES_TOLERANCE`.
+    /// Order of the Taylor series of a contact. Chosen, because at the accuracy of `SERIES_TOLERANCE` a
+    /// higher one costs a step what it saves a run.
     const SERIES_ORDER: usize;
+    /// That many terms, and the constant one.
+    #[doc(hidden)]
+    type Terms: Copy
+        + Debug
+        + PartialEq
+        + AsRef<[Self]>
+        + AsMut<[Self]>
+        + IndexMut<usize, Output = Self>;
+    /// All of them 0.
+    #[doc(hidden)]
+    const NO_TERMS: Self::Terms;
     /// Size of the last two terms of a series at its end. What is left out is a hundredth of them: the
     /// terms fall about tenfold each.
     const SERIES_TOLERANCE: Self;
@@ -20,12 +31,16 @@ pub trait Precision: Real {
 
 impl Precision for f32 {
     const SERIES_ORDER: usize = 8;
+    type Terms = [Self; Self::SERIES_ORDER + 1];
+    const NO_TERMS: Self::Terms = [0.0; Self::SERIES_ORDER + 1];
     const SERIES_TOLERANCE: Self = 1e-7;
     const CUTOFF_SPEED: Self = 1e-6;
 }
 
 impl Precision for f64 {
-    const SERIES_ORDER: usize = 15;
+    const SERIES_ORDER: usize = 19;
+    type Terms = [Self; Self::SERIES_ORDER + 1];
+    const NO_TERMS: Self::Terms = [0.0; Self::SERIES_ORDER + 1];
     const SERIES_TOLERANCE: Self = 1e-15;
     const CUTOFF_SPEED: Self = 1e-10;
 }
@@ -34,6 +49,8 @@ macro_rules! like {
     ($number:ident, $base:ty) => {
         impl Precision for $number {
             const SERIES_ORDER: usize = <$base>::SERIES_ORDER;
+            type Terms = [Self; <$base>::SERIES_ORDER + 1];
+            const NO_TERMS: Self::Terms = [Self(0.0); <$base>::SERIES_ORDER + 1];
             const SERIES_TOLERANCE: Self = Self(<$base>::SERIES_TOLERANCE);
             const CUTOFF_SPEED: Self = Self(<$base>::CUTOFF_SPEED);
         }

@@ -62,6 +62,8 @@ impl<R: Real> RigidConfig<R> {
 pub struct Rigid<R> {
     pub(crate) law: Law<R>,
     pub(crate) step: StepLength<R>,
+    /// Launch speed from which on the rest of a bounce series is summed, V.
+    pub(crate) cutoff: R,
     scales: Scales<R>,
 }
 
@@ -72,8 +74,19 @@ impl<R: Precision> Rigid<R> {
         Ok(Self {
             law,
             step: StepLength::new(config.step / scales.time),
+            cutoff: R::CUTOFF_SPEED,
             scales,
         })
+    }
+
+    /// Sums the rest of a bounce series from this launch speed on, m/s: cheaper, and of second order
+    /// in it. Never below the precision's own.
+    #[must_use]
+    pub fn with_cutoff(self, speed: R) -> Self {
+        Self {
+            cutoff: (speed / self.scales.speed).most(R::CUTOFF_SPEED),
+            ..self
+        }
     }
 
     /// The model's units.
@@ -88,6 +101,7 @@ impl Rigid<f64> {
         Rigid {
             law: self.law.rounded(),
             step: self.step.rounded(),
+            cutoff: R::lit(self.cutoff).most(R::CUTOFF_SPEED),
             scales: self.scales.rounded(),
         }
     }

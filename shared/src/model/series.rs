@@ -8,8 +8,7 @@
 
 use crate::model::contact::{Mode, WallState};
 use crate::model::law::Law;
-use crate::model::precision::{Precision, SERIES_LENGTH};
-use crate::real::Real;
+use crate::model::precision::Precision;
 
 /// Shortenings of a series' span until its last terms are small enough.
 const SHORTENINGS: usize = 64;
@@ -17,11 +16,11 @@ const SHORTENINGS: usize = 64;
 const SHORTER: f64 = 0.9;
 
 /// Coefficients from the constant term up.
-pub(crate) type Terms<R> = [R; SERIES_LENGTH];
+pub(crate) type Terms<R> = <R as Precision>::Terms;
 
 /// A series, in its own unit of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Series<R> {
+pub(crate) struct Series<R: Precision> {
     /// Units of the series in one T.
     pub(crate) pace: R,
     pub(crate) sin: Terms<R>,
@@ -38,7 +37,7 @@ pub(crate) struct Series<R> {
 impl<R: Precision> Series<R> {
     /// Expands the motion from `base`.
     pub(crate) fn new(base: &WallState<R>, mode: Mode<R>, law: &Law<R>) -> Self {
-        let zero = [R::ZERO; SERIES_LENGTH];
+        let zero = R::NO_TERMS;
         let start = base.tangential.value();
         // Of speed and force by sliding, in a radian.
         let growth = match mode {
@@ -61,9 +60,9 @@ impl<R: Precision> Series<R> {
         let mut mirrored = zero;
         let mut divisor = series.pace;
         for k in 0..=R::SERIES_ORDER {
-            mirrored[SERIES_LENGTH - 1 - k] = series.tangential[k];
+            mirrored[R::SERIES_ORDER - k] = series.tangential[k];
             let [square, turned_sin, turned_cos] =
-                products([&series.tangential, &series.sin, &series.cos], &mirrored, k);
+                products::<R>([&series.tangential, &series.sin, &series.cos], &mirrored, k);
             series.normal[k] = square + g * series.cos[k];
             if k == R::SERIES_ORDER {
                 break;
@@ -134,7 +133,7 @@ pub(crate) fn value<R: Precision>(c: &Terms<R>, at: R) -> R {
 /// other.
 fn without_constant<R: Precision>(c: &Terms<R>, at: R, read: impl Fn(R) -> R) -> R {
     let square = at * at;
-    let (pairs, last) = c[1..=R::SERIES_ORDER].as_chunks();
+    let (pairs, last) = c.as_ref()[1..].as_chunks();
     let first = (last.first().map_or(R::ZERO, |&a| read(a)), R::ZERO);
     let sums = pairs.iter().rev();
     let (odd, even) = sums.fold(first, |(odd, even), &[a, b]| {
@@ -145,12 +144,12 @@ fn without_constant<R: Precision>(c: &Terms<R>, at: R, read: impl Fn(R) -> R) ->
 
 /// Term `k` of the products of three series with a fourth, which is given from its last place down.
 /// The newest terms come last: all others are summed while those are still being worked out.
-fn products<R: Real>(series: [&Terms<R>; 3], mirrored: &Terms<R>, k: usize) -> [R; 3] {
-    let factors = &mirrored[SERIES_LENGTH - 1 - k..];
+fn products<R: Precision>(series: [&Terms<R>; 3], mirrored: &Terms<R>, k: usize) -> [R; 3] {
+    let factors = &mirrored.as_ref()[R::SERIES_ORDER - k..];
     if k == 0 {
         return series.map(|terms| terms[0] * factors[0]);
     }
-    let [a, b, c] = series.map(|terms| &terms[1..k]);
+    let [a, b, c] = series.map(|terms| &terms.as_ref()[1..k]);
     let mut sums = [R::ZERO; 3];
     for (((&a, &b), &c), &factor) in a.iter().zip(b).zip(c).zip(&factors[1..k]) {
         sums[0] += a * factor;
@@ -163,7 +162,7 @@ fn products<R: Real>(series: [&Terms<R>; 3], mirrored: &Terms<R>, k: usize) -> [
 
 /// Value and slope, in the series' unit.
 pub(crate) fn horner<R: Precision>(c: &Terms<R>, at: R) -> (R, R) {
-    let terms = c.iter().take(R::SERIES_ORDER + 1).rev();
+    let terms = c.as_ref().iter().rev();
     terms.fold((R::ZERO, R::ZERO), |(value, slope), &k| {
         (value * at + k, slope * at + value)
     })

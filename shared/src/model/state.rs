@@ -8,7 +8,7 @@ use crate::model::sum::Sum;
 use crate::model::turns::Turns;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Motion<R> {
+pub(crate) enum Motion<R: Precision> {
     /// In flight, to its next contact.
     Flight { flight: Flight<R>, to: Landing<R> },
     /// The rest of a bounce series, summed.
@@ -28,7 +28,7 @@ pub struct Solved {
 
 /// The rotor's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RigidState<R> {
+pub struct RigidState<R: Precision> {
     pub(crate) now: Instant<R>,
     pub(crate) motion: Motion<R>,
     pub(crate) begun: Instant<R>,
