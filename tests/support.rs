@@ -41,16 +41,15 @@ fn whirl() {
     let (mut a, mut b) = (1.0, (k / 6.0f64).sqrt());
     for _ in 0..100 {
         let x = 0.5 * (a + b);
-        if f(x) < 0.0 {
-            a = x
-        } else {
-            b = x
-        }
+        if f(x) < 0.0 { a = x } else { b = x }
     }
     let w = a;
     let (d, e) = (k - m * w * w, c * w);
     // (1 - i mu) (1/(m w2) - 1/D)
-    let (x, y) = (1.0 / (5.0 * w * w) - d / (d * d + e * e), e / (d * d + e * e));
+    let (x, y) = (
+        1.0 / (5.0 * w * w) - d / (d * d + e * e),
+        e / (d * d + e * e),
+    );
     let n = 3e-4 / (x + mu * y);
     println!("closed {} Hz N {n}", w / std::f64::consts::TAU);
 }
@@ -75,7 +74,9 @@ fn explore() {
                 end.spin - truth.spin,
                 told.len(),
                 impacts.len(),
-                told.iter().filter(|t| t.1 == Change::ContactStarts).collect::<Vec<_>>(),
+                told.iter()
+                    .filter(|t| t.1 == Change::ContactStarts)
+                    .collect::<Vec<_>>(),
                 end.ledger.total()
             );
         }
@@ -89,26 +90,62 @@ fn summary(fall: &Fall, time: f64) {
     let told = fall.follow::<f64>(time, |x| {
         let e0 = first.get().unwrap_or(x.ledger.total());
         first.set(Some(e0));
-        let size = x.ledger.motion.max(x.ledger.spin).max(x.ledger.height.abs()) + e0.abs() + x.ledger.heat.abs();
+        let size = x
+            .ledger
+            .motion
+            .max(x.ledger.spin)
+            .max(x.ledger.height.abs())
+            + e0.abs()
+            + x.ledger.heat.abs();
         worst = worst.max((x.ledger.total() - e0).abs() / size);
         gap = gap.max(x.displacement[0].hypot(x.displacement[1]) / fall.rigid.clearance - 1.0);
         if x.touch != touchdown_core::model::Touch::None {
             gap = gap.max(1.0 - x.displacement[0].hypot(x.displacement[1]) / fall.rigid.clearance);
         }
         up = up.max((x.ledger.stored() - e0) / size);
-        over = over.max(fall.mount.and_then(|m| m.travel).map_or(0.0, |t| x.ring[0].hypot(x.ring[1]) / t - 1.0));
-        bad |= !(x.position[0].is_finite() && x.velocity[1].is_finite() && x.spin.is_finite() && x.ring_velocity[0].is_finite());
+        over = over.max(
+            fall.mount
+                .and_then(|m| m.travel)
+                .map_or(0.0, |t| x.ring[0].hypot(x.ring[1]) / t - 1.0),
+        );
+        bad |= !(x.position[0].is_finite()
+            && x.velocity[1].is_finite()
+            && x.spin.is_finite()
+            && x.ring_velocity[0].is_finite());
         last = Some(*x);
     });
     let x = last.unwrap();
-    if !bad && worst < 1e-12 && gap < 1e-9 && up < 1e-9 && over < 1e-9 && x.shortened == 0 && [x.ledger.lost, x.ledger.damped, x.ledger.stop].iter().all(|d| *d > -1e-6) {
+    if !bad
+        && worst < 1e-12
+        && gap < 1e-9
+        && up < 1e-9
+        && over < 1e-9
+        && x.shortened == 0
+        && [x.ledger.lost, x.ledger.damped, x.ledger.stop]
+            .iter()
+            .all(|d| *d > -1e-6)
+    {
         return;
     }
     println!(
         "  m_s {:e} k {:e} c {:e} J {:e} step {:e}: bad {bad} ledger {worst:.1e} gap {gap:.1e} up {up:.1e} over {over:.1e} short {} told {} end {:?} {:?} u {:?} stopped {} lost {:.1e} damped {:.1e} stop {:.1e} heat {:.1e} drag {:.1e} peak {:.1e}",
-        fall.mount.map_or(0.0, |m| m.mass), fall.mount.map_or(0.0, |m| m.stiffness), fall.mount.map_or(0.0, |m| m.damping),
-        fall.race.map_or(0.0, |r| r.inertia), fall.rigid.step, x.shortened, told.len(), x.touch, x.displacement, x.ring, x.stopped,
-        x.ledger.lost, x.ledger.damped, x.ledger.stop, x.ledger.heat, x.ledger.drag, x.load.held_peak
+        fall.mount.map_or(0.0, |m| m.mass),
+        fall.mount.map_or(0.0, |m| m.stiffness),
+        fall.mount.map_or(0.0, |m| m.damping),
+        fall.race.map_or(0.0, |r| r.inertia),
+        fall.rigid.step,
+        x.shortened,
+        told.len(),
+        x.touch,
+        x.displacement,
+        x.ring,
+        x.stopped,
+        x.ledger.lost,
+        x.ledger.damped,
+        x.ledger.stop,
+        x.ledger.heat,
+        x.ledger.drag,
+        x.load.held_peak
     );
 }
 
@@ -132,7 +169,10 @@ fn extremes_race() {
     for j in [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e6] {
         for drag in [(0.0, 0.0), (1e-2, 1e-5), (10.0, 1.0)] {
             for step in [1e-6, 1e-4, 1e-3] {
-                let mut fall = Fall::new(step).mounted(1.0, 1e7, 500.0).turning(j).dragged(drag.0, drag.1);
+                let mut fall = Fall::new(step)
+                    .mounted(1.0, 1e7, 500.0)
+                    .turning(j)
+                    .dragged(drag.0, drag.1);
                 fall.spin = 300.0;
                 summary(&fall, 0.05);
             }
@@ -157,8 +197,15 @@ fn stop() {
 
 #[test]
 fn one() {
-    let get = |n: &str, d: f64| std::env::var(n).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
-    let mut fall = Fall::new(get("H", 1e-4)).mounted(get("M", 1e-6), get("K", 1e2), get("C", 500.0)).stopping(get("L", 1e-7));
+    let get = |n: &str, d: f64| {
+        std::env::var(n)
+            .ok()
+            .and_then(|x| x.parse().ok())
+            .unwrap_or(d)
+    };
+    let mut fall = Fall::new(get("H", 1e-4))
+        .mounted(get("M", 1e-6), get("K", 1e2), get("C", 500.0))
+        .stopping(get("L", 1e-7));
     fall.spin = 300.0;
     let mut n = 0;
     let mut last = (0.0, 0.0, 0.0);
@@ -173,7 +220,9 @@ fn one() {
         }
         last = now;
     });
-    for t in told.iter().take(10) { println!("{t:?}"); }
+    for t in told.iter().take(10) {
+        println!("{t:?}");
+    }
 }
 
 #[test]
@@ -186,13 +235,40 @@ fn stop_reference() {
             let (end, told) = fall.end::<f64>(time);
             let mut impacts = 0;
             let mut r = fall.reference();
-            let truth = r.advance(time, &mut |w, h| { impacts += 1; if step == 2.5e-99 && impacts < 30 {
-                if let touchdown_sim::history::Happening::Impact(i) = h { println!("   {w} {} v {:?} at {:?} normal {} I {}", i.state.time, i.state.velocity, i.state.position, i.normal_speed, i.normal_impulse) } else { println!("   {w} {h:?}"); }
-            }});
-            if step == 2.5e-99 { for t in told.iter().take(20) { println!("  model {t:?}") } }
+            let truth = r.advance(time, &mut |w, h| {
+                impacts += 1;
+                if step == 2.5e-99 && impacts < 30 {
+                    if let touchdown_sim::history::Happening::Impact(i) = h {
+                        println!(
+                            "   {w} {} v {:?} at {:?} normal {} I {}",
+                            i.state.time,
+                            i.state.velocity,
+                            i.state.position,
+                            i.normal_speed,
+                            i.normal_impulse
+                        )
+                    } else {
+                        println!("   {w} {h:?}");
+                    }
+                }
+            });
+            if step == 2.5e-99 {
+                for t in told.iter().take(20) {
+                    println!("  model {t:?}")
+                }
+            }
             let e = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / 3e-4;
-            println!("{m:e} {k:e} {step:e}: p {:.2e} u {:.2e} v {:.2e} spin {:.2e} told {} truth {impacts} short {} {:?} {:?}",
-                e(end.position, truth.position), e(end.ring, truth.ring_position), e(end.velocity, truth.velocity), end.spin - truth.spin, told.len(), end.shortened, end.ring, truth.ring_position);
+            println!(
+                "{m:e} {k:e} {step:e}: p {:.2e} u {:.2e} v {:.2e} spin {:.2e} told {} truth {impacts} short {} {:?} {:?}",
+                e(end.position, truth.position),
+                e(end.ring, truth.ring_position),
+                e(end.velocity, truth.velocity),
+                end.spin - truth.spin,
+                told.len(),
+                end.shortened,
+                end.ring,
+                truth.ring_position
+            );
         }
     }
 }
@@ -209,13 +285,20 @@ fn swing() {
             let mut w2 = 0.0f64;
             let (end, _) = fall.end::<f64>(0.03);
             fall.follow::<f64>(0.03, |x| {
-                let w: f64 = (0..2).map(|i| x.displacement[i] / 3e-4 * x.velocity[i]).sum();
+                let w: f64 = (0..2)
+                    .map(|i| x.displacement[i] / 3e-4 * x.velocity[i])
+                    .sum();
                 worst = worst.max(w.abs() / x.velocity[0].hypot(x.velocity[1]));
                 w2 = w.abs() / x.velocity[0].hypot(x.velocity[1]);
             });
             // v = v0/(1 - mu v0 t/rho0)
             let v = 0.05 / (1.0 - 0.15 * 0.05 * 0.03 / 3e-4);
-            println!("{calm} {h:e} v {} true {v} lost {:e} swing {worst:e} {w2:e} turns {} ", end.velocity[0].hypot(end.velocity[1]), end.ledger.lost / end.ledger.motion, end.turns);
+            println!(
+                "{calm} {h:e} v {} true {v} lost {:e} swing {worst:e} {w2:e} turns {} ",
+                end.velocity[0].hypot(end.velocity[1]),
+                end.ledger.lost / end.ledger.motion,
+                end.turns
+            );
         }
     }
 }

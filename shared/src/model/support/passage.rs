@@ -1,6 +1,7 @@
 //! A stretch of time without impact, by the midpoint rule, with the contacts that hold in it.
 //!
-//! Rotor, ring and stop meet in the ring: rotor and stop are solved for in turn until none changes.
+//! Rotor, ring and stop meet in the ring: rotor and stop are solved for in turn until none changes. A
+//! light ring on its stop may wedge there (see `wedge`).
 
 use super::mount::{Mount, Ride};
 use super::press::{Approach, Press};
@@ -17,8 +18,20 @@ const PASSES: usize = 24;
 const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
+/// Push of the rotor, over the ways that rotor and ring go, from which it is no answer to them.
+const MOST_PRESSED: f64 = 4.0;
 /// How far round its wall a held rotor goes in a stretch, rad.
 const REACH: f64 = 0.25;
+
+/// Rotor and stop, each as the other leaves it.
+struct Balance<R> {
+    press: Option<Press<R>>,
+    /// Displacement of the ring by rotor and stop.
+    pushed: [Vector<R>; 2],
+    stopped: bool,
+    /// Whether the passes came to an end.
+    settled: bool,
+}
 
 /// A stretch.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +45,8 @@ pub(super) struct Passage<R> {
     /// Displacement of the ring by rotor and stop.
     pub(super) pushed: [Vector<R>; 2],
     pub(super) press: Option<Press<R>>,
+    /// Whether friction is to follow.
+    pub(super) wedged: bool,
     pub(super) stopped: bool,
     pub(super) drag: Drag<R>,
 }
@@ -112,40 +127,72 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             friction: self.law.friction,
             half,
         };
+        let mut balance = self.balance(state, &ride, &approach)?;
+        let wedged = !balance.settled;
+        if wedged {
+            approach.friction = R::ZERO;
+            balance = self.balance(state, &ride, &approach)?;
+            if !balance.settled {
+                return None;
+            }
+        }
+        let Balance { press, pushed, .. } = balance;
+        let push = press.map_or(Vector::default(), |press| press.push);
+        kick = kick + push.times(R::TWO / time);
+        Some(Passage {
+            time,
+            moved: free + push - pushed[0] - pushed[1],
+            kick,
+            ride,
+            pushed,
+            press,
+            wedged,
+            stopped: balance.stopped,
+            drag,
+        })
+    }
+
+    /// Rotor and stop in turn; none where rotor or ring go too far round their walls.
+    fn balance(
+        &self,
+        state: &SupportState<R, M::State, B::State>,
+        ride: &Ride<R>,
+        approach: &Approach<R>,
+    ) -> Option<Balance<R>> {
+        let free = approach.free;
+        let mut approach = *approach;
         let mut settling = Settling::default();
         let (mut press, mut by_rotor, mut by_stop) = (None, Vector::default(), Vector::default());
-        let mut halt = None;
-        for pass in 1..=PASSES {
+        for _ in 0..PASSES {
             if state.held.is_some() {
                 approach.free = free - by_stop;
                 press = approach.press()?;
                 let push = press.map_or(Vector::default(), |press| press.push);
                 by_rotor = push.times(-ride.mobility);
             }
-            halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
+            let halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
             let found = halt.unwrap_or_default();
             let changed = found - by_stop;
             let close = R::lit(CLOSE) * R::EPSILON * (found.length() + by_rotor.length());
             if state.held.is_none() || changed.length() <= close.least(R::lit(CLOSE) * R::EPSILON) {
-                by_stop = found;
-                break;
-            }
-            if pass == PASSES {
-                return None;
+                let own = (free + ride.moved).length();
+                let ring = (ride.moved + by_rotor + found).length();
+                let most = R::lit(MOST_PRESSED) * (own + own * own + ring);
+                let pressed = press.map_or(R::ZERO, |press| press.pressed);
+                return Some(Balance {
+                    press,
+                    pushed: [by_rotor, found],
+                    stopped: halt.is_some(),
+                    settled: halt.is_none() || pressed <= most,
+                });
             }
             by_stop = settling.next(by_stop, changed);
         }
-        let push = press.map_or(Vector::default(), |press: Press<R>| press.push);
-        kick = kick + push.times(R::TWO / time);
-        Some(Passage {
-            time,
-            moved: free + push - by_rotor - by_stop,
-            kick,
-            ride,
-            pushed: [by_rotor, by_stop],
+        Some(Balance {
             press,
-            stopped: halt.is_some(),
-            drag,
+            pushed: [by_rotor, by_stop],
+            stopped: true,
+            settled: false,
         })
     }
 }

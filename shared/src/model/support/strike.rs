@@ -16,6 +16,8 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
+/// Impulse of the rotor, over the speeds that meet, from which it is no answer to them.
+const MOST_PRESSED: f64 = 4.0;
 /// What the passes may leave of the impulses, in units of epsilon.
 const CLOSE: f64 = 8.0;
 /// Distance from a wall, in units of epsilon and the clearance, that counts as on it.
@@ -42,6 +44,63 @@ struct Meeting<R> {
     stop: Option<Vector<R>>,
     /// Speed into the wall.
     outward: R,
+}
+
+/// Rotor, ring and stop in an impact.
+struct Clash<R> {
+    normal: Vector<R>,
+    mobility: Mobility<R>,
+    /// Velocity of the rotor in the ring, and of the ring.
+    relative: Vector<R>,
+    ring: Vector<R>,
+    /// Surface speed against the inner ring.
+    surface: R,
+    /// Speed away from the wall that restitution asks for.
+    launch: R,
+    /// Velocity of the ring by an impulse.
+    yielding: R,
+}
+
+/// The impulses.
+#[derive(Clone, Copy, Debug, Default)]
+struct Blow<R> {
+    impulse: Impulse<R>,
+    /// On the rotor.
+    push: Vector<R>,
+    /// On the ring, by its stop.
+    by_stop: Vector<R>,
+}
+
+impl<R: Real> Clash<R> {
+    /// Rotor and stop in turn, and whether they came to an end.
+    fn solve(&self, meeting: &Meeting<R>, friction: R) -> (Blow<R>, bool) {
+        let mut settling = Settling::default();
+        let mut blow = Blow::default();
+        for _ in 0..PASSES {
+            if meeting.wall.is_some() {
+                let met = self.relative - blow.by_stop.times(self.yielding);
+                let speed = (self.normal.dot(met) + self.launch).most(R::ZERO);
+                let slip = self.normal.cross(met) + self.surface;
+                blow.impulse = self.mobility.strike(R::ZERO, friction, speed, slip);
+                let parts = Vector::new([-blow.impulse.normal, blow.impulse.tangential]);
+                blow.push = parts * self.normal;
+            }
+            let Some(stop) = meeting.stop else {
+                return (blow, true);
+            };
+            let into = stop.dot(self.ring - blow.push.times(self.yielding)) / self.yielding;
+            let found = stop.times(-into.most(R::ZERO));
+            let changed = found - blow.by_stop;
+            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + blow.push.length());
+            if meeting.wall.is_none() || changed.length() <= close {
+                blow.by_stop = found;
+                let speeds = self.relative.length() + self.ring.length() + self.launch;
+                return (blow, blow.impulse.normal <= R::lit(MOST_PRESSED) * speeds);
+            }
+            blow.by_stop = settling.next(blow.by_stop, changed);
+        }
+        (blow, false)
+    }
 }
 
 impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
@@ -129,34 +188,24 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             normal: R::ONE + yielding,
             tangential: R::ONE + yielding + R::ONE / self.law.inertia_ratio + self.race.mobility(),
         };
-        let launch = restitution * normal.dot(relative).most(R::ZERO);
-
-        let mut settling = Settling::default();
-        let (mut impulse, mut push) = (Impulse::default(), Vector::default());
-        let mut by_stop = Vector::default();
-        for _ in 0..PASSES {
-            if meeting.wall.is_some() {
-                let met = relative - by_stop.times(yielding);
-                let speed = (normal.dot(met) + launch).most(R::ZERO);
-                let slip = normal.cross(met) + surface;
-                impulse = mobility.strike(R::ZERO, self.law.friction, speed, slip);
-                push = Vector::new([-impulse.normal, impulse.tangential]) * normal;
-            }
-            let Some(stop) = meeting.stop else {
-                break;
-            };
-            let into = stop.dot(ring - push.times(yielding)) / yielding;
-            let found = stop.times(-into.most(R::ZERO));
-            let changed = found - by_stop;
-            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + push.length());
-            if meeting.wall.is_none() || changed.length() <= close {
-                by_stop = found;
-                break;
-            }
-            by_stop = settling.next(by_stop, changed);
+        let clash = Clash {
+            normal,
+            mobility,
+            relative,
+            ring,
+            surface,
+            launch: restitution * normal.dot(relative).most(R::ZERO),
+            yielding,
+        };
+        let (blow, settled) = clash.solve(meeting, self.law.friction);
+        if settled {
+            self.take(state, normal, &blow);
+            return blow.impulse;
         }
-        self.take(state, normal, impulse, push, by_stop);
-        impulse
+        let (mut blow, _) = clash.solve(meeting, R::ZERO);
+        self.take(state, normal, &blow);
+        blow.impulse.stuck = self.wedge(state, normal, blow.impulse.normal);
+        blow.impulse
     }
 
     /// Gives the impulses, and books their work: impulse times mean velocity.
@@ -164,10 +213,13 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         &self,
         state: &mut SupportState<R, M::State, B::State>,
         normal: Vector<R>,
-        impulse: Impulse<R>,
-        push: Vector<R>,
-        by_stop: Vector<R>,
+        blow: &Blow<R>,
     ) {
+        let Blow {
+            impulse,
+            push,
+            by_stop,
+        } = *blow;
         let slides = |state: &SupportState<R, M::State, B::State>| {
             state.spin.value() - B::surface(&state.race)
         };
