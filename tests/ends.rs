@@ -3,12 +3,16 @@
 //! each other's centre of percussion.
 
 use std::f64::consts::TAU;
+use std::io::Sink;
 
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
 use touchdown_core::monitor::Monitor;
-use touchdown_sim::scene::Scene;
+use touchdown_sim::drop;
+use touchdown_sim::outcome::DetectedEvent;
+use touchdown_sim::scene::{BUILT_IN, Scene};
 use touchdown_sim::sensors::{Motion as Movement, Sensors};
+use touchdown_sim::target::Target;
 
 const CLEARANCE: f64 = 0.3e-3;
 const GRAVITY: f64 = 9.81;
@@ -271,6 +275,27 @@ fn ends_that_fall_together_stay_one() {
             .all(|event| event.motion == Motion::Cylindrical)
     );
     assert!(watched.phases.iter().all(|[a, b]| a == b));
+}
+
+#[test]
+fn symmetric_drops_are_never_split() {
+    let mut drops = 0;
+    for built_in in BUILT_IN {
+        for seed in 0..20 {
+            for runout in [0.0, 3e-6] {
+                let mut scene = Scene::load(built_in.name).expect("built-in scene");
+                scene.run.seed = seed;
+                scene.sensors.runout = runout;
+                let (outcome, _) = drop::run::<Sink>(&scene, &Target::Host, None).expect("drops");
+                let split =
+                    |event: &&DetectedEvent| event.plane != "both" || event.motion != "cylindrical";
+                let found = outcome.detection.events.iter().find(split);
+                assert!(found.is_none(), "{} {seed}: {found:?}", built_in.name);
+                drops += 1;
+            }
+        }
+    }
+    assert!(drops >= 200, "{drops}");
 }
 
 #[test]

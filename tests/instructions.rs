@@ -164,10 +164,13 @@ fn tables_are_current_and_counts_repeat() {
     }
 }
 
-/// All models that are counted.
+/// Rungs of the plane: the others do more than one thing in a long step.
+const PLANAR: [Rung; 3] = [Rung::Rigid, Rung::Moreau, Rung::Hertz];
+
+/// All models of these rungs.
 fn models(model: &Model) -> Vec<Model> {
     let mut all = Vec::new();
-    for rung in Rung::ALL {
+    for rung in PLANAR {
         for &scheme in rung.schemes() {
             for precision in Precision::ALL {
                 all.extend(precision.maths().iter().map(|&math| Model {
@@ -186,8 +189,8 @@ fn models(model: &Model) -> Vec<Model> {
 /// Steps that the image runs, us.
 fn counted_steps(rung: Rung) -> [u32; 2] {
     match rung {
-        Rung::Rigid | Rung::Moreau => [10, 1_000],
         Rung::Hertz => [10, 100],
+        _ => [10, 1_000],
     }
 }
 
@@ -229,5 +232,6 @@ fn whole_drops_take_what_their_parts_add_up_to() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 2 * table.lines().skip(2).count() / 4);
+    let of_plane = |line: &&str| PLANAR.iter().any(|rung| line.starts_with(rung.name()));
+    assert_eq!(compared, 2 * table.lines().filter(of_plane).count() / 4);
 }

@@ -10,9 +10,11 @@ use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::tachometer::{Speed, Tachometers as Core, TachometersConfig};
 use touchdown_core::wire;
 use touchdown_sim::monitor_run;
+use touchdown_sim::replay;
 use touchdown_sim::scene::Scene;
 use touchdown_sim::sensors::{Motion, Sensors, Tachometers};
 use touchdown_sim::stream::{Columns, StreamReader, StreamWriter, to_row, to_sample};
+use touchdown_sim::target::Target;
 
 const RATE: f64 = 20_000.0;
 const CAGE_RATIO: f64 = 0.4;
@@ -513,6 +515,46 @@ fn pulses_come_through_stream_and_wire_unchanged() {
     for sample in &samples {
         assert_eq!(wire::decode_sample(&wire::encode_sample(sample)), *sample);
     }
+}
+
+#[test]
+fn a_recorded_stream_with_pulses_replays_to_the_same_verdict() {
+    let ring = RADIUS * SPIN.abs() / BORE;
+    let contact = Contact {
+        seconds: 0.3,
+        spin: SPIN,
+        ring_angle: &|t| ring * t,
+        tachometers: Some(tachometers()),
+    };
+    let (_, samples) = contact.samples();
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    scene.sensors.speed = true;
+    scene.sensors.tachometers = contact.tachometers;
+    let kinds = |edges: bool| {
+        let columns = Columns {
+            planes: 2,
+            speed: true,
+            levitated: false,
+            edges: [edges, false],
+        };
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let mut writer = StreamWriter::new(&file, columns).expect("a file");
+        for (k, sample) in samples.iter().enumerate() {
+            let row = to_row(k as f64 / RATE, sample, &scene.sensors, RATE);
+            writer.write(&row).expect("a file");
+        }
+        writer.finish().expect("a file");
+        let detection = replay::run(file.path(), &scene, &Target::Host).expect("own stream");
+        let kinds = detection.events.into_iter().map(|event| event.event);
+        kinds
+            .filter(|kind| matches!(kind, EventKind::Sliding | EventKind::Rolling))
+            .collect::<Vec<_>>()
+    };
+    let direct: Vec<_> = contact.kinds().iter().map(|kind| kind.0).collect();
+    assert_eq!(kinds(true), direct);
+    assert_eq!(kinds(true).last(), Some(&EventKind::Rolling));
+    // A stream without the columns is judged as by a wall that does not turn.
+    assert_eq!(kinds(false), [EventKind::Sliding]);
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use core::hint::black_box;
 
 use touchdown_core::model::{
-    Euler, Hertz, HertzConfig, Materials, Moreau, Point, Precision, Rigid, RigidConfig, Scheme,
-    Solved, Start, Stepper, Touch, Verlet,
+    BallBearing, Ends, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement, Point,
+    Precision, RaceConfig, Rigid, RigidConfig, RingConfig, Scheme, Solved, Sprung, Start, Stepper,
+    Support, SupportConfig, Touch, TwoPlane, TwoPlaneConfig, UnbalanceConfig, Verlet,
 };
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 
@@ -65,6 +66,11 @@ fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
         let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
         run.of_model::<R, _>(&moreau.rounded(), scales.length, scales.spin)
             .write(table, "moreau", "midpoint", &run);
+        run.of_model::<R, _>(&support(step).rounded(), scales.length, scales.spin)
+            .write(table, "support", "midpoint", &run);
+        let ends = ends::<R>(step);
+        run.of_model::<R, _>(&ends, scales.length, scales.spin)
+            .write(table, "two-plane", "midpoint", &run);
     }
     for step in SHORT_STEPS {
         let run = Run {
@@ -89,6 +95,60 @@ fn config(step: u32) -> RigidConfig<f64> {
         speed: 1.0,
         step: 1e-6 * f64::from(step),
     }
+}
+
+/// All parts of the rung: the scenes `soft-support` and `ball-bearing` in one.
+fn support(step: u32) -> Support<f64, Sprung<f64>, BallBearing<f64>> {
+    Support::try_new(&SupportConfig {
+        rigid: config(step),
+        mount: MountConfig {
+            mass: 0.5,
+            stiffness: 2.6e6,
+            damping: 320.0,
+            travel: Some(0.5e-3),
+        },
+        race: RaceConfig {
+            inertia: 3e-5,
+            dry_drag: 0.005,
+            viscous_drag: 1e-5,
+            cage_ratio: 0.44,
+            heat_capacity: 50.0,
+            heat_loss: 0.5,
+        },
+    })
+    .expect("a valid configuration")
+}
+
+/// The scene `two-plane` without its third ring.
+fn ends<R: Precision>(step: u32) -> Ends<R, 2> {
+    let plane = config(step);
+    let ring = |place| RingConfig {
+        place,
+        clearance: plane.clearance,
+        radius: plane.radius,
+        friction: plane.friction,
+        restitution: plane.restitution,
+    };
+    let model = TwoPlane::try_new(&TwoPlaneConfig {
+        mass: plane.mass,
+        polar_inertia: plane.polar_inertia,
+        transverse_inertia: 0.03078,
+        rings: [ring(-0.12), ring(0.12)],
+        gravity: [0.0, -plane.gravity],
+        speed: plane.speed,
+        unbalance: UnbalanceConfig {
+            eccentricity: 1.1e-6 / plane.mass,
+            ..UnbalanceConfig::default()
+        },
+        magnets: Default::default(),
+        step: plane.step,
+    })
+    .expect("a valid configuration");
+    let start = Placement {
+        tilt: [0.0, 0.6e-3 / model.tilt_scale()],
+        ..Placement::default()
+    };
+    Ends::new(model.rounded(), start.rounded())
 }
 
 #[derive(Clone, Copy)]

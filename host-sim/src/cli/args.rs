@@ -131,7 +131,8 @@ pub(super) struct DropArgs {
 #[derive(Args, Clone, Debug)]
 pub(super) struct ReplayArgs {
     /// Recorded stream: CSV with the header
-    /// time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], one row a sample, constant rate
+    /// time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], one row a sample, constant rate; for a
+    /// ball bearing also [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]
     pub stream: String,
     /// Scene with the rotor, retainer, gravity, sensors and detector
     #[arg(long)]

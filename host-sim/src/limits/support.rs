@@ -112,10 +112,15 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
 
 /// Runs a scene, watched after each step.
 pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
+    // The ring may be the faster of the two.
+    let ring = scene.support.map_or(1.0, |it| scene.rotor.mass / it.mass);
+    let lever = ring.max(1.0).sqrt();
     watch(scene, &mut |sight| {
         let energy = sight.energy;
         each(Glance {
             beyond: sight.beyond.max(sight.stop),
+            motion: energy.motion + energy.ring,
+            lever,
             gone: energy.dissipated(),
             total: sight.total,
             parts: [

@@ -118,10 +118,20 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
 
 /// Runs a scene, watched after each step.
 pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
+    let lever = scene.two_plane.as_ref().map_or(1.0, |it| {
+        let square = it.transverse_inertia / scene.rotor.mass;
+        let lever = |ring: &crate::scene::Ring| {
+            let part = scene.retainer.clearance / ring.retainer.clearance;
+            part * (1.0 + ring.place * ring.place / square).sqrt()
+        };
+        it.rings.iter().map(lever).fold(0.0, f64::max)
+    });
     watch(scene, &mut |sight| {
         let energy = sight.energy;
         each(Glance {
             beyond: sight.beyond,
+            motion: energy.motion,
+            lever,
             gone: energy.heat + energy.lost,
             total: sight.total,
             parts: [energy.spin, energy.motion, energy.driven, energy.magnets],

@@ -2,8 +2,8 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    Energy, Happening, Kinematics, MagnetConfig, Placement, Precision, RingConfig, Start, Stepper,
-    Touch, TwoPlane, TwoPlaneConfig, TwoPlaneState, UnbalanceConfig,
+    Ends, Energy, Happening, MagnetConfig, Placement, Precision, RingConfig, Start, Stepper,
+    TwoPlane, TwoPlaneConfig, TwoPlaneState, UnbalanceConfig,
 };
 use touchdown_core::scales::Scales;
 
@@ -13,56 +13,6 @@ use crate::history::{Recorder, RotorState};
 use crate::ledger::{Ledger, entries};
 use crate::rings::{Histories, Merge};
 use crate::scene::{self, Scene};
-
-/// The model from its start, its rings seen as one: a stepper like those of the plane.
-struct Ends<R, const N: usize> {
-    model: TwoPlane<R, N>,
-    start: Placement<R>,
-}
-
-impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
-    type State = TwoPlaneState<R, N>;
-
-    /// From its own start: one of the plane has no tilt.
-    fn start(
-        &self,
-        _: &Start<R>,
-        spin: R,
-        mut sink: impl FnMut(Happening<R>),
-    ) -> Result<Self::State, ConfigError> {
-        self.model.start(&self.start, spin, |_, h| sink(h))
-    }
-
-    fn step(&self, state: &mut Self::State, mut sink: impl FnMut(Happening<R>)) {
-        self.model.step(state, |_, h| sink(h));
-    }
-
-    fn part_step(&self, state: &mut Self::State, part: R, mut sink: impl FnMut(Happening<R>)) {
-        self.model.part_step(state, part, |_, h| sink(h));
-    }
-
-    /// Of the centre of mass; turns are those of the ring that has most.
-    fn kinematics(&self, state: &Self::State) -> Kinematics<R> {
-        let (position, velocity) = state.centre();
-        let rings = (0..N).map(|ring| self.model.kinematics_at(state, ring));
-        let (mut touch, mut turns) = (Touch::None, (0_i64, R::ZERO));
-        for ring in rings {
-            if ring.touch == Touch::Sliding || touch == Touch::None {
-                touch = ring.touch;
-            }
-            if ring.turns.0.abs() > turns.0.abs() {
-                turns = ring.turns;
-            }
-        }
-        Kinematics {
-            position,
-            velocity,
-            spin: state.spin(),
-            touch,
-            turns,
-        }
-    }
-}
 
 /// Builds the model with the scene's rings for `what`.
 pub(super) fn with_rings<R: Precision, U: Use>(
@@ -90,10 +40,10 @@ fn with<R: Precision, U: Use, const N: usize>(
         },
         spin: R::lit(scene.rotor.spin / scales.spin),
         scales,
-        model: Ends {
-            start: placement(scene, &model)?.rounded::<R>(),
-            model: model.rounded::<R>(),
-        },
+        model: Ends::new(
+            model.rounded::<R>(),
+            placement(scene, &model)?.rounded::<R>(),
+        ),
     })
 }
 
@@ -250,7 +200,7 @@ fn in_rings<R: Precision, const N: usize>(
         })
         .collect();
     let end = {
-        let whole = Ends { model, start };
+        let whole = Ends::new(model, start);
         Seen::state(&whole.kinematics(&state), scene.run.duration, &scales)
     };
     let still = STILL * scales.speed;

@@ -97,11 +97,10 @@ impl Detector {
             notices,
         };
         self.faults(state, reading, &mut teller);
-        let now = Moment::of_sample(sample);
         let fix = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
             Fix {
-                now,
+                now: Moment::of_sample(sample),
                 position,
                 variance: state.noise.variance(planes, self.resolution),
             }
@@ -111,31 +110,34 @@ impl Detector {
         }
         let known = state.noise.is_known();
         let fix = fix.filter(|_| known);
-        let variance = state.noise.variance(1, self.resolution);
-        let ends = reading.planes.map(|position| {
-            let position = position.filter(|_| known)?;
-            Some(Fix {
-                now,
-                position,
-                variance,
-            })
-        });
-        if let [Some(a), Some(b)] = &ends {
-            let floats = state.rotor.phase == Phase::Levitated;
-            self.ends.take(&mut state.ends, [a, b], floats);
-            teller.motion = state.ends.motion();
-        } else {
-            state.ends.lose_sight();
+        match reading.planes {
+            [Some(a), Some(b)] if known => {
+                let floats = state.rotor.phase == Phase::Levitated;
+                let variance = state.noise.variance(1, self.resolution);
+                self.ends.take(&mut state.ends, a, b, variance, floats);
+                teller.motion = state.ends.motion();
+            }
+            _ => state.ends.lose_sight(),
         }
-        if state.ends.phases().is_some() {
-            self.apart(state, &ends, signals, &mut teller);
+        if state.ends.are_alone() {
+            self.apart(state, reading, signals, &mut teller);
         } else {
             self.together(state, fix.as_ref(), signals, &mut teller);
-            if let [Some(a), Some(b)] = &ends {
-                self.part(state, [a, b], &mut teller);
+            if state.ends.have_parted() {
+                self.part(state, reading, &mut teller);
             }
         }
         state.next_number = next_number;
+    }
+
+    /// Each end's position, where seen.
+    fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Fix>; PLANES] {
+        let fix = |position| Fix {
+            now: Moment::of_sample(state.sample.saturating_sub(1)),
+            position,
+            variance: state.noise.variance(1, self.resolution),
+        };
+        reading.planes.map(|position| position.map(fix))
     }
 
     fn faults(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
@@ -300,10 +302,11 @@ impl Detector {
     }
 
     /// Gives each end a ladder of its own where they have moved apart.
-    fn part(&self, state: &mut DetectorState, ends: [&Fix; PLANES], teller: &mut Teller) {
-        if !state.ends.have_parted() {
+    fn part(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
+        let [Some(a), Some(b)] = self.fixes(state, reading) else {
             return;
-        }
+        };
+        let ends = [&a, &b];
         let loudness = state.listener.loudness();
         match state.rotor.phase {
             Phase::Starting => return,
@@ -332,10 +335,11 @@ impl Detector {
     fn apart(
         &self,
         state: &mut DetectorState,
-        fixes: &[Option<Fix>; PLANES],
+        reading: &Reading,
         signals: &Signals,
         teller: &mut Teller,
     ) {
+        let fixes = &self.fixes(state, reading);
         let (ends, pending) = (&mut state.ends, &mut state.pending);
         let floating = (&state.levitation, state.listener.loudness());
         let is_caught = self

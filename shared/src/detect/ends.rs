@@ -79,13 +79,19 @@ impl EndsTest {
         }
     }
 
-    /// Takes both ends; `floats` while the rotor does.
-    pub(crate) fn take(&self, ends: &mut Ends, [a, b]: [&Fix; PLANES], floats: bool) {
-        let half =
-            |sign: f32| [0, 1].map(|axis| 0.5 * (a.position[axis] + sign * b.position[axis]));
-        ends.now = [half(1.0), half(-1.0)];
-        ends.variance = a.variance;
-        let now = ends.now;
+    /// Takes the positions of both ends (m), whose axes have this variance (m^2); `floats` while the rotor does.
+    pub(crate) fn take(
+        &self,
+        ends: &mut Ends,
+        a: [f32; 2],
+        b: [f32; 2],
+        variance: f32,
+        floats: bool,
+    ) {
+        let half = |sign: f32| [0.5 * (a[0] + sign * b[0]), 0.5 * (a[1] + sign * b[1])];
+        let now = [half(1.0), half(-1.0)];
+        ends.now = now;
+        ends.variance = variance;
         ends.count = (ends.count + 1).min(self.mean_samples);
         let gain = 1.0 / ends.count as f32;
         for ((now, mean), power) in now.iter().zip(&mut ends.mean).zip(&mut ends.power) {
@@ -230,6 +236,11 @@ impl Ends {
     pub(crate) fn unite(&mut self) {
         self.alone = None;
         self.apart = 0;
+    }
+
+    /// Whether each end has a ladder of its own.
+    pub(crate) fn are_alone(&self) -> bool {
+        self.alone.is_some()
     }
 
     /// Each end's phase, while they are apart.

@@ -57,6 +57,6 @@ pub use support::{
     SupportState,
 };
 pub use two_plane::{
-    Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,
+    Ends, Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,
     UnbalanceConfig,
 };

@@ -14,6 +14,7 @@
 
 mod calm;
 mod config;
+mod ends;
 mod energy;
 mod follow;
 mod jam;
@@ -24,6 +25,7 @@ mod state;
 mod strike;
 
 pub use config::{MagnetConfig, RingConfig, TwoPlaneConfig, UnbalanceConfig};
+pub use ends::Ends;
 pub use energy::Energy;
 pub use state::{Placement, TwoPlaneState};
 
