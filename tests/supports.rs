@@ -11,8 +11,11 @@ use touchdown_sim::reference::{self, Machine};
 /// A rotor, what it falls into, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Fall {
+    /// Rotor, gap and step.
     pub rigid: RigidConfig<f64>,
+    /// None: the ring is fixed.
     pub mount: Option<MountConfig<f64>>,
+    /// None: a bushing.
     pub race: Option<RaceConfig<f64>>,
     /// SI.
     pub start: reference::Start,
@@ -23,24 +26,33 @@ pub struct Fall {
 /// The model at one moment, SI.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
+    /// s.
     pub time: f64,
+    /// Rotor centre in space, m.
     pub position: [f64; 2],
+    /// m/s.
     pub velocity: [f64; 2],
     /// rad/s.
     pub spin: f64,
     /// Of the rotor in the ring.
     pub displacement: [f64; 2],
+    /// Of the ring, m.
     pub ring: [f64; 2],
+    /// m/s.
     pub ring_velocity: [f64; 2],
+    /// Whether the stop holds the ring.
     pub stopped: bool,
     /// Inner ring and cage, rad/s; temperature, K.
     pub race: [f64; 3],
+    /// Contact or not.
     pub touch: Touch,
+    /// Of the rotor round the ring since contact began.
     pub turns: f64,
     /// J.
     pub ledger: Ledger<f64>,
     /// N.
     pub load: Load<f64>,
+    /// Steps that hit the bound on their stretches.
     pub shortened: u32,
 }
 
@@ -73,6 +85,7 @@ impl Fall {
         }
     }
 
+    /// With a ring of this mass (kg) on a spring (N/m) and a damper (N s/m).
     pub fn mounted(self, mass: f64, stiffness: f64, damping: f64) -> Self {
         Self {
             mount: Some(MountConfig {
@@ -85,6 +98,7 @@ impl Fall {
         }
     }
 
+    /// With a stop after this way of the ring, m.
     pub fn stopping(mut self, travel: f64) -> Self {
         self.mount = self.mount.map(|mount| MountConfig {
             travel: Some(travel),
@@ -93,7 +107,7 @@ impl Fall {
         self
     }
 
-    /// With an inner ring that nothing drags.
+    /// With an inner ring of this inertia (kg m^2) that nothing drags.
     pub fn turning(self, inertia: f64) -> Self {
         Self {
             race: Some(RaceConfig {
@@ -108,6 +122,7 @@ impl Fall {
         }
     }
 
+    /// With drag on the inner ring: N m, and N m s.
     pub fn dragged(mut self, dry_drag: f64, viscous_drag: f64) -> Self {
         self.race = self.race.map(|race| RaceConfig {
             dry_drag,
@@ -117,19 +132,30 @@ impl Fall {
         self
     }
 
+    /// Radius of the inner ring's bore, m.
     pub fn bore(&self) -> f64 {
         self.rigid.radius + self.rigid.clearance
     }
 
-    /// At the bottom, moving along the wall.
-    pub fn at_bottom(self, tangential: f64) -> Self {
+    /// On the wall, at an angle from the bottom (rad), moving along it (m/s).
+    pub fn on_wall(self, angle: f64, tangential: f64) -> Self {
         Self {
-            start: reference::Start::Wall {
-                angle: 0.0,
-                tangential,
-            },
+            start: reference::Start::Wall { angle, tangential },
             ..self
         }
+    }
+
+    /// In the gap, from the centre of the ring.
+    pub fn free(self, position: [f64; 2], velocity: [f64; 2]) -> Self {
+        Self {
+            start: reference::Start::Free { position, velocity },
+            ..self
+        }
+    }
+
+    /// Turning, rad/s.
+    pub fn spinning(self, spin: f64) -> Self {
+        Self { spin, ..self }
     }
 
     /// The whole run in `R`; `each` sees the start and the end of every step.
@@ -223,7 +249,6 @@ impl Fall {
         let [length, speed, spin] = [scales.length, scales.speed, scales.spin].map(R::to_f64);
         let places = |x: [R; 2]| x.map(|x| x.to_f64() * length);
         let speeds = |v: [R; 2]| v.map(|v| v.to_f64() * speed);
-        let joules = |e: R| e.to_f64() * self.rigid.mass * speed * speed;
         let newtons = |f: R| f.to_f64() * self.rigid.mass * speed * speed / length;
         let (seen, ring) = (model.kinematics(state), model.ring(state));
         let (ledger, load) = (model.ledger(state), state.load());
@@ -242,19 +267,7 @@ impl Fall {
             }),
             touch: seen.touch,
             turns: seen.turns.0 as f64 + seen.turns.1.to_f64() / core::f64::consts::TAU,
-            ledger: Ledger {
-                motion: joules(ledger.motion),
-                spin: joules(ledger.spin),
-                height: joules(ledger.height),
-                ring: joules(ledger.ring),
-                spring: joules(ledger.spring),
-                race: joules(ledger.race),
-                heat: joules(ledger.heat),
-                lost: joules(ledger.lost),
-                damped: joules(ledger.damped),
-                stop: joules(ledger.stop),
-                drag: joules(ledger.drag),
-            },
+            ledger: scaled(&ledger.to_f64(), self.rigid.mass * speed * speed),
             load: Load {
                 normal: newtons(load.normal),
                 peak: newtons(load.peak),
@@ -297,5 +310,21 @@ impl Fall {
             }),
         };
         SupportReference::new(&machine, &SupportStart::new(self.start, self.spin))
+    }
+}
+
+fn scaled(ledger: &Ledger<f64>, unit: f64) -> Ledger<f64> {
+    Ledger {
+        motion: ledger.motion * unit,
+        spin: ledger.spin * unit,
+        height: ledger.height * unit,
+        ring: ledger.ring * unit,
+        spring: ledger.spring * unit,
+        race: ledger.race * unit,
+        heat: ledger.heat * unit,
+        lost: ledger.lost * unit,
+        damped: ledger.damped * unit,
+        stop: ledger.stop * unit,
+        drag: ledger.drag * unit,
     }
 }
