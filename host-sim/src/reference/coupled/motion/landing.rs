@@ -2,7 +2,7 @@
 
 use super::super::impact::{self, Touching};
 use super::super::step::Mode;
-use super::super::system::{Law, shared};
+use super::super::system::{Hold, Law, shared};
 use super::{Motion, ON_WALL};
 use crate::history::{Happening, Impact, RotorState};
 
@@ -56,7 +56,20 @@ impl<L: Law> Motion<L> {
                 sink(link, Happening::Impact(self.impact(touch)));
             }
         }
+        self.release_brakes();
         self.count();
+    }
+
+    /// A brake has no impulse: what an impact has set turning slips in it.
+    fn release_brakes(&mut self) {
+        for (mode, link) in self.modes.iter_mut().zip(&self.system.links) {
+            let turning = link.turning(&self.speed);
+            if let (Hold::Brake(_), Mode::Stick) = (link.hold, *mode)
+                && turning != 0.0
+            {
+                *mode = Mode::Slide(turning.signum());
+            }
+        }
     }
 
     fn impact(&self, touch: &Touching) -> Impact {
