@@ -167,3 +167,27 @@ proptest! {
         both(&fall, time);
     }
 }
+#[test]
+fn zz() {
+    let mut fall = Fall::new(0.00010925729982454672)
+        .mounted(0.003146956262206077, 2319.6362210863317, 0.0)
+        .stopping(8.695408383629264e-5)
+        .spinning(1477.4502829927058)
+        .free([0.0; 2], [-0.2677581642913026, 0.0]);
+    fall.rigid.friction = 0.4650455842097521;
+    fall.rigid.restitution = 0.0;
+    fall.rigid.gravity = 0.0;
+    let mut last: Option<touchdown_tests::supports::Moment> = None;
+    let mut n = 0;
+    let told = fall.follow::<f64>(0.03, |x| {
+        if let Some(l) = last {
+            let d = [x.ledger.heat - l.ledger.heat, x.ledger.lost - l.ledger.lost, x.ledger.stop - l.ledger.stop, x.ledger.damped - l.ledger.damped];
+            if d.iter().sum::<f64>() < -1e-9 * x.ledger.stored() && n < 12 {
+                n += 1;
+                println!("{:.6} {:?} stored {:e} d {d:?} rotor v {:?} du {:?} spin {} turns {} stopped {}", x.time, x.touch, x.ledger.stored(), x.velocity, x.ring_velocity, x.spin, x.turns, x.stopped);
+            }
+        }
+        last = Some(*x);
+    });
+    println!("{:?}", &told[..20.min(told.len())]);
+}

@@ -18,6 +18,8 @@ const PASSES: usize = 24;
 const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
+/// Slip that friction may go along with, over the speeds of which it is the difference.
+const MOST_GAINED: f64 = 1e-3;
 /// Push of the rotor, over the ways that rotor and ring go, from which it is no answer to them.
 const MOST_PRESSED: f64 = 4.0;
 /// How far round its wall a held rotor goes in a stretch, rad.
@@ -128,7 +130,15 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             half,
         };
         let mut balance = self.balance(state, &ride, &approach)?;
-        let wedged = !balance.settled;
+        let mut wedged = !balance.settled;
+        if let Some(press) = balance.press {
+            let moved = free + press.push - balance.pushed[0] - balance.pushed[1];
+            let turning = R::HALF * (approach.surface[0] + approach.surface[1])
+                + approach.spin_mobility * press.rubbed / time;
+            let slip = press.normal.cross(moved) / time + turning;
+            let size = (moved.length() / time).most(turning.abs());
+            wedged |= press.rubbed * slip > R::lit(MOST_GAINED) * press.rubbed.abs() * size;
+        }
         if wedged {
             approach.friction = R::ZERO;
             balance = self.balance(state, &ride, &approach)?;

@@ -5,8 +5,8 @@ use crate::model::hold::{Rub, keep};
 use crate::model::vector::Vector;
 use crate::real::Real;
 
-/// Passes over normal and friction; the second finds the normal to the square of the step.
-const PASSES: usize = 2;
+/// Passes over normal and friction; each gains an order of the step.
+const PASSES: usize = 3;
 
 /// The contact, as displacement of a rotor free to move: impulse times half the stretch.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,12 +50,13 @@ impl<R: Real> Approach<R> {
         let into = normal.dot(self.free) + R::HALF * round * round;
         let mut pressed = into.most(R::ZERO) / self.mobility;
         let mut press = Press::default();
+        let mut gain = R::ONE;
         for _ in 0..PASSES {
             let along = normal.turned();
             let stick = self.stick(along);
             let stuck = stick.abs() <= self.friction * pressed;
             let rub = if stuck {
-                Rub::Given(self.mobility * stick)
+                Rub::Given(gain * self.mobility * stick)
             } else if stick < R::ZERO {
                 Rub::Slides(-self.friction)
             } else {
@@ -68,6 +69,9 @@ impl<R: Real> Approach<R> {
                 return Some(None);
             }
             let rubbed = hold.rubbed / self.mobility;
+            if stuck && rubbed * stick > R::ZERO {
+                gain = (gain * stick / rubbed).within(R::TWO);
+            }
             press = Press {
                 push: Vector::new([-pressed, rubbed]) * normal,
                 pressed,
