@@ -16,6 +16,7 @@ mod mount;
 mod passage;
 mod press;
 mod race;
+mod seat;
 mod settle;
 mod state;
 mod strike;

@@ -292,7 +292,7 @@ impl<R: Real> Mount<R> for Sprung<R> {
 
     fn seat(&self, state: &mut SprungState<R>) -> Vector<R> {
         let place = state.place.value();
-        let (Some(travel), false) = (self.travel, state.stopped) else {
+        let Some(travel) = self.travel else {
             return Vector::default();
         };
         let moved = place.times(travel / place.length() - R::ONE);

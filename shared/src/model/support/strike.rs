@@ -130,18 +130,14 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         }
         *state = after;
         if meeting.stop.is_some() {
-            let raised = self.law.gravity * self.mount.seat(&mut state.ring).y;
-            state.lost.add(-raised);
+            self.seat_ring(state);
         }
         if new && meeting.outward > R::CUTOFF_SPEED {
             state.struck = true;
             self.tell(state, part, Change::Impact(meeting.outward), sink);
         }
         if returns {
-            let place = state.place.value();
-            let moved = place.times(R::ONE / place.length() - R::ONE);
-            state.place.add(moved);
-            state.lost.add(-(self.law.gravity * moved.y));
+            self.seat_rotor(state);
             state.held = Some(Held {
                 rolling: impulse.stuck,
                 ..Held::default()
