@@ -18,6 +18,8 @@ use crate::real::Real;
 const PASSES: usize = 24;
 /// Impulse of the rotor, over the speeds that meet, from which it is no answer to them.
 const MOST_PRESSED: f64 = 4.0;
+/// Mean slip that friction may go along with, over the speeds of which it is the difference.
+const MOST_GAINED: f64 = 1e-3;
 /// What the passes may leave of the impulses, in units of epsilon.
 const CLOSE: f64 = 8.0;
 /// Distance from a wall, in units of epsilon and the clearance, that counts as on it.
@@ -94,12 +96,23 @@ impl<R: Real> Clash<R> {
             let close = R::lit(CLOSE) * R::EPSILON * (found.length() + blow.push.length());
             if meeting.wall.is_none() || changed.length() <= close {
                 blow.by_stop = found;
-                let speeds = self.relative.length() + self.ring.length() + self.launch;
-                return (blow, blow.impulse.normal <= R::lit(MOST_PRESSED) * speeds);
+                return (blow, self.is_lossy(&blow));
             }
             blow.by_stop = settling.next(blow.by_stop, changed);
         }
         (blow, false)
+    }
+
+    /// Whether the impulses are an answer to the speeds, and friction goes against the mean of the slip.
+    fn is_lossy(&self, blow: &Blow<R>) -> bool {
+        let rub = blow.impulse.tangential;
+        let speeds = self.relative.length() + self.ring.length() + self.launch;
+        let starts = self.normal.cross(self.relative) + self.surface;
+        let turned = self.normal.cross(blow.by_stop) * self.yielding;
+        let slip = starts + R::HALF * (rub * self.mobility.tangential - turned);
+        let most = R::lit(MOST_GAINED) * starts.abs().most(turned.abs());
+        let answers = blow.impulse.normal <= R::lit(MOST_PRESSED) * speeds;
+        answers && rub * slip <= rub.abs() * most
     }
 }
 
