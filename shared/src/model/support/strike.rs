@@ -110,7 +110,7 @@ impl<R: Real> Clash<R> {
         let starts = self.normal.cross(self.relative) + self.surface;
         let turned = self.normal.cross(blow.by_stop) * self.yielding;
         let slip = starts + R::HALF * (rub * self.mobility.tangential - turned);
-        let most = R::lit(MOST_GAINED) * starts.abs().most(turned.abs());
+        let most = R::lit(MOST_GAINED) * starts.abs() + R::lit(CLOSE) * R::EPSILON * turned.abs();
         let answers = blow.impulse.normal <= R::lit(MOST_PRESSED) * speeds;
         answers && rub * slip <= rub.abs() * most
     }
@@ -168,12 +168,12 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         let touches = place.square() >= near && outward >= R::ZERO;
         let takes_part = arrives || touches || state.held.is_some();
         let ring = M::place(&state.ring);
-        let stops = arrived == Arrival::Ring
-            || M::is_stopped(&state.ring)
-            || self
-                .mount
-                .travel()
-                .is_some_and(|travel| ring.square() >= near * travel * travel);
+        let leaves = ring.dot(M::velocity(&state.ring)) < R::ZERO;
+        let lies = self
+            .mount
+            .travel()
+            .is_some_and(|travel| ring.square() >= near * travel * travel);
+        let stops = arrived == Arrival::Ring || M::is_stopped(&state.ring) || (lies && !leaves);
         Meeting {
             wall: takes_part.then_some(wall),
             stop: stops.then(|| ring.times(R::ONE / ring.length())),
@@ -187,7 +187,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         meeting: &Meeting<R>,
         restitution: R,
     ) -> Impulse<R> {
-        self.mount.brace(&mut state.ring);
+        self.mount.brace(&mut state.ring, meeting.stop);
         let yielding = self.mount.yielding();
         let ring = M::velocity(&state.ring);
         let surface = state.spin.value() - B::surface(&state.race);
