@@ -290,7 +290,7 @@ fn tables_that_do_not_go_together() {
         ),
         (
             TILTS.replace("[0.1, 0.1]", "[5, 0]"),
-            ":22: the start is outside the gap of ring a",
+            ":23: the start is outside the gap of ring a",
         ),
         (
             format!("{TILTS}[start]\nangle_deg = 0\n"),

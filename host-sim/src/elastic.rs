@@ -6,6 +6,7 @@
 
 use core::fmt;
 
+use serde::Serialize;
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{HertzConfig, Shape};
 
@@ -13,7 +14,8 @@ use touchdown_core::model::{HertzConfig, Shape};
 const STIFF: f64 = 0.1;
 
 /// What a rigid rotor is worth in its contacts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The mode follows the pulse and does not ring after it.
     Rigid,
@@ -24,7 +26,7 @@ pub enum Verdict {
 }
 
 /// The validity of a rigid rotor in the contacts of a ring.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Validity {
     /// Upper end of the pulse's band, 1/T_c, Hz.
     pub band_hz: f64,

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
+use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
-use crate::model_run::RingEnd;
+use crate::model_run::{RingEnd, validity};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
@@ -26,6 +27,8 @@ struct DropJson<'a> {
     ring: Option<RingEndJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     energy: Option<EnergyJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    validity: Option<Validity>,
     detector: EventsJson<'a>,
 }
 
@@ -137,6 +140,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             ledger,
             imbalance_j: ledger.imbalance_j(),
         }),
+        validity: validity(scene),
         detector: EventsJson {
             events: &outcome.detection.events,
         },

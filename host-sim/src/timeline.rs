@@ -4,6 +4,7 @@ use touchdown_core::event::EventKind;
 
 use crate::history::{History, Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
+use crate::model_run::validity;
 use crate::names::{event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::paint::Paint;
@@ -22,6 +23,9 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
     text += &extras(outcome, &matches, paint);
+    if let Some(validity) = validity(scene) {
+        text += &format!("{validity}\n");
+    }
     text
 }
 

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, html};
 
+use crate::model_run::validity;
 use crate::outcome::Detection;
 use crate::report::{RingSubject, Subject};
 use crate::scene::parts::parts;
@@ -29,7 +30,7 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         rings: rings.map(ring).collect(),
         cage_ratio: scene.ball_bearing.map(|bearing| bearing.cage_ratio),
         parts: parts(scene),
-        validity: None,
+        validity: validity(scene).map(|it| it.to_string()),
         versions: vec![("touchdown".to_owned(), env!("CARGO_PKG_VERSION").to_owned())],
     }
 }

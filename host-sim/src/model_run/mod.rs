@@ -14,6 +14,7 @@ use touchdown_core::model::{
 use touchdown_core::real::{Micro32, Poly32, Poly64};
 use touchdown_core::scales::Scales;
 
+use crate::elastic::Validity;
 use crate::reference::Start;
 use crate::scene::{self, Contact, Math, Rung, Scene, Scheme};
 
@@ -127,6 +128,22 @@ pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
         Contact::Point => compliant(scene, Point).compliance(),
         Contact::Line { length } => compliant(scene, Line { length }).compliance(),
     }
+}
+
+/// How far the rotor is rigid in its contacts, in the ring where it is least; none where the scene does not
+/// give its first elastic mode.
+pub fn validity(scene: &Scene) -> Option<Validity> {
+    let machine = scene.two_plane.as_ref()?;
+    let mode = machine.elastic_mode?;
+    let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
+    let rings = machine.rings.iter().map(|ring| ring.place / gyration);
+    let all = rings.filter_map(|zeta| match scene.materials.contact {
+        Contact::Point => Validity::try_new(&compliant(scene, Point), zeta, mode).ok(),
+        Contact::Line { length } => {
+            Validity::try_new(&compliant(scene, Line { length }), zeta, mode).ok()
+        }
+    });
+    all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
 }
 
 fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {

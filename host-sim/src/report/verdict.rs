@@ -24,7 +24,7 @@ pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
                 (motion(truth)) " " (detection(outcome, matches))
             }
             dl.figures {
-                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth, subject.machine.clearance)))
+                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
                 (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
                 (figure("First contact", &contact.0, contact.1))
                 (fall_figure(outcome, matches))
@@ -119,13 +119,13 @@ fn detection(outcome: &Outcome, matches: &Matches) -> String {
     text
 }
 
-fn whirl(truth: &History, clearance: f64) -> String {
+fn whirl(truth: &History) -> String {
     match truth.regime {
         Regime::ForwardWhirl | Regime::BackwardWhirl => {
-            let [vx, vy] = truth.end.velocity;
-            let rate = f64::hypot(vx, vy) / (TAU * clearance);
+            let ([x, y], [vx, vy]) = (truth.end.position, truth.end.velocity);
+            let rate = (x * vy - y * vx).abs() / (TAU * (x * x + y * y));
             format!(
-                "{} turns in this contact, at the end {} (rigid model: upper bound)",
+                "{} turns in this contact, at the end {} (on a rigid support an upper bound)",
                 significant(truth.end.turns_in_contact.abs(), 3),
                 si(rate, "Hz")
             )

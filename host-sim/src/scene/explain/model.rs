@@ -5,7 +5,7 @@ use touchdown_core::model::{Precision, Stepper};
 
 use super::Row;
 use crate::instructions::Instructions;
-use crate::model_run::{Subject, Use, with_model};
+use crate::model_run::{Subject, Use, validity, with_model};
 use crate::scene::parts::degrees_of_freedom;
 use crate::scene::{Rung, Scene, Start};
 
@@ -49,6 +49,9 @@ pub(super) fn model(scene: &Scene) -> Vec<Row> {
     ];
     rows.extend(instructions(scene));
     rows.push(("start", start.to_owned()));
+    if let Some(validity) = validity(scene) {
+        rows.push(("rigid rotor", validity.to_string()));
+    }
     rows.push((
         "truth",
         "independent event-located solution in f64".to_owned(),
