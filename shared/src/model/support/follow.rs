@@ -51,7 +51,6 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
                 state.shortened = state.shortened.saturating_add(1);
                 break;
             }
-            self.seat(state);
             let time = left.least(longest).least(Self::reach(state));
             let Some(passage) = self.pass(state, time) else {
                 longest = R::HALF * time;

@@ -16,7 +16,6 @@ mod mount;
 mod passage;
 mod press;
 mod race;
-mod seat;
 mod settle;
 mod state;
 mod strike;

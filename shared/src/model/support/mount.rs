@@ -61,8 +61,8 @@ pub trait Mount<R: Real>: sealed::Sealed + Copy + core::fmt::Debug + PartialEq {
     fn kick(&self, state: &mut Self::State, push: Vector<R>);
     /// Velocity by an impulse in an impact.
     fn yielding(&self) -> R;
-    /// Makes the ring ready for an impact, at its stop with this normal.
-    fn brace(&self, state: &mut Self::State, stop: Option<Vector<R>>);
+    /// Makes the ring ready for an impact.
+    fn brace(&self, state: &mut Self::State);
     /// Takes what an impact gives; `stopped` by impulse `stop` away from the stop.
     fn strike(&self, state: &mut Self::State, push: Vector<R>, stop: Vector<R>);
     /// Goes on by `ride`, moved by the rotor and by the stop.
@@ -120,7 +120,7 @@ impl<R: Real> Mount<R> for Fixed {
         R::ZERO
     }
 
-    fn brace(&self, (): &mut (), _: Option<Vector<R>>) {}
+    fn brace(&self, (): &mut ()) {}
 
     fn strike(&self, (): &mut (), _: Vector<R>, _: Vector<R>) {}
 
@@ -253,13 +253,7 @@ impl<R: Real> Mount<R> for Sprung<R> {
         R::ONE / self.braced
     }
 
-    fn brace(&self, state: &mut SprungState<R>, stop: Option<Vector<R>>) {
-        // A ring that the stop holds does not leave it, but for the swing of the midpoint rule.
-        if let Some(stop) = stop {
-            let leaving = stop.dot(state.velocity.value()).least(R::ZERO);
-            state.velocity.add(stop.times(-leaving));
-            state.stopping.add(R::HALF * self.mass * leaving * leaving);
-        }
+    fn brace(&self, state: &mut SprungState<R>) {
         let velocity = state.velocity.value();
         let kept = self.mass / self.braced;
         let lost = (self.braced - self.mass) / self.braced;
@@ -298,7 +292,7 @@ impl<R: Real> Mount<R> for Sprung<R> {
 
     fn seat(&self, state: &mut SprungState<R>) -> Vector<R> {
         let place = state.place.value();
-        let Some(travel) = self.travel else {
+        let (Some(travel), false) = (self.travel, state.stopped) else {
             return Vector::default();
         };
         let moved = place.times(travel / place.length() - R::ONE);

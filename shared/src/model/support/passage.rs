@@ -18,10 +18,6 @@ const PASSES: usize = 24;
 const CLOSE: f64 = 8.0;
 /// Values of the drag: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
-/// Slip that friction may go along with, over the speeds of which it is the difference.
-const MOST_GAINED: f64 = 1e-3;
-/// Push of the rotor, over the ways that rotor and ring go, from which it is no answer to them.
-const MOST_PRESSED: f64 = 4.0;
 /// How far round its wall a held rotor goes in a stretch, rad.
 const REACH: f64 = 0.25;
 
@@ -130,15 +126,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             half,
         };
         let mut balance = self.balance(state, &ride, &approach)?;
-        let mut wedged = !balance.settled;
-        if let Some(press) = balance.press {
-            let moved = free + press.push - balance.pushed[0] - balance.pushed[1];
-            let turning = R::HALF * (approach.surface[0] + approach.surface[1])
-                + approach.spin_mobility * press.rubbed / time;
-            let slip = press.normal.cross(moved) / time + turning;
-            let size = (moved.length() / time).most(turning.abs());
-            wedged |= press.rubbed * slip > R::lit(MOST_GAINED) * press.rubbed.abs() * size;
-        }
+        let wedged = !balance.settled || gains(&balance, &approach, time);
         if wedged {
             approach.friction = R::ZERO;
             balance = self.balance(state, &ride, &approach)?;
@@ -185,15 +173,11 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             let changed = found - by_stop;
             let close = R::lit(CLOSE) * R::EPSILON * (found.length() + by_rotor.length());
             if state.held.is_none() || changed.length() <= close.least(R::lit(CLOSE) * R::EPSILON) {
-                let own = (free + ride.moved).length();
-                let ring = (ride.moved + by_rotor + found).length();
-                let most = R::lit(MOST_PRESSED) * (own + own * own + ring);
-                let pressed = press.map_or(R::ZERO, |press| press.pressed);
                 return Some(Balance {
                     press,
                     pushed: [by_rotor, found],
                     stopped: halt.is_some(),
-                    settled: halt.is_none() || pressed <= most,
+                    settled: true,
                 });
             }
             by_stop = settling.next(by_stop, changed);
@@ -205,4 +189,19 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             settled: false,
         })
     }
+}
+
+/// Whether friction goes along with the slip where the stop holds the ring. Slip is stopped at the end of
+/// a stretch, not in its mean: off by the square of the angle that it turns.
+fn gains<R: Real>(balance: &Balance<R>, approach: &Approach<R>, time: R) -> bool {
+    let Some(press) = balance.press.filter(|_| balance.stopped) else {
+        return false;
+    };
+    let moved = approach.free + press.push - balance.pushed[0] - balance.pushed[1];
+    let surface = R::HALF * (approach.surface[0] + approach.surface[1])
+        + approach.spin_mobility * press.rubbed / time;
+    let slip = press.normal.cross(moved) / time + surface;
+    let speed = moved.length() / time;
+    let off = moved.square() * speed + R::lit(CLOSE) * R::EPSILON * (speed + surface.abs());
+    press.rubbed * slip > press.rubbed.abs() * off
 }

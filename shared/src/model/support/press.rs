@@ -5,8 +5,8 @@ use crate::model::hold::{Rub, keep};
 use crate::model::vector::Vector;
 use crate::real::Real;
 
-/// Passes over normal and friction; each gains an order of the step.
-const PASSES: usize = 3;
+/// Passes over normal and friction; the second finds the normal to the square of the step.
+const PASSES: usize = 2;
 
 /// The contact, as displacement of a rotor free to move: impulse times half the stretch.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,25 +41,21 @@ pub(super) struct Approach<R> {
 }
 
 impl<R: Real> Approach<R> {
-    /// The contact: inner none where the rotor ends inside without it, outer none where it goes too far
-    /// round the wall.
+    /// The contact: inner none where the wall would have to pull, outer none where the rotor goes too
+    /// far round it.
     #[allow(clippy::option_option)]
     pub(super) fn press(&self) -> Option<Option<Press<R>>> {
-        if self.free.dot(self.place.times(R::TWO) + self.free) <= R::ZERO {
-            return Some(None);
-        }
         let mut normal = self.place.times(R::ONE / self.place.length());
         let round = normal.cross(self.free);
         let into = normal.dot(self.free) + R::HALF * round * round;
         let mut pressed = into.most(R::ZERO) / self.mobility;
         let mut press = Press::default();
-        let mut gain = R::ONE;
         for _ in 0..PASSES {
             let along = normal.turned();
             let stick = self.stick(along);
             let stuck = stick.abs() <= self.friction * pressed;
             let rub = if stuck {
-                Rub::Given(gain * self.mobility * stick)
+                Rub::Given(self.mobility * stick)
             } else if stick < R::ZERO {
                 Rub::Slides(-self.friction)
             } else {
@@ -69,12 +65,9 @@ impl<R: Real> Approach<R> {
             normal = Vector::new(hold.normal);
             pressed = hold.pressed / self.mobility;
             if pressed <= R::ZERO {
-                return None;
+                return Some(None);
             }
             let rubbed = hold.rubbed / self.mobility;
-            if stuck && rubbed * stick > R::ZERO {
-                gain = (gain * stick / rubbed).within(R::TWO);
-            }
             press = Press {
                 push: Vector::new([-pressed, rubbed]) * normal,
                 pressed,

@@ -16,10 +16,6 @@ use crate::real::Real;
 
 /// Passes over rotor and stop; two where nothing grips or lets go.
 const PASSES: usize = 24;
-/// Impulse of the rotor, over the speeds that meet, from which it is no answer to them.
-const MOST_PRESSED: f64 = 4.0;
-/// Mean slip that friction may go along with, over the speeds of which it is the difference.
-const MOST_GAINED: f64 = 1e-3;
 /// What the passes may leave of the impulses, in units of epsilon.
 const CLOSE: f64 = 8.0;
 /// Distance from a wall, in units of epsilon and the clearance, that counts as on it.
@@ -103,16 +99,20 @@ impl<R: Real> Clash<R> {
         (blow, false)
     }
 
-    /// Whether the impulses are an answer to the speeds, and friction goes against the mean of the slip.
+    /// Whether the impulses take energy: what each does is impulse times mean velocity.
     fn is_lossy(&self, blow: &Blow<R>) -> bool {
         let rub = blow.impulse.tangential;
-        let speeds = self.relative.length() + self.ring.length() + self.launch;
-        let starts = self.normal.cross(self.relative) + self.surface;
-        let turned = self.normal.cross(blow.by_stop) * self.yielding;
-        let slip = starts + R::HALF * (rub * self.mobility.tangential - turned);
-        let most = R::lit(MOST_GAINED) * starts.abs() + R::lit(CLOSE) * R::EPSILON * turned.abs();
-        let answers = blow.impulse.normal <= R::lit(MOST_PRESSED) * speeds;
-        answers && rub * slip <= rub.abs() * most
+        let turning = self.mobility.tangential - self.mobility.normal;
+        let ring = (blow.by_stop - blow.push).times(R::HALF * self.yielding);
+        let relative = self.relative + blow.push.times(R::HALF) - ring;
+        let works = [
+            blow.push.dot(relative),
+            blow.by_stop.dot(self.ring + ring),
+            rub * (self.surface + R::HALF * turning * rub),
+        ];
+        let gained = works[0] + works[1] + works[2];
+        let size = works[0].abs() + works[1].abs() + works[2].abs();
+        gained <= R::lit(CLOSE) * R::EPSILON * size
     }
 }
 
@@ -143,14 +143,18 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         }
         *state = after;
         if meeting.stop.is_some() {
-            self.seat_ring(state);
+            let raised = self.law.gravity * self.mount.seat(&mut state.ring).y;
+            state.lost.add(-raised);
         }
         if new && meeting.outward > R::CUTOFF_SPEED {
             state.struck = true;
             self.tell(state, part, Change::Impact(meeting.outward), sink);
         }
         if returns {
-            self.seat_rotor(state);
+            let place = state.place.value();
+            let moved = place.times(R::ONE / place.length() - R::ONE);
+            state.place.add(moved);
+            state.lost.add(-(self.law.gravity * moved.y));
             state.held = Some(Held {
                 rolling: impulse.stuck,
                 ..Held::default()
@@ -168,12 +172,12 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         let touches = place.square() >= near && outward >= R::ZERO;
         let takes_part = arrives || touches || state.held.is_some();
         let ring = M::place(&state.ring);
-        let leaves = ring.dot(M::velocity(&state.ring)) < R::ZERO;
-        let lies = self
-            .mount
-            .travel()
-            .is_some_and(|travel| ring.square() >= near * travel * travel);
-        let stops = arrived == Arrival::Ring || M::is_stopped(&state.ring) || (lies && !leaves);
+        let stops = arrived == Arrival::Ring
+            || M::is_stopped(&state.ring)
+            || self
+                .mount
+                .travel()
+                .is_some_and(|travel| ring.square() >= near * travel * travel);
         Meeting {
             wall: takes_part.then_some(wall),
             stop: stops.then(|| ring.times(R::ONE / ring.length())),
@@ -187,7 +191,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         meeting: &Meeting<R>,
         restitution: R,
     ) -> Impulse<R> {
-        self.mount.brace(&mut state.ring, meeting.stop);
+        self.mount.brace(&mut state.ring);
         let yielding = self.mount.yielding();
         let ring = M::velocity(&state.ring);
         let surface = state.spin.value() - B::surface(&state.race);
