@@ -141,7 +141,7 @@ prop_compose! {
         gravity in prop_oneof![Just(0.0), Just(9.81), 0.1..100.0],
         mount in proptest::option::of((power(-6, 3), power(2, 12), prop_oneof![Just(0.0), power(0, 6)])),
         travel in proptest::option::of(power(-6, -3)),
-        race in proptest::option::of((power(-12, 6), prop_oneof![Just(0.0), power(-4, 2)], prop_oneof![Just(0.0), power(-6, 2)])),
+        race in proptest::option::of((power(-12, 6), Just(0.0), prop_oneof![Just(0.0), power(-6, 2)])),
         (angle, radius) in (0.0..std::f64::consts::TAU, 0.0..1.0_f64),
         velocity in [-0.3..0.3_f64, -0.3..0.3],
     ) -> Fall {
@@ -163,7 +163,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20000))]
+    #![proptest_config(ProptestConfig::with_cases(100000))]
 
     /// A ring of a millionth of the rotor that whirls on its stop takes hundreds of stretches a step, and
     /// in each the pushes of rotor and stop differ by a millionth: f32 has no digits left for that.
