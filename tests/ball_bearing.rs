@@ -1,7 +1,8 @@
 //! The inner ring of a ball bearing under a rotor, against closed forms: spin-up, drag, heat.
 
 use touchdown_core::model::{Change, Touch};
-use touchdown_tests::supports::{Fall, Moment};
+use touchdown_tests::moment::Moment;
+use touchdown_tests::supports::Fall;
 
 const INERTIA: f64 = 2e-5;
 const SPIN: f64 = 500.0;

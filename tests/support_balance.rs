@@ -6,7 +6,8 @@ use std::iter::zip;
 use touchdown_core::model::{Change, Moreau, Precision, Start, Stepper};
 use touchdown_sim::history::Happening;
 use touchdown_sim::reference::{self, Machine, Reference};
-use touchdown_tests::supports::{Fall, Moment};
+use touchdown_tests::moment::Moment;
+use touchdown_tests::supports::Fall;
 
 /// Drops with what a support has, how long they are compared, and how far off they may be at 10 us, in
 /// the units of the drop: what was measured, rounded up.

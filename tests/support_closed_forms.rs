@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 
 use touchdown_core::model::{Change, Touch};
-use touchdown_tests::supports::{Fall, Moment};
+use touchdown_tests::moment::Moment;
+use touchdown_tests::supports::Fall;
 
 const GRAVITY: f64 = 9.81;
 

@@ -191,8 +191,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     }
 }
 
-/// Whether friction goes along with the slip where the stop holds the ring. Slip is stopped at the end of
-/// a stretch, not in its mean: off by the square of the angle that it turns.
+/// Whether friction goes along with the mean of the slip where the stop holds the ring.
 fn gains<R: Real>(balance: &Balance<R>, approach: &Approach<R>, time: R) -> bool {
     let Some(press) = balance.press.filter(|_| balance.stopped) else {
         return false;
@@ -202,6 +201,6 @@ fn gains<R: Real>(balance: &Balance<R>, approach: &Approach<R>, time: R) -> bool
         + approach.spin_mobility * press.rubbed / time;
     let slip = press.normal.cross(moved) / time + surface;
     let speed = moved.length() / time;
-    let off = moved.square() * speed + R::lit(CLOSE) * R::EPSILON * (speed + surface.abs());
+    let off = R::lit(CLOSE) * R::EPSILON * (speed + surface.abs());
     press.rubbed * slip > press.rubbed.abs() * off
 }
