@@ -140,7 +140,7 @@ fn a_ring_that_wedges_makes_no_energy() {
     ] {
         for step in [1e-5, 1e-4] {
             let mut scene = Scene::load("rig").expect("built-in scene");
-            scene.model = soft.model.clone();
+            scene.model = soft.model;
             scene.model.precision = precision;
             scene.model.step = step;
             scene.support = soft.support;
