@@ -113,7 +113,12 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
                     h2 { "Orbit" }
                     (orbit::orbit(subject.machine.clearance, subject.spin, outcome))
                 }
-                p.note { @if ring_moves { "The rotor as seen from the ring, which moves. " } "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts. Here and below, dots stand alone where the points of the trace are too far apart to be joined." }
+                p.note {
+                    @if ring_moves { "The rotor as seen from the ring, which moves. " }
+                    @else if !outcome.rings.is_empty() { "The centre of mass; its ends are below. " }
+                    @else { "Rings: impacts. " }
+                    "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Here and below, dots stand alone where the points of the trace are too far apart to be joined."
+                }
             }
             section {
                 h2 { "Phase plane at the wall" }
