@@ -5,10 +5,13 @@
 
 mod bound;
 mod campaign;
+mod contact;
 mod fall;
 mod figure;
+mod impact;
 mod levitated;
 mod page;
+mod regime;
 mod row;
 mod statistics;
 mod table;
@@ -36,11 +39,28 @@ pub struct Group {
 }
 
 /// All of them.
-pub const GROUPS: &[Group] = &[Group {
-    name: "fall",
-    about: "free fall after levitation: latency against the bound",
-    run: fall::run,
-}];
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "fall",
+        about: "free fall after levitation: latency against the bound",
+        run: fall::run,
+    },
+    Group {
+        name: "impact",
+        about: "impacts at 1 um, two planes: found, dated, measured, invented",
+        run: impact::run,
+    },
+    Group {
+        name: "contact",
+        about: "permanent contact, end of slip, lift-off, and phases over time",
+        run: contact::run,
+    },
+    Group {
+        name: "regime",
+        about: "how drops of random machines end",
+        run: regime::run,
+    },
+];
 
 /// How much is measured, and of which detector.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,16 +5,16 @@ use touchdown_core::error::ConfigError;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 
-use super::Plan;
+use super::{Plan, bound};
 use super::levitated::Levitated;
 use crate::detection::{Timebase, detection};
 use crate::failure::Failure;
-use crate::history::{History, PhaseKind};
+use crate::history::{History, PhaseKind, Regime};
 use crate::monitor_run::Answer;
 use crate::outcome::Detection;
 use crate::scene::{Scene, Start};
 use crate::sensors::{Motion, Sensors, SensorsState};
-use crate::truth::Truth;
+use crate::truth::{self, Truth};
 
 /// A drop and what the monitor is told of its machine.
 #[derive(Clone, Debug)]
@@ -75,6 +75,18 @@ impl Drop {
     /// Of sample `number`, s since the release.
     fn time(&self, number: u64) -> f64 {
         (number as f64 - self.levitated as f64 + self.first) / self.scene.run.sample_rate
+    }
+
+    /// Of a position on one axis, mean over the planes, m^2.
+    pub fn variance(&self) -> f64 {
+        bound::variance(&self.scene.sensors)
+    }
+
+    /// By the reference, of a run that ends then (s).
+    pub fn regime_at(&self, end: f64) -> Regime {
+        let mut scene = self.scene.clone();
+        scene.run.duration = end;
+        truth::simulate(&scene).regime
     }
 
     /// What the monitor is told.
