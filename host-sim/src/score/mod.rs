@@ -5,12 +5,15 @@
 
 mod bound;
 mod campaign;
+mod confirmation;
 mod contact;
+mod disturbance;
 mod fall;
 mod figure;
 mod impact;
 mod levitated;
 mod page;
+mod quiet;
 mod regime;
 mod row;
 mod statistics;
@@ -59,6 +62,11 @@ pub const GROUPS: &[Group] = &[
         name: "regime",
         about: "how drops of random machines end",
         run: regime::run,
+    },
+    Group {
+        name: "quiet",
+        about: "hours of levitation: what is declared, what is confirmed",
+        run: quiet::run,
     },
 ];
 

@@ -7,12 +7,13 @@ use touchdown_core::event::EventKind;
 use super::campaign;
 use super::figure::Figure;
 use super::impact::dropped;
+use super::levitated::Levitated;
 use super::row::Row;
 use super::statistics::{median, quantile, share};
 use super::watch::{Drop, Watched};
 use super::{Findings, Plan};
 use crate::failure::Failure;
-use crate::history::Regime;
+use crate::history::{History, Regime};
 use crate::scene::{Scene, Start};
 
 /// Part of the regimes that has to be told right.
@@ -22,8 +23,13 @@ const TURNS: f64 = 1.0;
 
 /// Length of a run, s.
 const WATCHED: f64 = 0.5;
-/// A regime that began later is not judged, s.
+/// A regime that began later than this before the end is not judged, s, but for a whirl of so many turns.
 const SETTLED: f64 = 0.1;
+const LONG: f64 = 3.0;
+/// Turns of a whirl that has to be declared: one, and time to say so.
+const CERTAIN: f64 = 1.5;
+/// Fastest whirl, turns/s: twenty samples a turn.
+const FASTEST: f64 = 1e3;
 /// A pendulum that swings less, over that time, cannot be told from rest: three standard deviations of
 /// the noise, either way, m.
 const STILL: f64 = 6e-6;
@@ -76,7 +82,7 @@ impl Case {
             Self::Straight => {
                 scene.run.seed = random.random();
                 scene.rotor.spin = 0.0;
-                let floats = super::levitated::Levitated::default();
+                let floats = Levitated::default();
                 let first = random.random_range(0.0..1.0);
                 Ok(Drop::released(plan, scene, floats, [0.0; 2], 0.2, first))
             }
@@ -148,43 +154,62 @@ struct Seen {
 fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let regime = watched.truth.regime;
-    let settled = regime == drop.regime_at(WATCHED - SETTLED) && !is_blurred(&watched);
-    let (mut turns, mut wrong_signs) = (Vec::new(), 0);
+    let end = drop.end();
+    let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
+    let settled = lasts && !is_blurred(&watched, end);
+    let mut wrong_signs = 0;
     for event in &watched.detection.events {
         let sign = match event.event {
             EventKind::ForwardWhirl => 1.0,
             EventKind::BackwardWhirl => -1.0,
             _ => continue,
         };
-        let mut instants = watched.instants.iter();
-        let Some(at) = instants.find(|it| it.time >= event.declared_s) else {
-            continue;
-        };
-        // With the spin or against it; a slip that has turned the spin round is the machine's.
-        let relative = at.turns * watched.truth.end.spin.signum();
-        if relative * sign < 0.0 {
-            wrong_signs += 1;
-        }
-        if sign < 0.0 {
-            turns.push(at.turns.abs());
-        }
-    }
-    if settled && regime == Regime::BackwardWhirl && turns.is_empty() {
-        turns.push(f64::INFINITY);
+        wrong_signs += usize::from(turns(&watched, event.declared_s) * sign < 0.0);
     }
     Ok(Seen {
         regime: settled.then(|| (row(regime), column(&watched))),
-        turns,
+        turns: whirls(&watched, end),
         wrong_signs,
     })
 }
 
+/// True turns in the present contact, positive with the spin.
+fn turns(watched: &Watched, time: f64) -> f64 {
+    let mut instants = watched.instants.iter().rev();
+    let at = instants.find(|it| it.time <= time);
+    at.map_or(0.0, |it| it.turns)
+}
+
+/// Of each contact that goes round against the spin: turns when that was first declared in it; infinite
+/// where it was not.
+fn whirls(watched: &Watched, end: f64) -> Vec<f64> {
+    let History {
+        contact_starts,
+        lift_offs,
+        ..
+    } = &watched.truth;
+    let mut whirls = Vec::new();
+    for &start in contact_starts {
+        let lift_off = lift_offs.iter().find(|it| **it > start);
+        let stop = lift_off.copied().unwrap_or(end);
+        let during = |time: f64| time >= start && time <= stop;
+        let mut events = watched.detection.events.iter();
+        let told = events.find(|it| it.event == EventKind::BackwardWhirl && during(it.declared_s));
+        let instants = watched.instants.iter().filter(|it| during(it.time));
+        let farthest = instants.fold(0.0, |least, it| f64::min(least, it.turns));
+        if farthest <= -CERTAIN {
+            whirls.push(told.map_or(f64::INFINITY, |it| turns(watched, it.declared_s).abs()));
+        }
+    }
+    whirls
+}
+
 /// A pendulum that hardly moves.
-fn is_blurred(watched: &Watched) -> bool {
+fn is_blurred(watched: &Watched, end: f64) -> bool {
     if watched.truth.regime != Regime::Pendulum {
         return false;
     }
-    let last = watched.instants.iter().filter(|it| it.time > WATCHED - SETTLED);
+    let last = watched.instants.iter().filter(|it| it.time > end - SETTLED);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for instant in last {
         low = low.min(instant.position[0]);
@@ -196,7 +221,7 @@ fn is_blurred(watched: &Watched) -> bool {
 /// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let drops = campaign::map(plan, "regime", &CASES, |case, mut random| {
-        seen(&case.drop(plan, &mut random)?)
+        seen(&case.drop(plan, &mut random)?.before(FASTEST))
     })?;
     let mut rows = Vec::new();
     let mut counts = [[0_u64; KINDS + 1]; KINDS];

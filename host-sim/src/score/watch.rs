@@ -89,6 +89,29 @@ impl Drop {
         truth::simulate(&scene).regime
     }
 
+    /// Ends the run where the whirl gets faster than `rate` (turns/s), which the rigid laws let grow
+    /// without bound.
+    pub fn before(mut self, rate: f64) -> Self {
+        const LOOK: f64 = 1e-3;
+        let scene = self.scene.clone();
+        let mut truth = Truth::new(&scene);
+        let (mut time, mut turns) = (0.0, 0.0);
+        while time < scene.run.duration {
+            let now = truth.advance(time).rotor.turns_in_contact;
+            if (now - turns).abs() > rate * LOOK {
+                self.scene.run.duration = time;
+                break;
+            }
+            (time, turns) = (time + LOOK, now);
+        }
+        self
+    }
+
+    /// When the run ends, s since the release.
+    pub fn end(&self) -> f64 {
+        self.scene.run.duration
+    }
+
     /// What the monitor is told.
     pub fn monitor(&self) -> &MonitorConfig {
         &self.monitor
@@ -147,7 +170,7 @@ pub struct Instant {
     pub phase: PhaseKind,
     /// The monitor's.
     pub told: Phase,
-    /// Signed turns in the present contact.
+    /// Turns in the present contact, positive with the spin.
     pub turns: f64,
     /// m.
     pub position: [f64; 2],
@@ -200,7 +223,7 @@ impl<'a> Feed<'a> {
             time,
             phase: state.phase,
             told: Phase::Starting,
-            turns: state.rotor.turns_in_contact,
+            turns: state.rotor.turns_in_contact * state.rotor.spin.signum(),
             position: state.rotor.position,
         };
         (motion, Some(instant))
