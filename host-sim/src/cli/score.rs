@@ -13,9 +13,10 @@ pub(super) fn measure(args: &ScoreArgs) -> Result<(), Failure> {
     let names = [&args.json, &args.report];
     one_standard_output(&names)?;
     let plan = args.plan()?;
+    let target = args.place.target()?;
     let [json_out, page_out] = names.map(open);
     let (mut json_out, mut page_out) = (json_out?, page_out?);
-    let score = run(&plan)?;
+    let score = run(&plan, &target)?;
     if let Some(out) = &mut json_out {
         let text = json(&score).map_err(io::Error::from);
         out.put(&text.map_err(Failure::output(out.name()))?)?;

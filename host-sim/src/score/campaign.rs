@@ -40,7 +40,8 @@ pub fn map_of<C: Sync, T: Send>(
     done
 }
 
-fn random(seed: u64, case: usize) -> ChaCha8Rng {
+/// Random numbers of a seed of a case.
+pub fn random(seed: u64, case: usize) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(case as u64);
     random

@@ -51,9 +51,9 @@ impl Case {
     fn name(self) -> String {
         match self {
             Self::Contact([1.0, 1.0]) => "contact, machine as told".to_owned(),
-            Self::Contact([friction, restitution]) => format!(
-                "contact, told friction x {friction}, restitution x {restitution}"
-            ),
+            Self::Contact([friction, restitution]) => {
+                format!("contact, told friction x {friction}, restitution x {restitution}")
+            }
             Self::Rolling(true) => "sliding to rolling, speed known".to_owned(),
             Self::Rolling(false) => "sliding to rolling, speed unknown".to_owned(),
             Self::LiftOff => "lift-off".to_owned(),
@@ -112,7 +112,11 @@ fn cases() -> Vec<Case> {
 
 /// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    let all = [Case::Contact([1.0, 1.0]), Case::Rolling(true), Case::LiftOff];
+    let all = [
+        Case::Contact([1.0, 1.0]),
+        Case::Rolling(true),
+        Case::LiftOff,
+    ];
     all.into_iter()
         .map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
@@ -179,9 +183,8 @@ fn contact_error(watched: &Watched) -> Option<f64> {
 fn end_of_slip(watched: &Watched) -> Option<f64> {
     let matches = match_events(&watched.truth, &watched.detection);
     let mut phases = watched.truth.phases.iter();
-    let lasting = phases.find(|it| {
-        it.phase == PhaseKind::Rolling && it.end_s - it.start_s >= LASTS
-    })?;
+    let lasting =
+        phases.find(|it| it.phase == PhaseKind::Rolling && it.end_s - it.start_s >= LASTS)?;
     let mut found = matches.of_kind(EventKind::Rolling);
     let found = found.find(|it| it.onset_s == lasting.start_s)?;
     Some(found.onset_error_s.unwrap_or(f64::INFINITY))
@@ -196,7 +199,9 @@ fn lift_offs(watched: &Watched) -> Vec<f64> {
         // The scene's restitution is 0.8.
         next.is_some_and(|it| 1.8 * it.normal_speed >= JUMP)
     };
-    let counted = matches.of_kind(EventKind::LiftOff).filter(|it| hard(it.onset_s));
+    let counted = matches
+        .of_kind(EventKind::LiftOff)
+        .filter(|it| hard(it.onset_s));
     counted
         .map(|it| it.onset_error_s.unwrap_or(f64::INFINITY))
         .collect()
@@ -222,8 +227,16 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         drops.iter().for_each(|seen| add(sums, &seen.phases));
     }
     let [dropping, rolling] = phases;
-    rows.push(right_phase("phases over time, drops and lift-offs", &dropping, RIGHT));
-    rows.push(right_phase("phases over time, sliding to rolling", &rolling, RIGHT_ROLLING));
+    rows.push(right_phase(
+        "phases over time, drops and lift-offs",
+        &dropping,
+        RIGHT,
+    ));
+    rows.push(right_phase(
+        "phases over time, sliding to rolling",
+        &rolling,
+        RIGHT_ROLLING,
+    ));
     let mut all = dropping;
     add(&mut all, &rolling);
     let figures = vec![Figure::Confusion {
@@ -231,7 +244,12 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         unit: "samples",
         truth: vec!["free fall", "impacts", "sliding", "rolling"],
         told: vec![
-            "starting", "levitated", "free fall", "impacts", "sliding", "rolling",
+            "starting",
+            "levitated",
+            "free fall",
+            "impacts",
+            "sliding",
+            "rolling",
         ],
         counts: all.iter().map(|row| row.to_vec()).collect(),
     }];
@@ -280,7 +298,10 @@ fn judged(case: Case, errors: &[f64]) -> Row {
 
 fn right_phase(case: &str, phases: &Counts, target: f64) -> Row {
     let all: u64 = phases.iter().flatten().sum();
-    let right = phases.iter().zip(RIGHT_COLUMN).map(|(row, column)| row[column]);
+    let right = phases
+        .iter()
+        .zip(RIGHT_COLUMN)
+        .map(|(row, column)| row[column]);
     let right: u64 = right.sum();
     let part = share(right as usize, all as usize);
     Row::at_least(case, "right_share", part, target).with("samples", all)

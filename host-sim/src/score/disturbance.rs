@@ -68,7 +68,7 @@ impl Coloured {
 /// A force on the rotor or on its base, per mass, that the controller catches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kick {
-    /// A load that comes, or goes, at once: up to a quarter of the weight.
+    /// A load that comes, or goes, at once: up to the rotor's weight.
     Load,
     /// A half sine of 5 ms, up to 2 g.
     Shock,
@@ -77,7 +77,7 @@ pub enum Kick {
 impl Kick {
     fn largest(self) -> f64 {
         match self {
-            Self::Load => 0.25 * G,
+            Self::Load => G,
             Self::Shock => 2.0 * G,
         }
     }
@@ -134,8 +134,7 @@ impl Held {
             let b = (v + DAMPING * LOOP * x) / damped;
             let out = decay * (x * cos + b * sin);
             self.position[axis] = middle + out;
-            self.velocity[axis] =
-                -DAMPING * LOOP * out + decay * damped * (b * cos - x * sin);
+            self.velocity[axis] = -DAMPING * LOOP * out + decay * damped * (b * cos - x * sin);
         }
         [self.position; PLANES]
     }

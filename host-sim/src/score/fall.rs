@@ -67,7 +67,11 @@ impl Case {
             "white noise {} um, {} kHz, {}",
             noise * 1e6,
             rate / 1e3,
-            if planes == 1 { "one plane" } else { "two planes" }
+            if planes == 1 {
+                "one plane"
+            } else {
+                "two planes"
+            }
         );
         Self {
             name,
@@ -93,7 +97,11 @@ impl Case {
                 orbit.frequency,
                 orbit.harmonic,
                 if orbit.sweeps { "sweeping" } else { "steady" },
-                if speed { "speed known" } else { "speed unknown" }
+                if speed {
+                    "speed known"
+                } else {
+                    "speed unknown"
+                }
             ),
             orbit: Some(orbit),
             speed,
@@ -307,7 +315,11 @@ fn spread(cases: &[Case], falls: &[Vec<Fall>], rows: &[Row]) -> Figure {
         for ((case, falls), row) in cases.iter().zip(falls).zip(rows) {
             let bound = row.values.get("bound_s").and_then(|it| it.as_f64());
             if case.orbit.is_some() == orbit && case.thrown == 0.0 {
-                ratios.extend(falls.iter().map(|it| it.latency / bound.unwrap_or(f64::NAN)));
+                ratios.extend(
+                    falls
+                        .iter()
+                        .map(|it| it.latency / bound.unwrap_or(f64::NAN)),
+                );
             }
         }
         ratios
@@ -319,7 +331,10 @@ fn spread(cases: &[Case], falls: &[Vec<Fall>], rows: &[Row]) -> Figure {
         decades: false,
         curves: vec![
             Curve::new("white noise".to_owned(), histogram(&of(false), 0.05, 5.0)),
-            Curve::new("orbit and runout".to_owned(), histogram(&of(true), 0.05, 5.0)),
+            Curve::new(
+                "orbit and runout".to_owned(),
+                histogram(&of(true), 0.05, 5.0),
+            ),
         ],
     }
 }

@@ -91,9 +91,6 @@ mod tests {
     #[test]
     fn a_histogram_counts_what_it_does_not_draw() {
         let steps = histogram(&[0.1, 0.3, 0.3, f64::INFINITY], 0.25, 0.5);
-        assert_eq!(
-            steps,
-            [[0.0, 0.25], [0.25, 0.25], [0.25, 0.5], [0.5, 0.5]]
-        );
+        assert_eq!(steps, [[0.0, 0.25], [0.25, 0.25], [0.25, 0.5], [0.5, 0.5]]);
     }
 }

@@ -44,6 +44,11 @@ struct Case {
 }
 
 impl Case {
+    /// Of the cases that are judged together.
+    fn name(self) -> String {
+        format!("{} kHz, restitution {}", self.rate / 1e3, self.restitution)
+    }
+
     fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
         let mut scene = Scene::load("rig")?;
         scene.run.sample_rate = self.rate;
@@ -93,7 +98,7 @@ fn cases() -> Vec<Case> {
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
     let all = cases();
     let few = all.iter().step_by(13);
-    few.map(|case| Ok((format!("{case:?}"), case.drop(plan, random)?)))
+    few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
 
@@ -129,7 +134,9 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let matches = match_events(truth, &watched.detection);
     let false_events = matches.false_events.iter();
     let mut seen = Seen {
-        invented: false_events.filter(|it| events[**it].declared_s >= 0.0).count(),
+        invented: false_events
+            .filter(|it| events[**it].declared_s >= 0.0)
+            .count(),
         ..Seen::default()
     };
     for (impact, found) in truth.impacts.iter().zip(matches.of_kind(EventKind::Impact)) {
@@ -142,9 +149,11 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
             continue;
         };
         let onset = impact.state.time;
-        seen.dated.push((events[index].onset_s - onset).abs() * case.rate);
+        seen.dated
+            .push((events[index].onset_s - onset).abs() * case.rate);
         let speed = events[index].normal_speed_m_s.unwrap_or(f64::NAN);
-        seen.measured.push((speed / impact.normal_speed - 1.0).abs());
+        seen.measured
+            .push((speed / impact.normal_speed - 1.0).abs());
         let next = watched.instants.iter().find(|it| it.time >= onset);
         let first = next.map_or(0.0, |it| (it.time - onset) * case.rate);
         let bound = bound::cusum(drop.variance(), case.rate, first, |t| jump * t);
@@ -167,10 +176,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             all.take(seen);
             count += 1;
         }
-        let Case {
-            rate, restitution, ..
-        } = cases[0];
-        let name = format!("{} kHz, restitution {restitution}", rate / 1e3);
+        let name = cases[0].name();
         curves.push(Curve::new(name.clone(), histogram(&all.late, 0.1, 5.0)));
         rows.extend(judged(&name, &all, count));
     }
@@ -192,15 +198,25 @@ fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
             .with("impacts", seen.impacts)
             .with("found", found)
             .noted(format!("{found} of {} in {drops} drops", seen.impacts)),
-        Row::at_most(name, "onset_error_median_samples", median(&seen.dated), DATED[0]),
+        Row::at_most(
+            name,
+            "onset_error_median_samples",
+            median(&seen.dated),
+            DATED[0],
+        ),
         Row::at_most(
             name,
             "onset_error_p999_samples",
             quantile(&seen.dated, 0.999),
             DATED[1],
         ),
-        Row::at_most(name, "speed_error_p99", quantile(&seen.measured, 0.99), MEASURED)
-            .with("speed_error_median", median(&seen.measured)),
+        Row::at_most(
+            name,
+            "speed_error_p99",
+            quantile(&seen.measured, 0.99),
+            MEASURED,
+        )
+        .with("speed_error_median", median(&seen.measured)),
         Row::at_most(name, "ratio", median(&seen.late), LATE)
             .with("ratio_p99", quantile(&seen.late, 0.99)),
         Row::at_most(name, "invented", seen.invented as f64, 0.0).with("drops", drops),

@@ -5,6 +5,7 @@
 
 mod bound;
 mod campaign;
+mod compare;
 mod confirmation;
 mod contact;
 mod disturbance;
@@ -20,8 +21,10 @@ mod statistics;
 mod table;
 mod watch;
 
-use serde::Serialize;
 use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 use touchdown_core::detect::Tuning;
 
 pub use figure::Figure;
@@ -30,6 +33,8 @@ pub use row::{Row, all_hold};
 pub use table::table;
 
 use crate::failure::Failure;
+use crate::target::Target;
+use watch::Drop;
 
 /// What is measured together.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +44,8 @@ pub struct Group {
     /// What it measures, for people.
     pub about: &'static str,
     run: fn(&Plan) -> Result<Findings, Failure>,
+    /// Some of its drops, to compare two targets with.
+    drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure>,
 }
 
 /// All of them.
@@ -47,26 +54,31 @@ pub const GROUPS: &[Group] = &[
         name: "fall",
         about: "free fall after levitation: latency against the bound",
         run: fall::run,
+        drops: fall::drops,
     },
     Group {
         name: "impact",
         about: "impacts at 1 um, two planes: found, dated, measured, invented",
         run: impact::run,
+        drops: impact::drops,
     },
     Group {
         name: "contact",
         about: "permanent contact, end of slip, lift-off, and phases over time",
         run: contact::run,
+        drops: contact::drops,
     },
     Group {
         name: "regime",
         about: "how drops of random machines end",
         run: regime::run,
+        drops: regime::drops,
     },
     Group {
         name: "quiet",
         about: "hours of levitation: what is declared, what is confirmed",
         run: quiet::run,
+        drops: quiet::drops,
     },
 ];
 
@@ -110,10 +122,16 @@ impl Score {
     }
 }
 
-/// Measures.
-pub fn run(plan: &Plan) -> Result<Score, Failure> {
+/// Measures. On another target than the host: some drops of each group, on both, which must agree.
+pub fn run(plan: &Plan, target: &Target) -> Result<Score, Failure> {
     let chosen = GROUPS.iter().filter(|it| plan.groups.contains(&it.name));
-    let groups = chosen.map(|group| Ok((group, (group.run)(plan)?)));
+    let groups = chosen.map(|group| {
+        let found = match target {
+            Target::Host => (group.run)(plan)?,
+            Target::Qemu(_) => compare::run(plan, group, target)?,
+        };
+        Ok((group, found))
+    });
     Ok(Score {
         plan: plan.clone(),
         groups: groups.collect::<Result<_, Failure>>()?,

@@ -231,7 +231,12 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             counts[*row][*column] += 1;
         }
         let right = judged.iter().filter(|(row, column)| row == column).count();
-        let row = Row::at_least(case.name(), "right_share", share(right, judged.len()), RIGHT);
+        let row = Row::at_least(
+            case.name(),
+            "right_share",
+            share(right, judged.len()),
+            RIGHT,
+        );
         rows.push(
             row.with("drops", drops.len())
                 .with("judged", judged.len())
@@ -246,17 +251,32 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let all = || drops.iter().flatten();
     let turns: Vec<f64> = all().flat_map(|it| it.turns.clone()).collect();
     rows.push(
-        Row::at_most("backward whirl declared", "turns_p99", quantile(&turns, 0.99), TURNS)
-            .with("whirls", turns.len())
-            .with("turns_median", median(&turns))
-            .noted(format!("{} whirls, median {:.3}", turns.len(), median(&turns))),
+        Row::at_most(
+            "backward whirl declared",
+            "turns_p99",
+            quantile(&turns, 0.99),
+            TURNS,
+        )
+        .with("whirls", turns.len())
+        .with("turns_median", median(&turns))
+        .noted(format!(
+            "{} whirls, median {:.3}",
+            turns.len(),
+            median(&turns)
+        )),
     );
     let wrong: usize = all().map(|it| it.wrong_signs).sum();
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
             .with("drops", all().count()),
     );
-    let names = vec!["rest", "pendulum", "forward whirl", "backward whirl", "in flight"];
+    let names = vec![
+        "rest",
+        "pendulum",
+        "forward whirl",
+        "backward whirl",
+        "in flight",
+    ];
     let figures = vec![Figure::Confusion {
         title: "Regime at the end",
         unit: "drops",

@@ -5,8 +5,8 @@ use touchdown_core::error::ConfigError;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 
-use super::{Plan, bound};
 use super::levitated::Levitated;
+use super::{Plan, bound};
 use crate::detection::{Timebase, detection};
 use crate::failure::Failure;
 use crate::history::{History, PhaseKind, Regime};
