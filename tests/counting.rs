@@ -1,6 +1,7 @@
-//! The image that counts instructions.
+//! The images that count instructions.
 
 use std::fs;
+use std::path::Path;
 use std::time::Duration;
 
 use touchdown_sim::emulator::Emulator;
@@ -9,14 +10,25 @@ use touchdown_sim::emulator::Emulator;
 const ARGUMENTS: [&str; 3] = ["enable=on,target=native", "-icount", "shift=4"];
 const LIMIT: Duration = Duration::from_secs(120);
 
-/// The image's counts, one a line: firmware/src/count.
+/// The counts of the image of every rung, one a line: firmware/src/count.
 ///
 /// # Panics
 /// If the image or QEMU is not there, or fails.
 pub fn count() -> String {
+    counts(Emulator::find_counting().unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// The counts of this image.
+///
+/// # Panics
+/// If the image or QEMU is not there, or fails.
+pub fn count_by(image: &Path) -> String {
+    counts(Emulator::find(Some(image)).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn counts(emulator: Emulator) -> String {
     let folder = tempfile::tempdir().expect("a folder");
-    Emulator::find_counting()
-        .unwrap_or_else(|error| panic!("{error}"))
+    emulator
         .execute(folder.path(), &ARGUMENTS, LIMIT)
         .unwrap_or_else(|error| panic!("{error}"));
     fs::read_to_string(folder.path().join("counts.csv")).expect("the image's counts")

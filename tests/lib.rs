@@ -5,4 +5,6 @@ pub mod cases;
 pub mod counting;
 pub mod drops;
 pub mod growth;
+pub mod moment;
 pub mod rotors;
+pub mod supports;

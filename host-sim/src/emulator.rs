@@ -183,7 +183,7 @@ fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {
 }
 
 /// Where `cargo xtask firmware` puts an image.
-fn built(name: &str) -> PathBuf {
+pub fn built(name: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"),
         PathBuf::from,

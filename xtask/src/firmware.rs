@@ -11,28 +11,51 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-const IMAGES: [&str; 3] = ["touchdown-firmware", "touchdown-qemu", "touchdown-count"];
+const IMAGES: [&str; 4] = [
+    "touchdown-firmware",
+    "touchdown-qemu",
+    "touchdown-count-rigid",
+    "touchdown-count",
+];
+/// Those that use no rung but the rigid one.
+const RIGID: usize = 3;
+/// Folder of these, built without the other rungs in the library, for comparison.
+const WITHOUT_RUNGS: &str = "without-rungs";
 const RAM_START: u64 = 0x2000_0000;
 
 /// Builds all images.
 pub fn build() -> anyhow::Result<()> {
     println!("Firmware: building for {TARGET}");
-    let status = Machine::look()
-        .toolchain
-        .build()
-        .args(["--quiet", "--release", "--package", "touchdown-firmware"])
-        .current_dir(workspace())
-        .status()
-        .context("cannot start cargo for the firmware: `cargo xtask setup` installs it")?;
-    ensure!(status.success(), "the firmware does not build ({status})");
+    let images = target_directory().join(TARGET).join("release");
+    let without = images.join(WITHOUT_RUNGS);
+    fs::create_dir_all(&without).context("cannot make a folder for images")?;
+    // These first: the others take their names.
+    cargo(&["--no-default-features"])?;
+    for name in &IMAGES[..RIGID] {
+        fs::copy(images.join(name), without.join(name)).context("cannot copy an image")?;
+    }
+    cargo(&[])?;
     for name in IMAGES {
-        let image = target_directory().join(TARGET).join("release").join(name);
+        let image = images.join(name);
         let (flash, ram) = size(&image)?;
         println!(
             "  {}: {flash} bytes of flash, {ram} bytes of RAM and the stack",
             image.display()
         );
     }
+    Ok(())
+}
+
+fn cargo(arguments: &[&str]) -> anyhow::Result<()> {
+    let status = Machine::look()
+        .toolchain
+        .build()
+        .args(["--quiet", "--release", "--package", "touchdown-firmware"])
+        .args(arguments)
+        .current_dir(workspace())
+        .status()
+        .context("cannot start cargo for the firmware: `cargo xtask setup` installs it")?;
+    ensure!(status.success(), "the firmware does not build ({status})");
     Ok(())
 }
 

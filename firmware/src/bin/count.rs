@@ -11,7 +11,7 @@ mod image {
 
     #[entry]
     fn main() -> ! {
-        count::main()
+        count::main::<count::Every>()
     }
 
     // The runtime asks for an unsafe function; there is nothing unsafe in it.

@@ -6,14 +6,19 @@
 
 mod drop;
 mod functions;
+#[cfg(feature = "rungs")]
+mod rungs;
 
 use core::fmt::Write as _;
 
 use heapless::String;
 use semihosting::fs::File;
 use semihosting::io::Write as _;
+use touchdown_core::model::Precision;
 
-use crate::board::qemu::Counter;
+#[cfg(feature = "rungs")]
+pub use self::rungs::Every;
+pub use crate::board::qemu::Counter;
 
 const LINE_BYTES: usize = 160;
 
@@ -37,12 +42,13 @@ impl Tally {
 
 /// The number format and its functions, as a scene names them.
 #[derive(Clone, Copy)]
-struct Name {
+pub struct Name {
     precision: &'static str,
     math: &'static str,
 }
 
-struct Table(File);
+/// The file of counts.
+pub struct Table(File);
 
 impl Table {
     fn line(&mut self, text: core::fmt::Arguments<'_>) {
@@ -52,12 +58,27 @@ impl Table {
     }
 }
 
+/// Rungs that are counted next to the rigid one.
+pub trait Rungs {
+    /// Counts their drops in one kind of number.
+    fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Name);
+}
+
+/// No other rung.
+pub struct RigidAlone;
+
+impl Rungs for RigidAlone {
+    fn count<R: Precision>(_: &Counter, _: &mut Table, _: Name) {}
+}
+
 /// Counts everything and exits the emulator.
-pub fn main() -> ! {
+///
+/// Generic, so that an image's rungs are compiled with that image and not into the library of all images.
+pub fn main<T: Rungs>() -> ! {
     let counter = Counter::take();
     let mut table = Table(File::create(c"counts.csv").expect("a writable folder"));
     table.line(format_args!("compiler,{}", env!("COMPILER")));
     functions::count(&counter, &mut table);
-    drop::count(&counter, &mut table);
+    drop::count::<T>(&counter, &mut table);
     semihosting::process::exit(0)
 }

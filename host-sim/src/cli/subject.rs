@@ -2,11 +2,12 @@
 
 use maud::{DOCTYPE, html};
 
+use crate::fidelity::force::press;
 use crate::model_run::validity;
 use crate::outcome::Detection;
 use crate::report::{RingSubject, Subject};
 use crate::scene::parts::parts;
-use crate::scene::{Ring, Scene};
+use crate::scene::{Ring, Rung, Scene};
 use crate::timeline;
 
 pub(super) fn subject(scene: &Scene) -> Subject {
@@ -15,7 +16,10 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         name: ring.name.clone(),
         clearance: ring.retainer.clearance,
         place: ring.place,
+        restitution: ring.retainer.restitution,
     };
+    // Rung `hertz` takes steel for what the scene does not give.
+    let known = scene.materials.given || scene.model.rung == Rung::Hertz;
     Subject {
         title: scene.heading().to_owned(),
         source: scene.source.clone().unwrap_or_else(|| scene.name.clone()),
@@ -31,6 +35,7 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         cage_ratio: scene.ball_bearing.map(|bearing| bearing.cage_ratio),
         parts: parts(scene),
         validity: validity(scene).map(|it| it.to_string()),
+        press: known.then(|| press(scene)).flatten(),
         versions: vec![("touchdown".to_owned(), env!("CARGO_PKG_VERSION").to_owned())],
     }
 }

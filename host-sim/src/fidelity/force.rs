@@ -3,6 +3,7 @@
 use crate::history::{History, Impact, Pulse};
 use crate::model_run::compliance;
 use crate::reference::pulse::{Meeting, Pulse as True};
+use crate::report::force::Press;
 use crate::scene::{Contact, Scene};
 
 /// Pulse of the model's first impact, and the true one.
@@ -15,10 +16,10 @@ pub(super) fn pulses(history: &History, truth: &History, scene: &Scene) -> Optio
 /// The rotor at the wall, with the stiffness of its contact: of two spheres by Hertz; of a cylinder in a ring
 /// the linear one that the model goes by, so that its own error is not seen.
 pub(crate) fn meeting(impact: &Impact, scene: &Scene) -> Option<Meeting> {
-    let (stiffness, exponent) = match scene.materials.contact {
-        Contact::Point => (point(scene), 1.5),
-        Contact::Line { .. } => (compliance(scene).ok()?.stiffness, 1.0),
-    };
+    let Press {
+        stiffness,
+        exponent,
+    } = press(scene)?;
     let [x, y] = impact.state.position;
     Some(Meeting {
         mass: scene.rotor.mass,
@@ -27,6 +28,18 @@ pub(crate) fn meeting(impact: &Impact, scene: &Scene) -> Option<Meeting> {
         stiffness,
         exponent,
         gravity: -scene.run.gravity * y / x.hypot(y),
+    })
+}
+
+/// How the scene's contact presses; none where the materials are refused.
+pub(crate) fn press(scene: &Scene) -> Option<Press> {
+    let (stiffness, exponent) = match scene.materials.contact {
+        Contact::Point => (point(scene), 1.5),
+        Contact::Line { .. } => (compliance(scene).ok()?.stiffness, 1.0),
+    };
+    Some(Press {
+        stiffness,
+        exponent,
     })
 }
 

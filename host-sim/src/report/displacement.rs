@@ -30,7 +30,13 @@ pub fn displacement(window: Window, subject: &Subject, outcome: &Outcome) -> Mar
 
 fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
-    let reach = 1.12 * subject.machine.clearance * MICRO;
+    // A ring that moves lets the rotor beyond its clearance.
+    let farthest = shown(&outcome.trace, window)
+        .iter()
+        .map(|point| point.state.position[axis].abs())
+        .filter(|place| place.is_finite())
+        .fold(subject.machine.clearance, f64::max);
+    let reach = 1.12 * farthest * MICRO;
     let name = ["x (right)", "y (up)"][axis];
     let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
     let chart = Chart {

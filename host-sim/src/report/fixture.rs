@@ -35,6 +35,7 @@ pub fn subject() -> Subject {
         cage_ratio: None,
         parts: Vec::new(),
         validity: None,
+        press: None,
         versions: vec![("touchdown-core".to_owned(), "0.1.0".to_owned())],
     }
 }

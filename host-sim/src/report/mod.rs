@@ -4,6 +4,7 @@ mod accuracy;
 pub(crate) mod chart;
 mod displacement;
 mod energy;
+pub mod force;
 mod moving;
 pub(crate) mod orbit;
 mod parameters;
@@ -25,6 +26,7 @@ use crate::matching::match_events;
 use crate::outcome::Outcome;
 use crate::reference::Machine;
 use crate::scene::parts::Part;
+use force::Press;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use window::Window;
 
@@ -59,6 +61,8 @@ pub struct Subject {
     pub parts: Vec<Part>,
     /// How far a rigid rotor can be trusted.
     pub validity: Option<String>,
+    /// How the contact presses, where the scene gives the materials.
+    pub press: Option<Press>,
     /// Component and version.
     pub versions: Vec<(String, String)>,
 }
@@ -72,6 +76,8 @@ pub struct RingSubject {
     pub clearance: f64,
     /// From the centre of mass, m.
     pub place: f64,
+    /// Of the normal speed, 0 to 1.
+    pub restitution: f64,
 }
 
 /// Writes the page.
@@ -84,6 +90,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         subject.machine.gravity,
     );
     let zoomed = window != whole;
+    let (ring_moves, _) = moving::ring_moves(outcome);
     let body = html! {
         (verdict::verdict(subject, outcome, &matches))
         section {
@@ -99,9 +106,19 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         }
         div.pair {
             section {
-                h2 { "Orbit" }
-                (orbit::orbit(subject.machine.clearance, subject.spin, outcome))
-                p.note { "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Rings: impacts. Here and below, dots stand alone where the points of the trace are too far apart to be joined." }
+                @if ring_moves {
+                    h2 { "Orbit in the retainer ring" }
+                    (moving::in_ring(subject, outcome))
+                } @else {
+                    h2 { "Orbit" }
+                    (orbit::orbit(subject.machine.clearance, subject.spin, outcome))
+                }
+                p.note {
+                    @if ring_moves { "The rotor as seen from the ring, which moves. " }
+                    @else if !outcome.rings.is_empty() { "The centre of mass; its ends are below. " }
+                    @else { "Rings: impacts. " }
+                    "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Here and below, dots stand alone where the points of the trace are too far apart to be joined."
+                }
             }
             section {
                 h2 { "Phase plane at the wall" }
@@ -110,6 +127,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             }
         }
         (parts_that_move(whole, subject, outcome))
+        section { h2 { "Contact force" } (force::force(window, subject, outcome)) }
         section {
             h2 { "Displacement" }
             (displacement::displacement(window, subject, outcome))
@@ -140,16 +158,9 @@ fn parts_that_move(whole: Window, subject: &Subject, outcome: &Outcome) -> Marku
     html! {
         @if !subject.rings.is_empty() { (moving::ends(subject, outcome)) }
         @if ring {
-            div.pair {
-                section {
-                    h2 { "Orbit in the retainer ring" }
-                    (moving::in_ring(subject, outcome))
-                    p.note { "The rotor as seen from the ring, which moves." }
-                }
-                section {
-                    h2 { "Retainer ring" }
-                    (moving::ring(whole, outcome))
-                }
+            section {
+                h2 { "Retainer ring" }
+                (moving::ring(whole, outcome))
             }
         }
         @if let (true, Some(cage)) = (race, subject.cage_ratio) {

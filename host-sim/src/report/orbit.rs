@@ -12,6 +12,9 @@ use std::fmt::Write;
 /// Radius of the clearance circle in drawing units; the drawing is 488 of them wide.
 const RADIUS: f64 = 180.0;
 
+/// Of the clearance: half the width of the drawn circle.
+const AT_WALL: f64 = 0.02;
+
 /// A path in a gap.
 pub struct Orbit<'a> {
     /// Its heading.
@@ -28,7 +31,9 @@ pub struct Orbit<'a> {
 
 /// Draws the rotor's whole run; clearance in m, spin in rad/s.
 pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
-    let impacts = outcome.truth.impacts.iter();
+    // A rotor that tilts hits with its ends.
+    let own = outcome.rings.is_empty();
+    let impacts = outcome.truth.impacts.iter().filter(|_| own);
     draw(&Orbit {
         title: "Orbit",
         clearance,
@@ -99,7 +104,7 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
                 last = Some((from, point));
                 continue;
             }
-            Some((_, from)) if matches!(point.phase, PhaseKind::Sliding | PhaseKind::Rolling) => {
+            Some((_, from)) if along_wall(from, point, clearance) => {
                 let turn = turn(from, point);
                 let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
                 write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
@@ -112,6 +117,16 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
         last = Some((to, point));
     }
     path
+}
+
+/// Whether the motion between two points is a piece of the circle: a rotor that tilts is in contact inside it.
+fn along_wall(from: &TracePoint, to: &TracePoint, clearance: f64) -> bool {
+    let contact = matches!(to.phase, PhaseKind::Sliding | PhaseKind::Rolling);
+    let at_wall = |point: &TracePoint| {
+        let [x, y] = point.state.position;
+        (x.hypot(y) / clearance - 1.0).abs() < AT_WALL
+    };
+    contact && at_wall(from) && at_wall(to)
 }
 
 /// Angle between two points, rad, counter-clockwise: the short way, but with the motion where that is

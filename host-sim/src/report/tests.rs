@@ -1,5 +1,7 @@
 //! Structure of the page.
 
+use super::force::Press;
+use super::text::si;
 use super::{Subject, fixture, render};
 use crate::history::{Recorder, RotorState};
 use crate::outcome::{Detection, Outcome};
@@ -181,4 +183,31 @@ fn titles_are_escaped() {
     let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
     assert!(page.contains("&lt;b&gt;5 &amp; 6&lt;/b&gt;"));
     assert!(!page.contains("<b>"));
+}
+
+#[test]
+fn force_is_drawn_where_the_materials_are_known() {
+    let rigid = fixture::subject();
+    let outcome = fixture::outcome(&rigid, &fixture::start());
+    let page = render(&rigid, &outcome);
+    assert!(page.contains("has no table [materials]"));
+    assert!(!page.contains("Force of the first impact"));
+
+    // Point contact of the rig, steel on steel: K of sphere in sphere, N/m^1.5.
+    let stiffness =
+        4.0 / 3.0 * (3.625e11 / std::f64::consts::PI) / (1.0 / 0.024_f64 - 1.0 / 0.0243).sqrt();
+    let press = Press {
+        stiffness,
+        exponent: 1.5,
+    };
+    let steel = Subject {
+        press: Some(press),
+        ..fixture::subject()
+    };
+    let page = render(&steel, &outcome);
+    assert_sound(&page);
+    assert!(page.contains("Force of the first impact"));
+    let first = &outcome.truth.impacts[0];
+    let impulse = si(first.normal_impulse, "N s");
+    assert!(page.contains(&impulse), "{impulse}");
 }

@@ -35,7 +35,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let needed = needed(&file)?;
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
-    let materials = materials(&file.materials)?;
+    let materials = materials(file.materials.as_ref())?;
     let mut scene = Scene {
         name: name.to_owned(),
         title: file.title,
@@ -287,7 +287,9 @@ pub(super) fn translate(error: &ConfigError) -> Flaw {
         "spin" => ("rotor", "speed_rpm"),
         "length" => ("materials", "length_mm"),
         "fastest" => ("start", "vx_mm_s"),
-        "marks" => ("ball_bearing", "inner_ring_marks"),
+        // How well an edge is placed is fixed; the marks decide whether that is well enough.
+        "marks" | "edge_error" | "window" => ("ball_bearing", "inner_ring_marks"),
+        "bore_radius" => ("rotor", "radius_mm"),
         "cage_ratio" => ("ball_bearing", "cage_ratio"),
         "planes" => ("sensors", "planes"),
         "bits" | "full_scale" | "zero_count" => ("sensors", "bits"),

@@ -32,8 +32,10 @@ pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
 }
 
 /// The materials, and how they touch.
-pub(super) fn materials(table: &MaterialsTable) -> Result<Materials, Flaw> {
+pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Flaw> {
     const TABLE: &str = "materials";
+    let steel = MaterialsTable::default();
+    let table = given.unwrap_or(&steel);
     let modulus = |key, value| {
         let value = above_zero(TABLE, key, value)?;
         between(TABLE, key, value, limits::MODULUS_GPA).map(|value| GIGA * value)
@@ -70,5 +72,6 @@ pub(super) fn materials(table: &MaterialsTable) -> Result<Materials, Flaw> {
             retainer_poisson: poisson("retainer_poisson", table.retainer_poisson)?,
         },
         contact,
+        given: given.is_some(),
     })
 }

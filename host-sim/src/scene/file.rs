@@ -28,7 +28,7 @@ pub(super) struct SceneFile {
     pub model: ModelTable,
     pub outputs: Option<OutputsTable>,
     #[serde(default)]
-    pub materials: MaterialsTable,
+    pub materials: Option<MaterialsTable>,
     #[serde(default)]
     pub sensors: SensorsTable,
     #[serde(default)]

@@ -31,4 +31,6 @@ pub struct Materials {
     pub elastic: Elastic<f64>,
     /// The shape of the contact.
     pub contact: Contact,
+    /// By the scene; else steel on steel is taken.
+    pub given: bool,
 }

@@ -62,7 +62,7 @@ impl Default for Tuning {
     fn default() -> Self {
         Self {
             false_alarm: 1e-11,
-            arming_time: 0.1,
+            arming_time: 0.14,
             release_horizon: 4e-3,
             impact_horizon: 1.5e-3,
             confirm_travel: 0.17,

@@ -8,6 +8,7 @@ use crate::detect::flight::{Fix, FlightTest, Listener, direction};
 use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
+use crate::detect::orbit::{OrbitState, Orbiting};
 use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
@@ -27,6 +28,7 @@ pub struct Detector {
     config: DetectorConfig,
     resolution: f32,
     learning: Learning,
+    orbiting: Orbiting,
     release: Release,
     /// Of the floating rotor.
     flight: FlightTest,
@@ -42,6 +44,7 @@ pub struct DetectorState {
     next_number: u16,
     noise: Noise,
     levitation: Levitation,
+    orbit: OrbitState,
     release: ReleaseBank,
     listener: Listener,
     pending: Option<Pending>,
@@ -66,6 +69,7 @@ impl Detector {
             config: *config,
             resolution,
             learning: Learning::new(tuning, rate),
+            orbiting: Orbiting::new(tuning.arming_time, rate),
             release: Release::new(tuning, rate, config.machine.gravity, threshold),
             flight: FlightTest::new(config, threshold),
             ladder: Ladder::new(config, threshold),
@@ -97,6 +101,7 @@ impl Detector {
             notices,
         };
         self.faults(state, reading, &mut teller);
+        self.orbiting.advance(&mut state.orbit, signals.spin);
         let fix = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
             Fix {
@@ -205,18 +210,29 @@ impl Detector {
             // It still moved: what the tests learnt of it goes as well.
             state.listener = Listener::default();
             state.release = ReleaseBank::default();
+            state.orbit = OrbitState::default();
         }
-        let [x, y] = state.levitation.mean;
-        let residual = [fix.position[0] - x, fix.position[1] - y];
-        let variance = state.levitation.variance.max(fix.variance);
-        if !self.learning.has_position(&state.levitation) {
-            self.flight.listen(&mut state.listener, fix);
+        let floats = (state.levitation.mean, state.levitation.variance);
+        let residual = self
+            .orbiting
+            .take(&mut state.orbit, fix.position, floats, fix.variance);
+        if residual.first {
+            state.release.restart();
         }
-        let released = self
-            .learning
-            .has_position(&state.levitation)
-            .then(|| self.release.take(&mut state.release, residual, variance))
+        let is_known = self.learning.has_position(&state.levitation)
+            && (state.levitation.is_armed() || state.orbit.is_fitted(&self.orbiting));
+        let released = is_known
+            .then(|| {
+                self.release
+                    .take(&mut state.release, residual.way, residual.variance)
+            })
             .flatten();
+        if !state.levitation.is_armed() && is_known {
+            let [x, y] = state.orbit.ending();
+            let position = [fix.position[0] - x, fix.position[1] - y];
+            self.flight
+                .listen(&mut state.listener, &Fix { position, ..*fix });
+        }
         let loudness = state.listener.loudness();
         if !state.levitation.is_armed() {
             // Fell before anything was learnt: the wall shows it.
@@ -274,6 +290,7 @@ impl Detector {
         state.levitation = Levitation::default();
         state.listener = Listener::default();
         state.release = ReleaseBank::default();
+        state.orbit = OrbitState::default();
         state.ends = Ends::default();
     }
 

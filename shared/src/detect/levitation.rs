@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn arms_after_the_arming_time_and_not_before() {
         let (learning, mut state) = (learning(), Levitation::default());
-        for k in 1..2_000 {
+        for k in 1..2_800 {
             assert!(
                 !learning.take(&mut state, [1e-6 * (k % 2) as f32, 0.0]),
                 "{k}"

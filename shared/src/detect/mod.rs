@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `noise` | how large the sensors' white noise is, whatever the rotor does |
 //! | `levitation` | where the rotor floats, and whether the monitor is armed |
+//! | `orbit` | in what orbit, and what of its motion is none |
 //! | `release` | whether it still floats |
 //! | `track` | position and velocity in flight |
 //! | `jump` | whether the velocity jumped |
@@ -28,6 +29,7 @@ mod ladder;
 mod levitation;
 mod lift_off;
 mod noise;
+mod orbit;
 mod release;
 mod series;
 mod signals;

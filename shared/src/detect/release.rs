@@ -15,7 +15,7 @@ const CANDIDATES: usize = 32;
 /// Mean of the largest statistic of the bank in white noise, as the test below measures it.
 const WHITE_LEVEL: f32 = 1.8;
 /// Seconds over which the mean is learnt.
-const LEVEL_TIME: f32 = 0.5;
+const LEVEL_TIME: f32 = 0.2;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]

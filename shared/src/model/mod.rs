@@ -13,16 +13,21 @@
 //!
 //! [`TwoPlane`] is a model of its own, of a rotor that tilts in rings of their own axial places.
 
+// The rungs share helpers that the rigid one alone leaves unused.
+#![cfg_attr(not(feature = "rungs"), allow(dead_code))]
+
 mod clock;
 mod contact;
 mod crossing;
 mod flight;
 mod follow;
+#[cfg(feature = "rungs")]
 mod hertz;
 mod hold;
 mod impulse;
 mod kinematics;
 mod law;
+#[cfg(feature = "rungs")]
 mod moreau;
 mod period;
 mod polynomial;
@@ -33,29 +38,35 @@ mod start;
 mod state;
 mod stepper;
 mod sum;
+#[cfg(feature = "rungs")]
 mod support;
 mod turns;
+#[cfg(feature = "rungs")]
 mod two_plane;
 mod vector;
 mod whirl;
 
 pub use clock::Instant;
+#[cfg(feature = "rungs")]
 pub use hertz::{
     Compliance, Euler, Hertz, HertzConfig, HertzState, Line, Materials, Pairing, Point, Scheme,
     Shape, Verlet,
 };
 pub use kinematics::{Change, Happening, Kinematics, Pulse, Touch};
+#[cfg(feature = "rungs")]
 pub use moreau::{Moreau, MoreauState};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;
 pub use state::{RigidState, Solved};
 pub use stepper::Stepper;
+#[cfg(feature = "rungs")]
 pub use support::{
     BallBearing, BallBearingState, Bushing, Fixed, Ledger, Load, Mount, MountConfig, Race,
     RaceConfig, RaceMotion, RingMotion, Rounded, Sprung, SprungState, Support, SupportConfig,
     SupportState,
 };
+#[cfg(feature = "rungs")]
 pub use two_plane::{
     Ends, Energy, MagnetConfig, Placement, RingConfig, TwoPlane, TwoPlaneConfig, TwoPlaneState,
     UnbalanceConfig,

@@ -166,13 +166,18 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             return;
         };
         self.calm(state, place, relative);
+        let end = place + passage.moved;
+        let mut stuck = press.stuck;
+        if passage.wedged {
+            let normal = end.times(R::ONE / end.length());
+            stuck = self.wedge(state, normal, R::TWO * press.pressed / time);
+        }
         let Some(held) = &mut state.held else {
             return;
         };
-        let end = place + passage.moved;
         held.turns.add(place.cross(end).atan2(place.dot(end)));
-        let rolled = core::mem::replace(&mut held.rolling, press.stuck);
-        match (rolled, press.stuck) {
+        let rolled = core::mem::replace(&mut held.rolling, stuck);
+        match (rolled, stuck) {
             (false, true) => self.tell(state, part, Change::RollingStarts, sink),
             (true, false) => self.tell(state, part, Change::SlidingStarts, sink),
             _ => {}

@@ -19,6 +19,7 @@ mod race;
 mod settle;
 mod state;
 mod strike;
+mod wedge;
 
 pub use config::{MountConfig, RaceConfig, SupportConfig};
 pub use ledger::Ledger;

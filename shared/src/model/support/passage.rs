@@ -1,6 +1,7 @@
 //! A stretch of time without impact, by the midpoint rule, with the contacts that hold in it.
 //!
-//! Rotor, ring and stop meet in the ring: rotor and stop are solved for in turn until none changes.
+//! Rotor, ring and stop meet in the ring: rotor and stop are solved for in turn until none changes. A
+//! light ring on its stop may wedge there (see `wedge`).
 
 use super::mount::{Mount, Ride};
 use super::press::{Approach, Press};
@@ -20,6 +21,16 @@ const DRAGS: usize = 3;
 /// How far round its wall a held rotor goes in a stretch, rad.
 const REACH: f64 = 0.25;
 
+/// Rotor and stop, each as the other leaves it.
+struct Balance<R> {
+    press: Option<Press<R>>,
+    /// Displacement of the ring by rotor and stop.
+    pushed: [Vector<R>; 2],
+    stopped: bool,
+    /// Whether the passes came to an end.
+    settled: bool,
+}
+
 /// A stretch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage<R> {
@@ -32,6 +43,8 @@ pub(super) struct Passage<R> {
     /// Displacement of the ring by rotor and stop.
     pub(super) pushed: [Vector<R>; 2],
     pub(super) press: Option<Press<R>>,
+    /// Whether friction is to follow.
+    pub(super) wedged: bool,
     pub(super) stopped: bool,
     pub(super) drag: Drag<R>,
 }
@@ -112,40 +125,82 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             friction: self.law.friction,
             half,
         };
+        let mut balance = self.balance(state, &ride, &approach)?;
+        let wedged = !balance.settled || gains(&balance, &approach, time);
+        if wedged {
+            approach.friction = R::ZERO;
+            balance = self.balance(state, &ride, &approach)?;
+            if !balance.settled {
+                return None;
+            }
+        }
+        let Balance { press, pushed, .. } = balance;
+        let push = press.map_or(Vector::default(), |press| press.push);
+        kick = kick + push.times(R::TWO / time);
+        Some(Passage {
+            time,
+            moved: free + push - pushed[0] - pushed[1],
+            kick,
+            ride,
+            pushed,
+            press,
+            wedged,
+            stopped: balance.stopped,
+            drag,
+        })
+    }
+
+    /// Rotor and stop in turn; none where rotor or ring go too far round their walls.
+    fn balance(
+        &self,
+        state: &SupportState<R, M::State, B::State>,
+        ride: &Ride<R>,
+        approach: &Approach<R>,
+    ) -> Option<Balance<R>> {
+        let free = approach.free;
+        let mut approach = *approach;
         let mut settling = Settling::default();
         let (mut press, mut by_rotor, mut by_stop) = (None, Vector::default(), Vector::default());
-        let mut halt = None;
-        for pass in 1..=PASSES {
+        for _ in 0..PASSES {
             if state.held.is_some() {
                 approach.free = free - by_stop;
                 press = approach.press()?;
                 let push = press.map_or(Vector::default(), |press| press.push);
                 by_rotor = push.times(-ride.mobility);
             }
-            halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
+            let halt = self.mount.halt(&state.ring, ride.moved + by_rotor)?;
             let found = halt.unwrap_or_default();
             let changed = found - by_stop;
             let close = R::lit(CLOSE) * R::EPSILON * (found.length() + by_rotor.length());
             if state.held.is_none() || changed.length() <= close.least(R::lit(CLOSE) * R::EPSILON) {
-                by_stop = found;
-                break;
-            }
-            if pass == PASSES {
-                return None;
+                return Some(Balance {
+                    press,
+                    pushed: [by_rotor, found],
+                    stopped: halt.is_some(),
+                    settled: true,
+                });
             }
             by_stop = settling.next(by_stop, changed);
         }
-        let push = press.map_or(Vector::default(), |press: Press<R>| press.push);
-        kick = kick + push.times(R::TWO / time);
-        Some(Passage {
-            time,
-            moved: free + push - by_rotor - by_stop,
-            kick,
-            ride,
-            pushed: [by_rotor, by_stop],
+        Some(Balance {
             press,
-            stopped: halt.is_some(),
-            drag,
+            pushed: [by_rotor, by_stop],
+            stopped: true,
+            settled: false,
         })
     }
+}
+
+/// Whether friction goes along with the mean of the slip where the stop holds the ring.
+fn gains<R: Real>(balance: &Balance<R>, approach: &Approach<R>, time: R) -> bool {
+    let Some(press) = balance.press.filter(|_| balance.stopped) else {
+        return false;
+    };
+    let moved = approach.free + press.push - balance.pushed[0] - balance.pushed[1];
+    let surface = R::HALF * (approach.surface[0] + approach.surface[1])
+        + approach.spin_mobility * press.rubbed / time;
+    let slip = press.normal.cross(moved) / time + surface;
+    let speed = moved.length() / time;
+    let off = R::lit(CLOSE) * R::EPSILON * (speed + surface.abs());
+    press.rubbed * slip > press.rubbed.abs() * off
 }

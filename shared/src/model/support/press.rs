@@ -41,10 +41,13 @@ pub(super) struct Approach<R> {
 }
 
 impl<R: Real> Approach<R> {
-    /// The contact: inner none where the wall would have to pull, outer none where the rotor goes too
-    /// far round it.
+    /// The contact: inner none where the rotor ends inside without it, outer none where it goes too far
+    /// round the wall.
     #[allow(clippy::option_option)]
     pub(super) fn press(&self) -> Option<Option<Press<R>>> {
+        if self.free.dot(self.place.times(R::TWO) + self.free) <= R::ZERO {
+            return Some(None);
+        }
         let mut normal = self.place.times(R::ONE / self.place.length());
         let round = normal.cross(self.free);
         let into = normal.dot(self.free) + R::HALF * round * round;
@@ -65,7 +68,7 @@ impl<R: Real> Approach<R> {
             normal = Vector::new(hold.normal);
             pressed = hold.pressed / self.mobility;
             if pressed <= R::ZERO {
-                return Some(None);
+                return None;
             }
             let rubbed = hold.rubbed / self.mobility;
             press = Press {

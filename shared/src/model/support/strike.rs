@@ -44,6 +44,78 @@ struct Meeting<R> {
     outward: R,
 }
 
+/// Rotor, ring and stop in an impact.
+struct Clash<R> {
+    normal: Vector<R>,
+    mobility: Mobility<R>,
+    /// Velocity of the rotor in the ring, and of the ring.
+    relative: Vector<R>,
+    ring: Vector<R>,
+    /// Surface speed against the inner ring.
+    surface: R,
+    /// Speed away from the wall that restitution asks for.
+    launch: R,
+    /// Velocity of the ring by an impulse.
+    yielding: R,
+}
+
+/// The impulses.
+#[derive(Clone, Copy, Debug, Default)]
+struct Blow<R> {
+    impulse: Impulse<R>,
+    /// On the rotor.
+    push: Vector<R>,
+    /// On the ring, by its stop.
+    by_stop: Vector<R>,
+}
+
+impl<R: Real> Clash<R> {
+    /// Rotor and stop in turn, and whether they came to an end.
+    fn solve(&self, meeting: &Meeting<R>, friction: R) -> (Blow<R>, bool) {
+        let mut settling = Settling::default();
+        let mut blow = Blow::default();
+        for _ in 0..PASSES {
+            if meeting.wall.is_some() {
+                let met = self.relative - blow.by_stop.times(self.yielding);
+                let speed = (self.normal.dot(met) + self.launch).most(R::ZERO);
+                let slip = self.normal.cross(met) + self.surface;
+                blow.impulse = self.mobility.strike(R::ZERO, friction, speed, slip);
+                let parts = Vector::new([-blow.impulse.normal, blow.impulse.tangential]);
+                blow.push = parts * self.normal;
+            }
+            let Some(stop) = meeting.stop else {
+                return (blow, true);
+            };
+            let into = stop.dot(self.ring - blow.push.times(self.yielding)) / self.yielding;
+            let found = stop.times(-into.most(R::ZERO));
+            let changed = found - blow.by_stop;
+            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + blow.push.length());
+            if meeting.wall.is_none() || changed.length() <= close {
+                blow.by_stop = found;
+                return (blow, self.is_lossy(&blow));
+            }
+            blow.by_stop = settling.next(blow.by_stop, changed);
+        }
+        (blow, false)
+    }
+
+    /// Whether the impulses take energy: what each does is impulse times mean velocity.
+    fn is_lossy(&self, blow: &Blow<R>) -> bool {
+        let rub = blow.impulse.tangential;
+        let turning = self.mobility.tangential - self.mobility.normal;
+        let ring = (blow.by_stop - blow.push).times(R::HALF * self.yielding);
+        let relative = self.relative + blow.push.times(R::HALF) - ring;
+        let works = [
+            blow.push.dot(relative),
+            blow.by_stop.dot(self.ring + ring),
+            rub * (self.surface + R::HALF * turning * rub),
+        ];
+        let gained = works[0] + works[1] + works[2];
+        let size = works[0].abs() + works[1].abs() + works[2].abs();
+        gained <= R::lit(CLOSE) * R::EPSILON * size
+    }
+}
+
 impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     /// The impact of whoever `arrived`, `part` of a step after the step's start. With `stays` the rotor
     /// is not thrown back.
@@ -129,34 +201,24 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             normal: R::ONE + yielding,
             tangential: R::ONE + yielding + R::ONE / self.law.inertia_ratio + self.race.mobility(),
         };
-        let launch = restitution * normal.dot(relative).most(R::ZERO);
-
-        let mut settling = Settling::default();
-        let (mut impulse, mut push) = (Impulse::default(), Vector::default());
-        let mut by_stop = Vector::default();
-        for _ in 0..PASSES {
-            if meeting.wall.is_some() {
-                let met = relative - by_stop.times(yielding);
-                let speed = (normal.dot(met) + launch).most(R::ZERO);
-                let slip = normal.cross(met) + surface;
-                impulse = mobility.strike(R::ZERO, self.law.friction, speed, slip);
-                push = Vector::new([-impulse.normal, impulse.tangential]) * normal;
-            }
-            let Some(stop) = meeting.stop else {
-                break;
-            };
-            let into = stop.dot(ring - push.times(yielding)) / yielding;
-            let found = stop.times(-into.most(R::ZERO));
-            let changed = found - by_stop;
-            let close = R::lit(CLOSE) * R::EPSILON * (found.length() + push.length());
-            if meeting.wall.is_none() || changed.length() <= close {
-                by_stop = found;
-                break;
-            }
-            by_stop = settling.next(by_stop, changed);
+        let clash = Clash {
+            normal,
+            mobility,
+            relative,
+            ring,
+            surface,
+            launch: restitution * normal.dot(relative).most(R::ZERO),
+            yielding,
+        };
+        let (blow, settled) = clash.solve(meeting, self.law.friction);
+        if settled {
+            self.take(state, normal, &blow);
+            return blow.impulse;
         }
-        self.take(state, normal, impulse, push, by_stop);
-        impulse
+        let (mut blow, _) = clash.solve(meeting, R::ZERO);
+        self.take(state, normal, &blow);
+        blow.impulse.stuck = self.wedge(state, normal, blow.impulse.normal);
+        blow.impulse
     }
 
     /// Gives the impulses, and books their work: impulse times mean velocity.
@@ -164,10 +226,13 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         &self,
         state: &mut SupportState<R, M::State, B::State>,
         normal: Vector<R>,
-        impulse: Impulse<R>,
-        push: Vector<R>,
-        by_stop: Vector<R>,
+        blow: &Blow<R>,
     ) {
+        let Blow {
+            impulse,
+            push,
+            by_stop,
+        } = *blow;
         let slides = |state: &SupportState<R, M::State, B::State>| {
             state.spin.value() - B::surface(&state.race)
         };
