@@ -54,8 +54,6 @@ pub struct DetectorState {
     /// First position, m, and whether the rotor has been at the wall since.
     origin: Option<[f32; 2]>,
     off_wall: bool,
-    /// Channels whose fault has been told.
-    faulty: u8,
 }
 
 impl Detector {
@@ -100,7 +98,11 @@ impl Detector {
             next_number: &mut next_number,
             notices,
         };
-        self.faults(state, reading, &mut teller);
+        for (channel, found) in (0..).zip(reading.found) {
+            if let Some(found) = found {
+                teller.tell_fault(channel, found);
+            }
+        }
         self.orbiting.advance(&mut state.orbit, signals.spin);
         let fix = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
@@ -143,15 +145,6 @@ impl Detector {
             variance: state.noise.variance(1, self.resolution),
         };
         reading.planes.map(|position| position.map(fix))
-    }
-
-    fn faults(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
-        let new = reading.unusable & !state.faulty;
-        state.faulty = reading.unusable;
-        if new != 0 {
-            let ends = [new & 0b0011 != 0, new & 0b1100 != 0];
-            teller.tell_of(ends, EventKind::SensorFault);
-        }
     }
 
     /// The rotor as a whole.
@@ -431,7 +424,7 @@ impl DetectorState {
 }
 
 /// The bits of a NaN differ between machines that agree on everything else.
-fn bits(value: f32) -> u32 {
+pub(crate) fn bits(value: f32) -> u32 {
     if value.is_nan() {
         0x7fc0_0000
     } else {
