@@ -89,6 +89,8 @@ pub struct Fault {
 /// What can be had of a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Condition {
     /// Nothing is known against it.
     #[default]
@@ -102,6 +104,15 @@ pub enum Condition {
 impl Condition {
     /// All conditions, in the order of their codes.
     pub const ALL: [Self; 3] = [Self::Ok, Self::Suspect, Self::Lost];
+
+    /// As it stands in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Suspect => "suspect",
+            Self::Lost => "lost",
+        }
+    }
 }
 
 /// A fault that a tick found.
