@@ -68,19 +68,21 @@ impl Monitor {
 
     /// One tick. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
-        let phase = state.detector.phase();
+        let phases = state.detector.phases();
         let reading = self
             .health
-            .update(&mut state.health, &self.sensing, sample, phase);
+            .update(&mut state.health, &self.sensing, sample, phases);
         let retainer = self.retainer(state, sample);
         state.samples += 1;
+        let spin = sample.spin.filter(|spin| spin.is_finite());
         state.faults += u64::from(reading.unusable.count_ones());
+        state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
         self.detector.update(
             &mut state.detector,
             &reading,
             &Signals {
-                spin: sample.spin.filter(|spin| spin.is_finite()),
+                spin,
                 retainer,
                 levitated: sample.levitated,
             },

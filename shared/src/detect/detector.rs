@@ -5,7 +5,7 @@ use crate::detect::config::DetectorConfig;
 use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
 use crate::detect::flight::{Fix, FlightTest, Listener, direction};
-use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square};
+use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square, sum};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
@@ -102,6 +102,9 @@ impl Detector {
             if let Some(found) = found {
                 teller.tell_fault(channel, found);
             }
+        }
+        if reading.moved != [0.0; 2] {
+            state.shift(reading.moved);
         }
         self.orbiting.advance(&mut state.orbit, signals.spin);
         let fix = reading.mean().map(|(position, planes)| {
@@ -372,6 +375,23 @@ impl Detector {
 }
 
 impl DetectorState {
+    /// The mean over the planes has moved by `way` (m), the rotor has not.
+    fn shift(&mut self, way: [f32; 2]) {
+        self.levitation.shift(way);
+        self.orbit.shift(way);
+        self.listener.shift(way);
+        if let Some(origin) = &mut self.origin {
+            *origin = sum(*origin, way);
+        }
+        if !self.ends.are_alone() {
+            let outward = self.rotor.contact.outward();
+            let farther = way[0] * outward[0] + way[1] * outward[1];
+            let track = &mut self.rotor.flight.track;
+            track.position = sum(track.position, way);
+            self.rotor.contact = self.rotor.contact.at_one_end(farther);
+        }
+    }
+
     /// The present phase; of ends that are apart the one that is further on.
     pub fn phase(&self) -> Phase {
         let [a, b] = self.phases();

@@ -28,6 +28,9 @@ const BLIND: u16 = 16;
 /// Standard deviation of the noise, in counts, below which the same count over a long time is nothing special: where
 /// the position is within a count changes then how often it repeats.
 const LEAST_NOISE: f32 = 0.56;
+/// How far off a smooth continuation a sample of a turning motion can be, at most: square of it over the sum of
+/// the squares of the last two steps. At three samples a turn it is 18.
+const FASTEST: f32 = 18.0;
 /// Counts from an end within which a channel is expected that runs into it.
 const AT_END: f32 = 64.0;
 
@@ -58,7 +61,9 @@ pub(crate) struct Watched {
     count: u16,
     repeats: u16,
     stuck_after: u16,
-    /// Samples in a row that are no good, why, and where the first of them was.
+    /// The last values used.
+    last: [f32; 3],
+    /// Samples in a row that are no good, why, how far off the first of them was, and whether all are as far.
     bad: u16,
     cause: FaultKind,
     first: f32,
@@ -87,6 +92,7 @@ impl Default for Watched {
             count: 0,
             repeats: 0,
             stuck_after: u16::MAX,
+            last: [0.0; 3],
             bad: 0,
             cause: FaultKind::Missing,
             first: 0.0,
@@ -157,7 +163,7 @@ impl Watch {
         }
         let square = it.innovation * it.innovation;
         let bound = self.bound(it, floats);
-        if square > bound {
+        if square > bound && (floats || it.leaps(bound)) {
             Look::Off
         } else if square > 0.25 * bound {
             Look::Loud
@@ -181,6 +187,21 @@ impl Watch {
         floats: bool,
         spare: bool,
     ) -> (Option<f32>, Option<Found>) {
+        let taken = self.judge(it, look, floats, spare);
+        if let (Some(value), _) = taken {
+            let [a, b, _] = it.last;
+            it.last = [value, a, b];
+        }
+        taken
+    }
+
+    fn judge(
+        &self,
+        it: &mut Watched,
+        look: Look,
+        floats: bool,
+        spare: bool,
+    ) -> (Option<f32>, Option<Found>) {
         it.blind = it.blind.saturating_sub(1);
         let cause = match look {
             Look::Unusable(kind) => kind,
@@ -195,7 +216,7 @@ impl Watch {
         let value = it.value;
         if it.bad == 0 {
             it.cause = cause;
-            it.first = value;
+            it.first = it.innovation;
             it.is_still = true;
         } else if it.cause != cause {
             // It bounces about.
@@ -206,8 +227,9 @@ impl Watch {
         }
         it.bad = it.bad.saturating_add(1);
         if cause == FaultKind::Spike {
-            let way = value - it.first;
-            it.is_still &= way * way <= self.bound(it, floats);
+            // A motion would grow.
+            let more = it.innovation - it.first;
+            it.is_still &= more * more <= self.bound(it, floats);
         }
         if it.condition == Condition::Lost {
             return (None, None);
@@ -227,7 +249,7 @@ impl Watch {
             it.condition = Condition::Lost;
             return (None, found(it.cause));
         }
-        if !(floats && it.is_still) {
+        if !it.is_still {
             // It was motion.
             it.restart();
             return (Some(value), None);
@@ -313,6 +335,14 @@ impl Watch {
 }
 
 impl Watched {
+    /// Whether its value is no smooth continuation of the last either: where the rotor whirls, the filter lags.
+    fn leaps(&self, bound: f32) -> bool {
+        let [a, b, c] = self.last;
+        let leap = self.value - 3.0 * (a - b) - c;
+        let steps = (a - b) * (a - b) + (b - c) * (b - c);
+        leap * leap > bound.max(FASTEST * steps)
+    }
+
     /// From a place that has not been foreseen.
     fn restart(&mut self) {
         self.position = self.value;

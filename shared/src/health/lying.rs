@@ -1,11 +1,14 @@
-//! One plane of a rotor that lies still on the retainer: whether it lies where it can.
+//! Where one plane has been on average: whether a rotor can be there.
+//!
+//! Whatever a rotor does, its mean over more than a swing is not beyond the wall; and one that lies or swings on
+//! the wall does so at the bottom.
 
 use crate::real::sqrt;
 
-/// Part of the clearance that a rotor which lies still moves, at most.
-const STILL: f32 = 0.05;
-/// Times the tolerance of the wall that it may seem off its place.
-const OFF: f32 = 3.0;
+/// Part of the clearance that a rotor which swings moves about by, at most; one that whirls does by more.
+const SWING: f32 = 0.35;
+/// Times the tolerance of the wall that it may seem beyond it.
+const BEYOND: f32 = 3.0;
 /// Part of the radius by which a rotor lies at a side or the top.
 const ASIDE: f32 = 0.9;
 
@@ -13,7 +16,8 @@ const ASIDE: f32 = 0.9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lie {
     clearance: f32,
-    tolerance: f32,
+    /// Mean radius that is beyond the wall, m.
+    beyond: f32,
     /// Whether there is a bottom, and friction cannot hold a rotor at a side.
     falls: bool,
     looks: u16,
@@ -23,20 +27,22 @@ pub(crate) struct Lie {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Lying {
     looks: u16,
+    /// All the time.
+    touches: bool,
     first: [f32; 2],
     sum: [f32; 2],
     square: f32,
 }
 
-/// Where a rotor lies.
+/// Where a rotor cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     /// At the top.
     Top,
     /// At a side.
     Side,
-    /// Not on the wall, along x or along y.
-    OffWall(u8),
+    /// Beyond the wall, along x (0) or along y (1).
+    Beyond(u8),
 }
 
 impl Lie {
@@ -44,21 +50,23 @@ impl Lie {
     pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
         Self {
             clearance,
-            tolerance,
+            beyond: clearance + BEYOND * tolerance,
             falls,
             looks,
         }
     }
 
-    /// Takes a position, m, of a rotor in contact; where it lies, if that is no place for it.
-    pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2]) -> Option<Place> {
+    /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot.
+    pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2], touches: bool) -> Option<Place> {
         if it.looks == 0 {
             it.first = position;
+            it.touches = true;
         }
         let [x, y] = [position[0] - it.first[0], position[1] - it.first[1]];
         it.sum[0] += x;
         it.sum[1] += y;
         it.square += x * x + y * y;
+        it.touches &= touches;
         it.looks += 1;
         if it.looks < self.looks {
             return None;
@@ -67,25 +75,26 @@ impl Lie {
         let [x, y] = it.sum.map(|sum| sum / count);
         let variance = it.square / count - x * x - y * y;
         let mean = [x + it.first[0], y + it.first[1]];
+        let touches = it.touches;
         *it = Lying::default();
-        let still = STILL * self.clearance;
-        if variance > still * still {
-            return None;
-        }
-        self.judge(mean)
+        let swing = SWING * self.clearance;
+        self.judge(mean, touches && variance < swing * swing)
     }
 
-    fn judge(&self, [x, y]: [f32; 2]) -> Option<Place> {
+    fn judge(&self, [x, y]: [f32; 2], lies: bool) -> Option<Place> {
         let radius = sqrt(x * x + y * y);
-        if self.falls && radius > 0.5 * self.clearance {
-            if y > ASIDE * radius {
-                return Some(Place::Top);
-            }
-            if x.abs() > ASIDE * radius {
-                return Some(Place::Side);
-            }
+        if radius > self.beyond {
+            return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
         }
-        let off = (radius - self.clearance).abs() > OFF * self.tolerance;
-        off.then_some(Place::OffWall(u8::from(y.abs() > x.abs())))
+        if !(lies && self.falls && radius > 0.5 * self.clearance) {
+            return None;
+        }
+        if y > ASIDE * radius {
+            Some(Place::Top)
+        } else if x.abs() > ASIDE * radius {
+            Some(Place::Side)
+        } else {
+            None
+        }
     }
 }

@@ -80,7 +80,7 @@ impl Health {
                 REACH * fall / (rate * sensing.resolution),
                 sensing.full_scale,
             ),
-            pair: Pair::new(tolerance, rate),
+            pair: Pair::new(tolerance),
             float: Float::new(threshold, LEAST_ORBIT * sensing.resolution, rate / every),
             lie: Lie::new(
                 machine.clearance,
@@ -94,15 +94,15 @@ impl Health {
         }
     }
 
-    /// One tick: what of `sample` is fit for use. `phase` is the rotor's so far.
+    /// One tick: what of `sample` is fit for use. `phases` are those of the rotor's ends so far.
     pub fn update(
         &self,
         state: &mut HealthState,
         sensing: &Sensing,
         sample: &Sample,
-        phase: Phase,
+        phases: [Phase; PLANES],
     ) -> Reading {
-        let floats = phase == Phase::Levitated;
+        let floats = phases == [Phase::Levitated; PLANES];
         let mut reading = Reading::default();
         let mut looks = [Look::Calm; CHANNELS];
         let mut loud = 0;
@@ -140,10 +140,11 @@ impl Health {
         state.wait += 1;
         if state.wait >= self.look_every {
             state.wait = 0;
-            self.look(state, &mut reading, phase, sample.spin);
+            self.look(state, &mut reading, phases, sample.spin);
         }
-        self.pair
-            .take(&mut state.pairing, &mut reading.planes, own, floats);
+        reading.moved = self
+            .pair
+            .take(&mut state.pairing, &reading.planes, own, floats);
         reading
     }
 
@@ -152,46 +153,46 @@ impl Health {
         &self,
         state: &mut HealthState,
         reading: &mut Reading,
-        phase: Phase,
+        phases: [Phase; PLANES],
         spin: Option<f32>,
     ) {
         let planes = reading.planes;
-        if phase == Phase::Levitated {
-            state.lying = Default::default();
-            for (it, plane) in state.floating.iter_mut().zip(planes) {
-                match plane {
-                    Some(position) => self.float.take(it, position),
-                    None => *it = Floating::default(),
-                }
-            }
-            let spin = spin.filter(|spin| spin.is_finite()).unwrap_or(self.spin);
-            self.senses(state, reading, spin);
-            self.drifts(state, reading);
-            return;
-        }
-        state.floating = Default::default();
-        state.drifted = false;
-        for (index, plane) in planes.into_iter().enumerate() {
+        for (index, (plane, phase)) in planes.into_iter().zip(phases).enumerate() {
             let Some(it) = state.lying.get_mut(index) else {
                 continue;
             };
-            let place = match plane {
-                Some(position) if phase.is_contact() => self.lie.take(it, position),
-                _ => {
-                    *it = Lying::default();
-                    None
-                }
+            let Some(position) = plane else {
+                *it = Lying::default();
+                continue;
             };
-            let Some(place) = place else { continue };
+            let Some(place) = self.lie.take(it, position, phase.is_contact()) else {
+                continue;
+            };
             let (axis, kind) = match place {
                 Place::Top => (1, FaultKind::Reversed),
                 Place::Side => (0, FaultKind::Swapped),
-                Place::OffWall(axis) => (usize::from(axis), FaultKind::Gain),
+                Place::Beyond(_) if self.fitted == 0b1111 => {
+                    (state.pairing.axis(), FaultKind::Gain)
+                }
+                Place::Beyond(axis) => (usize::from(axis), FaultKind::Gain),
             };
-            let spare =
-                kind != FaultKind::Gain && state.spare()[1 - index] && self.fitted == 0b1111;
+            let spare = self.fitted == 0b1111 && state.spare()[1 - index];
             state.tell(reading, 2 * index + axis, kind, spare);
         }
+        if phases != [Phase::Levitated; PLANES] {
+            state.floating = Default::default();
+            state.drifted = false;
+            return;
+        }
+        for (it, plane) in state.floating.iter_mut().zip(planes) {
+            match plane {
+                Some(position) => self.float.take(it, position),
+                None => *it = Floating::default(),
+            }
+        }
+        let spin = spin.filter(|spin| spin.is_finite()).unwrap_or(self.spin);
+        self.senses(state, reading, spin);
+        self.drifts(state, reading);
     }
 
     /// Whether a plane orbits the other way round than the rotor turns.
