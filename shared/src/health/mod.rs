@@ -106,35 +106,26 @@ impl Health {
         let mut reading = Reading::default();
         let mut looks = [Look::Calm; CHANNELS];
         let mut loud = 0;
+        let mut calm = true;
+        let fitted = |index: usize| self.fitted & (1 << index) != 0;
         for (index, (it, look)) in state.channels.iter_mut().zip(&mut looks).enumerate() {
-            if self.fitted & (1 << index) == 0 {
-                continue;
+            if fitted(index) {
+                let count = sample.counts.get(index).copied();
+                let count = count.filter(|_| sample.is_valid(index));
+                *look = self.watch.look(it, count, floats);
+                loud += u8::from(matches!(look, Look::Loud | Look::Off));
+                calm &= matches!(look, Look::Calm | Look::Loud) && it.is_sound();
             }
-            let count = sample.counts.get(index).copied();
-            let count = count.filter(|_| sample.is_valid(index));
-            *look = self.watch.look(it, count, floats);
-            loud += u8::from(matches!(look, Look::Loud | Look::Off));
         }
-        let spare = state.spare();
         let mut counts = [None; CHANNELS];
-        let mut own = true;
-        let channels = state.channels.iter_mut().zip(looks).zip(&mut counts);
-        for (index, ((it, look), slot)) in channels.enumerate() {
-            if self.fitted & (1 << index) == 0 {
-                continue;
+        if calm {
+            for (index, (it, slot)) in state.channels.iter_mut().zip(&mut counts).enumerate() {
+                if fitted(index) {
+                    *slot = Some(self.watch.settle(it));
+                }
             }
-            let moved = look == Look::Off && loud > 1;
-            let look = if moved { Look::Motion } else { look };
-            let spare = self.fitted == 0b1111 && spare[1 - index / 2];
-            let (count, found) = self.watch.take(it, look, floats, spare);
-            *slot = count;
-            if let Some(slot) = reading.found.get_mut(index) {
-                *slot = found;
-            }
-            if !it.is_own() {
-                reading.unusable |= 1 << index;
-                own = false;
-            }
+        } else {
+            self.sort_out(state, looks, loud, floats, &mut counts, &mut reading);
         }
         reading.planes = sensing.place(counts);
         state.wait += 1;
@@ -142,10 +133,40 @@ impl Health {
             state.wait = 0;
             self.look(state, &mut reading, phases, sample.spin);
         }
-        reading.moved = self
-            .pair
-            .take(&mut state.pairing, &reading.planes, own, floats);
+        reading.moved = self.pair.take(
+            &mut state.pairing,
+            &reading.planes,
+            reading.unusable == 0,
+            floats,
+        );
         reading
+    }
+
+    /// Where a sample of some channel is not as foreseen: which values can be used.
+    fn sort_out(
+        &self,
+        state: &mut HealthState,
+        looks: [Look; CHANNELS],
+        loud: u8,
+        floats: bool,
+        counts: &mut [Option<f32>; CHANNELS],
+        reading: &mut Reading,
+    ) {
+        let spare = state.spare();
+        let channels = state.channels.iter_mut().zip(looks);
+        let slots = counts.iter_mut().zip(&mut reading.found);
+        for (index, ((it, look), (slot, found))) in channels.zip(slots).enumerate() {
+            if self.fitted & (1 << index) == 0 {
+                continue;
+            }
+            let moved = look == Look::Off && loud > 1;
+            let look = if moved { Look::Motion } else { look };
+            let spare = self.fitted == 0b1111 && spare[1 - index / 2];
+            (*slot, *found) = self.watch.take(it, look, floats, spare);
+            if !it.is_own() {
+                reading.unusable |= 1 << index;
+            }
+        }
     }
 
     /// Now and then: where the planes are, as far as that shows their sensors.
