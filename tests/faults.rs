@@ -245,7 +245,7 @@ fn a_failing_channel_is_named_within_a_few_samples() {
 fn a_drop_is_seen_by_the_other_plane() {
     for (failing, ..) in FAULTS {
         let (mut runs, mut falls, mut missed, mut invented) = (0, 0, 0, 0);
-        for step in 0..40 {
+        for step in 0..40_u32 {
             let start = -0.05 + 0.0037 * f64::from(step);
             let mut scene = rig(2, step.into());
             scene.run.duration = 0.12;
@@ -280,7 +280,7 @@ fn a_spike_or_a_dropped_sample_is_told_and_is_no_event() {
             } else {
                 kind
             };
-            for step in 0..24 {
+            for step in 0..24_u32 {
                 let start = -0.05 + 0.0061 * f64::from(step);
                 let channel = step as usize % (2 * usize::from(planes));
                 let mut scene = rig(planes, step.into());
