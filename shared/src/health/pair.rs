@@ -43,9 +43,10 @@ impl Pair {
         pairing.seen = seen;
         if let [Some(a), Some(b)] = planes {
             let now = [0.5 * (a[0] - b[0]), 0.5 * (a[1] - b[1])];
-            if before != seen {
+            // One sample says less of a rotor that floats than what was learnt of it.
+            if before == [false; PLANES] || (before != seen && !floats) {
                 pairing.half = now;
-            } else if own {
+            } else if own && before == seen {
                 for (half, now) in pairing.half.iter_mut().zip(now) {
                     *half += (now - *half) / MEMORY;
                 }
