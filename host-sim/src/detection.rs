@@ -3,7 +3,8 @@
 use touchdown_core::event::{EventKind, Motion, Notice, Plane};
 
 use crate::monitor_run::Answer;
-use crate::outcome::{DetectedEvent, Detection};
+use crate::names::channel_name;
+use crate::outcome::{ChannelFault, DetectedEvent, Detection};
 
 /// Places samples in time.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +59,10 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
                         Motion::Cylindrical => "cylindrical",
                         Motion::Conical => "conical",
                     },
+                    fault: event.fault.map(|fault| ChannelFault {
+                        channel: channel_name(fault.channel),
+                        kind: fault.kind,
+                    }),
                 });
             }
             Notice::Confirmed { number, sample } => {
@@ -77,6 +82,7 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
         events,
         samples: answer.summary.samples,
         faults: answer.summary.faults,
+        conditions: answer.summary.conditions,
         state_hash: answer.summary.state_hash,
     }
 }
@@ -106,6 +112,7 @@ mod tests {
                 plane: Plane::Both,
                 normal_speed: 0.0,
                 motion: Motion::Cylindrical,
+                fault: None,
             })
         };
         let answer = Answer {
@@ -124,6 +131,7 @@ mod tests {
             summary: Summary {
                 samples: 1000,
                 faults: 2,
+                conditions: Default::default(),
                 state_hash: 0,
             },
             log: Vec::new(),

@@ -277,6 +277,7 @@ mod tests {
         let summary = wire::Summary {
             samples: 9,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 5,
         };
         bytes.extend(wire::encode_record(&Record::Summary(summary)));

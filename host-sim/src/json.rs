@@ -1,6 +1,8 @@
 //! What `--json` writes; SI, full precision, unknown values null.
 
 use serde::Serialize;
+use touchdown_core::health::Condition;
+use touchdown_core::sample::CHANNELS;
 
 use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
@@ -109,6 +111,7 @@ struct EnergyJson<'a> {
 #[derive(Serialize)]
 struct EventsJson<'a> {
     events: &'a [DetectedEvent],
+    health: [Condition; CHANNELS],
 }
 
 #[derive(Serialize)]
@@ -116,6 +119,7 @@ struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
     samples: u64,
     faults: u64,
+    health: [Condition; CHANNELS],
 }
 
 /// `drop --json`.
@@ -143,6 +147,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         validity: validity(scene),
         detector: EventsJson {
             events: &outcome.detection.events,
+            health: outcome.detection.conditions,
         },
     })
 }
@@ -153,6 +158,7 @@ pub fn replay(detection: &Detection) -> serde_json::Result<String> {
         events: &detection.events,
         samples: detection.samples,
         faults: detection.faults,
+        health: detection.conditions,
     })
 }
 

@@ -220,6 +220,7 @@ mod tests {
             plane: "a",
             normal_speed_m_s: None,
             motion: "cylindrical",
+            fault: None,
         }
     }
 
@@ -245,6 +246,7 @@ mod tests {
             events,
             samples: 0,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 0,
         };
         match_events(truth, &detection)

@@ -7,6 +7,8 @@ use crate::model_run::RingEnd;
 use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
+use touchdown_core::health::{Condition, FaultKind};
+use touchdown_core::sample::CHANNELS;
 
 /// An event of the detector, with times in seconds since the release (or since the stream's zero).
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,6 +31,18 @@ pub struct DetectedEvent {
     pub normal_speed_m_s: Option<f64>,
     /// `cylindrical` or `conical`: whether the ends of the rotor went the same way or against each other.
     pub motion: &'static str,
+    /// Sensor faults only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<ChannelFault>,
+}
+
+/// What is wrong with which channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ChannelFault {
+    /// `ax`, `ay`, `bx` or `by`; the first of a plane stands for the plane where both are wrong.
+    pub channel: &'static str,
+    /// What.
+    pub kind: FaultKind,
 }
 
 /// What the detector said over a run.
@@ -38,8 +52,10 @@ pub struct Detection {
     pub events: Vec<DetectedEvent>,
     /// Samples seen.
     pub samples: u64,
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
     /// Fingerprint of the detector's state over all ticks.
     pub state_hash: u32,
 }

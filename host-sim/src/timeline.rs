@@ -1,11 +1,12 @@
 //! What the terminal shows: the true phases beside what the detector said, in 80 columns.
 
 use touchdown_core::event::EventKind;
+use touchdown_core::health::Condition;
 
 use crate::history::{History, Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
 use crate::model_run::validity;
-use crate::names::{event_name, phase_name, regime_name};
+use crate::names::{channel_name, event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::paint::Paint;
 use crate::scene::Scene;
@@ -196,13 +197,27 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         let line = format!("{} events that did not happen", matches.false_events.len());
         text += &(paint.bad(&line) + "\n");
     }
+    let told = outcome.detection.events.iter().filter_map(|event| {
+        let fault = event.fault?;
+        let (channel, kind) = (fault.channel, fault.kind.name());
+        let at = millis(event.declared_s);
+        Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
+    });
+    let told: Vec<_> = told.collect();
+    text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
+    text += &more(told.len(), "sensor faults");
     text + &samples_line(&outcome.detection)
 }
 
 /// What the detector was fed, and the fingerprint by which two machines are compared.
 fn samples_line(detection: &Detection) -> String {
+    let conditions = (0..).zip(detection.conditions);
+    let bad: String = conditions
+        .filter(|(_, condition)| *condition != Condition::Ok)
+        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it.name()))
+        .collect();
     format!(
-        "{} samples, {} unusable channel values; detector state {:08x}\n",
+        "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
         detection.samples, detection.faults, detection.state_hash
     )
 }
@@ -222,8 +237,11 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
     }
     for event in &detection.events {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
+        let fault = event
+            .fault
+            .map(|fault| format!("  {} {}", fault.channel, fault.kind.name()));
         let line = format!(
-            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}",
+            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             event_name(event.event),
             event.onset_s,
             event.declared_s,
@@ -234,6 +252,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             },
             event.plane,
             speed.unwrap_or_default(),
+            fault.unwrap_or_default(),
         );
         text += &format!("{}\n", line.trim_end());
     }

@@ -1,5 +1,7 @@
 //! What the detector reports.
 
+use crate::health::Fault;
+
 /// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(pub i64);
@@ -62,7 +64,7 @@ pub enum EventKind {
     Rest = 8,
     /// Floating, under control.
     Levitated = 9,
-    /// A channel delivers no usable value.
+    /// A channel is not to be trusted; the event says why.
     SensorFault = 10,
 }
 
@@ -123,6 +125,8 @@ pub struct Event {
     pub normal_speed: f32,
     /// How the rotor moved when it was declared.
     pub motion: Motion,
+    /// What is wrong with which channel, of a sensor fault.
+    pub fault: Option<Fault>,
 }
 
 /// What a tick says: a new event, or the fate of an earlier free fall.
@@ -147,7 +151,7 @@ pub enum Notice {
 }
 
 /// Most notices that one tick can give.
-pub const NOTICES_PER_TICK: usize = 6;
+pub const NOTICES_PER_TICK: usize = 10;
 
 /// The notices of one tick.
 pub type Notices = heapless::Vec<Notice, NOTICES_PER_TICK>;

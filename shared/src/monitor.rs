@@ -1,11 +1,14 @@
-//! The whole tick: sensing, then the detector.
+//! The whole tick: sensing, the sensors' health, then the detector.
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
 
-use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip};
+use crate::detect::{
+    Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
+};
 use crate::error::ConfigError;
 use crate::event::{Motion, Notices};
-use crate::sample::Sample;
+use crate::health::{Condition, Health, HealthState};
+use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Sensing, SensingConfig};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
@@ -27,8 +30,8 @@ pub struct MonitorConfig {
 /// Coefficients of the tick.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    fitted: u8,
     sensing: Sensing,
+    health: Health,
     tachometers: Option<Tachometers>,
     detector: Detector,
 }
@@ -38,6 +41,7 @@ pub struct Monitor {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
+    health: HealthState,
     tachometers: TachometersState,
     inner_ring: Option<Speed>,
     detector: DetectorState,
@@ -47,13 +51,13 @@ impl Monitor {
     /// Checks `config` and prepares the tick.
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
         Ok(Self {
-            fitted: config.fitted,
             sensing: Sensing::try_new(&config.sensing)?,
             tachometers: config
                 .tachometers
                 .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
+            health: Health::new(&config.detector, &config.sensing, config.fitted),
         })
     }
 
@@ -64,16 +68,21 @@ impl Monitor {
 
     /// One tick. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
-        let reading = self.sensing.convert(sample, self.fitted);
+        let phases = state.detector.phases();
+        let reading = self
+            .health
+            .update(&mut state.health, &self.sensing, sample, phases);
         let retainer = self.retainer(state, sample);
         state.samples += 1;
+        let spin = sample.spin.filter(|spin| spin.is_finite());
         state.faults += u64::from(reading.unusable.count_ones());
+        state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
         self.detector.update(
             &mut state.detector,
             &reading,
             &Signals {
-                spin: sample.spin,
+                spin,
                 retainer,
                 levitated: sample.levitated,
             },
@@ -86,7 +95,7 @@ impl Monitor {
         let Some(tachometers) = &self.tachometers else {
             return Retainer::Fixed;
         };
-        let (edges, spin) = (&sample.edges, sample.spin);
+        let (edges, spin) = (&sample.edges, sample.spin.filter(|spin| spin.is_finite()));
         state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
         match spin {
             Some(spin) => {
@@ -103,9 +112,14 @@ impl MonitorState {
         self.samples
     }
 
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub fn faults(&self) -> u64 {
         self.faults
+    }
+
+    /// What can be had of each channel.
+    pub fn conditions(&self) -> [Condition; CHANNELS] {
+        self.health.conditions()
     }
 
     /// The present phase.
@@ -158,6 +172,9 @@ impl Fingerprint {
         self.0.update(&state.samples.to_le_bytes());
         self.0.update(&state.faults.to_le_bytes());
         state
+            .health
+            .fingerprint(|value| self.0.update(&bits(value).to_le_bytes()));
+        state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
     }
@@ -167,6 +184,7 @@ impl Fingerprint {
         Summary {
             samples: state.samples,
             faults: state.faults,
+            conditions: state.conditions(),
             state_hash: self.0.finalize(),
         }
     }

@@ -5,12 +5,13 @@
 //! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, and last the one of [`Summary`].
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use crate::health::{Condition, Fault, FaultKind};
 use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 
 /// First bytes of a replay file; the last is the version.
 pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x02";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x02";
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x03";
 /// Bytes of a sample record.
 pub const SAMPLE_BYTES: usize = 20;
 /// Bytes of a notice record.
@@ -74,8 +75,10 @@ pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
 pub struct Summary {
     /// Samples seen.
     pub samples: u64,
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
     /// Fingerprint of the detector's state over all ticks.
     pub state_hash: u32,
 }
@@ -94,7 +97,8 @@ const CONFIRMED: u8 = 2;
 const WITHDRAWN: u8 = 3;
 const SUMMARY: u8 = 4;
 
-/// Record to bytes: tag, kind, plane, motion, number (u16), two zero bytes, then three 8-byte fields.
+/// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
+/// three 8-byte fields. The summary has the channels' conditions at 4.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
@@ -106,6 +110,9 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(8, &event.onset.0.to_le_bytes());
             put(16, &event.declared.to_le_bytes());
             put(24, &event.normal_speed.to_le_bytes());
+            if let Some(Fault { channel, kind }) = event.fault {
+                put(6, &[1 + kind as u8, channel]);
+            }
         }
         Record::Notice(Notice::Confirmed { number, sample }) => {
             put(0, &[CONFIRMED]);
@@ -119,6 +126,7 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
         }
         Record::Summary(summary) => {
             put(0, &[SUMMARY]);
+            put(4, &summary.conditions.map(|it| it as u8));
             put(8, &summary.samples.to_le_bytes());
             put(16, &summary.faults.to_le_bytes());
             put(24, &summary.state_hash.to_le_bytes());
@@ -127,7 +135,7 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     bytes
 }
 
-/// Bytes to record; `None` for an unknown tag, kind, plane or motion.
+/// Bytes to record; `None` for an unknown tag, kind, plane, motion, fault or condition.
 pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
     let eight = |at: usize| {
         let mut field = [0; 8];
@@ -146,14 +154,32 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             plane: *[Plane::A, Plane::B, Plane::Both].get(usize::from(bytes[2]))?,
             normal_speed: f32::from_le_bytes(four),
             motion: *[Motion::Cylindrical, Motion::Conical].get(usize::from(bytes[3]))?,
+            fault: fault(bytes[6], bytes[7])?,
         })),
         CONFIRMED => Record::Notice(Notice::Confirmed { number, sample }),
         WITHDRAWN => Record::Notice(Notice::Withdrawn { number, sample }),
         SUMMARY => Record::Summary(Summary {
             samples: u64::from_le_bytes(eight(8)),
             faults: sample,
+            conditions: conditions([bytes[4], bytes[5], bytes[6], bytes[7]])?,
             state_hash: u32::from_le_bytes(four),
         }),
         _ => return None,
     })
+}
+
+fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {
+    let Some(kind) = code.checked_sub(1) else {
+        return Some(None);
+    };
+    let kind = *FaultKind::ALL.get(usize::from(kind))?;
+    (usize::from(channel) < CHANNELS).then_some(Some(Fault { channel, kind }))
+}
+
+fn conditions(codes: [u8; CHANNELS]) -> Option<[Condition; CHANNELS]> {
+    let mut conditions = [Condition::Ok; CHANNELS];
+    for (condition, code) in conditions.iter_mut().zip(codes) {
+        *condition = *Condition::ALL.get(usize::from(code))?;
+    }
+    Some(conditions)
 }

@@ -109,6 +109,7 @@ fn detection(truth: &History) -> Detection {
         plane: "both",
         normal_speed_m_s: None,
         motion: "cylindrical",
+        fault: None,
     };
     let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
         PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
@@ -128,6 +129,7 @@ fn detection(truth: &History) -> Detection {
     let impacts = hard.map(|impact| DetectedEvent {
         normal_speed_m_s: Some(0.98 * impact.normal_speed),
         motion: "cylindrical",
+        fault: None,
         ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
     });
     let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();
@@ -141,6 +143,7 @@ fn detection(truth: &History) -> Detection {
         events,
         samples: 25_000,
         faults: 3,
+        conditions: Default::default(),
         state_hash: 0,
     }
 }

@@ -51,6 +51,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
             events: Vec::new(),
             samples: 0,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 0,
         },
     }

@@ -2,6 +2,7 @@
 
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
+use crate::detect::ladder::sum;
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
@@ -63,6 +64,11 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
+    /// What is measured has moved by `way`, m.
+    pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        self.track.position = sum(self.track.position, way);
+    }
+
     /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
     /// clearly louder counts.
     pub(crate) fn loudness(&self) -> f32 {
