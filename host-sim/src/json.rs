@@ -6,7 +6,7 @@ use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
 use crate::model_run::{RingEnd, validity};
-use crate::outcome::{DetectedEvent, Detection, Outcome};
+use crate::outcome::{DetectedEvent, Detection, Forecast, Outcome};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
 
@@ -30,6 +30,7 @@ struct DropJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     validity: Option<Validity>,
     detector: EventsJson<'a>,
+    forecasts: &'a [Forecast],
 }
 
 #[derive(Serialize)]
@@ -114,6 +115,7 @@ struct EventsJson<'a> {
 #[derive(Serialize)]
 struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
+    forecasts: &'a [Forecast],
     samples: u64,
     faults: u64,
 }
@@ -144,6 +146,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         detector: EventsJson {
             events: &outcome.detection.events,
         },
+        forecasts: &outcome.detection.forecasts,
     })
 }
 
@@ -151,6 +154,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
 pub fn replay(detection: &Detection) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: &detection.events,
+        forecasts: &detection.forecasts,
         samples: detection.samples,
         faults: detection.faults,
     })

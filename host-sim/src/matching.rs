@@ -243,6 +243,7 @@ mod tests {
     fn judge(truth: &History, events: Vec<DetectedEvent>) -> Matches {
         let detection = Detection {
             events,
+            forecasts: Vec::new(),
             samples: 0,
             faults: 0,
             state_hash: 0,

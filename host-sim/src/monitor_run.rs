@@ -28,6 +28,7 @@ pub fn run(
     let mut notices = Vec::new();
     for sample in samples {
         notices.extend(monitor.update(&mut state, &sample));
+        notices.extend(monitor.look_ahead(&mut state));
         fingerprint.take(&state);
     }
     Ok(Answer {

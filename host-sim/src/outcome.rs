@@ -31,11 +31,33 @@ pub struct DetectedEvent {
     pub motion: &'static str,
 }
 
+/// What lay ahead, as the monitor saw it; the first of an episode, and where a probability had changed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Forecast {
+    /// Time stamp of the sample whose estimate it starts from, s.
+    pub from_s: f64,
+    /// Time stamp of the sample after which it was ready, s.
+    pub made_s: f64,
+    /// Of whirl with the spin, 0 to 1.
+    pub probability_forward: f64,
+    /// Of whirl against the spin, 0 to 1.
+    pub probability_backward: f64,
+    /// From `made_s` to the start of the contact that whirls, s; negative where it has begun, `None` where
+    /// no run whirls.
+    pub time_left_s: Option<f64>,
+    /// The start of that contact, s.
+    pub begins_s: Option<f64>,
+    /// From there to unbounded growth without gravity, rho0/(mu |v_t|), s.
+    pub growth_s: Option<f64>,
+}
+
 /// What the detector said over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Detection {
     /// In the order of declaration.
     pub events: Vec<DetectedEvent>,
+    /// In the order of time.
+    pub forecasts: Vec<Forecast>,
     /// Samples seen.
     pub samples: u64,
     /// Channel values that were unusable.

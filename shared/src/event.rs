@@ -1,5 +1,7 @@
 //! What the detector reports.
 
+use crate::forecast::Outlook;
+
 /// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(pub i64);
@@ -144,6 +146,8 @@ pub enum Notice {
         /// The sample whose tick withdrew it.
         sample: u64,
     },
+    /// What lies ahead, where that is news.
+    Outlook(Outlook),
 }
 
 /// Most notices that one tick can give.

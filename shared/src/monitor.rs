@@ -4,7 +4,8 @@ use crc::{CRC_32_ISO_HDLC, Crc, Digest};
 
 use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip};
 use crate::error::ConfigError;
-use crate::event::{Motion, Notices};
+use crate::event::{Motion, Notice, Notices};
+use crate::forecast::{Forecast, ForecastState, Outlook};
 use crate::sample::Sample;
 use crate::sensing::{PLANES, Sensing, SensingConfig};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
@@ -31,6 +32,7 @@ pub struct Monitor {
     sensing: Sensing,
     tachometers: Option<Tachometers>,
     detector: Detector,
+    forecast: Forecast,
 }
 
 /// What the tick carries from sample to sample.
@@ -41,6 +43,8 @@ pub struct MonitorState {
     tachometers: TachometersState,
     inner_ring: Option<Speed>,
     detector: DetectorState,
+    spin: Option<f32>,
+    forecast: ForecastState,
 }
 
 impl Monitor {
@@ -54,6 +58,7 @@ impl Monitor {
                 .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
+            forecast: Forecast::try_new(&config.detector)?,
         })
     }
 
@@ -68,6 +73,7 @@ impl Monitor {
         let retainer = self.retainer(state, sample);
         state.samples += 1;
         state.faults += u64::from(reading.unusable.count_ones());
+        state.spin = sample.spin;
         let mut notices = Notices::new();
         self.detector.update(
             &mut state.detector,
@@ -80,6 +86,24 @@ impl Monitor {
             &mut notices,
         );
         notices
+    }
+
+    /// A slice of the forecast, below the tick: after each and before the next. Bounded; cannot fail. What
+    /// lies ahead, where that is news.
+    pub fn look_ahead(&self, state: &mut MonitorState) -> Option<Notice> {
+        let (forecast, sample) = (&mut state.forecast, state.samples.saturating_sub(1));
+        if state.detector.phase() < Phase::FreeFall {
+            *forecast = ForecastState::default();
+            return None;
+        }
+        if !forecast.is_busy()
+            && let Some(estimate) = self.detector.estimate(&state.detector, state.spin)
+            && self.forecast.is_known(estimate.speed_error)
+        {
+            self.forecast.start(forecast, &estimate);
+        }
+        self.forecast.work(forecast, sample)?;
+        forecast.news().map(Notice::Outlook)
     }
 
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
@@ -133,6 +157,11 @@ impl MonitorState {
         self.detector.slip()
     }
 
+    /// The last forecast of this episode.
+    pub fn outlook(&self) -> Option<&Outlook> {
+        self.forecast.last()
+    }
+
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
         self.detector.is_armed()
@@ -160,6 +189,9 @@ impl Fingerprint {
         state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
+        for value in state.forecast.words() {
+            self.0.update(&value.to_bits().to_le_bytes());
+        }
     }
 
     /// What the run added up to.

@@ -139,6 +139,7 @@ fn detection(truth: &History) -> Detection {
     events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
+        forecasts: Vec::new(),
         samples: 25_000,
         faults: 3,
         state_hash: 0,

@@ -49,6 +49,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         trace: Vec::new(),
         detection: Detection {
             events: Vec::new(),
+            forecasts: Vec::new(),
             samples: 0,
             faults: 0,
             state_hash: 0,

@@ -56,6 +56,12 @@ pub struct Tuning {
     pub contact_error: f32,
     /// Time without motion that counts as levitated again or at rest, s.
     pub still_time: f32,
+    /// Standard deviation of the friction coefficient for a forecast, as a part of it.
+    pub friction_error: f32,
+    /// Standard deviation of the configured restitution for a forecast, before any impact has shown it.
+    pub restitution_error: f32,
+    /// Changes of motion that a forecast solves for after each tick.
+    pub forecast_changes: u8,
 }
 
 impl Default for Tuning {
@@ -72,6 +78,9 @@ impl Default for Tuning {
             tilt_error: 3.0,
             contact_error: 0.15,
             still_time: 0.05,
+            friction_error: 0.1,
+            restitution_error: 0.05,
+            forecast_changes: 2,
         }
     }
 }
@@ -139,7 +148,11 @@ impl Tuning {
         ] {
             positive(name, value)?;
         }
+        not_negative("friction_error", self.friction_error)?;
+        not_negative("restitution_error", self.restitution_error)?;
         for (name, part) in [
+            ("friction_error", self.friction_error),
+            ("restitution_error", self.restitution_error),
             ("confirm_travel", self.confirm_travel),
             ("wall_tolerance", self.wall_tolerance),
         ] {

@@ -9,6 +9,7 @@ use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+use crate::forecast::Place;
 use crate::real::sqrt;
 
 /// Slip, m/s, that a speed sensor resolves.
@@ -296,6 +297,16 @@ impl Touching {
     pub(crate) fn outward(&self) -> [f32; 2] {
         let swing = self.swing();
         [swing.sin, -swing.cos]
+    }
+
+    /// Where the rotor is for a forecast, at `speed` along the wall (m/s) and samples of `period` (s).
+    pub(crate) fn place(&self, speed: f32, period: f32) -> Place {
+        Place::Wall {
+            outward: self.outward(),
+            speed,
+            age: self.age as f32 * period,
+            turned: self.swing().turned,
+        }
     }
 
     /// Distance from the wall, m, while it may be lifting off.

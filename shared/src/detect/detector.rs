@@ -14,6 +14,7 @@ use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
+use crate::forecast::Estimate;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
 use crate::sensing::{PLANES, Reading};
 
@@ -133,6 +134,16 @@ impl Detector {
             }
         }
         state.next_number = next_number;
+    }
+
+    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
+    /// move as one.
+    pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
+        if state.ends.are_alone() {
+            return None;
+        }
+        let at = Moment::of_sample(state.sample.saturating_sub(1));
+        self.ladder.estimate(&state.rotor, at, spin)
     }
 
     /// Each end's position, where seen.

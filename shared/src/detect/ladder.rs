@@ -9,7 +9,8 @@ use crate::detect::levitation::Levitation;
 use crate::detect::signals::Signals;
 use crate::detect::still::Still;
 use crate::detect::teller::{Pending, Teller};
-use crate::event::EventKind;
+use crate::event::{EventKind, Moment};
+use crate::forecast::{Estimate, Place};
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
@@ -51,6 +52,7 @@ pub(crate) struct Ladder {
     contact: ContactTest,
     still_samples: u32,
     catch_samples: u32,
+    period: f32,
 }
 
 /// Where on the ladder it is.
@@ -115,6 +117,7 @@ impl Ladder {
             contact: ContactTest::new(config, threshold),
             still_samples: samples(tuning.still_time).max(16),
             catch_samples: samples(tuning.catch_time),
+            period: 1.0 / config.sample_rate,
         }
     }
 
@@ -129,6 +132,41 @@ impl Ladder {
     pub(crate) fn part(&self, rungs: &mut Rungs, fix: &Fix, loudness: f32) {
         rungs.flight = self.flight.part(&rungs.flight, fix, loudness);
         rungs.still = Still::default();
+    }
+
+    /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
+    pub(crate) fn estimate(&self, rungs: &Rungs, at: Moment, spin: Option<f32>) -> Option<Estimate> {
+        let machine = &self.machine;
+        let series = &rungs.flight.series;
+        let mut estimate = Estimate {
+            at,
+            place: Place::Air {
+                position: rungs.flight.track.position,
+                velocity: rungs.flight.track.velocity,
+            },
+            speed_error: rungs.flight.track.speed_error(),
+            spin: spin.unwrap_or(machine.spin),
+            restitution: series.restitution(machine),
+            clear_impacts: series.weight(),
+        };
+        match rungs.phase {
+            Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
+            Phase::Sliding | Phase::Rolling => {
+                let contact = &rungs.contact;
+                let speed = contact.swing().rate * machine.clearance;
+                let radius = machine.rotor_radius;
+                // Against a ring that turns, or where it rolls, the slip is known and not the spin.
+                if let Some(slip) = &contact.slip {
+                    estimate.spin = (slip.speed - speed) / radius;
+                } else if contact.kind == Some(Kind::Rolling) {
+                    estimate.spin = -speed / radius;
+                }
+                estimate.speed_error = contact.track.rate_spread() * machine.clearance;
+                estimate.place = contact.place(speed, self.period);
+            }
+            _ => return None,
+        }
+        Some(estimate)
     }
 
     /// Whether it may be at the wall.

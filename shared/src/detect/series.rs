@@ -97,6 +97,11 @@ impl Series {
         (seen + PRIOR_WEIGHT * machine.restitution) / (weight + PRIOR_WEIGHT)
     }
 
+    /// Weight of the impacts in the restitution, in clear ones.
+    pub(crate) fn weight(&self) -> f32 {
+        self.seen[1]
+    }
+
     /// Another series, with what has been learnt and taken in this one.
     pub(crate) fn anew(&self) -> Self {
         Self {
