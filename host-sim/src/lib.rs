@@ -8,6 +8,7 @@ pub mod emulator;
 pub mod failure;
 pub mod fidelity;
 pub mod force;
+pub mod forecast_score;
 pub mod history;
 pub mod input_error;
 pub mod instructions;
