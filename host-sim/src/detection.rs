@@ -79,6 +79,7 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     Detection {
         events,
         forecasts,
+        severity: answer.severity.into(),
         samples: answer.summary.samples,
         faults: answer.summary.faults,
         state_hash: answer.summary.state_hash,
@@ -103,6 +104,7 @@ fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
 mod tests {
     use super::*;
     use touchdown_core::event::{Event, Moment};
+    use touchdown_core::severity::Severity;
     use touchdown_core::wire::Summary;
 
     #[test]
@@ -139,6 +141,7 @@ mod tests {
                     sample: 350,
                 },
             ],
+            severity: Severity::default(),
             summary: Summary {
                 samples: 1000,
                 faults: 2,

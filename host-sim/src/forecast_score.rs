@@ -276,7 +276,10 @@ pub struct Score {
 
 /// Judges a campaign.
 pub fn score(cases: &[Case]) -> Score {
-    let whirls: Vec<(&Case, Whirl)> = cases.iter().filter_map(|it| Some((it, it.whirl?))).collect();
+    let whirls: Vec<(&Case, Whirl)> = cases
+        .iter()
+        .filter_map(|it| Some((it, it.whirl?)))
+        .collect();
     let others: Vec<&Case> = cases.iter().filter(|it| it.whirl.is_none()).collect();
     let forward = whirls.iter().filter(|(_, it)| it.forward).count();
     let rate = |part: usize, of: usize| part as f64 / of.max(1) as f64;
@@ -302,8 +305,8 @@ pub fn score(cases: &[Case]) -> Score {
     let lasting = others.iter().filter(|it| it.is_foretold()).count();
     let declared_after = (whirls.iter())
         .filter_map(|(it, w)| Some((it.declared? - w.begins) / (w.turned - w.begins)));
-    let onset_error =
-        (whirls.iter()).filter_map(|(it, w)| Some(it.times?[1] - w.begins).filter(|_| it.foretold().is_some()));
+    let onset_error = (whirls.iter())
+        .filter_map(|(it, w)| Some(it.times?[1] - w.begins).filter(|_| it.foretold().is_some()));
     Score {
         drops: cases.len(),
         whirls: [whirls.len() - forward, forward],
@@ -318,7 +321,10 @@ pub fn score(cases: &[Case]) -> Score {
         lead_to_turn: quantiles(foretold.iter().map(|(at, it)| it.turned - at).collect()),
         onset_error: quantiles(onset_error.collect()),
         declared: [
-            whirls.iter().filter(|(it, _)| it.declared.is_some()).count(),
+            whirls
+                .iter()
+                .filter(|(it, _)| it.declared.is_some())
+                .count(),
             cases.iter().map(|it| it.false_whirls as usize).sum(),
         ],
         declared_after: quantiles(declared_after.collect()),
@@ -332,7 +338,13 @@ fn reliability(pairs: &[(f64, f64)]) -> Vec<[f64; 3]> {
             let said = |it: &&(f64, f64)| (it.0 * 10.0).round() == f64::from(tenth);
             let came: Vec<f64> = pairs.iter().filter(said).map(|it| it.1).collect();
             let count = came.len() as f64;
-            (count > 0.0).then(|| [f64::from(tenth) / 10.0, count, came.iter().sum::<f64>() / count])
+            (count > 0.0).then(|| {
+                [
+                    f64::from(tenth) / 10.0,
+                    count,
+                    came.iter().sum::<f64>() / count,
+                ]
+            })
         })
         .collect()
 }

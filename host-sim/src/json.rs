@@ -6,7 +6,7 @@ use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
 use crate::model_run::{RingEnd, validity};
-use crate::outcome::{DetectedEvent, Detection, Forecast, Outcome};
+use crate::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
 
@@ -31,6 +31,7 @@ struct DropJson<'a> {
     validity: Option<Validity>,
     detector: EventsJson<'a>,
     forecasts: &'a [Forecast],
+    severity: Severity,
 }
 
 #[derive(Serialize)]
@@ -116,6 +117,7 @@ struct EventsJson<'a> {
 struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
     forecasts: &'a [Forecast],
+    severity: Severity,
     samples: u64,
     faults: u64,
 }
@@ -147,6 +149,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             events: &outcome.detection.events,
         },
         forecasts: &outcome.detection.forecasts,
+        severity: outcome.detection.severity,
     })
 }
 
@@ -155,6 +158,7 @@ pub fn replay(detection: &Detection) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: &detection.events,
         forecasts: &detection.forecasts,
+        severity: detection.severity,
         samples: detection.samples,
         faults: detection.faults,
     })

@@ -244,6 +244,7 @@ mod tests {
         let detection = Detection {
             events,
             forecasts: Vec::new(),
+            severity: crate::outcome::Severity::default(),
             samples: 0,
             faults: 0,
             state_hash: 0,

@@ -51,6 +51,43 @@ pub struct Forecast {
     pub growth_s: Option<f64>,
 }
 
+/// How hard the last drop was on the machine, as far as position and speed show it; see
+/// [`touchdown_core::severity::Severity`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Severity {
+    /// Impacts that were declared.
+    pub impacts: u16,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed_m_s: f64,
+    /// Greatest impulse along the normal, N s.
+    pub impulse_n_s: f64,
+    /// Sum over the impacts, N s.
+    pub total_impulse_n_s: f64,
+    /// Time in permanent contact, s.
+    pub dwell_s: f64,
+    /// Greatest speed of the centre in parts of sqrt(g rho0).
+    pub velocity_index: f64,
+    /// Greatest frequency of whirl, Hz.
+    pub whirl_frequency_hz: f64,
+    /// Greatest force of whirl on the wall, N.
+    pub whirl_load_n: f64,
+}
+
+impl From<touchdown_core::severity::Severity> for Severity {
+    fn from(it: touchdown_core::severity::Severity) -> Self {
+        Self {
+            impacts: it.impacts,
+            impact_speed_m_s: f64::from(it.impact_speed),
+            impulse_n_s: f64::from(it.impulse),
+            total_impulse_n_s: f64::from(it.total_impulse),
+            dwell_s: f64::from(it.dwell),
+            velocity_index: f64::from(it.velocity_index),
+            whirl_frequency_hz: f64::from(it.whirl_frequency),
+            whirl_load_n: f64::from(it.whirl_load),
+        }
+    }
+}
+
 /// What the detector said over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Detection {
@@ -58,6 +95,8 @@ pub struct Detection {
     pub events: Vec<DetectedEvent>,
     /// In the order of time.
     pub forecasts: Vec<Forecast>,
+    /// Of the last drop.
+    pub severity: Severity,
     /// Samples seen.
     pub samples: u64,
     /// Channel values that were unusable.

@@ -17,5 +17,6 @@ pub mod real;
 pub mod sample;
 pub mod scales;
 pub mod sensing;
+pub mod severity;
 pub mod tachometer;
 pub mod wire;

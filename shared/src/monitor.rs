@@ -8,6 +8,7 @@ use crate::event::{Motion, Notice, Notices};
 use crate::forecast::{Forecast, ForecastState, Outlook};
 use crate::sample::Sample;
 use crate::sensing::{PLANES, Sensing, SensingConfig};
+use crate::severity::{Severeness, Severity, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
 
@@ -33,6 +34,7 @@ pub struct Monitor {
     tachometers: Option<Tachometers>,
     detector: Detector,
     forecast: Forecast,
+    severeness: Severeness,
 }
 
 /// What the tick carries from sample to sample.
@@ -45,6 +47,7 @@ pub struct MonitorState {
     detector: DetectorState,
     spin: Option<f32>,
     forecast: ForecastState,
+    severity: SeverityState,
 }
 
 impl Monitor {
@@ -59,6 +62,7 @@ impl Monitor {
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             forecast: Forecast::try_new(&config.detector)?,
+            severeness: Severeness::try_new(&config.detector)?,
         })
     }
 
@@ -85,6 +89,8 @@ impl Monitor {
             },
             &mut notices,
         );
+        let strain = self.detector.strain(&state.detector);
+        self.severeness.take(&mut state.severity, &strain, &notices);
         notices
     }
 
@@ -162,6 +168,11 @@ impl MonitorState {
         self.forecast.last()
     }
 
+    /// What the last drop has done to the machine so far; zeros before the first.
+    pub fn severity(&self) -> &Severity {
+        &self.severity.so_far
+    }
+
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
         self.detector.is_armed()
@@ -189,7 +200,8 @@ impl Fingerprint {
         state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
-        for value in state.forecast.words() {
+        let severity = state.severity().words();
+        for value in state.forecast.words().into_iter().chain(severity) {
             self.0.update(&value.to_bits().to_le_bytes());
         }
     }

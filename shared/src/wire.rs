@@ -2,11 +2,13 @@
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
 //! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
-//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, and last the one of [`Summary`].
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, then that of the [`Severity`], and last the
+//! one of [`Summary`].
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use crate::forecast::{Onset, Outlook};
 use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use crate::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
 pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x03";
@@ -86,6 +88,8 @@ pub struct Summary {
 pub enum Record {
     /// A notice, as it was given.
     Notice(Notice),
+    /// The last record but one: of the last drop.
+    Severity(Severity),
     /// The last record.
     Summary(Summary),
 }
@@ -95,9 +99,11 @@ const CONFIRMED: u8 = 2;
 const WITHDRAWN: u8 = 3;
 const SUMMARY: u8 = 4;
 const OUTLOOK: u8 = 5;
+const SEVERITY: u8 = 6;
 
 /// Record to bytes: tag, kind, plane, motion, number (u16), two zero bytes, then three 8-byte fields. Of an
-/// outlook: tag, whether it has an onset, two zero bytes, then numbers of four bytes around the sample.
+/// outlook: tag, whether it has an onset, two zero bytes, then numbers of four bytes around the sample. Of
+/// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32).
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
@@ -121,7 +127,9 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(16, &sample.to_le_bytes());
         }
         Record::Notice(Notice::Outlook(outlook)) => {
-            let onset = outlook.onset.map_or([0.0; 2], |it| [it.time_left, it.growth_time]);
+            let onset = outlook
+                .onset
+                .map_or([0.0; 2], |it| [it.time_left, it.growth_time]);
             let made_at = Moment::of_sample(outlook.made_at);
             let age = made_at.0.saturating_sub(outlook.from.0) as u32;
             put(0, &[OUTLOOK, u8::from(outlook.onset.is_some())]);
@@ -131,6 +139,22 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(16, &outlook.made_at.to_le_bytes());
             put(24, &onset[0].to_le_bytes());
             put(28, &onset[1].to_le_bytes());
+        }
+        Record::Severity(it) => {
+            put(0, &[SEVERITY]);
+            put(2, &it.impacts.to_le_bytes());
+            let fields = [
+                it.impact_speed,
+                it.impulse,
+                it.total_impulse,
+                it.dwell,
+                it.velocity_index,
+                it.whirl_frequency,
+                it.whirl_load,
+            ];
+            for (at, field) in (4..).step_by(4).zip(fields) {
+                put(at, &field.to_le_bytes());
+            }
         }
         Record::Summary(summary) => {
             put(0, &[SUMMARY]);
@@ -175,6 +199,16 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
                 growth_time: real(28),
             }),
         })),
+        SEVERITY => Record::Severity(Severity {
+            impacts: u16::from_le_bytes([bytes[2], bytes[3]]),
+            impact_speed: real(4),
+            impulse: real(8),
+            total_impulse: real(12),
+            dwell: real(16),
+            velocity_index: real(20),
+            whirl_frequency: real(24),
+            whirl_load: real(28),
+        }),
         SUMMARY => Record::Summary(Summary {
             samples: u64::from_le_bytes(eight(8)),
             faults: sample,

@@ -7,6 +7,8 @@ use crate::scales::{not_negative, positive};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MachineConfig {
+    /// Rotor mass, kg; for impulses and loads only.
+    pub mass: f32,
     /// Radial clearance of the retainer, m.
     pub clearance: f32,
     /// Gravity, downwards, m/s^2; 0 for a vertical machine.
@@ -80,7 +82,7 @@ impl Default for Tuning {
             still_time: 0.05,
             friction_error: 0.1,
             restitution_error: 0.05,
-            forecast_changes: 2,
+            forecast_changes: 1,
         }
     }
 }
@@ -112,6 +114,7 @@ impl DetectorConfig {
 
 impl MachineConfig {
     fn validate(&self) -> Result<(), ConfigError> {
+        positive("mass", self.mass)?;
         positive("clearance", self.clearance)?;
         not_negative("gravity", self.gravity)?;
         positive("rotor_radius", self.rotor_radius)?;

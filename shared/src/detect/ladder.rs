@@ -11,6 +11,8 @@ use crate::detect::still::Still;
 use crate::detect::teller::{Pending, Teller};
 use crate::event::{EventKind, Moment};
 use crate::forecast::{Estimate, Place};
+use crate::real::sqrt;
+use crate::severity::Strain;
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
@@ -135,7 +137,12 @@ impl Ladder {
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
-    pub(crate) fn estimate(&self, rungs: &Rungs, at: Moment, spin: Option<f32>) -> Option<Estimate> {
+    pub(crate) fn estimate(
+        &self,
+        rungs: &Rungs,
+        at: Moment,
+        spin: Option<f32>,
+    ) -> Option<Estimate> {
         let machine = &self.machine;
         let series = &rungs.flight.series;
         let mut estimate = Estimate {
@@ -167,6 +174,29 @@ impl Ladder {
             _ => return None,
         }
         Some(estimate)
+    }
+
+    /// What the rotor goes through, for its severity.
+    pub(crate) fn strain(&self, rungs: &Rungs) -> Strain {
+        let (track, contact) = (&rungs.flight.track, &rungs.contact);
+        let clearance = self.machine.clearance;
+        let [u, v] = track.velocity;
+        let mut strain = Strain {
+            is_released: rungs.phase >= Phase::FreeFall,
+            speed: sqrt(u * u + v * v),
+            speed_error: track.speed_error(),
+            restitution: rungs.flight.series.restitution(&self.machine),
+            to_come: rungs.flight.series.to_come(&self.machine),
+            ..Strain::default()
+        };
+        if rungs.phase.is_contact() {
+            let rate = contact.swing().rate;
+            strain.speed = clearance * rate.abs();
+            strain.speed_error = clearance * contact.track.rate_spread();
+            strain.contact_age = Some(contact.age());
+            strain.whirl = contact.whirls().then_some(rate);
+        }
+        strain
     }
 
     /// Whether it may be at the wall.
