@@ -54,9 +54,9 @@ pub enum EventKind {
     Rolling = 3,
     /// It swings at the bottom of the retainer.
     Pendulum = 4,
-    /// One full turn round the retainer with the spin.
+    /// It goes round the retainer with the spin: a full turn, or bound to.
     ForwardWhirl = 5,
-    /// One full turn round the retainer against the spin.
+    /// It goes round the retainer against the spin: a full turn, or bound to.
     BackwardWhirl = 6,
     /// Permanent contact ended.
     LiftOff = 7,
