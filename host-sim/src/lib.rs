@@ -30,6 +30,7 @@ pub mod replay;
 pub mod report;
 pub mod rings;
 pub mod scene;
+pub mod score;
 pub mod sensors;
 pub mod stream;
 pub mod target;

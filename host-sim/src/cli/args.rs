@@ -2,11 +2,14 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use touchdown_core::detect::Tuning;
 
 use crate::emulator::Emulator;
 use crate::failure::Failure;
 use crate::paper::DROPS;
+use crate::score::{GROUPS, Plan};
 use crate::target::Target;
 
 const EXAMPLES: &str = "\
@@ -21,6 +24,7 @@ Examples:
   touchdown paper                       the source paper's numbers: printed, right, ours
   touchdown scene explain my.toml       what is modelled and what is left out
   touchdown limits                      how the model holds at its extremes
+  touchdown score --quick               how late, how blind and how nervous the detector is
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -103,6 +107,14 @@ pub(super) enum Command {
     ///
     /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
     Limits(LimitsArgs),
+    /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
+    ///
+    /// Truth is the independent reference, and what was put in; bounds are closed forms at one false
+    /// alarm in 10^9 samples. docs/score.md says what each group does. The same seeds give the same
+    /// numbers on any number of cores.
+    ///
+    /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
+    Score(ScoreArgs),
     /// Look at scenes
     Scene {
         #[command(subcommand)]
@@ -182,6 +194,60 @@ pub(super) struct LimitsArgs {
     /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ScoreArgs {
+    /// Drops of each case
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    seeds: u64,
+    /// Seed of the first drop; the others count up
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    first_seed: u64,
+    /// Only these groups, by name, with commas between
+    #[arg(long, value_name = "GROUP", value_delimiter = ',',
+          value_parser = PossibleValuesParser::new(GROUPS.iter().map(|group| group.name)))]
+    only: Vec<String>,
+    /// Levitation of each case, s
+    #[arg(long, default_value_t = 60.0, conflicts_with = "hours")]
+    seconds: f64,
+    /// The same in hours, for the long run
+    #[arg(long)]
+    hours: Option<f64>,
+    /// A look in seconds: 2 drops and 2 s of each case
+    #[arg(long, conflicts_with_all = ["seeds", "seconds", "hours"])]
+    quick: bool,
+    /// Each row with its case, values, target and verdict, by group, as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Rows and pictures as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+impl ScoreArgs {
+    /// What is asked for.
+    pub fn plan(&self) -> Result<Plan, Failure> {
+        let seconds = self.hours.map_or(self.seconds, |hours| 3600.0 * hours);
+        if !(1.0..=1e7).contains(&seconds) {
+            let rule = format!("levitation of 1 to 10 000 000 s a case, not {seconds}");
+            return Err(Failure::Usage(rule));
+        }
+        let wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|it| it == name);
+        let names = GROUPS.iter().map(|group| group.name);
+        let quick = self.quick.then_some((2, 2.0));
+        let (seeds, seconds) = quick.unwrap_or((self.seeds, seconds));
+        Ok(Plan {
+            groups: names.filter(|name| wanted(name)).collect(),
+            seeds,
+            first_seed: self.first_seed,
+            seconds,
+            tuning: Tuning::default(),
+        })
+    }
 }
 
 #[derive(Args, Clone, Debug)]

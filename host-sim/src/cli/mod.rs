@@ -4,6 +4,7 @@ mod args;
 mod force;
 mod limits;
 mod paper;
+mod score;
 mod subject;
 mod trade;
 
@@ -38,6 +39,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Paper(args)) => paper::check(&args),
         Some(Command::Force(args)) => force::measure(&args),
         Some(Command::Limits(args)) => limits::check(&args),
+        Some(Command::Score(args)) => score::measure(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => {

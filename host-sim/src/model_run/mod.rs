@@ -1,9 +1,11 @@
 //! The model under test over a scene.
 
+mod once;
 mod simulate;
 pub mod support;
 pub mod two_plane;
 
+use once::Once;
 pub use simulate::{ModelRun, RingEnd, run, simulate, steps_of_run};
 
 use touchdown_core::error::ConfigError;
@@ -90,7 +92,7 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
         }
         Rung::Moreau => {
             let model = Moreau::try_new(&config(scene))?;
-            what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+            what.with(&subject(scene, Once(model.rounded::<R>()), *model.scales()))
         }
         Rung::Hertz => match (scene.materials.contact, scene.model.scheme) {
             (Contact::Point, Scheme::Verlet) => {
@@ -119,7 +121,11 @@ where
     U: Use,
 {
     let model = Hertz::<f64, C, S>::try_new(&compliant(scene, shape))?;
-    what.with(&subject(scene, model.rounded::<R, D>(), *model.scales()))
+    what.with(&subject(
+        scene,
+        Once(model.rounded::<R, D>()),
+        *model.scales(),
+    ))
 }
 
 /// How stiff the scene's contact is.

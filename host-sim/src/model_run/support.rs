@@ -2,10 +2,11 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::model::{
-    BallBearing, Bushing, Fixed, Ledger as Energy, Mount, MountConfig, Precision, Race, RaceConfig,
-    Rounded, Sprung, Stepper, Support, SupportConfig,
+    BallBearing, Bushing, Fixed, Happening, Ledger as Energy, Mount, MountConfig, Precision, Race,
+    RaceConfig, Rounded, Sprung, Stepper, Support, SupportConfig,
 };
 
+use super::once::{Once, pointer};
 use super::simulate::{ModelRun, RingEnd, STILL, Seen, steps_of_run};
 use super::{InNumbers, Subject, Use, config, in_numbers, subject};
 use crate::history::Recorder;
@@ -19,7 +20,7 @@ trait UseSupport {
 
     fn with<R: Precision, M: Mount<R>, B: Race<R>>(
         self,
-        subject: &Subject<R, Support<R, M, B>>,
+        subject: Subject<R, Support<R, M, B>>,
     ) -> Result<Self::Output, ConfigError>;
 }
 
@@ -30,9 +31,14 @@ impl<U: Use> UseSupport for AsModel<U> {
 
     fn with<R: Precision, M: Mount<R>, B: Race<R>>(
         self,
-        subject: &Subject<R, Support<R, M, B>>,
+        subject: Subject<R, Support<R, M, B>>,
     ) -> Result<U::Output, ConfigError> {
-        self.0.with(subject)
+        self.0.with(&Subject {
+            model: Once(subject.model),
+            start: subject.start,
+            spin: subject.spin,
+            scales: subject.scales,
+        })
     }
 }
 
@@ -79,7 +85,7 @@ where
         mount,
         race,
     })?;
-    what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+    what.with(subject(scene, model.rounded::<R>(), *model.scales()))
 }
 
 fn mount(support: &scene::Support) -> MountConfig<f64> {
@@ -140,7 +146,7 @@ impl UseSupport for Run<'_> {
 
     fn with<R: Precision, M: Mount<R>, B: Race<R>>(
         self,
-        subject: &Subject<R, Support<R, M, B>>,
+        subject: Subject<R, Support<R, M, B>>,
     ) -> Result<ModelRun, ConfigError> {
         let Self(scene, each) = self;
         let Subject {
@@ -151,7 +157,7 @@ impl UseSupport for Run<'_> {
         } = subject;
         let ring_mass = scene.support.map_or(f64::INFINITY, |support| support.mass);
         let seen = Seen {
-            scales: *scales,
+            scales,
             step: scene.model.step,
             mass: 1.0 / (1.0 / scene.rotor.mass + 1.0 / ring_mass),
             restitution: scene.retainer.restitution,
@@ -159,11 +165,13 @@ impl UseSupport for Run<'_> {
         let travel = scene.support.and_then(|support| support.travel);
         let travel = travel.map_or(f64::INFINITY, |travel| travel / scales.length);
         let mut recorder = Recorder::new(-scene.first_sample_time());
-        let mut state = model.start(start, *spin, |h| recorder.take(seen.happening(&h)))?;
+        let mut take = |happening: Happening<R>| recorder.take(seen.happening(&happening));
+        let sink = pointer(&mut take);
+        let mut state = model.start(&start, spin, &mut *sink)?;
         let begun = model.ledger(&state).stored().to_f64();
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
         for _ in 0..steps {
-            model.step(&mut state, |h| recorder.take(seen.happening(&h)));
+            model.step(&mut state, &mut *sink);
             let size = |[x, y]: [R; 2]| x.to_f64().hypot(y.to_f64());
             let ledger = model.ledger(&state);
             each(Sight {
@@ -174,11 +182,9 @@ impl UseSupport for Run<'_> {
             });
         }
         if fraction > 0.0 {
-            model.part_step(&mut state, R::lit(fraction), |h| {
-                recorder.take(seen.happening(&h));
-            });
+            model.part_step(&mut state, R::lit(fraction), sink);
         }
-        let end = Seen::state(&model.kinematics(&state), scene.run.duration, scales);
+        let end = Seen::state(&model.kinematics(&state), scene.run.duration, &scales);
         let unit = scene.rotor.mass * scales.speed * scales.speed;
         let ring = model.ring(&state);
         let race = ring.race.map(|race| {

@@ -7,6 +7,7 @@ use touchdown_core::model::{
 };
 use touchdown_core::scales::Scales;
 
+use super::once::Once;
 use super::simulate::{ModelRun, STILL, Seen, steps_of_run};
 use super::{InNumbers, Subject, Use, in_numbers, start_speed};
 use crate::history::{Recorder, RotorState};
@@ -40,10 +41,10 @@ fn with<R: Precision, U: Use, const N: usize>(
         },
         spin: R::lit(scene.rotor.spin / scales.spin),
         scales,
-        model: Ends::new(
+        model: Once(Ends::new(
             model.rounded::<R>(),
             placement(scene, &model)?.rounded::<R>(),
-        ),
+        )),
     })
 }
 

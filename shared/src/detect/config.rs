@@ -62,7 +62,8 @@ pub struct Tuning {
     pub friction_error: f32,
     /// Standard deviation of the configured restitution for a forecast, before any impact has shown it.
     pub restitution_error: f32,
-    /// Changes of motion that a forecast solves for after each tick.
+    /// Changes of motion that a forecast solves for after each tick; one in contact counts as three, and is
+    /// solved if it is the first.
     pub forecast_changes: u8,
 }
 
@@ -82,7 +83,7 @@ impl Default for Tuning {
             still_time: 0.05,
             friction_error: 0.1,
             restitution_error: 0.05,
-            forecast_changes: 1,
+            forecast_changes: 3,
         }
     }
 }

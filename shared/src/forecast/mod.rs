@@ -30,6 +30,8 @@ pub use estimate::{Estimate, Place};
 const DRIFT: f32 = 0.05;
 /// Part of the unit of speed to which a velocity must be known.
 const WELL_KNOWN: f32 = 0.3;
+/// Instructions of a change in contact against those of one in flight, less than 3500 to 1400.
+const STRETCH: u8 = 3;
 /// Change of a probability that is worth a notice.
 const NEWS: f32 = 0.1;
 
@@ -130,8 +132,14 @@ impl Forecast {
     /// A slice of the work, after the tick of `sample`: bounded by `forecast_changes`. The outlook, where
     /// it is ready.
     pub fn work(&self, state: &mut ForecastState, sample: u64) -> Option<Outlook> {
-        for _ in 0..self.tuning.forecast_changes {
+        let mut spent = 0;
+        while spent < self.tuning.forecast_changes {
             let estimate = state.estimate.as_ref()?;
+            let cost = state.cost();
+            if spent > 0 && spent.saturating_add(cost) > self.tuning.forecast_changes {
+                break;
+            }
+            spent = spent.saturating_add(cost);
             let fate = match &mut state.run {
                 Some(run) => run.go_on(),
                 None => match self.begin(estimate, state.point) {
@@ -198,6 +206,16 @@ impl ForecastState {
     /// Whether a forecast is under way.
     pub fn is_busy(&self) -> bool {
         self.estimate.is_some()
+    }
+
+    /// Of the next piece of work, in flights.
+    fn cost(&self) -> u8 {
+        let flies = match (&self.run, &self.estimate) {
+            (Some(run), _) => run.is_flying(),
+            (None, Some(estimate)) => matches!(estimate.place, Place::Air { .. }),
+            (None, None) => true,
+        };
+        if flies { 1 } else { STRETCH }
     }
 
     /// The last outlook.

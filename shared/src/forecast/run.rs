@@ -91,6 +91,11 @@ impl Run {
         }
     }
 
+    /// Whether its next change ends a flight, which costs far less to solve than contact.
+    pub(crate) fn is_flying(&self) -> bool {
+        self.state.is_flying()
+    }
+
     /// Time reached, T.
     pub(crate) fn reached(&self) -> f32 {
         time(&self.state.now())

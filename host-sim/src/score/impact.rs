@@ -1,0 +1,224 @@
+//! Impacts of drops at 1 um noise on two planes: how many are found, how well they are dated and
+//! measured, how late they are declared against the bound for their velocity jump, and what is invented.
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use touchdown_core::event::EventKind;
+
+use super::bound;
+use super::campaign;
+use super::figure::{Curve, Figure, histogram};
+use super::levitated::{Levitated, in_disc};
+use super::row::Row;
+use super::statistics::{median, quantile, share};
+use super::watch::Drop;
+use super::{Findings, Plan};
+use crate::failure::Failure;
+use crate::matching::match_events;
+use crate::scene::Scene;
+
+/// Velocity jump `(1 + e) v_n` from which an impact has to be found, m/s.
+pub const JUMP: f64 = 18e-3;
+/// Part of them.
+const FOUND: f64 = 0.999;
+/// Samples by which half of them, and 99.9 %, may be dated wrong.
+const DATED: [f64; 2] = [1.0, 4.0];
+/// Part by which 99 % of the speeds may be wrong.
+const MEASURED: f64 = 0.1;
+/// Of the latency's median to the bound.
+const LATE: f64 = 1.3;
+
+/// The bounce series of restitution 0.8 is over after 70 ms.
+const WATCHED: f64 = 0.12;
+const LEAD: f64 = 0.2;
+const FRICTIONS: [f64; 3] = [0.05, 0.1, 0.2];
+const SPINS: [f64; 2] = [1.0, -1.0];
+
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    rate: f64,
+    restitution: f64,
+    friction: f64,
+    /// Sign.
+    spin: f64,
+}
+
+impl Case {
+    /// Of the cases that are judged together.
+    fn name(self) -> String {
+        format!("{} kHz, restitution {}", self.rate / 1e3, self.restitution)
+    }
+
+    fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
+        let mut scene = Scene::load("rig")?;
+        scene.run.sample_rate = self.rate;
+        scene.run.duration = WATCHED;
+        scene.retainer.restitution = self.restitution;
+        scene.retainer.friction = self.friction;
+        let spin = self.spin * scene.rotor.spin.abs();
+        Ok(dropped(plan, scene, spin, random))
+    }
+}
+
+/// Drops the rotor of `scene` from any place in the inner half of the gap.
+pub fn dropped(plan: &Plan, mut scene: Scene, spin: f64, random: &mut ChaCha8Rng) -> Drop {
+    scene.run.seed = random.random();
+    let floats = Levitated {
+        place: in_disc(random, 0.5 * scene.retainer.clearance),
+        spin,
+        ..Levitated::default()
+    };
+    let first = random.random_range(0.0..1.0);
+    Drop::released(plan, scene, floats, [0.0; 2], LEAD, first)
+}
+
+/// Cases whose drops are judged together.
+const JUDGED: usize = FRICTIONS.len() * SPINS.len();
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for rate in [20e3, 50e3] {
+        for restitution in [0.3, 0.5, 0.8] {
+            for friction in FRICTIONS {
+                for spin in SPINS {
+                    cases.push(Case {
+                        rate,
+                        restitution,
+                        friction,
+                        spin,
+                    });
+                }
+            }
+        }
+    }
+    cases
+}
+
+/// Drops to compare two targets with.
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+    let all = cases();
+    let few = all.iter().step_by(13);
+    few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
+        .collect()
+}
+
+/// What was seen of impacts that have to be found.
+#[derive(Clone, Debug, Default)]
+struct Seen {
+    /// All of them.
+    impacts: usize,
+    /// Distance in onset of those found, samples.
+    dated: Vec<f64>,
+    /// Relative, of their speeds.
+    measured: Vec<f64>,
+    /// Of the latency to the bound.
+    late: Vec<f64>,
+    /// Events after the release that the truth contradicts.
+    invented: usize,
+}
+
+impl Seen {
+    fn take(&mut self, other: &Self) {
+        self.impacts += other.impacts;
+        self.dated.extend(&other.dated);
+        self.measured.extend(&other.measured);
+        self.late.extend(&other.late);
+        self.invented += other.invented;
+    }
+}
+
+/// Watches one drop.
+fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
+    let watched = drop.watch()?;
+    let (truth, events) = (&watched.truth, &watched.detection.events);
+    let matches = match_events(truth, &watched.detection);
+    let false_events = matches.false_events.iter();
+    let mut seen = Seen {
+        invented: false_events
+            .filter(|it| events[**it].declared_s >= 0.0)
+            .count(),
+        ..Seen::default()
+    };
+    for (impact, found) in truth.impacts.iter().zip(matches.of_kind(EventKind::Impact)) {
+        let jump = (1.0 + case.restitution) * impact.normal_speed;
+        if jump < JUMP {
+            continue;
+        }
+        seen.impacts += 1;
+        let (Some(index), Some(latency)) = (found.detected, found.latency_s) else {
+            continue;
+        };
+        let onset = impact.state.time;
+        seen.dated
+            .push((events[index].onset_s - onset).abs() * case.rate);
+        let speed = events[index].normal_speed_m_s.unwrap_or(f64::NAN);
+        seen.measured
+            .push((speed / impact.normal_speed - 1.0).abs());
+        let next = watched.instants.iter().find(|it| it.time >= onset);
+        let first = next.map_or(0.0, |it| (it.time - onset) * case.rate);
+        let bound = bound::cusum(drop.variance(), case.rate, first, |t| jump * t);
+        seen.late.push(latency / bound);
+    }
+    Ok(seen)
+}
+
+/// Runs the group.
+pub fn run(plan: &Plan) -> Result<Findings, Failure> {
+    let cases = cases();
+    let drops = campaign::map(plan, "impact", &cases, |case, mut random| {
+        seen(case, &case.drop(plan, &mut random)?)
+    })?;
+    let mut rows = Vec::new();
+    let mut curves = Vec::new();
+    for (cases, drops) in cases.chunks(JUDGED).zip(drops.chunks(JUDGED)) {
+        let (mut all, mut count) = (Seen::default(), 0);
+        for seen in drops.iter().flatten() {
+            all.take(seen);
+            count += 1;
+        }
+        let name = cases[0].name();
+        curves.push(Curve::new(name.clone(), histogram(&all.late, 0.1, 5.0)));
+        rows.extend(judged(&name, &all, count));
+    }
+    let figures = vec![Figure::Curves {
+        title: "Latency of an impact over the bound for its jump",
+        x: "latency / bound",
+        y: "share of impacts in a step of 0.1",
+        decades: false,
+        curves,
+    }];
+    Ok(Findings { rows, figures })
+}
+
+fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
+    let found = seen.dated.len();
+    [
+        Row::at_least(name, "found_share", share(found, seen.impacts), FOUND)
+            .with("drops", drops)
+            .with("impacts", seen.impacts)
+            .with("found", found)
+            .noted(format!("{found} of {} in {drops} drops", seen.impacts)),
+        Row::at_most(
+            name,
+            "onset_error_median_samples",
+            median(&seen.dated),
+            DATED[0],
+        ),
+        Row::at_most(
+            name,
+            "onset_error_p999_samples",
+            quantile(&seen.dated, 0.999),
+            DATED[1],
+        ),
+        Row::at_most(
+            name,
+            "speed_error_p99",
+            quantile(&seen.measured, 0.99),
+            MEASURED,
+        )
+        .with("speed_error_median", median(&seen.measured)),
+        Row::at_most(name, "ratio", median(&seen.late), LATE)
+            .with("ratio_p99", quantile(&seen.late, 0.99)),
+        Row::at_most(name, "invented", seen.invented as f64, 0.0).with("drops", drops),
+    ]
+}

@@ -1,0 +1,84 @@
+//! How a rotor floats: at a place, on the orbit of its unbalance.
+
+use std::f64::consts::TAU;
+
+use rand::Rng;
+
+/// A floating rotor; time 0 is the release.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Levitated {
+    /// Middle of the orbit, from the bearing's centre, m.
+    pub place: [f64; 2],
+    /// Of the orbit, m.
+    pub radius: f64,
+    /// Of the orbit at time 0, rad.
+    pub angle: f64,
+    /// At time 0, counter-clockwise positive, rad/s.
+    pub spin: f64,
+    /// Change of the spin a second, as a part of that at time 0.
+    pub sweep: f64,
+}
+
+impl Levitated {
+    /// rad/s.
+    pub fn spin(&self, time: f64) -> f64 {
+        self.spin * (1.0 + self.sweep * time)
+    }
+
+    /// m.
+    pub fn position(&self, time: f64) -> [f64; 2] {
+        let (sin, cos) = self.turned(time).sin_cos();
+        [
+            self.place[0] + self.radius * cos,
+            self.place[1] + self.radius * sin,
+        ]
+    }
+
+    /// m/s.
+    pub fn velocity(&self, time: f64) -> [f64; 2] {
+        let (sin, cos) = self.turned(time).sin_cos();
+        let speed = self.radius * self.spin(time);
+        [-speed * sin, speed * cos]
+    }
+
+    fn turned(&self, time: f64) -> f64 {
+        self.angle + self.spin * time * (1.0 + 0.5 * self.sweep * time)
+    }
+}
+
+/// A direction, even over the circle.
+pub fn direction(random: &mut impl Rng) -> [f64; 2] {
+    let (sin, cos) = random.random_range(0.0..TAU).sin_cos();
+    [cos, sin]
+}
+
+/// A point, even over the disc of `radius`.
+pub fn in_disc(random: &mut impl Rng, radius: f64) -> [f64; 2] {
+    let distance = radius * random.random_range(0.0..1.0_f64).sqrt();
+    direction(random).map(|part| distance * part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_velocity_is_that_of_the_position() {
+        let orbit = Levitated {
+            place: [1e-5, -2e-5],
+            radius: 3e-5,
+            angle: 0.4,
+            spin: -300.0,
+            sweep: 0.2,
+        };
+        let step = 1e-6;
+        for time in [-0.7, 0.0, 0.3] {
+            let (before, after) = (orbit.position(time - step), orbit.position(time + step));
+            let velocity = orbit.velocity(time);
+            for axis in 0..2 {
+                let slope = (after[axis] - before[axis]) / (2.0 * step);
+                assert!((slope - velocity[axis]).abs() < 1e-8, "{time}");
+            }
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The rows as text.
+
+use super::row::Row;
+use super::{Findings, Score};
+use crate::paint::Paint;
+
+/// Cases beyond this are cut by the terminal anyway.
+const CASE: usize = 62;
+
+/// The table and, below it, how many rows do not hold.
+pub fn table(score: &Score, paint: Paint) -> String {
+    let mut text = String::new();
+    for (group, Findings { rows, .. }) in &score.groups {
+        text += &paint.bold(&format!("{}: {}\n", group.name, group.about));
+        for row in rows {
+            text += &line(row, paint);
+        }
+        text.push('\n');
+    }
+    text + &summary(score, paint)
+}
+
+fn line(row: &Row, paint: Paint) -> String {
+    let verdict = if row.holds {
+        paint.good("holds ")
+    } else {
+        paint.bad("BROKEN")
+    };
+    let sense = if row.at_least { '\u{2265}' } else { '\u{2264}' };
+    format!(
+        "  {verdict} {:<CASE$} {:<24} {:>9} {sense} {:<7} {}\n",
+        row.case,
+        row.quantity,
+        row.measured().map_or("-".to_owned(), short),
+        short(row.target),
+        row.note
+    )
+}
+
+/// Few digits: whole numbers as they are.
+pub fn short(value: f64) -> String {
+    if value == 0.0 || (value.fract() == 0.0 && value.abs() < 1e6) {
+        format!("{value}")
+    } else if (1e-2..1e4).contains(&value.abs()) {
+        let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 5.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+fn summary(score: &Score, paint: Paint) -> String {
+    let all = score.rows().count();
+    let broken = score.rows().filter(|row| !row.holds).count();
+    let verdict = if broken == 0 {
+        paint.good("all hold")
+    } else {
+        paint.bad(&format!("{broken} do not hold"))
+    };
+    let Score { plan, .. } = score;
+    format!(
+        "{all} rows, {verdict}; {} drops a case from seed {}, {} s of levitation a case\n",
+        plan.seeds, plan.first_seed, plan.seconds
+    )
+}
