@@ -39,6 +39,10 @@ impl App {
             board.report(notice);
         }
         board.drive(self.output);
+        // Last: it delays no output.
+        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
+            board.report(&notice);
+        }
     }
 
     /// The monitor's state after the last tick.

@@ -8,7 +8,7 @@ use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
 use crate::model_run::{RingEnd, validity};
-use crate::outcome::{DetectedEvent, Detection, Outcome};
+use crate::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
 
@@ -32,6 +32,8 @@ struct DropJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     validity: Option<Validity>,
     detector: EventsJson<'a>,
+    forecasts: &'a [Forecast],
+    severity: Severity,
 }
 
 #[derive(Serialize)]
@@ -117,6 +119,8 @@ struct EventsJson<'a> {
 #[derive(Serialize)]
 struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
+    forecasts: &'a [Forecast],
+    severity: Severity,
     samples: u64,
     faults: u64,
     health: [Condition; CHANNELS],
@@ -149,6 +153,8 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             events: &outcome.detection.events,
             health: outcome.detection.conditions,
         },
+        forecasts: &outcome.detection.forecasts,
+        severity: outcome.detection.severity,
     })
 }
 
@@ -156,6 +162,8 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
 pub fn replay(detection: &Detection) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: &detection.events,
+        forecasts: &detection.forecasts,
+        severity: detection.severity,
         samples: detection.samples,
         faults: detection.faults,
         health: detection.conditions,

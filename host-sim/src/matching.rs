@@ -244,6 +244,8 @@ mod tests {
     fn judge(truth: &History, events: Vec<DetectedEvent>) -> Matches {
         let detection = Detection {
             events,
+            forecasts: Vec::new(),
+            severity: crate::outcome::Severity::default(),
             samples: 0,
             faults: 0,
             conditions: Default::default(),

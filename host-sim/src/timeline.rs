@@ -23,6 +23,8 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
+    text += &forecasts(&outcome.detection, paint);
+    text += &severity(&outcome.detection);
     text += &extras(outcome, &matches, paint);
     if let Some(validity) = validity(scene) {
         text += &format!("{validity}\n");
@@ -185,6 +187,49 @@ fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         None => paint.bad("; not declared"),
     };
     text + "\n"
+}
+
+/// What was foretold, once anything was.
+fn forecasts(detection: &Detection, paint: Paint) -> String {
+    let all = &detection.forecasts;
+    if all.is_empty() {
+        return String::new();
+    }
+    let head = format!(
+        "\n{:<12}{:>12}{:>12}{:>15}",
+        "foretold", "forward", "backward", "whirls from ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    for forecast in all.iter().take(LISTED) {
+        text += &format!(
+            "{:<12}{:>12.2}{:>12.2}{:>15}\n",
+            millis(forecast.made_s),
+            forecast.probability_forward,
+            forecast.probability_backward,
+            optional(forecast.begins_s.map(millis)),
+        );
+    }
+    text + &more(all.len(), "forecasts")
+}
+
+fn severity(detection: &Detection) -> String {
+    let it = &detection.severity;
+    let mut text = format!(
+        "severity: {} impacts seen, up to {:.2} mm/s and {:.4} N s\n\
+         {} ms in contact; velocity index {:.2}\n",
+        it.impacts,
+        it.impact_speed_m_s * 1e3,
+        it.impulse_n_s,
+        millis(it.dwell_s),
+        it.velocity_index,
+    );
+    if it.whirl_load_n > 0.0 {
+        text += &format!(
+            "whirl up to {:.0} Hz, {:.0} N\n",
+            it.whirl_frequency_hz, it.whirl_load_n
+        );
+    }
+    text
 }
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {

@@ -1,5 +1,6 @@
 //! What the detector reports.
 
+use crate::forecast::Outlook;
 use crate::health::Fault;
 
 /// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
@@ -54,9 +55,9 @@ pub enum EventKind {
     Rolling = 3,
     /// It swings at the bottom of the retainer.
     Pendulum = 4,
-    /// One full turn round the retainer with the spin.
+    /// It goes round the retainer with the spin: a full turn, or bound to.
     ForwardWhirl = 5,
-    /// One full turn round the retainer against the spin.
+    /// It goes round the retainer against the spin: a full turn, or bound to.
     BackwardWhirl = 6,
     /// Permanent contact ended.
     LiftOff = 7,
@@ -148,6 +149,8 @@ pub enum Notice {
         /// The sample whose tick withdrew it.
         sample: u64,
     },
+    /// What lies ahead, where that is news.
+    Outlook(Outlook),
 }
 
 /// Most notices that one tick can give.

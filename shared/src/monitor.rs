@@ -6,10 +6,12 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::error::ConfigError;
-use crate::event::{Motion, Notices};
+use crate::event::{Motion, Notice, Notices};
+use crate::forecast::{Forecast, ForecastState, Outlook};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Sensing, SensingConfig};
+use crate::severity::{Severeness, Severity, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
 
@@ -34,6 +36,8 @@ pub struct Monitor {
     health: Health,
     tachometers: Option<Tachometers>,
     detector: Detector,
+    forecast: Forecast,
+    severeness: Severeness,
 }
 
 /// What the tick carries from sample to sample.
@@ -45,6 +49,9 @@ pub struct MonitorState {
     tachometers: TachometersState,
     inner_ring: Option<Speed>,
     detector: DetectorState,
+    spin: Option<f32>,
+    forecast: ForecastState,
+    severity: SeverityState,
 }
 
 impl Monitor {
@@ -58,6 +65,8 @@ impl Monitor {
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
+            forecast: Forecast::try_new(&config.detector)?,
+            severeness: Severeness::try_new(&config.detector)?,
         })
     }
 
@@ -72,9 +81,10 @@ impl Monitor {
         let reading = self
             .health
             .update(&mut state.health, &self.sensing, sample, phases);
+        state.spin = sample.spin.filter(|spin| spin.is_finite());
+        let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
-        let spin = sample.spin.filter(|spin| spin.is_finite());
         state.faults += u64::from(reading.unusable.count_ones());
         state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
@@ -88,16 +98,36 @@ impl Monitor {
             },
             &mut notices,
         );
+        let strain = self.detector.strain(&state.detector);
+        self.severeness.take(&mut state.severity, &strain, &notices);
         notices
+    }
+
+    /// A slice of the forecast, below the tick: after each and before the next. Bounded; cannot fail. What
+    /// lies ahead, where that is news.
+    pub fn look_ahead(&self, state: &mut MonitorState) -> Option<Notice> {
+        let (forecast, sample) = (&mut state.forecast, state.samples.saturating_sub(1));
+        if state.detector.phase() < Phase::FreeFall {
+            *forecast = ForecastState::default();
+            return None;
+        }
+        if !forecast.is_busy()
+            && let Some(estimate) = self.detector.estimate(&state.detector, state.spin)
+            && self.forecast.is_known(estimate.speed_error)
+        {
+            self.forecast.start(forecast, &estimate);
+        }
+        self.forecast.work(forecast, sample)?;
+        forecast.news().map(Notice::Outlook)
     }
 
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
         let Some(tachometers) = &self.tachometers else {
             return Retainer::Fixed;
         };
-        let (edges, spin) = (&sample.edges, sample.spin.filter(|spin| spin.is_finite()));
+        let edges = &sample.edges;
         state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
-        match spin {
+        match state.spin {
             Some(spin) => {
                 Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
             }
@@ -147,6 +177,16 @@ impl MonitorState {
         self.detector.slip()
     }
 
+    /// The last forecast of this episode.
+    pub fn outlook(&self) -> Option<&Outlook> {
+        self.forecast.last()
+    }
+
+    /// What the last drop has done to the machine so far; zeros before the first.
+    pub fn severity(&self) -> &Severity {
+        &self.severity.so_far
+    }
+
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
         self.detector.is_armed()
@@ -177,6 +217,10 @@ impl Fingerprint {
         state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
+        let severity = state.severity().words();
+        for value in state.forecast.words().into_iter().chain(severity) {
+            self.0.update(&value.to_bits().to_le_bytes());
+        }
     }
 
     /// What the run added up to.

@@ -3,7 +3,7 @@
 use super::Subject;
 use crate::history::{History, PhaseKind, Recorder, RotorState};
 use crate::matching::regime_event;
-use crate::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
+use crate::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use crate::reference::{Machine, Reference, Start};
 use touchdown_core::event::EventKind;
 
@@ -141,6 +141,8 @@ fn detection(truth: &History) -> Detection {
     events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
+        forecasts: Vec::new(),
+        severity: Severity::default(),
         samples: 25_000,
         faults: 3,
         conditions: Default::default(),

@@ -212,6 +212,7 @@ impl Scene {
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,
                 machine: MachineConfig {
+                    mass: mass as f32,
                     clearance: self.retainer.clearance as f32,
                     gravity: self.run.gravity as f32,
                     rotor_radius: radius as f32,

@@ -15,7 +15,9 @@ use crate::detect::slip::Slip;
 use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
+use crate::forecast::Estimate;
 use crate::sensing::{PLANES, Reading};
+use crate::severity::Strain;
 
 /// Standard deviations by which a rotor has moved for certain.
 const MOVED: f32 = 8.0;
@@ -138,6 +140,25 @@ impl Detector {
             }
         }
         state.next_number = next_number;
+    }
+
+    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
+    /// move as one.
+    pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
+        if state.ends.are_alone() {
+            return None;
+        }
+        let at = Moment::of_sample(state.sample.saturating_sub(1));
+        self.ladder.estimate(&state.rotor, at, spin)
+    }
+
+    /// What the rotor goes through; of ends that are apart the one that is worse off.
+    pub(crate) fn strain(&self, state: &DetectorState) -> Strain {
+        let of = |rungs: &Rungs| self.ladder.strain(rungs);
+        match state.ends.alone() {
+            [a, b] => of(a).worse(&of(b)),
+            _ => of(&state.rotor),
+        }
     }
 
     /// Each end's position, where seen.

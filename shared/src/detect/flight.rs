@@ -254,10 +254,12 @@ impl FlightTest {
     }
 
     /// Part of the flight after an impact in which another is impossible, s: it leaves the wall with
-    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall.
+    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall. Gravity that
+    /// pulls it off the wall hurries it to the other side, so it counts as well.
     fn shortest_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
         let launch = flight.series.restitution(&self.machine) * last.normal_speed;
-        let back = last.pressing + launch * launch / self.machine.clearance;
+        let pull = self.machine.gravity * last.outward[1].max(0.0);
+        let back = last.pressing + 2.0 * pull + launch * launch / self.machine.clearance;
         if back > 0.0 {
             IMPOSSIBLE * 2.0 * launch / back
         } else {
@@ -328,6 +330,7 @@ mod tests {
             &DetectorConfig {
                 sample_rate,
                 machine: MachineConfig {
+                    mass: 3.42,
                     clearance: 3e-4,
                     gravity: 9.81,
                     rotor_radius: 0.024,
