@@ -16,7 +16,7 @@ const SERIES_MARGIN: f32 = 5e-4;
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
 /// Part of the faintest impact's speed from which on one is believed that comes when it is expected.
-const EXPECTED: f32 = 0.5;
+const EXPECTED: f32 = 0.8;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 

@@ -163,10 +163,10 @@ impl Series {
         self.ends = rest.map(|time| at.later(time / period));
     }
 
-    /// Whether `bounce` is where and as fast as the flight since the last impact lets expect.
+    /// Whether `bounce` is as fast as the flight since the last impact lets expect, and before the foreseen end.
     pub(crate) fn foresees(&self, bounce: &Bounce, period: f32) -> bool {
-        let last = self.last.as_ref();
-        last.is_some_and(|last| timed_speed(last, bounce, period).is_some())
+        let fits = |last| timed_speed(last, bounce, period).is_some();
+        self.ends.is_some_and(|end| bounce.at < end) && self.last.as_ref().is_some_and(fits)
     }
 
     /// The last impact.
