@@ -6,9 +6,13 @@
 //! and its tests only; the boards are for the target.
 
 pub mod app;
+mod blind;
 pub mod board;
 #[cfg(target_os = "none")]
 pub mod count;
+pub mod crash;
 #[cfg(target_os = "none")]
 mod journal;
+pub mod outputs;
 pub mod overrun;
+pub mod permit;

@@ -1,7 +1,8 @@
 //! The whole tick: sensing, then the detector.
 
-use crc::{CRC_32_ISO_HDLC, Crc, Digest};
+use crc::Digest;
 
+use crate::checksum::CRC;
 use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip};
 use crate::error::ConfigError;
 use crate::event::{Motion, Notices};
@@ -39,6 +40,7 @@ pub struct MonitorState {
     samples: u64,
     faults: u64,
     tachometers: TachometersState,
+    position: Option<[f32; 2]>,
     inner_ring: Option<Speed>,
     detector: DetectorState,
 }
@@ -67,6 +69,7 @@ impl Monitor {
         let reading = self.sensing.convert(sample, self.fitted);
         let retainer = self.retainer(state, sample);
         state.samples += 1;
+        state.position = reading.mean().map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
         let mut notices = Notices::new();
         self.detector.update(
@@ -108,6 +111,12 @@ impl MonitorState {
         self.faults
     }
 
+    /// The rotor's place in the last sample, mean over the planes that deliver one, m; `None` where
+    /// none does.
+    pub fn position(&self) -> Option<[f32; 2]> {
+        self.position
+    }
+
     /// The present phase.
     pub fn phase(&self) -> Phase {
         self.detector.phase()
@@ -138,8 +147,6 @@ impl MonitorState {
         self.detector.is_armed()
     }
 }
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Fingerprint of the state over a run: equal on two machines only if every tick left the same
 /// bits. Not part of the tick.

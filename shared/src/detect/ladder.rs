@@ -16,6 +16,7 @@ const CAUGHT: f32 = 4.0;
 
 /// Phase of the rotor, or of one end of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
     /// Switched on, not judged yet.
     #[default]
