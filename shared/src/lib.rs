@@ -14,6 +14,8 @@ pub mod controller;
 pub mod detect;
 pub mod error;
 pub mod event;
+#[cfg(feature = "serde")]
+pub mod link;
 pub mod model;
 pub mod monitor;
 pub mod real;
