@@ -5,6 +5,7 @@ use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 
@@ -141,10 +142,38 @@ impl App {
         Ok(())
     }
 
+    /// Whether the controller may be reset to take another configuration.
+    pub fn may_restart(&self) -> Result<(), Busy> {
+        match self.condition.mode {
+            _ if self.drop_runs() => Err(Busy::DropRuns),
+            Mode::Watching => Err(Busy::Watching),
+            Mode::Dropped => Err(Busy::Latched),
+            Mode::SelfTest | Mode::Arming | Mode::Faulted => Ok(()),
+        }
+    }
+
     /// Whether the rotor falls, bounces, slides or whirls.
     pub fn drop_runs(&self) -> bool {
         let floats = matches!(self.state.phase(), Phase::Starting | Phase::Levitated);
         !floats && !self.condition.lies_still
+    }
+
+    /// What goes on, for the link; the last tick was `age_us` ago.
+    pub fn report(&self, age_us: u32, lost_notices: u32) -> State {
+        State {
+            sample: self.state.samples().wrapping_sub(1),
+            age_us,
+            phase: self.state.phase(),
+            mode: self.condition.mode,
+            outputs: self.outputs(),
+            faults: self.condition.faults,
+            counters: Counters {
+                lost_samples: self.lost,
+                unusable_values: self.state.faults(),
+                lost_notices,
+                damaged_frames: 0,
+            },
+        }
     }
 
     /// The monitor's state after the last tick.

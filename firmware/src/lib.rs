@@ -5,6 +5,7 @@
 //! The images are the package's binaries. For the desktop the library holds the application
 //! and its tests only; the boards are for the target.
 
+pub mod ad7606;
 pub mod app;
 mod blind;
 pub mod board;
@@ -16,3 +17,4 @@ mod journal;
 pub mod outputs;
 pub mod overrun;
 pub mod permit;
+pub mod speed;

@@ -141,6 +141,10 @@ pub enum Busy {
     DropRuns,
     /// No plane delivers a position.
     Blind,
+    /// It watches: the machine may be running.
+    Watching,
+    /// A drop is latched, to be cleared first.
+    Latched,
 }
 
 #[cfg(test)]

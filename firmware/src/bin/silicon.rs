@@ -8,12 +8,12 @@ mod image {
     use cortex_m_rt::{ExceptionFrame, entry, exception};
     use defmt_rtt as _;
     use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::board::f405::{self, Outbox};
+    use touchdown_firmware::board::f405::{self, Memory};
 
     #[entry]
     fn main() -> ! {
-        static mut OUTBOX: Outbox = Outbox::new();
-        f405::main(OUTBOX)
+        static mut MEMORY: Memory = Memory::new();
+        f405::main(MEMORY)
     }
 
     #[interrupt]

@@ -4,6 +4,8 @@
 pub mod f405;
 #[cfg(target_os = "none")]
 pub mod qemu;
+#[cfg(target_os = "none")]
+mod serial;
 
 use touchdown_core::config_block::{Settings, Wiring};
 use touchdown_core::controller::Outputs;
@@ -29,6 +31,13 @@ pub trait Board {
 
 /// Samples per second of the silicon image, Hz.
 pub const SAMPLE_RATE_HZ: u32 = 20_000;
+
+/// Speed of the link, baud.
+#[cfg(target_os = "none")]
+const BAUD: u32 = 115_200;
+/// Samples between two states that the link sends unasked.
+#[cfg(target_os = "none")]
+const STATE_SAMPLES: u64 = 1_000;
 
 /// Settings of a board on which none are stored: the default configuration, and neither speed nor
 /// levitation wired.

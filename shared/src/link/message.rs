@@ -102,6 +102,24 @@ pub struct State {
     pub counters: Counters,
 }
 
+impl State {
+    /// Before the first sample.
+    pub const NONE: Self = Self {
+        sample: u64::MAX,
+        age_us: 0,
+        phase: Phase::Starting,
+        mode: Mode::SelfTest,
+        outputs: Outputs::SAFE,
+        faults: Faults::NONE,
+        counters: Counters {
+            lost_samples: 0,
+            unusable_values: 0,
+            lost_notices: 0,
+            damaged_frames: 0,
+        },
+    };
+}
+
 /// What was counted since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
@@ -132,6 +150,13 @@ pub enum Refusal {
     NoEpisode,
 }
 
+impl Refusal {
+    /// This parameter breaks its rule.
+    pub fn parameter(name: &str) -> Self {
+        Self::Parameter(shortened(name))
+    }
+}
+
 impl From<Busy> for Refusal {
     fn from(busy: Busy) -> Self {
         Self::Busy(busy)
@@ -141,7 +166,7 @@ impl From<Busy> for Refusal {
 impl From<BlockError> for Refusal {
     fn from(error: BlockError) -> Self {
         match error {
-            BlockError::Refused(rule) => Self::Parameter(shortened(rule.parameter())),
+            BlockError::Refused(rule) => Self::parameter(rule.parameter()),
             _ => Self::Block,
         }
     }

@@ -3,6 +3,7 @@
 
 mod counter;
 mod files;
+mod remote;
 
 use defmt::{Debug2Format, Display2Format, error, info};
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
@@ -13,6 +14,7 @@ use touchdown_core::wire::Record;
 
 pub use self::counter::Counter;
 use self::files::Answer;
+use self::remote::Line;
 use super::Board;
 use crate::app::App;
 use crate::journal;
@@ -35,12 +37,14 @@ struct Emulated {
     answer: Answer,
     outputs: Outputs,
     block: Block,
+    line: Line,
     failed: bool,
 }
 
 impl Board for Emulated {
     fn report(&mut self, notice: &Notice) {
         journal::notice(notice);
+        self.line.notice(notice);
         self.failed |= self.answer.write(&Record::Notice(*notice)).is_err();
     }
 
@@ -92,6 +96,7 @@ fn run() -> Result<(), Failure> {
             monitor: config,
             wiring: Wiring::default(),
         }),
+        line: Line::new(config.detector.sample_rate),
         failed: false,
     };
     // Outside the tick: silicon has neither the time nor the use for it.
@@ -101,6 +106,8 @@ fn run() -> Result<(), Failure> {
             app.tick(&mut board, &sample, 0);
             fingerprint.take(app.state());
         }
+        // Between blocks of samples: the link is no part of the tick.
+        board.line.serve(&mut app, &board.block);
     }
     let summary = fingerprint.summary(app.state());
     board.answer.write(&Record::Summary(summary))?;
