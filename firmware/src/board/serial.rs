@@ -17,7 +17,7 @@ impl Serial {
     /// Takes a USART whose clock and pins are up; `divider` is its clock over the baud rate.
     pub fn new(usart: USART1, divider: u16) -> Self {
         // SAFETY: any value of 16 bits from 16 on is a divider: RM0090, USART_BRR.
-        usart.brr().write(|w| unsafe { w.bits(u32::from(divider)) });
+        usart.brr().write(|w| unsafe { w.bits(divider) });
         usart
             .cr1()
             .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());

@@ -41,8 +41,7 @@ pub fn store(flash: &FLASH, block: &[u8]) -> Result<(), Refusal> {
     }
     // RM0090, unlocking the flash control register.
     for key in [0x4567_0123, 0xcdef_89ab] {
-        // SAFETY: the two keys that the manual gives.
-        flash.keyr().write(|w| unsafe { w.bits(key) });
+        flash.keyr().write(|w| w.key().set(key));
     }
     for (index, word) in block.chunks(4).enumerate() {
         let mut bytes = [0xff; 4];
