@@ -73,6 +73,10 @@ impl App {
         self.watch_itself(board.config(), position.is_some(), lost);
         self.condition.mode = self.next_mode(dropped);
         board.drive(self.outputs());
+        // After the outputs: it delays none of them.
+        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
+            board.report(&notice);
+        }
         board.feed();
     }
 
@@ -85,7 +89,7 @@ impl App {
                 EventKind::Sliding | EventKind::Rolling => self.condition.mode == Mode::Watching,
                 _ => false,
             },
-            Notice::Withdrawn { .. } => false,
+            Notice::Withdrawn { .. } | Notice::Outlook(_) => false,
         }
     }
 

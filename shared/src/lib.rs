@@ -14,6 +14,8 @@ pub mod controller;
 pub mod detect;
 pub mod error;
 pub mod event;
+pub mod forecast;
+pub mod health;
 #[cfg(feature = "serde")]
 pub mod link;
 pub mod model;
@@ -22,5 +24,6 @@ pub mod real;
 pub mod sample;
 pub mod scales;
 pub mod sensing;
+pub mod severity;
 pub mod tachometer;
 pub mod wire;

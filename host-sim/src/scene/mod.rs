@@ -5,6 +5,7 @@ mod builtin;
 mod check;
 mod contact;
 mod explain;
+mod faults;
 mod file;
 mod flaw;
 pub mod limits;
@@ -24,6 +25,7 @@ pub use outputs::{Auto, Fixed, Output, Request};
 pub use support::{BallBearing, Support};
 pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
@@ -33,7 +35,7 @@ use crate::input_error::InputError;
 use crate::model_run::compliance;
 use crate::reference::Machine;
 pub use crate::reference::Start;
-use crate::sensors::{SensorsConfig, Tachometers};
+use crate::sensors::{SensorFault, SensorsConfig, Tachometers};
 
 /// A valid scene; SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +68,8 @@ pub struct Scene {
     pub materials: Materials,
     /// The sensor chain.
     pub sensors: SensorsConfig,
+    /// Which of them fail.
+    pub faults: Vec<SensorFault>,
     /// The detector's thresholds and times.
     pub tuning: Tuning,
 }
@@ -113,11 +117,16 @@ pub const LEVITATED_BEFORE: f64 = 0.2;
 impl Scene {
     /// Reads the scene file at `name`, or else takes the built-in scene of that name.
     pub fn load(name: &str) -> Result<Self, InputError> {
+        Self::parse(name, &Self::text(name)?)
+    }
+
+    /// The text of the scene file at `name`, or else of the built-in scene of that name.
+    pub fn text(name: &str) -> Result<Cow<'static, str>, InputError> {
         if Path::new(name).exists() {
-            return Self::parse(name, &InputError::read(Path::new(name))?);
+            return InputError::read(Path::new(name)).map(Cow::Owned);
         }
         match BUILT_IN.iter().find(|scene| scene.name == name) {
-            Some(scene) => Self::parse(name, scene.text),
+            Some(scene) => Ok(Cow::Borrowed(scene.text)),
             None => {
                 let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
                 let rule = format!(
@@ -203,6 +212,7 @@ impl Scene {
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,
                 machine: MachineConfig {
+                    mass: mass as f32,
                     clearance: self.retainer.clearance as f32,
                     gravity: self.run.gravity as f32,
                     rotor_radius: radius as f32,

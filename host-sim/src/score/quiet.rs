@@ -12,10 +12,11 @@ use touchdown_core::sensing::PLANES;
 use super::campaign;
 use super::confirmation;
 use super::disturbance::{Coloured, Held, Kick, Shift, Steps, hum, smooth};
-use super::levitated::{Levitated, direction};
+use super::levitated::Levitated;
 use super::row::Row;
 use super::watch::{Drop, refused};
 use super::{Findings, Plan};
+use crate::evenly::direction;
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::sensors::{Motion, Sensors};
@@ -238,7 +239,7 @@ pub fn listen(
                     heard.declared += u32::from(counts);
                 }
                 Notice::Confirmed { .. } => heard.confirmed += 1,
-                Notice::Withdrawn { .. } => {}
+                Notice::Withdrawn { .. } | Notice::Outlook(_) => {}
             }
         }
         if heard.armed.is_none() && state.is_armed() {

@@ -9,10 +9,17 @@ use crate::detect::levitation::Levitation;
 use crate::detect::signals::Signals;
 use crate::detect::still::Still;
 use crate::detect::teller::{Pending, Teller};
-use crate::event::EventKind;
+use crate::event::{EventKind, Moment};
+use crate::forecast::{Estimate, Place};
+use crate::real::sqrt;
+use crate::severity::Strain;
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
+/// Part of gravity's way that is less than any fall goes, whatever forces are left.
+const FALLS: f32 = 0.5;
+/// Faster than a controller puts a rotor down, m/s.
+const LANDING_SPEED: f32 = 0.01;
 
 /// Phase of the rotor, or of one end of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,6 +55,8 @@ pub(crate) struct Ladder {
     pub(crate) near: f32,
     /// Way that no caught disturbance goes, m.
     travel: f32,
+    /// s.
+    period: f32,
     flight: FlightTest,
     contact: ContactTest,
     still_samples: u32,
@@ -112,6 +121,7 @@ impl Ladder {
             machine,
             near: machine.clearance * (1.0 - tuning.wall_tolerance),
             travel: tuning.confirm_travel * machine.clearance,
+            period: 1.0 / config.sample_rate,
             flight: FlightTest::new(config, threshold),
             contact: ContactTest::new(config, threshold),
             still_samples: samples(tuning.still_time).max(16),
@@ -132,6 +142,69 @@ impl Ladder {
         rungs.still = Still::default();
     }
 
+    /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
+    pub(crate) fn estimate(
+        &self,
+        rungs: &Rungs,
+        at: Moment,
+        spin: Option<f32>,
+    ) -> Option<Estimate> {
+        let machine = &self.machine;
+        let series = &rungs.flight.series;
+        let mut estimate = Estimate {
+            at,
+            place: Place::Air {
+                position: rungs.flight.track.position,
+                velocity: rungs.flight.track.velocity,
+            },
+            speed_error: rungs.flight.track.speed_error(),
+            spin: spin.unwrap_or(machine.spin),
+            restitution: series.restitution(machine),
+            clear_impacts: series.weight(),
+        };
+        match rungs.phase {
+            Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
+            Phase::Sliding | Phase::Rolling => {
+                let contact = &rungs.contact;
+                let speed = contact.swing().rate * machine.clearance;
+                let radius = machine.rotor_radius;
+                // Against a ring that turns, or where it rolls, the slip is known and not the spin.
+                if let Some(slip) = &contact.slip {
+                    estimate.spin = (slip.speed - speed) / radius;
+                } else if contact.kind == Some(Kind::Rolling) {
+                    estimate.spin = -speed / radius;
+                }
+                estimate.speed_error = contact.track.rate_spread() * machine.clearance;
+                estimate.place = contact.place(speed, self.period);
+            }
+            _ => return None,
+        }
+        Some(estimate)
+    }
+
+    /// What the rotor goes through, for its severity.
+    pub(crate) fn strain(&self, rungs: &Rungs) -> Strain {
+        let (track, contact) = (&rungs.flight.track, &rungs.contact);
+        let clearance = self.machine.clearance;
+        let [u, v] = track.velocity;
+        let mut strain = Strain {
+            is_released: rungs.phase >= Phase::FreeFall,
+            speed: sqrt(u * u + v * v),
+            speed_error: track.speed_error(),
+            restitution: rungs.flight.series.restitution(&self.machine),
+            to_come: rungs.flight.series.to_come(&self.machine),
+            ..Strain::default()
+        };
+        if rungs.phase.is_contact() {
+            let rate = contact.swing().rate;
+            strain.speed = clearance * rate.abs();
+            strain.speed_error = clearance * contact.track.rate_spread();
+            strain.contact_age = Some(contact.age());
+            strain.whirl = contact.whirls().then_some(rate);
+        }
+        strain
+    }
+
     /// Whether it may be at the wall.
     pub(crate) fn is_near(&self, fix: &Fix) -> bool {
         direction(fix.position).1 >= self.near
@@ -142,18 +215,25 @@ impl Ladder {
         self.flight.skip(&mut rungs.flight);
     }
 
-    /// In flight: what the sample shows of the wall. It confirms a fall.
+    /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
+    /// there from its place `home`, m.
     pub(crate) fn land(
         &self,
         rungs: &mut Rungs,
         fix: &Fix,
+        home: [f32; 2],
         signals: &Signals,
         pending: &mut Option<Pending>,
         teller: &mut Teller,
     ) {
         let landing = self.flight.take(&mut rungs.flight, fix);
-        if landing.is_some() || signals.levitated == Some(false) {
+        if signals.levitated == Some(false) {
             teller.close(pending, true);
+        }
+        if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
+            let fell =
+                landing.speed() > LANDING_SPEED || self.fell(open, fix.now, fix.position, home);
+            teller.close(pending, fell);
         }
         match landing {
             Some(Landing::Impact { age, normal_speed }) => {
@@ -175,7 +255,8 @@ impl Ladder {
         pending: &mut Pending,
     ) -> Fall {
         let home = levitation.mean;
-        if self.is_far(rungs.flight.track.position, home) {
+        let at = rungs.flight.track.position;
+        if self.is_far(at, home) && self.fell(pending, fix.now, at, home) {
             return Fall::Certain;
         }
         let is_home = is_home(fix, home, levitation.variance);
@@ -194,6 +275,20 @@ impl Ladder {
     /// Whether no caught disturbance goes from `home` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], home: [f32; 2]) -> bool {
         square(position, home) > self.travel * self.travel
+    }
+
+    /// Whether a rotor that went from `home` to `at` (m) since the fall was declared went as fast as one
+    /// that falls.
+    pub(crate) fn fell(
+        &self,
+        pending: &Pending,
+        now: Moment,
+        at: [f32; 2],
+        home: [f32; 2],
+    ) -> bool {
+        let time = now.since(pending.since) * self.period;
+        let least = FALLS * 0.5 * self.machine.gravity * time * time;
+        square(at, home) >= least * least
     }
 
     /// In flight: whether it floats again, clear of the wall and quiet.
@@ -284,4 +379,9 @@ pub(crate) fn is_home(fix: &Fix, home: [f32; 2], variance: f32) -> bool {
 pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     dx * dx + dy * dy
+}
+
+/// Of two ways, m.
+pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0] + b[0], a[1] + b[1]]
 }

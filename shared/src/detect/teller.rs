@@ -1,14 +1,28 @@
 //! What a tick says.
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
+use crate::health::{Fault, Found};
 use crate::sensing::PLANES;
 
 /// A declared fall that is neither confirmed nor withdrawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pending {
     pub(crate) number: u16,
+    /// Its onset.
+    pub(crate) since: Moment,
     /// Samples back within noise.
     pub(crate) back: u32,
+}
+
+impl Pending {
+    /// Just declared.
+    pub(crate) fn new(number: u16, since: Moment) -> Self {
+        Self {
+            number,
+            since,
+            back: 0,
+        }
+    }
 }
 
 /// One tick's notices and what they need.
@@ -34,6 +48,7 @@ impl Teller<'_> {
             plane: self.plane,
             normal_speed,
             motion: self.motion,
+            fault: None,
         }));
         number
     }
@@ -49,6 +64,26 @@ impl Teller<'_> {
         let number = self.tell(kind, 0.0, 0.0);
         self.plane = whole;
         number
+    }
+
+    /// Declares a fault.
+    pub(crate) fn tell_fault(&mut self, channel: u8, found: Found) {
+        let number = *self.next_number;
+        *self.next_number = number.wrapping_add(1);
+        let age = found.age as f32;
+        let _ = self.notices.push(Notice::Declared(Event {
+            number,
+            kind: EventKind::SensorFault,
+            onset: Moment::of_sample(self.sample).later(-age),
+            declared: self.sample,
+            plane: if channel < 2 { Plane::A } else { Plane::B },
+            normal_speed: 0.0,
+            motion: self.motion,
+            fault: Some(Fault {
+                channel,
+                kind: found.kind,
+            }),
+        }));
     }
 
     /// Confirms or withdraws the pending fall, if there is one.

@@ -110,6 +110,8 @@ fn run() -> Result<(), Failure> {
         board.line.serve(&mut app, &board.block);
     }
     let summary = fingerprint.summary(app.state());
+    let severity = *app.state().severity();
+    board.answer.write(&Record::Severity(severity))?;
     board.answer.write(&Record::Summary(summary))?;
     info!(
         "end: {=u64} samples, {=u64} faults",
