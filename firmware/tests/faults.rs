@@ -217,7 +217,7 @@ fn rotor_that_lies_still_may_be_lifted_and_one_that_swings_wide_may_not() {
     }
     assert_eq!(bench.mode(), Mode::Dropped);
     // A pendulum of 60 degrees with the period of a rolling solid cylinder, 43 ms.
-    let mut swing = |bench: &mut Bench, ticks: u32, amplitude: f64| {
+    let swing = |bench: &mut Bench, ticks: u32, amplitude: f64| {
         (0..ticks).any(|_| {
             let turn = core::f64::consts::TAU * seconds(bench.tick) / 0.0426;
             let angle = amplitude * turn.cos();
@@ -333,7 +333,9 @@ fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
             },
             ..bench
         };
-        (0..ahead).for_each(|_| drop(bench.float()));
+        for _ in 0..ahead {
+            bench.float();
+        }
         bench
     };
     for bit in 0..8 * block.len() {

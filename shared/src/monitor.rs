@@ -87,7 +87,10 @@ impl Monitor {
         let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
-        state.position = reading.mean().map(|(position, _)| position);
+        state.position = reading
+            .mean()
+            .filter(|_| reading.is_own())
+            .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
         state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
@@ -150,8 +153,8 @@ impl MonitorState {
         self.faults
     }
 
-    /// The rotor's place in the last sample, mean over the planes that deliver one, m; `None` where
-    /// none does.
+    /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers
+    /// values of its own.
     pub fn position(&self) -> Option<[f32; 2]> {
         self.position
     }

@@ -54,6 +54,7 @@ fn settings() -> Settings {
             detector: DetectorConfig {
                 sample_rate: 20_000.0,
                 machine: MachineConfig {
+                    mass: 3.42,
                     clearance: 0.3e-3,
                     gravity: 9.81,
                     rotor_radius: 24e-3,
