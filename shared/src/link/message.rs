@@ -19,6 +19,10 @@ pub type Chunk = Vec<u8, CHUNK_BYTES>;
 pub type Text = String<TEXT_BYTES>;
 
 /// To the controller.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "no allocation: a block has room in place"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request {
     /// Who is there? Answer: `Hello`.
