@@ -19,6 +19,10 @@ const SURE: f32 = 3.0;
 /// Way back from the last turning point, in standard deviations of the position, that makes a swing.
 const CLEAR_SWING: f32 = 12.0;
 
+/// Part of gravity with which the wall must press on a rotor for its way back to be a swing: near the sides
+/// one that has left the wall comes back as well.
+const SWINGS: f32 = 0.3;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactTest {
@@ -181,8 +185,7 @@ impl ContactTest {
     /// `slip` as against a wall that does not turn, m/s, where measured.
     fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
         let swing = state.swing();
-        let pressing =
-            self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos;
+        let pressing = self.pressing(swing);
         let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
         let taken = per_impulse * pressing.max(0.0) * self.period;
         state.slip_left -= taken;
@@ -211,6 +214,11 @@ impl ContactTest {
         state.track.for_rolling = Evidence::default();
         state.track.for_sliding = Evidence::default();
         Some(Finding::Kind(found, age))
+    }
+
+    /// Acceleration with which the wall presses, m/s^2.
+    fn pressing(&self, swing: &Swing) -> f32 {
+        self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
     }
 
     fn by_slip(&self, state: &mut Touching, taken: f32) -> (Option<Kind>, f32) {
@@ -265,7 +273,7 @@ impl ContactTest {
                 Regime::BackwardWhirl
             };
             (whirl, state.age as f32)
-        } else if turned_back {
+        } else if turned_back && self.pressing(&swing) >= SWINGS * self.machine.gravity {
             (Regime::Pendulum, state.turning.age as f32)
         } else if block
             .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)

@@ -15,6 +15,8 @@ const SERIES_MARGIN: f32 = 5e-4;
 
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
+/// Part of the faintest impact's speed from which on one is believed that comes when it is expected.
+const EXPECTED: f32 = 0.5;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -214,7 +216,24 @@ impl FlightTest {
                 });
             }
         }
+        self.relaunch(flight, fix);
         self.contact(flight, fix)
+    }
+
+    /// Foresees the end of the series anew, once the flight shows how it began.
+    fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
+        let (Some(after), Some(last)) = (
+            flight.series.shown_after(&self.machine, self.period),
+            flight.series.last(),
+        ) else {
+            return;
+        };
+        let flown = fix.now.since(last.at);
+        if flown >= after {
+            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
+            let error = flight.track.speed_error();
+            (flight.series).relaunch(velocity, error * error, &self.machine, self.period);
+        }
     }
 
     /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
@@ -236,7 +255,10 @@ impl FlightTest {
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
-        let faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        if flight.series.foresees(&bounce, self.period) {
+            faintest *= EXPECTED;
+        }
         if radius < self.near || normal_speed <= faintest {
             return None;
         }
@@ -253,13 +275,12 @@ impl FlightTest {
         Some((bounce, launch_speed))
     }
 
-    /// Part of the flight after an impact in which another is impossible, s: it leaves the wall with
-    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall. Gravity that
-    /// pulls it off the wall hurries it to the other side, so it counts as well.
+    /// Part of the flight after an impact in which another is impossible, s: on a flat wall it would leave
+    /// with speed v and come back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
     fn shortest_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
         let launch = flight.series.restitution(&self.machine) * last.normal_speed;
-        let pull = self.machine.gravity * last.outward[1].max(0.0);
-        let back = last.pressing + 2.0 * pull + launch * launch / self.machine.clearance;
+        let squares = last.along * last.along + launch * launch;
+        let back = squares / self.machine.clearance + self.machine.gravity;
         if back > 0.0 {
             IMPOSSIBLE * 2.0 * launch / back
         } else {

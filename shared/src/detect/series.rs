@@ -11,6 +11,11 @@ const PRIOR_WEIGHT: f32 = 1.0;
 /// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
 const CLEAR_SPEED: f32 = 0.02;
 
+/// Spread of a launch speed that follows from the speed into the wall and restitution, part of it.
+const LAUNCH_SPREAD: f32 = 0.15;
+/// Part of the first flight after an impact that shows well how the rotor left the wall.
+const SHOWN: f32 = 0.6;
+
 /// Part by which flight time and speed may disagree where the wall counts as flat.
 const FLAT: f32 = 0.25;
 
@@ -88,6 +93,8 @@ pub(crate) struct Series {
     impulse: f32,
     last: Option<Bounce>,
     ends: Option<Moment>,
+    /// Whether the launch after the last impact is still that which followed from the impact.
+    assumed: bool,
 }
 
 impl Series {
@@ -122,6 +129,46 @@ impl Series {
         }
     }
 
+    /// Samples after the last impact from which on its launch is shown by the flight itself; `None` where it
+    /// has been taken from there.
+    pub(crate) fn shown_after(&self, machine: &MachineConfig, period: f32) -> Option<f32> {
+        let last = self.last.as_ref().filter(|_| self.assumed)?;
+        let flight = 2.0 * self.restitution(machine) * last.normal_speed / last.pressing;
+        (last.pressing > 0.0).then_some(SHOWN * flight / period)
+    }
+
+    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to
+    /// `variance`. Just after an impact its velocity along the wall is hardly known, and the wall's
+    /// pressing grows with its square.
+    pub(crate) fn relaunch(
+        &mut self,
+        [u, v]: [f32; 2],
+        variance: f32,
+        machine: &MachineConfig,
+        period: f32,
+    ) {
+        self.assumed = false;
+        let restitution = self.restitution(machine);
+        let Some(last) = self.last.as_mut() else {
+            return;
+        };
+        let [x, y] = last.outward;
+        last.along = v * x - u * y;
+        last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
+        let (expected, shown) = (restitution * last.normal_speed, -(u * x + v * y));
+        let spread = LAUNCH_SPREAD * expected;
+        let trust = spread * spread / (spread * spread + variance);
+        let launch = expected + trust * (shown - expected);
+        let (rest, at) = (last.rest(launch, restitution, machine), last.at);
+        self.ends = rest.map(|time| at.later(time / period));
+    }
+
+    /// Whether `bounce` is where and as fast as the flight since the last impact lets expect.
+    pub(crate) fn foresees(&self, bounce: &Bounce, period: f32) -> bool {
+        let last = self.last.as_ref();
+        last.is_some_and(|last| timed_speed(last, bounce, period).is_some())
+    }
+
     /// The last impact.
     pub(crate) fn last(&self) -> Option<&Bounce> {
         self.last.as_ref()
@@ -150,6 +197,7 @@ impl Series {
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
+        self.assumed = true;
     }
 
     /// End of the series; `None` where the wall does not press on, or the series does not end.

@@ -99,8 +99,8 @@ mod tests {
             [None, Some(B)],
         ] {
             let moved = pair.take(&mut pairing, &planes, true, true);
-            let seen: Vec<_> = planes.into_iter().flatten().collect();
-            let now = [0, 1].map(|k| seen.iter().map(|it| it[k]).sum::<f32>() / seen.len() as f32);
+            let seen = || planes.iter().flatten();
+            let now = [0, 1].map(|k| seen().map(|it| it[k]).sum::<f32>() / seen().count() as f32);
             for k in 0..2 {
                 let way = mean.map_or(0.0, |mean: [f32; 2]| now[k] - mean[k]);
                 assert!((moved[k] - way).abs() < 1e-12, "{planes:?}: {moved:?}");
