@@ -1,47 +1,182 @@
-//! The application: the monitor's tick, and what follows from it for the outputs.
+//! The application: the monitor's tick, what follows from it for the outputs, and what latches.
 
+use touchdown_core::config_block::Patrol;
+use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
+use touchdown_core::detect::Phase;
 use touchdown_core::error::ConfigError;
-use touchdown_core::event::Notice;
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 
-use crate::board::{Board, TripOutput};
+use crate::blind::Blind;
+use crate::board::Board;
+use crate::outputs::{self, Condition};
+use crate::permit::Permit;
 
-/// The monitor and the state of its trip output.
+/// The monitor, what is latched, and the outputs.
+#[derive(Clone)]
 pub struct App {
     monitor: Monitor,
     state: MonitorState,
-    output: TripOutput,
+    patrol: Patrol,
+    blind: Blind,
+    permit: Permit,
+    condition: Condition,
+    tested: Tested,
+    lost: u32,
+}
+
+/// What the self-test has seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tested {
+    config: bool,
+    sensors: bool,
 }
 
 impl App {
-    /// Checks `config` and prepares the tick.
-    pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+    /// Checks `config` and prepares the tick; `found` is what was wrong at power-on.
+    pub fn try_new(config: &MonitorConfig, found: Faults) -> Result<Self, ConfigError> {
         let monitor = Monitor::try_new(config)?;
+        let sample_rate = config.detector.sample_rate;
         Ok(Self {
             state: monitor.start(),
             monitor,
-            output: TripOutput::Energised,
+            patrol: Patrol::default(),
+            blind: Blind::new(sample_rate),
+            permit: Permit::new(sample_rate, config.fitted),
+            condition: Condition {
+                mode: if found.trip() {
+                    Mode::Faulted
+                } else {
+                    Mode::SelfTest
+                },
+                faults: found,
+                lies_still: false,
+            },
+            tested: Tested::default(),
+            lost: 0,
         })
     }
 
-    /// Trips the output, as a confirmed free fall does: for good.
-    pub fn trip(&mut self) {
-        self.output = TripOutput::Tripped;
-    }
-
-    /// One sample: every notice goes to the board, in order, and the output is driven anew.
-    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample) {
+    /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
+    /// outputs, and last of all the watchdog is fed.
+    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample, lost: u32) {
+        let mut dropped = false;
         for notice in &self.monitor.update(&mut self.state, sample) {
-            if matches!(notice, Notice::Confirmed { .. }) {
-                self.trip();
-            }
+            dropped |= self.is_drop(notice);
+            self.permit.hear(notice);
             board.report(notice);
         }
-        board.drive(self.output);
-        // Last: it delays no output.
+        let position = self.state.position();
+        self.condition.lies_still = self.permit.take(position, self.state.phases());
+        self.watch_itself(board.config(), position.is_some(), lost);
+        self.condition.mode = self.next_mode(dropped);
+        board.drive(self.outputs());
+        // After the outputs: it delays none of them.
         if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
             board.report(&notice);
+        }
+        board.feed();
+    }
+
+    /// Whether a notice trips: a confirmed fall, whirl, or permanent contact of what floated.
+    fn is_drop(&self, notice: &Notice) -> bool {
+        match notice {
+            Notice::Confirmed { .. } => true,
+            Notice::Declared(event) => match event.kind {
+                EventKind::ForwardWhirl | EventKind::BackwardWhirl => true,
+                EventKind::Sliding | EventKind::Rolling => self.condition.mode == Mode::Watching,
+                _ => false,
+            },
+            Notice::Withdrawn { .. } | Notice::Outlook(_) => false,
+        }
+    }
+
+    fn watch_itself(&mut self, block: &[u8], sees: bool, lost: u32) {
+        if lost > 0 {
+            self.lost = self.lost.saturating_add(lost);
+            self.latch(Fault::Overrun);
+        }
+        if self.blind.miss(lost) {
+            self.latch(Fault::Overload);
+        }
+        if self.blind.look(sees) {
+            self.latch(Fault::SensorsLost);
+        }
+        self.tested.sensors |= self.blind.has_seen();
+        match self.patrol.step(block) {
+            Some(true) => self.tested.config = true,
+            Some(false) => self.latch(Fault::ConfigChanged),
+            None => {}
+        }
+    }
+
+    fn latch(&mut self, fault: Fault) {
+        self.condition.faults = self.condition.faults.with(fault);
+    }
+
+    fn next_mode(&self, dropped: bool) -> Mode {
+        let floats = self.state.phase() == Phase::Levitated && self.state.is_armed();
+        match self.condition.mode {
+            _ if self.condition.faults.trip() => Mode::Faulted,
+            _ if dropped => Mode::Dropped,
+            Mode::SelfTest if self.tested.config && self.tested.sensors => Mode::Arming,
+            Mode::Arming if floats => Mode::Watching,
+            mode => mode,
+        }
+    }
+
+    /// Clears what is latched. Refused while the rotor is neither floating nor lying still, and
+    /// while the sensors are gone; a fault whose cause lasts comes back.
+    pub fn clear(&mut self) -> Result<(), Busy> {
+        if self.state.position().is_none() {
+            return Err(Busy::Blind);
+        }
+        if self.drop_runs() {
+            return Err(Busy::DropRuns);
+        }
+        let had = core::mem::replace(&mut self.condition.faults, Faults::NONE);
+        if self.condition.mode == Mode::Watching && !had.trip() {
+            return Ok(());
+        }
+        self.condition.mode = Mode::SelfTest;
+        self.tested = Tested::default();
+        self.blind.forget();
+        Ok(())
+    }
+
+    /// Whether the controller may be reset to take another configuration.
+    pub fn may_restart(&self) -> Result<(), Busy> {
+        match self.condition.mode {
+            _ if self.drop_runs() => Err(Busy::DropRuns),
+            Mode::Watching => Err(Busy::Watching),
+            Mode::Dropped => Err(Busy::Latched),
+            Mode::SelfTest | Mode::Arming | Mode::Faulted => Ok(()),
+        }
+    }
+
+    /// Whether the rotor falls, bounces, slides or whirls.
+    pub fn drop_runs(&self) -> bool {
+        let floats = matches!(self.state.phase(), Phase::Starting | Phase::Levitated);
+        !floats && !self.condition.lies_still
+    }
+
+    /// What goes on, for the link; the last tick was `age_us` ago.
+    pub fn report(&self, age_us: u32, lost_notices: u32) -> State {
+        State {
+            sample: self.state.samples().wrapping_sub(1),
+            age_us,
+            phase: self.state.phase(),
+            mode: self.condition.mode,
+            outputs: self.outputs(),
+            faults: self.condition.faults,
+            counters: Counters {
+                lost_samples: self.lost,
+                unusable_values: self.state.faults(),
+                lost_notices,
+                damaged_frames: 0,
+            },
         }
     }
 
@@ -49,64 +184,19 @@ impl App {
     pub fn state(&self) -> &MonitorState {
         &self.state
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use touchdown_core::sample::{CHANNELS, TACHOMETERS};
-
-    use super::*;
-    use crate::board::default_config;
-
-    #[derive(Default)]
-    struct Bench {
-        driven: Vec<TripOutput>,
+    /// What the outputs depend on, after the last tick.
+    pub fn condition(&self) -> &Condition {
+        &self.condition
     }
 
-    impl Board for Bench {
-        fn report(&mut self, _: &Notice) {}
-
-        fn drive(&mut self, output: TripOutput) {
-            self.driven.push(output);
-        }
+    /// The outputs after the last tick.
+    pub fn outputs(&self) -> Outputs {
+        outputs::outputs(&self.condition)
     }
 
-    const CENTRE: Sample = Sample {
-        counts: [2048; CHANNELS],
-        valid: 0x0f,
-        spin: None,
-        levitated: None,
-        edges: [None; TACHOMETERS],
-    };
-
-    #[test]
-    fn output_is_driven_every_tick() {
-        let mut bench = Bench::default();
-        let mut app = App::try_new(&default_config()).unwrap();
-        for _ in 0..3 {
-            app.tick(&mut bench, &CENTRE);
-        }
-        assert_eq!(bench.driven, [TripOutput::Energised; 3]);
-        assert_eq!(app.state().samples(), 3);
-    }
-
-    #[test]
-    fn trip_is_for_good() {
-        let mut bench = Bench::default();
-        let mut app = App::try_new(&default_config()).unwrap();
-        app.trip();
-        app.tick(&mut bench, &CENTRE);
-        app.tick(&mut bench, &CENTRE);
-        assert_eq!(bench.driven, [TripOutput::Tripped; 2]);
-    }
-
-    #[test]
-    fn impossible_configuration_is_refused() {
-        let mut config = default_config();
-        config.sensing.resolution = 0.0;
-        assert_eq!(
-            App::try_new(&config).err(),
-            Some(ConfigError::NotPositive("resolution"))
-        );
+    /// Samples lost since power-on.
+    pub fn lost(&self) -> u32 {
+        self.lost
     }
 }

@@ -1,6 +1,7 @@
 //! What the images log.
 
 use defmt::{Str, info, intern, warn};
+use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
 
@@ -36,6 +37,25 @@ pub fn notice(notice: &Notice) {
             outlook.probability_forward, outlook.probability_backward, outlook.made_at
         ),
     }
+}
+
+/// The outputs, where they changed.
+pub fn outputs(outputs: Outputs) {
+    let Outputs {
+        run,
+        no_brake,
+        permit,
+        ready,
+    } = outputs;
+    info!(
+        "outputs: run {=bool}, no brake {=bool}, permit {=bool}, ready {=bool}",
+        run, no_brake, permit, ready
+    );
+}
+
+/// The latched faults, where they changed.
+pub fn faults(faults: Faults) {
+    warn!("faults: {=u16:07b}", faults.0);
 }
 
 fn name(kind: EventKind) -> Str {

@@ -5,10 +5,16 @@
 //! The images are the package's binaries. For the desktop the library holds the application
 //! and its tests only; the boards are for the target.
 
+pub mod ad7606;
 pub mod app;
+mod blind;
 pub mod board;
 #[cfg(target_os = "none")]
 pub mod count;
+pub mod crash;
 #[cfg(target_os = "none")]
 mod journal;
+pub mod outputs;
 pub mod overrun;
+pub mod permit;
+pub mod speed;

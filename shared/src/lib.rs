@@ -7,11 +7,17 @@
 //! `X` (coefficients) and `XState`. Building an `X` can fail; the per-sample call cannot: it is
 //! bounded, allocates nothing and never panics.
 
+pub mod checksum;
+#[cfg(feature = "serde")]
+pub mod config_block;
+pub mod controller;
 pub mod detect;
 pub mod error;
 pub mod event;
 pub mod forecast;
 pub mod health;
+#[cfg(feature = "serde")]
+pub mod link;
 pub mod model;
 pub mod monitor;
 pub mod real;

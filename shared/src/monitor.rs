@@ -1,7 +1,8 @@
 //! The whole tick: sensing, the sensors' health, then the detector.
 
-use crc::{CRC_32_ISO_HDLC, Crc, Digest};
+use crc::Digest;
 
+use crate::checksum::CRC;
 use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
@@ -47,6 +48,7 @@ pub struct MonitorState {
     faults: u64,
     health: HealthState,
     tachometers: TachometersState,
+    position: Option<[f32; 2]>,
     inner_ring: Option<Speed>,
     detector: DetectorState,
     spin: Option<f32>,
@@ -85,6 +87,10 @@ impl Monitor {
         let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
+        state.position = reading
+            .mean()
+            .filter(|_| reading.is_own())
+            .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
         state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
@@ -147,6 +153,12 @@ impl MonitorState {
         self.faults
     }
 
+    /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers
+    /// values of its own.
+    pub fn position(&self) -> Option<[f32; 2]> {
+        self.position
+    }
+
     /// What can be had of each channel.
     pub fn conditions(&self) -> [Condition; CHANNELS] {
         self.health.conditions()
@@ -192,8 +204,6 @@ impl MonitorState {
         self.detector.is_armed()
     }
 }
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Fingerprint of the state over a run: equal on two machines only if every tick left the same
 /// bits. Not part of the tick.

@@ -38,6 +38,13 @@ pub struct Reading {
 }
 
 impl Reading {
+    /// Whether a plane has values of its own, none of them filled in.
+    pub fn is_own(&self) -> bool {
+        let channels = [0b0011, 0b1100];
+        let mut planes = self.planes.iter().zip(channels);
+        planes.any(|(plane, channels)| plane.is_some() && self.unusable & channels == 0)
+    }
+
     /// Mean over the usable planes, m, and how many they are.
     pub fn mean(&self) -> Option<([f32; 2], u8)> {
         match self.planes {

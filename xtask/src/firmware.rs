@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use object::{Object, ObjectSection, SectionFlags, elf};
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
 
 use crate::machine::Machine;
 use crate::toolchain::TARGET;
@@ -67,6 +67,8 @@ fn target_directory() -> PathBuf {
 fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
     let file = object::File::parse(&*bytes)?;
+    let stack = file.symbols().find(|it| it.name() == Ok("_stack_start"));
+    let stack = stack.context("the image has no stack")?.address();
     let (mut flash, mut ram) = (0, 0);
     for section in file.sections() {
         let SectionFlags::Elf { sh_flags } = section.flags() else {
@@ -76,6 +78,11 @@ fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
             continue;
         }
         let in_ram = section.address() >= RAM_START;
+        ensure!(
+            !in_ram || section.size() == 0 || section.address() >= stack,
+            "{}: data lie below the stack, which could overflow unseen",
+            image.display()
+        );
         let in_flash = !in_ram || section.kind() == object::SectionKind::Data;
         ram += if in_ram { section.size() } else { 0 };
         flash += if in_flash { section.size() } else { 0 };

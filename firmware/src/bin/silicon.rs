@@ -3,22 +3,38 @@
 
 #[cfg(target_os = "none")]
 mod image {
-    use cortex_m_rt::entry;
+    use core::panic::PanicInfo;
+
+    use cortex_m_rt::{ExceptionFrame, entry, exception};
     use defmt_rtt as _;
-    use panic_probe as _;
     use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::board::default_config;
-    use touchdown_firmware::board::f405::{self, Outbox};
+    use touchdown_firmware::board::f405::{self, Memory};
 
     #[entry]
     fn main() -> ! {
-        static mut OUTBOX: Outbox = Outbox::new();
-        f405::main(&default_config(), OUTBOX)
+        static mut MEMORY: Memory = Memory::new();
+        f405::main(MEMORY)
     }
 
     #[interrupt]
     fn ADC() {
         f405::on_converted();
+    }
+
+    #[panic_handler]
+    fn panic(info: &PanicInfo) -> ! {
+        f405::on_panic(info)
+    }
+
+    // The runtime asks for unsafe functions; there is nothing unsafe in them.
+    #[exception]
+    unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+        f405::on_hard_fault(frame.pc(), frame.lr())
+    }
+
+    #[exception]
+    unsafe fn DefaultHandler(number: i16) -> ! {
+        f405::on_stray_interrupt(number)
     }
 }
 

@@ -4,35 +4,51 @@
 pub mod f405;
 #[cfg(target_os = "none")]
 pub mod qemu;
+#[cfg(target_os = "none")]
+mod serial;
 
+use touchdown_core::config_block::{Settings, Wiring};
+use touchdown_core::controller::Outputs;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 
-/// The trip output: fail-safe, so loss of power, reset and trip look the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TripOutput {
-    /// Watching, and nothing found.
-    Energised,
-    /// De-energised.
-    Tripped,
-}
-
-/// A board, as a tick sees it. Neither call may block.
+/// A board, as a tick sees it. No call may block.
 pub trait Board {
     /// Passes a notice on.
     fn report(&mut self, notice: &Notice);
 
-    /// Drives the trip output; called every tick.
-    fn drive(&mut self, output: TripOutput);
+    /// Drives the outputs; called every tick.
+    fn drive(&mut self, outputs: Outputs);
+
+    /// The configuration block in force, where it is kept.
+    fn config(&self) -> &[u8];
+
+    /// Feeds the watchdog; the last call of a tick that ran to its end.
+    fn feed(&mut self);
 }
 
 /// Samples per second of the silicon image, Hz.
 pub const SAMPLE_RATE_HZ: u32 = 20_000;
 
-/// Configuration of the silicon image: the rig of the source paper, four channels of 12 bit over
-/// +-1000 um.
+/// Speed of the link, baud.
+#[cfg(target_os = "none")]
+const BAUD: u32 = 115_200;
+/// Samples between two states that the link sends unasked.
+#[cfg(target_os = "none")]
+const STATE_SAMPLES: u64 = 1_000;
+
+/// Settings of a board on which none are stored: the default configuration, and neither speed nor
+/// levitation wired.
+pub fn default_settings() -> Settings {
+    Settings {
+        monitor: default_config(),
+        wiring: Wiring::default(),
+    }
+}
+
+/// Default configuration: the rig of the source paper, four channels of 12 bit over +-1000 um.
 pub fn default_config() -> MonitorConfig {
     MonitorConfig {
         fitted: 0b1111,

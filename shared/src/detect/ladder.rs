@@ -23,6 +23,7 @@ const LANDING_SPEED: f32 = 0.01;
 
 /// Phase of the rotor, or of one end of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
     /// Switched on, not judged yet.
     #[default]

@@ -6,6 +6,8 @@ use stm32f4::stm32f405::{FLASH, RCC};
 const CRYSTAL_MHZ: u8 = 12;
 /// Core and AHB, Hz.
 pub const CORE_HZ: u32 = 168_000_000;
+/// Peripherals of APB2, Hz.
+pub const APB2_HZ: u32 = 84_000_000;
 /// Timers of APB1: twice its 42 MHz, Hz.
 pub const APB1_TIMER_HZ: u32 = 84_000_000;
 

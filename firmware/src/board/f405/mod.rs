@@ -1,51 +1,98 @@
 //! STM32F405: sampled by its own converter, 20 000 times a second.
 //!
 //! The tick is the converter's interrupt, the only one and so the highest. It must be over before
-//! the next sample, 50 us later; a tick that is not loses samples, which are counted and stay
-//! counted, and goes on. What it reports goes through a queue to the idle loop, which logs.
+//! the next sample, 50 us later; a tick that is not loses samples, which are counted and latched,
+//! and goes on. What it reports goes through a queue to the idle loop, which logs and serves the link.
 
 mod clocks;
 mod converter;
+mod inputs;
 mod outputs;
+mod record;
+mod remote;
+mod store;
 
 use core::cell::RefCell;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::mem::MaybeUninit;
+use core::panic::PanicInfo;
 
+use cortex_m::peripheral::{DWT, SCB};
 use critical_section::Mutex;
-use defmt::{error, info, warn};
+use defmt::{error, info};
 use heapless::spsc::{Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
+use touchdown_core::config_block::{self, Block, BlockError, Settings};
+use touchdown_core::controller::{Fault, Faults, Outputs};
 use touchdown_core::event::Notice;
-use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::link::Server;
+use touchdown_core::sample::Sample;
 
-use self::clocks::CORE_HZ;
+use self::clocks::{APB2_HZ, CORE_HZ};
 use self::converter::Converter;
-use self::outputs::{TripPin, Watchdog};
-use super::{Board, SAMPLE_RATE_HZ, TripOutput};
+use self::inputs::Inputs;
+use self::outputs::{OutputPins, Watchdog};
+use self::remote::Remote;
+use super::serial::Serial;
+use super::{BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
+use crate::crash::{Cause, Crash};
 use crate::journal;
 use crate::overrun::Overruns;
 
-/// Notices on their way to the log. If it is full they are dropped; events are numbered, so a gap
-/// shows.
-pub type Outbox = Queue<Notice, 64>;
-
-static TICK: Mutex<RefCell<Option<Tick>>> = Mutex::new(RefCell::new(None));
-static LOST_SAMPLES: AtomicU32 = AtomicU32::new(0);
-
-struct Outputs {
-    pin: TripPin,
-    watchdog: Watchdog,
-    outbox: Producer<'static, Notice>,
+/// What outlives main's frame.
+pub struct Memory {
+    /// Notices on their way to log and link. If it is full they are lost and counted; events are
+    /// numbered, so a gap shows.
+    outbox: Queue<Notice, 64>,
+    // Without a value of its own: one would take as much flash.
+    tick: MaybeUninit<Tick>,
 }
 
-impl Board for Outputs {
+impl Memory {
+    /// Empty.
+    #[expect(clippy::new_without_default, reason = "for a static")]
+    pub const fn new() -> Self {
+        Self {
+            outbox: Queue::new(),
+            tick: MaybeUninit::uninit(),
+        }
+    }
+}
+
+static TICK: Mutex<RefCell<Option<&'static mut Tick>>> = Mutex::new(RefCell::new(None));
+
+struct Silicon {
+    pins: OutputPins,
+    watchdog: Watchdog,
+    outbox: Producer<'static, Notice>,
+    lost_notices: u32,
+    block: InForce,
+}
+
+/// The configuration block in force.
+enum InForce {
+    Stored(&'static [u8]),
+    Default(Block),
+}
+
+impl Board for Silicon {
     fn report(&mut self, notice: &Notice) {
-        let _ = self.outbox.enqueue(*notice);
+        let is_lost = self.outbox.enqueue(*notice).is_err();
+        self.lost_notices = self.lost_notices.saturating_add(u32::from(is_lost));
     }
 
-    fn drive(&mut self, output: TripOutput) {
-        self.pin.drive(output);
+    fn drive(&mut self, outputs: Outputs) {
+        self.pins.drive(outputs);
+    }
+
+    fn config(&self) -> &[u8] {
+        match &self.block {
+            InForce::Stored(block) => block,
+            InForce::Default(block) => block,
+        }
+    }
+
+    fn feed(&mut self) {
         self.watchdog.feed();
     }
 }
@@ -53,31 +100,29 @@ impl Board for Outputs {
 struct Tick {
     app: App,
     converter: Converter,
-    outputs: Outputs,
+    inputs: Inputs,
+    board: Silicon,
     overruns: Overruns,
+    /// Cycle counter at its last start.
+    at: u32,
 }
 
-/// Starts sampling, and logs.
-pub fn main(config: &MonitorConfig, outbox: &'static mut Outbox) -> ! {
+/// Starts sampling; logs, and serves the link.
+pub fn main(memory: &'static mut Memory) -> ! {
     let (Some(core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
-    let bitten = Watchdog::has_bitten(&chip.RCC);
-    let pin = TripPin::new(chip.GPIOC, &chip.RCC);
+    let pins = OutputPins::new(chip.GPIOC, &chip.RCC);
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
-    journal::config(config);
-    let mut app = match App::try_new(config) {
+    let (block, settings, found) = found_at_power_on(&chip.RCC);
+    journal::config(&settings.monitor);
+    let app = match App::try_new(&settings.monitor, found) {
         Ok(app) => app,
         Err(refusal) => {
-            error!("config: {}", defmt::Display2Format(&refusal));
-            idle_tripped()
+            error!("config: {=str}", refusal.parameter());
+            idle()
         }
     };
-    if bitten {
-        // A core that got stuck once is not to be trusted before someone has looked at it.
-        error!("watchdog reset: output stays tripped until the power is cycled");
-        app.trip();
-    }
 
     clocks::start(&chip.RCC, &chip.FLASH);
     start_cycle_counter(core.DCB, core.DWT);
@@ -88,55 +133,148 @@ pub fn main(config: &MonitorConfig, outbox: &'static mut Outbox) -> ! {
         &chip.GPIOA,
         &chip.RCC,
     );
-    let (outbox, mut inbox) = outbox.split();
-    converter.start();
-    let tick = Tick {
+    remote::wire(&chip.GPIOB, &chip.RCC);
+    let mut serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
+    let (outbox, mut inbox) = memory.outbox.split();
+    let tick = memory.tick.write(Tick {
         app,
-        converter,
-        outputs: Outputs {
-            pin,
+        inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
+        board: Silicon {
+            pins,
             watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU),
             outbox,
+            lost_notices: 0,
+            block,
         },
         overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),
-    };
+        at: DWT::cycle_count(),
+        converter,
+    });
+    tick.converter.start();
     critical_section::with(|cs| TICK.replace(cs, Some(tick)));
     // SAFETY: what the handler needs is in place, and no critical section is open.
     unsafe { NVIC::unmask(Interrupt::ADC) };
 
-    let mut known_lost = 0;
+    let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
+    let mut remote = Remote::new(chip.FLASH, chip.RCC);
+    let mut known = (Outputs::SAFE, Faults::NONE, 0);
     loop {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
+            server.notice(&notice).iter().for_each(|it| serial.send(it));
         }
-        let lost = LOST_SAMPLES.load(Ordering::Relaxed);
-        if lost != known_lost {
-            warn!("overrun: {=u32} samples lost since reset", lost);
-            known_lost = lost;
+        if let Some(byte) = serial.poll() {
+            let answer = server.take(byte, &mut remote);
+            answer.iter().for_each(|it| serial.send(it));
+        }
+        let (outputs, faults, samples) = with_tick(|tick| {
+            let app = &tick.app;
+            (app.outputs(), app.condition().faults, app.state().samples())
+        })
+        .unwrap_or_default();
+        if outputs != known.0 {
+            journal::outputs(outputs);
+        }
+        if faults != known.1 {
+            journal::faults(faults);
+        }
+        let is_due = samples.saturating_sub(known.2) >= STATE_SAMPLES;
+        if is_due {
+            server
+                .state(&mut remote)
+                .iter()
+                .for_each(|it| serial.send(it));
+        }
+        known = (outputs, faults, if is_due { samples } else { known.2 });
+        if remote.wants_reset() && serial.is_done() {
+            SCB::sys_reset();
         }
     }
 }
 
+/// The configuration, and what was wrong.
+fn found_at_power_on(rcc: &stm32f4::stm32f405::RCC) -> (InForce, Settings, Faults) {
+    let mut found = Faults::NONE;
+    if Watchdog::has_bitten(rcc) {
+        error!("watchdog reset");
+        found = found.with(Fault::WatchdogReset);
+    }
+    if let Some(Crash {
+        cause,
+        place,
+        detail,
+    }) = record::read()
+    {
+        let cause = cause as u8;
+        error!(
+            "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}",
+            cause, place, detail
+        );
+        found = found.with(Fault::Crash);
+    }
+    match store::load() {
+        Ok((block, settings)) => (InForce::Stored(block), settings, found),
+        Err(why) => {
+            if why != BlockError::Blank {
+                error!("config: damaged, the defaults are in force");
+                found = found.with(Fault::ConfigDamaged);
+            }
+            let settings = default_settings();
+            let block = InForce::Default(config_block::encode(&settings));
+            (block, settings, found)
+        }
+    }
+}
+
+fn with_tick<T>(act: impl FnOnce(&mut Tick) -> T) -> Option<T> {
+    critical_section::with(|cs| TICK.borrow_ref_mut(cs).as_mut().map(|tick| act(tick)))
+}
+
 /// The tick: the converter has a sample.
 pub fn on_converted() {
-    let now = cortex_m::peripheral::DWT::cycle_count();
-    critical_section::with(|cs| {
-        if let Some(tick) = TICK.borrow_ref_mut(cs).as_mut() {
-            tick.overruns.tick(now);
-            LOST_SAMPLES.store(tick.overruns.lost(), Ordering::Relaxed);
-            let sample = tick.converter.take();
-            tick.app.tick(&mut tick.outputs, &sample);
-        }
+    let now = DWT::cycle_count();
+    with_tick(|tick| {
+        tick.at = now;
+        let lost = tick.overruns.tick(now);
+        let sample = Sample {
+            spin: tick.inputs.spin(),
+            levitated: tick.inputs.levitated(),
+            ..tick.converter.take()
+        };
+        tick.app.tick(&mut tick.board, &sample, lost);
     });
 }
 
-fn start_cycle_counter(mut dcb: cortex_m::peripheral::DCB, mut dwt: cortex_m::peripheral::DWT) {
+/// The end of a program that panics: outputs dropped, a record left, reset.
+pub fn on_panic(info: &PanicInfo) -> ! {
+    record::stop(|| Crash::of_panic(info))
+}
+
+/// Likewise after a fault of the core at `pc`, called from `lr`.
+pub fn on_hard_fault(pc: u32, lr: u32) -> ! {
+    record::stop(|| Crash {
+        cause: Cause::HardFault,
+        place: pc,
+        detail: lr,
+    })
+}
+
+/// Likewise after an interrupt that nothing serves.
+pub fn on_stray_interrupt(number: i16) -> ! {
+    record::stop(|| Crash {
+        cause: Cause::StrayInterrupt,
+        place: number as u32,
+        detail: 0,
+    })
+}
+
+fn start_cycle_counter(mut dcb: cortex_m::peripheral::DCB, mut dwt: DWT) {
     dcb.enable_trace();
     dwt.enable_cycle_counter();
 }
 
-/// With the trip output de-energised there is nothing left to do.
-fn idle_tripped() -> ! {
+/// With the outputs without current there is nothing left to do.
+fn idle() -> ! {
     loop {
         cortex_m::asm::wfi();
     }

@@ -1,33 +1,57 @@
-//! The trip output, and the watchdog that makes it fail-safe against a stuck core.
+//! The outputs, and the watchdog that makes them fail-safe against a stuck core.
 
 use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
+use touchdown_core::controller::Outputs;
 
-use crate::board::TripOutput;
+/// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
+/// circuits behind them need pull-downs.
+pub struct OutputPins(GPIOC);
 
-/// PC6, high while energised. It floats during reset: the circuit behind it needs a pull-down.
-pub struct TripPin(GPIOC);
-
-impl TripPin {
-    /// De-energised.
+impl OutputPins {
+    /// All without current.
     pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
         rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
-        let pin = Self(pins);
-        pin.drive(TripOutput::Tripped);
-        pin.0.moder().modify(|_, w| w.moder6().output());
-        pin
+        let outputs = Self(pins);
+        outputs.drive(Outputs::SAFE);
+        outputs.0.moder().modify(|_, w| {
+            w.moder6().output().moder7().output();
+            w.moder2().output().moder3().output()
+        });
+        outputs
     }
 
-    /// Sets the level.
-    pub fn drive(&self, output: TripOutput) {
-        self.0.bsrr().write(|w| match output {
-            TripOutput::Energised => w.bs6().set_(),
-            TripOutput::Tripped => w.br6().reset(),
+    /// Sets all levels at once.
+    pub fn drive(&self, outputs: Outputs) {
+        // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
+        self.0.bsrr().write(|w| {
+            drop_all(w)
+                .bs6()
+                .bit(outputs.run)
+                .bs7()
+                .bit(outputs.no_brake)
+                .bs2()
+                .bit(outputs.permit)
+                .bs3()
+                .bit(outputs.ready)
         });
+    }
+
+    /// Takes the current off all, whatever else the program holds: the first act of one that stops.
+    pub fn drop_now() {
+        // SAFETY: a single write to a register that only sets and resets; nothing runs afterwards.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.bsrr().write(drop_all);
     }
 }
 
-/// Resets the core, and so de-energises the trip output, when ticks stay away for 2 ms (1.3 to 3.8
-/// ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
+type Levels = stm32f4::stm32f405::gpioi::bsrr::W;
+
+fn drop_all(w: &mut Levels) -> &mut Levels {
+    w.br6().reset().br7().reset().br2().reset().br3().reset()
+}
+
+/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms (1.3
+/// to 3.8 ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
 pub struct Watchdog(IWDG);
 
 impl Watchdog {
@@ -48,8 +72,13 @@ impl Watchdog {
         self.0.kr().write(|w| w.key().feed());
     }
 
-    /// Whether it has bitten since power was applied.
+    /// Whether it has bitten since power was applied or [`Self::forget`] was called.
     pub fn has_bitten(rcc: &RCC) -> bool {
         rcc.csr().read().wdgrstf().bit_is_set()
+    }
+
+    /// Forgets that it has bitten.
+    pub fn forget(rcc: &RCC) {
+        rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }

@@ -3,15 +3,19 @@
 
 mod counter;
 mod files;
+mod remote;
 
 use defmt::{Debug2Format, Display2Format, error, info};
+use touchdown_core::config_block::{self, Block, Settings, Wiring};
+use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::Fingerprint;
 use touchdown_core::wire::Record;
 
 pub use self::counter::Counter;
 use self::files::Answer;
-use super::{Board, TripOutput};
+use self::remote::Line;
+use super::Board;
 use crate::app::App;
 use crate::journal;
 
@@ -31,22 +35,32 @@ pub enum Failure {
 
 struct Emulated {
     answer: Answer,
-    output: TripOutput,
+    outputs: Outputs,
+    block: Block,
+    line: Line,
     failed: bool,
 }
 
 impl Board for Emulated {
     fn report(&mut self, notice: &Notice) {
         journal::notice(notice);
+        self.line.notice(notice);
         self.failed |= self.answer.write(&Record::Notice(*notice)).is_err();
     }
 
-    fn drive(&mut self, output: TripOutput) {
-        if output != self.output {
-            info!("output: {}", Debug2Format(&output));
-            self.output = output;
+    fn drive(&mut self, outputs: Outputs) {
+        if outputs != self.outputs {
+            journal::outputs(outputs);
+            self.outputs = outputs;
         }
     }
+
+    fn config(&self) -> &[u8] {
+        &self.block
+    }
+
+    // No watchdog is emulated.
+    fn feed(&mut self) {}
 }
 
 /// Runs the replay file that the command line names, and exits the emulator.
@@ -71,22 +85,29 @@ fn run() -> Result<(), Failure> {
     let (mut replay, answer) = files::open()?;
     let config = replay.config()?;
     journal::config(&config);
-    let mut app = App::try_new(&config).map_err(|refusal| {
+    let mut app = App::try_new(&config, Faults::NONE).map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
     let mut board = Emulated {
         answer,
-        output: TripOutput::Energised,
+        outputs: Outputs::SAFE,
+        block: config_block::encode(&Settings {
+            monitor: config,
+            wiring: Wiring::default(),
+        }),
+        line: Line::new(config.detector.sample_rate),
         failed: false,
     };
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
     while let Some(samples) = replay.samples()? {
         for sample in samples {
-            app.tick(&mut board, &sample);
+            app.tick(&mut board, &sample, 0);
             fingerprint.take(app.state());
         }
+        // Between blocks of samples: the link is no part of the tick.
+        board.line.serve(&mut app, &board.block);
     }
     let summary = fingerprint.summary(app.state());
     let severity = *app.state().severity();

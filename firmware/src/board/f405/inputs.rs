@@ -1,0 +1,62 @@
+//! The speed pulse and "levitation on".
+
+use stm32f4::stm32f405::{GPIOB, RCC, TIM4};
+use touchdown_core::config_block::Settings;
+
+use super::clocks::APB1_TIMER_HZ;
+use crate::speed::{Speed, SpeedState};
+
+/// The timer counts every eighth tick: one turn of it takes 6.2 ms.
+const PRESCALER: u32 = 8;
+
+/// PB8 (timer 4, channel 3): rising edge of the speed pulse. PB9: high while levitation is on.
+pub struct Inputs {
+    pins: GPIOB,
+    timer: TIM4,
+    speed: Option<Speed>,
+    state: SpeedState,
+    levitation: bool,
+}
+
+impl Inputs {
+    /// Sets up what `settings` say is wired.
+    pub fn new(pins: GPIOB, timer: TIM4, rcc: &RCC, settings: &Settings) -> Self {
+        rcc.ahb1enr().modify(|_, w| w.gpioben().enabled());
+        rcc.apb1enr().modify(|_, w| w.tim4en().enabled());
+        // A broken wire reads as "off": a fall is then confirmed at once.
+        pins.pupdr().modify(|_, w| w.pupdr9().pull_down());
+        pins.afrh().modify(|_, w| w.afrh8().af2());
+        pins.moder().modify(|_, w| w.moder8().alternate());
+        timer.psc().write(|w| w.psc().set(PRESCALER as u16 - 1));
+        timer.ccmr2_input().write(|w| w.cc3s().ti3());
+        timer.ccer().write(|w| w.cc3e().set_bit());
+        timer.egr().write(|w| w.ug().set_bit());
+        timer.cr1().write(|w| w.cen().enabled());
+        let forward = settings.monitor.detector.machine.spin >= 0.0;
+        let hz = (APB1_TIMER_HZ / PRESCALER) as f32;
+        let pulses = settings.wiring.pulses_per_turn;
+        Self {
+            pins,
+            timer,
+            speed: pulses.map(|pulses| Speed::new(pulses, forward, hz)),
+            state: SpeedState::default(),
+            levitation: settings.wiring.levitation,
+        }
+    }
+
+    /// Spin, rad/s, where it is known.
+    pub fn spin(&mut self) -> Option<f32> {
+        let speed = self.speed.as_ref()?;
+        let is_new = self.timer.sr().read().cc3if().bit_is_set();
+        // Reading what was captured clears the flag; before the timer, or it could be ahead of it.
+        let captured = is_new.then(|| self.timer.ccr3().read().bits() as u16);
+        let now = self.timer.cnt().read().bits() as u16;
+        speed.take(&mut self.state, now, captured)
+    }
+
+    /// Whether levitation is commanded on, where that is wired.
+    pub fn levitated(&self) -> Option<bool> {
+        let is_high = self.pins.idr().read().idr9().bit_is_set();
+        self.levitation.then_some(is_high)
+    }
+}

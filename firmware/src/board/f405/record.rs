@@ -1,0 +1,43 @@
+//! The record of a crash, in memory that neither a reset nor the start of the program clears, and the
+//! end of a program that crashed.
+
+use core::mem::MaybeUninit;
+use core::ptr::addr_of_mut;
+
+use cortex_m::peripheral::SCB;
+
+use super::outputs::OutputPins;
+use crate::crash::{Crash, WORDS};
+
+#[unsafe(link_section = ".uninit.crash")]
+static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
+
+/// The record of the last crash, if it has not been cleared.
+pub fn read() -> Option<Crash> {
+    // SAFETY: any words are valid ones, volatile so that none is assumed; whoever writes does so in
+    // main before interrupts are on, in a critical section, or never returns.
+    let words = unsafe { addr_of_mut!(RECORD).cast::<[u32; WORDS]>().read_volatile() };
+    Crash::decode(&words)
+}
+
+/// Clears it.
+pub fn clear() {
+    write([0; WORDS]);
+}
+
+fn write(words: [u32; WORDS]) {
+    // SAFETY: as in `read`.
+    unsafe {
+        addr_of_mut!(RECORD)
+            .cast::<[u32; WORDS]>()
+            .write_volatile(words)
+    }
+}
+
+/// Drops the outputs, leaves the record and resets.
+pub fn stop(crash: impl FnOnce() -> Crash) -> ! {
+    cortex_m::interrupt::disable();
+    OutputPins::drop_now();
+    write(crash().encode());
+    SCB::sys_reset()
+}

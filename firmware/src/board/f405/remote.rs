@@ -1,0 +1,85 @@
+//! What the link may ask of this board.
+
+use cortex_m::peripheral::DWT;
+use stm32f4::stm32f405::{FLASH, GPIOB, RCC};
+use touchdown_core::config_block::{Block, Settings};
+use touchdown_core::link::{Device, Log, Refusal, State};
+
+use super::clocks::CORE_HZ;
+use super::outputs::Watchdog;
+use super::{record, store, with_tick};
+use crate::board::{Board, SAMPLE_RATE_HZ};
+
+/// PB6 sends, PB7 receives: USART1.
+pub fn wire(pins: &GPIOB, rcc: &RCC) {
+    rcc.ahb1enr().modify(|_, w| w.gpioben().enabled());
+    rcc.apb2enr().modify(|_, w| w.usart1en().enabled());
+    pins.afrl().modify(|_, w| w.afrl6().af7().afrl7().af7());
+    // A line that is not there reads as idle.
+    pins.pupdr().modify(|_, w| w.pupdr7().pull_up());
+    pins.moder()
+        .modify(|_, w| w.moder6().alternate().moder7().alternate());
+}
+
+/// The board, as the link sees it.
+pub struct Remote {
+    flash: FLASH,
+    rcc: RCC,
+    log: (),
+    wants_reset: bool,
+}
+
+impl Remote {
+    /// With nothing asked yet.
+    pub fn new(flash: FLASH, rcc: RCC) -> Self {
+        Self {
+            flash,
+            rcc,
+            log: (),
+            wants_reset: false,
+        }
+    }
+
+    /// Whether another configuration waits for a reset.
+    pub fn wants_reset(&self) -> bool {
+        self.wants_reset
+    }
+}
+
+impl Device for Remote {
+    fn state(&mut self) -> State {
+        with_tick(|tick| {
+            let age = DWT::cycle_count().wrapping_sub(tick.at);
+            tick.app
+                .report(age / (CORE_HZ / 1_000_000), tick.board.lost_notices)
+        })
+        .unwrap_or(State::NONE)
+    }
+
+    fn config(&mut self) -> Block {
+        with_tick(|tick| Block::from_slice(tick.board.config()).unwrap_or_default())
+            .unwrap_or_default()
+    }
+
+    fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
+        // This board's timer gives one rate.
+        if settings.monitor.detector.sample_rate != SAMPLE_RATE_HZ as f32 {
+            return Err(Refusal::parameter("sample_rate"));
+        }
+        with_tick(|tick| tick.app.may_restart()).unwrap_or(Ok(()))?;
+        store::store(&self.flash, block)?;
+        self.wants_reset = true;
+        Ok(())
+    }
+
+    fn clear(&mut self) -> Result<(), Refusal> {
+        with_tick(|tick| tick.app.clear()).unwrap_or(Ok(()))?;
+        Watchdog::forget(&self.rcc);
+        record::clear();
+        Ok(())
+    }
+
+    fn log(&mut self) -> &mut impl Log {
+        &mut self.log
+    }
+}

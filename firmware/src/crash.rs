@@ -1,0 +1,98 @@
+//! What a program that stops leaves behind for the next one, in memory that a reset does not clear.
+
+use core::panic::PanicInfo;
+
+use touchdown_core::checksum::CRC;
+
+/// Words of a record, the checksum included.
+pub const WORDS: usize = 5;
+const MAGIC: u32 = u32::from_le_bytes(*b"TDX\x01");
+
+/// Why the program stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Cause {
+    /// A panic.
+    Panic = 1,
+    /// A fault of the core.
+    HardFault = 2,
+    /// An interrupt that nothing serves.
+    StrayInterrupt = 3,
+}
+
+/// What it leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crash {
+    /// Why.
+    pub cause: Cause,
+    /// Where: for a panic the line, for a fault the program counter, else the interrupt's number.
+    pub place: u32,
+    /// For a panic the CRC-32 of the file's name, for a fault the link register, else 0.
+    pub detail: u32,
+}
+
+impl Crash {
+    /// A panic.
+    pub fn of_panic(info: &PanicInfo) -> Self {
+        let place = info.location();
+        Self {
+            cause: Cause::Panic,
+            place: place.map_or(0, |place| place.line()),
+            detail: place.map_or(0, |place| CRC.checksum(place.file().as_bytes())),
+        }
+    }
+
+    /// Record to words: magic, cause, place, detail, CRC-32 of these.
+    pub fn encode(&self) -> [u32; WORDS] {
+        let said = [MAGIC, self.cause as u32, self.place, self.detail];
+        let [magic, cause, place, detail] = said;
+        [magic, cause, place, detail, checksum(&said)]
+    }
+
+    /// Words to record; `None` for what is none, as after power-on.
+    pub fn decode(words: &[u32; WORDS]) -> Option<Self> {
+        let [magic, cause, place, detail, sum] = *words;
+        if magic != MAGIC || sum != checksum(&[magic, cause, place, detail]) {
+            return None;
+        }
+        let causes = [Cause::Panic, Cause::HardFault, Cause::StrayInterrupt];
+        Some(Self {
+            cause: causes.into_iter().find(|&it| it as u32 == cause)?,
+            place,
+            detail,
+        })
+    }
+}
+
+fn checksum(words: &[u32; WORDS - 1]) -> u32 {
+    let mut digest = CRC.digest();
+    words.iter().for_each(|it| digest.update(&it.to_le_bytes()));
+    digest.finalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CRASH: Crash = Crash {
+        cause: Cause::HardFault,
+        place: 0x0800_1234,
+        detail: 0x0800_0567,
+    };
+
+    #[test]
+    fn record_is_read_back() {
+        assert_eq!(Crash::decode(&CRASH.encode()), Some(CRASH));
+    }
+
+    #[test]
+    fn what_memory_holds_after_power_on_is_no_record() {
+        assert_eq!(Crash::decode(&[0; WORDS]), None);
+        assert_eq!(Crash::decode(&[u32::MAX; WORDS]), None);
+        for bit in 0..32 * WORDS {
+            let mut words = CRASH.encode();
+            words[bit / 32] ^= 1 << (bit % 32);
+            assert_eq!(Crash::decode(&words), None, "bit {bit}");
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Speed from the pulses of the shaft, captured by a timer of 16 bit.
+
+use core::f32::consts::TAU;
+
+/// Longest time between pulses, s; beyond it the speed is unknown.
+const LONGEST: f32 = 1.0;
+
+/// Pulses to spin.
+#[derive(Clone, Copy, Debug)]
+pub struct Speed {
+    /// Spin times the ticks between two pulses, rad.
+    scale: f32,
+    longest: u32,
+}
+
+/// What it carries.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SpeedState {
+    /// Ticks, counted on from the timer's.
+    now: u32,
+    timer: u16,
+    last: Option<u32>,
+    spin: Option<f32>,
+}
+
+impl Speed {
+    /// For `pulses` in a turn of a rotor that turns counter-clockwise if `forward`, and a timer at
+    /// `timer_hz`.
+    pub fn new(pulses: u16, forward: bool, timer_hz: f32) -> Self {
+        let step = TAU / f32::from(pulses.max(1));
+        Self {
+            scale: timer_hz * if forward { step } else { -step },
+            longest: (LONGEST * timer_hz) as u32,
+        }
+    }
+
+    /// Takes the timer and what it captured since the last sample; the spin, rad/s. To be called more
+    /// than once a turn of the timer.
+    pub fn take(&self, state: &mut SpeedState, timer: u16, captured: Option<u16>) -> Option<f32> {
+        let gone = timer.wrapping_sub(state.timer);
+        state.now = state.now.wrapping_add(u32::from(gone));
+        state.timer = timer;
+        if let Some(captured) = captured {
+            let edge = state
+                .now
+                .wrapping_sub(u32::from(timer.wrapping_sub(captured)));
+            let way = state.last.map(|last| edge.wrapping_sub(last));
+            let way = way.filter(|&way| (1..=self.longest).contains(&way));
+            state.spin = way.map(|way| self.scale / way as f32);
+            state.last = Some(edge);
+        }
+        if state
+            .last
+            .is_some_and(|last| state.now.wrapping_sub(last) > self.longest)
+        {
+            (state.last, state.spin) = (None, None);
+        }
+        state.spin
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HZ: f32 = 10.5e6;
+
+    /// Runs 2 s of samples at 20 kHz with a pulse every `period` ticks, the last one at `stop` ticks.
+    fn run(period: u32, stop: u32) -> Vec<Option<f32>> {
+        let speed = Speed::new(1, false, HZ);
+        let mut state = SpeedState::default();
+        let sample = |index: u32| {
+            let now = 525 * index;
+            let edge = now / period * period;
+            let captured = (edge > 0 && edge <= stop && edge + 525 > now).then_some(edge as u16);
+            speed.take(&mut state, now as u16, captured)
+        };
+        (1..40_000).map(sample).collect()
+    }
+
+    #[test]
+    fn spin_is_that_of_the_pulses_over_many_turns_of_the_timer() {
+        // 500 turns/s, and 2 turns/s: 80 turns of the timer.
+        for period in [21_000, 5_250_000] {
+            let spins = run(period, u32::MAX);
+            let spin = spins.last().unwrap().expect("known");
+            let truth = -TAU * HZ / period as f32;
+            assert!((spin / truth - 1.0).abs() < 1e-6, "{spin} is not {truth}");
+        }
+    }
+
+    #[test]
+    fn spin_is_unknown_a_second_after_the_last_pulse() {
+        let spins = run(21_000, 5_250_000);
+        assert!(spins[29_990].is_some());
+        assert!(spins[30_010].is_none());
+    }
+}

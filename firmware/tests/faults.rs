@@ -1,0 +1,377 @@
+//! Each fault of docs/firmware.md brings the outputs to safety within the ticks stated there.
+
+use touchdown_core::config_block::{self, Block, Patrol};
+use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
+
+/// Ticks from power-on until watching: self-test and `arming_time`, and what rounding adds.
+const ARMED: u32 = 3_000;
+/// 1 ms.
+const BLIND: u32 = SAMPLE_RATE_HZ / 1_000;
+const WATCHING: u8 = 0b1011;
+const GRAVITY: f64 = 9.81;
+const CLEARANCE: f64 = 0.3e-3;
+
+/// A board that remembers, and a rotor on it.
+struct Bench {
+    app: App,
+    board: Memory,
+    noise: u32,
+    tick: u32,
+}
+
+struct Memory {
+    block: Block,
+    notices: Vec<Notice>,
+    /// What was called in the present tick.
+    driven: Vec<Outputs>,
+    fed: u32,
+}
+
+impl Board for Memory {
+    fn report(&mut self, notice: &Notice) {
+        self.notices.push(*notice);
+    }
+
+    fn drive(&mut self, outputs: Outputs) {
+        assert_eq!(self.fed, 0, "fed before the end of the tick");
+        self.driven.push(outputs);
+    }
+
+    fn config(&self) -> &[u8] {
+        &self.block
+    }
+
+    fn feed(&mut self) {
+        self.fed += 1;
+    }
+}
+
+impl Bench {
+    fn new(found: Faults) -> Self {
+        Self {
+            app: App::try_new(&default_config(), found).expect("a valid configuration"),
+            board: Memory {
+                block: config_block::encode(&default_settings()),
+                notices: vec![],
+                driven: vec![],
+                fed: 0,
+            },
+            noise: 1,
+            tick: 0,
+        }
+    }
+
+    /// Watching, the rotor at the centre.
+    fn watching() -> Self {
+        let mut bench = Self::new(Faults::NONE);
+        for _ in 0..ARMED {
+            bench.float();
+        }
+        assert_eq!(bench.outputs(), WATCHING);
+        bench
+    }
+
+    fn take(&mut self, sample: &Sample, lost: u32) -> u8 {
+        self.board.driven.clear();
+        self.board.fed = 0;
+        self.app.tick(&mut self.board, sample, lost);
+        self.tick += 1;
+        assert_eq!(
+            self.board.driven,
+            [self.app.outputs()],
+            "driven once a tick"
+        );
+        assert_eq!(self.board.fed, 1, "fed once a tick");
+        self.outputs()
+    }
+
+    /// A sample of a rotor at `position` (m), with noise of 1 um.
+    fn at(&mut self, position: [f64; 2]) -> Sample {
+        let counts = [0, 1, 0, 1].map(|axis| {
+            let noise: f64 = (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0;
+            let place = position[axis] + 1e-6 * noise;
+            (2_048.0 + place * 4_096.0 / 2_000e-6).round() as u16
+        });
+        Sample {
+            counts,
+            ..sighted([0; CHANNELS])
+        }
+    }
+
+    fn uniform(&mut self) -> f64 {
+        self.noise = self
+            .noise
+            .wrapping_mul(1_664_525)
+            .wrapping_add(1_013_904_223);
+        f64::from(self.noise) / 4_294_967_296.0
+    }
+
+    fn float(&mut self) -> u8 {
+        let sample = self.at([0.0; 2]);
+        self.take(&sample, 0)
+    }
+
+    fn place(&mut self, position: [f64; 2]) -> u8 {
+        let sample = self.at(position);
+        self.take(&sample, 0)
+    }
+
+    fn blind(&mut self) -> u8 {
+        let sample = Sample {
+            valid: 0,
+            ..sighted([0; CHANNELS])
+        };
+        self.take(&sample, 0)
+    }
+
+    fn outputs(&self) -> u8 {
+        self.app.outputs().bits()
+    }
+
+    fn mode(&self) -> Mode {
+        self.app.condition().mode
+    }
+
+    fn has(&self, fault: Fault) -> bool {
+        self.app.condition().faults.contains(fault)
+    }
+
+    fn told(&self, kind: EventKind) -> bool {
+        let is_it = |it: &Notice| matches!(it, Notice::Declared(event) if event.kind == kind);
+        self.board.notices.iter().any(is_it)
+    }
+}
+
+fn sighted(counts: [u16; CHANNELS]) -> Sample {
+    Sample {
+        counts,
+        valid: 0b1111,
+        spin: None,
+        levitated: None,
+        edges: [None; TACHOMETERS],
+    }
+}
+
+fn seconds(ticks: u32) -> f64 {
+    f64::from(ticks) / f64::from(SAMPLE_RATE_HZ)
+}
+
+/// Ticks until `act` leaves the outputs as they should be; none beyond `limit`.
+fn ticks_until(limit: u32, mut act: impl FnMut() -> bool) -> u32 {
+    (1..=limit)
+        .find(|_| act())
+        .unwrap_or_else(|| panic!("not within {limit} ticks"))
+}
+
+#[test]
+fn nothing_has_current_before_the_self_test_is_over() {
+    let mut bench = Bench::new(Faults::NONE);
+    assert_eq!(bench.outputs(), 0);
+    let tested = ticks_until(ARMED, || bench.float() != 0);
+    // One whole pass over the configuration; the sensors take 20 ticks.
+    let pass = config_block::encode(&default_settings()).len() - 4;
+    assert_eq!(tested as usize, pass.div_ceil(config_block::SLICE_BYTES));
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Arming, 0b0010));
+    let armed = ticks_until(ARMED, || bench.float() == WATCHING);
+    println!("self-test {tested} ticks, then arming {armed} ticks");
+}
+
+#[test]
+fn confirmed_fall_trips_within_its_tick_and_for_good() {
+    let mut bench = Bench::watching();
+    let mut fallen = 0;
+    let ticks = ticks_until(156, || {
+        fallen += 1;
+        let time = seconds(fallen);
+        bench.place([0.0, -0.5 * GRAVITY * time * time]);
+        let confirmed = bench
+            .board
+            .notices
+            .iter()
+            .any(|it| matches!(it, Notice::Confirmed { .. }));
+        let safe = bench.outputs() == 0;
+        assert_eq!(confirmed, safe, "tick {fallen}");
+        safe
+    });
+    println!("a fall trips {ticks} ticks after it began, in the tick that confirms it");
+    assert_eq!(bench.mode(), Mode::Dropped);
+    // Floating again by itself does not clear it.
+    for _ in 0..2 * ARMED {
+        bench.float();
+        assert_eq!(bench.outputs() & 0b0011, 0);
+    }
+    assert_eq!(bench.app.clear(), Ok(()));
+    ticks_until(ARMED, || bench.float() == WATCHING);
+}
+
+#[test]
+fn rotor_that_lies_still_may_be_lifted_and_one_that_swings_wide_may_not() {
+    let mut bench = Bench::watching();
+    for tick in 1..=156 {
+        let time = seconds(tick);
+        bench.place([0.0, -(0.5 * GRAVITY * time * time).min(CLEARANCE)]);
+    }
+    assert_eq!(bench.mode(), Mode::Dropped);
+    // A pendulum of 60 degrees with the period of a rolling solid cylinder, 43 ms.
+    let swing = |bench: &mut Bench, ticks: u32, amplitude: f64| {
+        (0..ticks).any(|_| {
+            let turn = core::f64::consts::TAU * seconds(bench.tick) / 0.0426;
+            let angle = amplitude * turn.cos();
+            bench.place([CLEARANCE * angle.sin(), -CLEARANCE * angle.cos()]) & 0b0100 != 0
+        })
+    };
+    assert!(!swing(&mut bench, 20_000, 60_f64.to_radians()));
+    assert!(bench.told(EventKind::Pendulum));
+    assert_eq!(bench.app.clear(), Err(Busy::DropRuns));
+    assert!(swing(&mut bench, 20_000, 15_f64.to_radians()));
+    assert_eq!(bench.outputs(), 0b0100);
+    assert_eq!(bench.app.clear(), Ok(()));
+}
+
+#[test]
+fn rotor_at_rest_from_the_start_may_be_lifted() {
+    let mut bench = Bench::new(Faults::NONE);
+    let ticks = ticks_until(20_000, || bench.place([0.0, -CLEARANCE]) & 0b0100 != 0);
+    println!("permit after {ticks} ticks");
+    assert!(bench.told(EventKind::Rest));
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Arming, 0b0110));
+}
+
+#[test]
+fn whirl_from_a_cold_start_is_a_drop() {
+    let mut bench = Bench::new(Faults::NONE);
+    let mut ticks = 0;
+    while !(bench.told(EventKind::ForwardWhirl) || bench.told(EventKind::BackwardWhirl)) {
+        assert!(ticks < 20_000, "no whirl was told");
+        assert_eq!(bench.outputs() & 0b1101, 0);
+        let turn = core::f64::consts::TAU * 50.0 * seconds(ticks);
+        bench.place([CLEARANCE * turn.cos(), CLEARANCE * turn.sin()]);
+        ticks += 1;
+    }
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0));
+    assert_eq!(bench.app.clear(), Err(Busy::DropRuns));
+}
+
+#[test]
+fn sensors_lost_trip_after_1_ms() {
+    let mut bench = Bench::watching();
+    assert_eq!(ticks_until(BLIND, || bench.blind() == 0), BLIND);
+    assert!(bench.has(Fault::SensorsLost));
+    assert_eq!(bench.app.clear(), Err(Busy::Blind));
+    for _ in 0..ARMED {
+        assert_eq!(bench.float(), 0, "latched");
+    }
+    assert_eq!(bench.app.clear(), Ok(()));
+    ticks_until(ARMED, || bench.float() == WATCHING);
+}
+
+#[test]
+fn one_channel_of_each_plane_lost_is_blindness_and_one_plane_lost_is_not() {
+    let mut bench = Bench::watching();
+    for _ in 0..ARMED {
+        let sample = Sample {
+            valid: 0b0011,
+            ..bench.at([0.0; 2])
+        };
+        assert_eq!(bench.take(&sample, 0) & 1, 1);
+    }
+    let ticks = ticks_until(BLIND, || {
+        let sample = Sample {
+            valid: 0b0101,
+            ..bench.at([0.0; 2])
+        };
+        bench.take(&sample, 0) == 0
+    });
+    assert_eq!(ticks, BLIND);
+}
+
+#[test]
+fn lost_sample_puts_out_the_lamp_at_once_and_stays_latched() {
+    let mut bench = Bench::watching();
+    let sample = bench.at([0.0; 2]);
+    assert_eq!(bench.take(&sample, 1), WATCHING & !0b1000);
+    assert!(bench.has(Fault::Overrun));
+    for _ in 0..ARMED {
+        assert_eq!(bench.float(), WATCHING & !0b1000);
+    }
+    assert_eq!(bench.app.lost(), 1);
+    // Clearing a warning does not stop the machine.
+    assert_eq!(bench.app.clear(), Ok(()));
+    assert_eq!(bench.float(), WATCHING);
+}
+
+#[test]
+fn overload_trips_after_20_lost_samples() {
+    let mut bench = Bench::watching();
+    let sample = bench.at([0.0; 2]);
+    let ticks = ticks_until(BLIND, || bench.take(&sample, 1) == 0);
+    assert_eq!(ticks, BLIND);
+    assert!(bench.has(Fault::Overload));
+
+    let mut bench = Bench::watching();
+    assert_eq!(bench.take(&sample, BLIND), 0, "one gap of 1 ms");
+}
+
+#[test]
+fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
+    let block = config_block::encode(&default_settings());
+    let limit = Patrol::steps(block.len()) as u32;
+    let mut longest = 0;
+    let bench = Bench::watching();
+    let watching = |ahead: u32| {
+        let mut bench = Bench {
+            app: bench.app.clone(),
+            board: Memory {
+                block: block.clone(),
+                notices: vec![],
+                driven: vec![],
+                fed: 0,
+            },
+            ..bench
+        };
+        for _ in 0..ahead {
+            bench.float();
+        }
+        bench
+    };
+    for bit in 0..8 * block.len() {
+        let mut bench = watching(bit as u32 % (limit / 2));
+        bench.board.block[bit / 8] ^= 1 << (bit % 8);
+        longest = longest.max(ticks_until(limit, || bench.float() == 0));
+        assert!(bench.has(Fault::ConfigChanged));
+        // The cause lasts: clearing it never gives current.
+        assert_eq!(bench.app.clear(), Ok(()));
+        (0..limit).for_each(|_| assert_eq!(bench.float(), 0));
+        assert_eq!(bench.mode(), Mode::Faulted);
+    }
+    println!(
+        "{} bits, {longest} ticks at the longest, {limit} allowed",
+        8 * block.len()
+    );
+}
+
+#[test]
+fn what_was_wrong_at_power_on_keeps_the_outputs_safe_until_cleared() {
+    for fault in [Fault::ConfigDamaged, Fault::WatchdogReset, Fault::Crash] {
+        let mut bench = Bench::new(Faults::NONE.with(fault));
+        for _ in 0..2 * ARMED {
+            assert_eq!(bench.float(), 0, "{fault:?}");
+        }
+        assert_eq!(bench.mode(), Mode::Faulted);
+        assert_eq!(bench.app.clear(), Ok(()));
+        ticks_until(ARMED, || bench.float() == WATCHING);
+    }
+}
+
+#[test]
+fn a_fault_while_dropped_takes_the_permit_away() {
+    let mut bench = Bench::new(Faults::NONE);
+    ticks_until(20_000, || bench.place([0.0, -CLEARANCE]) & 0b0100 != 0);
+    assert_eq!(bench.mode(), Mode::Arming);
+    assert_eq!(ticks_until(BLIND, || bench.blind() & 0b0100 == 0), 1);
+    ticks_until(BLIND, || bench.blind() == 0);
+}

@@ -1,0 +1,165 @@
+//! What the safety controller is doing: its mode, its faults and its outputs.
+
+/// What the controller is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Mode {
+    /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
+    #[default]
+    SelfTest = 0,
+    /// Noise and position are being learnt, or the rotor does not float yet.
+    Arming = 1,
+    /// Armed: a fall trips.
+    Watching = 2,
+    /// The rotor fell, stayed on the retainer or whirled. Latched.
+    Dropped = 3,
+    /// A fault that trips is latched.
+    Faulted = 4,
+}
+
+impl Mode {
+    /// All modes, in the order of their codes.
+    pub const ALL: [Self; 5] = [
+        Self::SelfTest,
+        Self::Arming,
+        Self::Watching,
+        Self::Dropped,
+        Self::Faulted,
+    ];
+}
+
+/// The outputs, each `true` where its coil or lamp has current. Without current all are safe, so loss
+/// of power, reset and a trip look the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Outputs {
+    /// Trip relay: with current, the machine may run.
+    pub run: bool,
+    /// Brake relay: with current, no braking is requested.
+    pub no_brake: bool,
+    /// Permit relay: with current, the magnetic bearings may lift the rotor.
+    pub permit: bool,
+    /// Ready lamp: watching, and no fault latched.
+    pub ready: bool,
+}
+
+impl Outputs {
+    /// Without current: tripped, brake requested, no permit, lamp dark.
+    pub const SAFE: Self = Self {
+        run: false,
+        no_brake: false,
+        permit: false,
+        ready: false,
+    };
+
+    /// Bit 0 `run`, 1 `no_brake`, 2 `permit`, 3 `ready`.
+    pub const fn bits(self) -> u8 {
+        self.run as u8
+            | (self.no_brake as u8) << 1
+            | (self.permit as u8) << 2
+            | (self.ready as u8) << 3
+    }
+}
+
+/// What can be wrong with the controller; latched until cleared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// A tick came too late and lost a sample.
+    Overrun = 0,
+    /// Samples were lost for so long that the monitor was as good as blind.
+    Overload = 1,
+    /// No plane delivered a position.
+    SensorsLost = 2,
+    /// The configuration in memory changed by itself.
+    ConfigChanged = 3,
+    /// The stored configuration was damaged at power-on: the defaults are in force.
+    ConfigDamaged = 4,
+    /// The watchdog reset the core.
+    WatchdogReset = 5,
+    /// The program stopped by a panic or a fault of the core, and left a record.
+    Crash = 6,
+}
+
+impl Fault {
+    /// All faults, in the order of their codes.
+    pub const ALL: [Self; 7] = [
+        Self::Overrun,
+        Self::Overload,
+        Self::SensorsLost,
+        Self::ConfigChanged,
+        Self::ConfigDamaged,
+        Self::WatchdogReset,
+        Self::Crash,
+    ];
+
+    /// Whether it trips; the others only put out the ready lamp.
+    pub const fn trips(self) -> bool {
+        !matches!(self, Self::Overrun)
+    }
+}
+
+/// A set of faults; bit i is the fault of code i.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Faults(pub u16);
+
+impl Faults {
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    const TRIPPING: u16 = !Self::NONE.with(Fault::Overrun).0;
+
+    /// These and `fault`.
+    #[must_use]
+    pub const fn with(self, fault: Fault) -> Self {
+        Self(self.0 | 1 << fault as u8)
+    }
+
+    /// Whether `fault` is among them.
+    pub const fn contains(self, fault: Fault) -> bool {
+        self.0 & (1 << fault as u8) != 0
+    }
+
+    /// Whether one of them trips.
+    pub const fn trip(self) -> bool {
+        self.0 & Self::TRIPPING != 0
+    }
+
+    /// Whether there is none.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// Why the controller does not do what it was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Busy {
+    /// The rotor falls, bounces, slides or whirls.
+    DropRuns,
+    /// No plane delivers a position.
+    Blind,
+    /// It watches: the machine may be running.
+    Watching,
+    /// A drop is latched, to be cleared first.
+    Latched,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_the_order() {
+        for (code, fault) in Fault::ALL.into_iter().enumerate() {
+            assert_eq!(fault as usize, code);
+            assert_eq!(Faults::NONE.with(fault).0, 1 << code);
+            assert_eq!(Faults::NONE.with(fault).trip(), fault.trips());
+        }
+        for (code, mode) in Mode::ALL.into_iter().enumerate() {
+            assert_eq!(mode as usize, code);
+        }
+    }
+}
