@@ -12,3 +12,6 @@ pub mod count;
 #[cfg(target_os = "none")]
 mod journal;
 pub mod overrun;
+pub mod recorder;
+pub mod store;
+pub mod w25q;

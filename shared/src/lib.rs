@@ -10,6 +10,7 @@
 pub mod detect;
 pub mod error;
 pub mod event;
+pub mod log;
 pub mod model;
 pub mod monitor;
 pub mod real;
