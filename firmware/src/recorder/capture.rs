@@ -5,6 +5,7 @@ use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::log::block::{Block, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::header::Header;
+use touchdown_core::log::reader;
 use touchdown_core::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_core::wire::{self, NOTICE_BYTES, Record};
 
@@ -16,8 +17,7 @@ const NOTICES: usize = 64;
 const NOTICES_PER_BLOCK: usize = touchdown_core::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
 /// Bytes of a severity and its version.
 const SEVERITY_BYTES: usize = 64;
-/// Header and ending are stored twice, so that a wrong bit loses neither.
-const COPIES: u8 = 2;
+const COPIES: u8 = reader::COPIES as u8;
 
 /// What began an episode.
 #[derive(Clone, Copy, Debug)]

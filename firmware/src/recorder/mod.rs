@@ -16,8 +16,10 @@ use touchdown_core::sample::Sample;
 
 use self::capture::Capture;
 
-/// Samples of a buffer: 250 ms at 20 kHz.
+/// Samples of a buffer.
 pub const CAPACITY: usize = 5_000;
+/// Recorded samples per second at most, Hz: so a buffer lasts for what is recorded.
+const FASTEST: f32 = 20_000.0;
 
 const BUFFERS: usize = 2;
 /// Recorded before the trigger, s.
@@ -77,9 +79,9 @@ impl Plan {
     /// Of a configuration that the monitor has accepted.
     fn new(config: &MonitorConfig, identity: Identity) -> Self {
         let rate = config.detector.sample_rate;
-        let room = CAPACITY as f32 / (BEFORE + AFTER);
         // Rounded up: a higher rate is thinned out until it fits.
-        let decimation = ((rate / room) as u16).saturating_add(u16::from(rate % room > 0.0));
+        let whole = (rate / FASTEST) as u16;
+        let decimation = whole.saturating_add(u16::from(rate % FASTEST > 0.0));
         let samples = |time: f32| (time * rate / f32::from(decimation)) as usize;
         let before = samples(BEFORE).clamp(1, CAPACITY / 2);
         Self {

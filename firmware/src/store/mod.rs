@@ -94,8 +94,8 @@ impl<const SLOTS: usize> Store<SLOTS> {
         })
     }
 
-    /// Does the next thing: one operation on `flash`, or none. `fetch` is called at most once, and
-    /// only if its block can be written at once. Whether anything was done.
+    /// Does the next thing: one operation on `flash` at most. `fetch` is called at most once, and
+    /// only if its block can be written at once. Whether there may be more to do.
     ///
     /// On an error the block that was fetched is lost, which the episode shows; all else is tried
     /// again by the next call.
@@ -192,12 +192,11 @@ impl<const SLOTS: usize> Store<SLOTS> {
         let Some(slot) = self.slots.oldest() else {
             return Ok(false);
         };
-        let worked = self.slots.is_used(slot);
-        if worked {
+        if self.slots.is_used(slot) {
             self.release(flash, slot)?;
         }
         self.state = State::Erasing { slot, sector: 0 };
-        Ok(worked)
+        Ok(true)
     }
 
     fn clear_next<F: MultiwriteNorFlash>(&mut self, flash: &mut F) -> Result<bool, F::Error> {

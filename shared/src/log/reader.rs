@@ -9,6 +9,8 @@ use crate::wire::{self, NOTICE_BYTES, Record};
 
 /// Most blocks of an episode.
 pub const MOST_BLOCKS: usize = 256;
+/// Header and ending come so many times, so that a wrong bit loses neither.
+pub const COPIES: usize = 2;
 
 /// What a block says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +50,11 @@ impl<'a> Events<'a> {
 pub enum Verdict {
     /// No block at all.
     Empty,
-    /// Every block is there and right.
+    /// All that was recorded is there and right.
     Whole,
     /// It has no ending: cut off, or still being written.
     Incomplete,
-    /// It has an ending, but not every block.
+    /// It has an ending, but not all that was recorded.
     Damaged,
 }
 
@@ -72,6 +74,8 @@ pub struct Report {
     pub unknown: u32,
     /// Blocks that should be there and are not.
     pub missing: u32,
+    /// Those of them that are the copy of a header or ending that is there.
+    pub spared: u32,
     /// Bytes after the last page.
     pub rest: u32,
     /// Number of the episode, if it has a block.
@@ -83,9 +87,9 @@ pub struct Report {
 impl Report {
     /// Whether the episode is all there.
     pub fn verdict(&self) -> Verdict {
-        let damage = self.broken + self.stray + self.unknown + self.missing + self.rest;
+        let damage = self.missing - self.spared + self.stray + self.unknown + self.rest;
         match (self.sequence, self.ended) {
-            (None, _) if damage == 0 => Verdict::Empty,
+            (None, _) if damage + self.broken == 0 => Verdict::Empty,
             (Some(_), true) if damage == 0 => Verdict::Whole,
             (Some(_), true) => Verdict::Damaged,
             _ => Verdict::Incomplete,
@@ -100,6 +104,7 @@ pub struct Reader<'a> {
     seen: [bool; MOST_BLOCKS],
     report: Report,
     last: usize,
+    headed: bool,
     expected: Option<usize>,
 }
 
@@ -115,6 +120,7 @@ impl<'a> Reader<'a> {
                 ..Report::default()
             },
             last: 0,
+            headed: false,
             expected: None,
         }
     }
@@ -123,8 +129,12 @@ impl<'a> Reader<'a> {
     pub fn finish(mut self) -> Report {
         while self.next().is_some() {}
         let should = self.expected.unwrap_or(self.last).min(MOST_BLOCKS);
-        let there = self.seen.iter().take(should).filter(|&&seen| seen).count();
-        self.report.missing = (should - there) as u32;
+        for (index, seen) in self.seen.iter().take(should).enumerate() {
+            let copied =
+                (self.headed && index < COPIES) || (self.report.ended && index + COPIES >= should);
+            self.report.missing += u32::from(!seen);
+            self.report.spared += u32::from(!seen && copied);
+        }
         self.report
     }
 
@@ -144,8 +154,11 @@ impl<'a> Reader<'a> {
             Some(Item::Ending(ending)) => {
                 self.report.ended = true;
                 self.expected = Some(usize::from(ending.blocks));
-                self.report.blocks += 1;
             }
+            Some(Item::Header(_)) => self.headed = true,
+            _ => {}
+        }
+        match item {
             Some(_) => self.report.blocks += 1,
             None => self.report.unknown += 1,
         }
