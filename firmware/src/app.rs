@@ -1,7 +1,7 @@
 //! The application: the monitor's tick, and what follows from it for the outputs.
 
 use touchdown_core::error::ConfigError;
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 
@@ -30,15 +30,18 @@ impl App {
         self.output = TripOutput::Tripped;
     }
 
-    /// One sample: every notice goes to the board, in order, and the output is driven anew.
-    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample) {
-        for notice in &self.monitor.update(&mut self.state, sample) {
+    /// One sample: every notice goes to the board, in order, and the output is driven anew. The
+    /// notices come back for the recorder.
+    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample) -> Notices {
+        let notices = self.monitor.update(&mut self.state, sample);
+        for notice in &notices {
             if matches!(notice, Notice::Confirmed { .. }) {
                 self.trip();
             }
             board.report(notice);
         }
         board.drive(self.output);
+        notices
     }
 
     /// The monitor's state after the last tick.

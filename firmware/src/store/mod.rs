@@ -204,7 +204,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
             Some(slot) => self.release(flash, slot).map(|()| true),
             None => {
                 self.clearing = false;
-                Ok(false)
+                Ok(true)
             }
         }
     }
