@@ -116,7 +116,7 @@ fn first_pages_are_those_of_the_document() {
     let page = pages()[0];
     assert_eq!(page[..16], head);
     assert_eq!(&page[16..32], b"touchdown 0.1.0\0");
-    assert_eq!(page[252..], [0x00, 0x00, 0x00, 0x00]);
+    assert_eq!(page[252..], [0x6a, 0x83, 0x94, 0x01]);
 }
 
 #[test]
