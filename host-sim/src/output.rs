@@ -13,7 +13,7 @@ pub const STDOUT: &str = "-";
 /// is left of it.
 pub struct Output {
     name: String,
-    writer: Box<dyn Write>,
+    writer: Box<dyn Write + Send>,
     /// Written file and final name; `None` for standard output and devices.
     rename: Option<(PathBuf, PathBuf)>,
 }
@@ -47,7 +47,7 @@ impl Output {
         })
     }
 
-    fn direct(name: &str, writer: impl Write + 'static) -> Self {
+    fn direct(name: &str, writer: impl Write + Send + 'static) -> Self {
         Self {
             name: name.to_owned(),
             writer: Box::new(BufWriter::new(writer)),

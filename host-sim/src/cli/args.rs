@@ -10,6 +10,7 @@ use crate::emulator::Emulator;
 use crate::failure::Failure;
 use crate::paper::DROPS;
 use crate::score::{GROUPS, Plan};
+use crate::sweep::Part;
 use crate::target::Target;
 
 const EXAMPLES: &str = "\
@@ -25,6 +26,7 @@ Examples:
   touchdown scene explain my.toml       what is modelled and what is left out
   touchdown limits                      how the model holds at its extremes
   touchdown score --quick               how late, how blind and how nervous the detector is
+  touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -66,6 +68,32 @@ To see it work:
 try/truth.json has what is right. docs/force.md tells how it is done and how exact it is.
 Exit status: 0 done, contacts or none; 2 bad usage or input.";
 
+const SWEEP: &str = "\
+A plan:
+  scene = \"rig\"                  a built-in scene, or a file beside the plan
+  drops = 1000                   a point of the grid
+  seed = 1
+  [start]                        random starts; without it the scene's
+  within = 0.5                   of the clearance
+  speed_mm_s = 20                up to, in any direction
+  [[parameter]]                  an axis of the grid
+  key = \"retainer.friction\"
+  from = 0.05
+  to = 0.4
+  steps = 8                      or values = [...]; log = true for equal factors
+  [[parameter]]                  drawn anew for each drop
+  key = \"retainer.restitution\"
+  uniform = [0.3, 0.8]           or log_uniform = [...], normal = [mean, deviation]
+
+The folder gets drops.csv and drops.parquet (one row a drop), points.csv, sweep.json and
+sweep.html. A sweep that was killed goes on where it was when it is run again. The same
+plan gives the same bytes on any number of cores and in any number of parts:
+
+  touchdown sweep plan.toml --out run --shard $SLURM_ARRAY_TASK_ID/8
+  touchdown sweep merge run
+
+Exit status: 0 done; 2 bad usage or input.";
+
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.
 ///
@@ -89,6 +117,9 @@ pub(super) enum Command {
     /// Check every number of the source paper: as printed, as right, as ours
     #[command(after_help = PAPER)]
     Paper(PaperArgs),
+    /// Drop a rotor thousands of times over parameters: how probable whirl is, when, and how hard
+    #[command(after_help = SWEEP)]
+    Sweep(SweepArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -247,6 +278,57 @@ impl ScoreArgs {
             seconds,
             tuning: Tuning::default(),
         })
+    }
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct SweepArgs {
+    #[command(subcommand)]
+    pub command: Option<SweepCommand>,
+    /// The plan: a scene, and which of its keys take which values
+    #[arg(value_name = "PLAN", required = true)]
+    pub plan: Option<String>,
+    /// Folder for journal and results; by default the plan's name with -sweep
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<String>,
+    /// Run part K of N, as a job of an array; the parts may share a folder
+    #[arg(long, value_name = "K/N", value_parser = part)]
+    pub shard: Option<Part>,
+    /// Points with probabilities and intervals as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(super) enum SweepCommand {
+    /// Put the parts of a sweep together; the result is that of one run, to the byte
+    Merge(MergeArgs),
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct MergeArgs {
+    /// Folders with journals; the first takes the results
+    #[arg(value_name = "FOLDER", required = true)]
+    pub folders: Vec<String>,
+    /// Points with probabilities and intervals as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+/// `K/N`.
+fn part(text: &str) -> Result<Part, String> {
+    let rule = || "K/N with 1 <= K <= N, as in 2/8".to_owned();
+    let (part, parts) = text.split_once('/').ok_or_else(rule)?;
+    let [part, parts] = [part, parts].map(|it| it.parse::<u64>().map_err(|_| rule()));
+    let part = Part {
+        part: part?,
+        parts: parts?,
+    };
+    if (1..=part.parts).contains(&part.part) {
+        Ok(part)
+    } else {
+        Err(rule())
     }
 }
 

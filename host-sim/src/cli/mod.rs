@@ -6,6 +6,7 @@ mod limits;
 mod paper;
 mod score;
 mod subject;
+mod sweep;
 mod trade;
 
 pub use args::Cli;
@@ -40,6 +41,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Force(args)) => force::measure(&args),
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Score(args)) => score::measure(&args),
+        Some(Command::Sweep(args)) => sweep::sweep(&args),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => {

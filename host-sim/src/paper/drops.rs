@@ -16,9 +16,9 @@ use serde::Serialize;
 
 use super::ending::{Ending, of_model, of_reference};
 use super::rig::{GAP, WIDE_GAP};
-use super::wilson;
 use crate::failure::Failure;
 use crate::scene::{Scene, Start};
+use crate::wilson;
 
 /// Length of a run, in sqrt(rho0/g).
 const LONGEST: f64 = 100.0;
@@ -138,7 +138,7 @@ fn count(
     let ours = |wanted| ends.iter().filter(|it| it.0 == wanted).count() as u32;
     let reference = |wanted| ends.iter().filter(|it| it.1 == wanted).count() as u32;
     let whirl = ours(Ending::Whirl);
-    let (whirl_low, whirl_high) = wilson::interval(whirl, drops);
+    let (whirl_low, whirl_high) = wilson::interval(u64::from(whirl), u64::from(drops));
     Ok(Tally {
         condition,
         drops,

@@ -20,7 +20,6 @@ mod spread;
 mod straight;
 mod table;
 mod whirl;
-mod wilson;
 
 pub use curve::Curve;
 pub use drops::{Condition, Tally};

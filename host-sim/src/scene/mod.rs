@@ -24,6 +24,7 @@ pub use outputs::{Auto, Fixed, Output, Request};
 pub use support::{BallBearing, Support};
 pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
@@ -113,11 +114,16 @@ pub const LEVITATED_BEFORE: f64 = 0.2;
 impl Scene {
     /// Reads the scene file at `name`, or else takes the built-in scene of that name.
     pub fn load(name: &str) -> Result<Self, InputError> {
+        Self::parse(name, &Self::text(name)?)
+    }
+
+    /// The text of the scene file at `name`, or else of the built-in scene of that name.
+    pub fn text(name: &str) -> Result<Cow<'static, str>, InputError> {
         if Path::new(name).exists() {
-            return Self::parse(name, &InputError::read(Path::new(name))?);
+            return InputError::read(Path::new(name)).map(Cow::Owned);
         }
         match BUILT_IN.iter().find(|scene| scene.name == name) {
-            Some(scene) => Self::parse(name, scene.text),
+            Some(scene) => Ok(Cow::Borrowed(scene.text)),
             None => {
                 let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
                 let rule = format!(

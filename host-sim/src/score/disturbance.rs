@@ -2,12 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::evenly::direction;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use touchdown_core::sensing::PLANES;
-
-use super::levitated::direction;
 
 /// What a disturbance adds to the position in each plane, m.
 pub type Shift = [[f64; 2]; PLANES];

@@ -10,11 +10,12 @@ use touchdown_core::event::EventKind;
 use super::bound;
 use super::campaign;
 use super::figure::{Curve, Figure, histogram};
-use super::levitated::{Levitated, direction, in_disc};
+use super::levitated::Levitated;
 use super::row::Row;
 use super::statistics::{median, quantile};
 use super::watch::Drop;
 use super::{Findings, Plan};
+use crate::evenly::{direction, in_disc};
 use crate::failure::Failure;
 use crate::scene::Scene;
 

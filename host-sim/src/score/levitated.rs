@@ -1,9 +1,5 @@
 //! How a rotor floats: at a place, on the orbit of its unbalance.
 
-use std::f64::consts::TAU;
-
-use rand::Rng;
-
 /// A floating rotor; time 0 is the release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Levitated {
@@ -44,18 +40,6 @@ impl Levitated {
     fn turned(&self, time: f64) -> f64 {
         self.angle + self.spin * time * (1.0 + 0.5 * self.sweep * time)
     }
-}
-
-/// A direction, even over the circle.
-pub fn direction(random: &mut impl Rng) -> [f64; 2] {
-    let (sin, cos) = random.random_range(0.0..TAU).sin_cos();
-    [cos, sin]
-}
-
-/// A point, even over the disc of `radius`.
-pub fn in_disc(random: &mut impl Rng, radius: f64) -> [f64; 2] {
-    let distance = radius * random.random_range(0.0..1.0_f64).sqrt();
-    direction(random).map(|part| distance * part)
 }
 
 #[cfg(test)]

@@ -247,7 +247,7 @@ impl Detector {
         };
         self.ladder.fly(&mut state.rotor, fix, None, loudness);
         let number = teller.tell(EventKind::FreeFall, f32::from(age), 0.0);
-        state.pending = Some(Pending { number, back: 0 });
+        state.pending = Some(Pending::new(number, fix.now.later(-f32::from(age))));
         if signals.levitated == Some(false) {
             teller.close(&mut state.pending, true);
         }
@@ -261,7 +261,8 @@ impl Detector {
         teller: &mut Teller,
     ) {
         let (rotor, pending) = (&mut state.rotor, &mut state.pending);
-        self.ladder.land(rotor, fix, signals, pending, teller);
+        let home = state.levitation.mean;
+        self.ladder.land(rotor, fix, home, signals, pending, teller);
         if rotor.phase.is_contact() {
             return;
         }
@@ -338,7 +339,7 @@ impl Detector {
                     return;
                 }
                 let number = teller.tell_of(far, EventKind::FreeFall);
-                state.pending = Some(Pending { number, back: 0 });
+                state.pending = Some(Pending::new(number, ends[0].now));
                 teller.close(&mut state.pending, true);
                 self.ladder.fly(&mut state.rotor, ends[0], None, loudness);
             }

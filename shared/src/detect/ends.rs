@@ -170,11 +170,15 @@ impl EndsTest {
                     );
                 }
                 (Phase::FreeFall | Phase::Impact, Some(fix)) => {
-                    self.ladder.land(rungs, fix, signals, pending, teller);
+                    self.ladder.land(rungs, fix, home, signals, pending, teller);
                     if rungs.phase.is_contact() {
                         continue;
                     }
-                    if self.ladder.is_far(rungs.flight.track.position, home) {
+                    let at = rungs.flight.track.position;
+                    let has_fallen = pending.as_ref().is_some_and(|open| {
+                        self.ladder.is_far(at, home) && self.ladder.fell(open, fix.now, at, home)
+                    });
+                    if has_fallen {
                         teller.close(pending, true);
                     }
                     if self.ladder.floats(rungs, fix) {

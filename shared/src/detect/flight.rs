@@ -88,6 +88,16 @@ pub(crate) enum Landing {
     },
 }
 
+impl Landing {
+    /// Into the wall, m/s; 0 where it came to lie there.
+    pub(crate) fn speed(&self) -> f32 {
+        match *self {
+            Self::Impact { normal_speed, .. } => normal_speed,
+            Self::Contact { .. } => 0.0,
+        }
+    }
+}
+
 /// A position as the sensors give it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fix {

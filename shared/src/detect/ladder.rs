@@ -9,10 +9,14 @@ use crate::detect::levitation::Levitation;
 use crate::detect::signals::Signals;
 use crate::detect::still::Still;
 use crate::detect::teller::{Pending, Teller};
-use crate::event::EventKind;
+use crate::event::{EventKind, Moment};
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
+/// Part of gravity's way that is less than any fall goes, whatever forces are left.
+const FALLS: f32 = 0.5;
+/// Faster than a controller puts a rotor down, m/s.
+const LANDING_SPEED: f32 = 0.01;
 
 /// Phase of the rotor, or of one end of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,6 +51,8 @@ pub(crate) struct Ladder {
     pub(crate) near: f32,
     /// Way that no caught disturbance goes, m.
     travel: f32,
+    /// s.
+    period: f32,
     flight: FlightTest,
     contact: ContactTest,
     still_samples: u32,
@@ -111,6 +117,7 @@ impl Ladder {
             machine,
             near: machine.clearance * (1.0 - tuning.wall_tolerance),
             travel: tuning.confirm_travel * machine.clearance,
+            period: 1.0 / config.sample_rate,
             flight: FlightTest::new(config, threshold),
             contact: ContactTest::new(config, threshold),
             still_samples: samples(tuning.still_time).max(16),
@@ -141,18 +148,25 @@ impl Ladder {
         self.flight.skip(&mut rungs.flight);
     }
 
-    /// In flight: what the sample shows of the wall. It confirms a fall.
+    /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
+    /// there from its place `home`, m.
     pub(crate) fn land(
         &self,
         rungs: &mut Rungs,
         fix: &Fix,
+        home: [f32; 2],
         signals: &Signals,
         pending: &mut Option<Pending>,
         teller: &mut Teller,
     ) {
         let landing = self.flight.take(&mut rungs.flight, fix);
-        if landing.is_some() || signals.levitated == Some(false) {
+        if signals.levitated == Some(false) {
             teller.close(pending, true);
+        }
+        if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
+            let fell =
+                landing.speed() > LANDING_SPEED || self.fell(open, fix.now, fix.position, home);
+            teller.close(pending, fell);
         }
         match landing {
             Some(Landing::Impact { age, normal_speed }) => {
@@ -174,7 +188,8 @@ impl Ladder {
         pending: &mut Pending,
     ) -> Fall {
         let home = levitation.mean;
-        if self.is_far(rungs.flight.track.position, home) {
+        let at = rungs.flight.track.position;
+        if self.is_far(at, home) && self.fell(pending, fix.now, at, home) {
             return Fall::Certain;
         }
         let is_home = is_home(fix, home, levitation.variance);
@@ -193,6 +208,20 @@ impl Ladder {
     /// Whether no caught disturbance goes from `home` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], home: [f32; 2]) -> bool {
         square(position, home) > self.travel * self.travel
+    }
+
+    /// Whether a rotor that went from `home` to `at` (m) since the fall was declared went as fast as one
+    /// that falls.
+    pub(crate) fn fell(
+        &self,
+        pending: &Pending,
+        now: Moment,
+        at: [f32; 2],
+        home: [f32; 2],
+    ) -> bool {
+        let time = now.since(pending.since) * self.period;
+        let least = FALLS * 0.5 * self.machine.gravity * time * time;
+        square(at, home) >= least * least
     }
 
     /// In flight: whether it floats again, clear of the wall and quiet.

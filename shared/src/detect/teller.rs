@@ -7,8 +7,21 @@ use crate::sensing::PLANES;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pending {
     pub(crate) number: u16,
+    /// Its onset.
+    pub(crate) since: Moment,
     /// Samples back within noise.
     pub(crate) back: u32,
+}
+
+impl Pending {
+    /// Just declared.
+    pub(crate) fn new(number: u16, since: Moment) -> Self {
+        Self {
+            number,
+            since,
+            back: 0,
+        }
+    }
 }
 
 /// One tick's notices and what they need.

@@ -4,8 +4,8 @@
 const QUANTILE: f64 = 1.959_963_984_540_054;
 
 /// The 95 % interval for the probability of what came `hits` times in `trials` (above 0).
-pub fn interval(hits: u32, trials: u32) -> (f64, f64) {
-    let (hits, trials) = (f64::from(hits), f64::from(trials));
+pub fn interval(hits: u64, trials: u64) -> (f64, f64) {
+    let (hits, trials) = (hits as f64, trials as f64);
     let (share, square) = (hits / trials, QUANTILE * QUANTILE);
     let middle = (share + square / (2.0 * trials)) / (1.0 + square / trials);
     let spread = share * (1.0 - share) / trials + square / (4.0 * trials * trials);

@@ -1,0 +1,79 @@
+//! `touchdown sweep`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::args::{MergeArgs, SweepArgs, SweepCommand};
+use super::{commit, open, say};
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::paint::Paint;
+use crate::sweep::{Part, Plan, journal_of, journals, run, table, write};
+
+/// Runs a plan, or a part of it, or puts parts together.
+pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    if let Some(SweepCommand::Merge(args)) = &args.command {
+        return merge(args);
+    }
+    let Some(name) = &args.plan else {
+        return Err(Failure::Usage(
+            "sweep needs a plan: touchdown sweep PLAN.toml".to_owned(),
+        ));
+    };
+    let plan = Plan::load(name)?;
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let stem = Path::new(name)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
+        format!("{stem}-sweep")
+    });
+    let part = args.shard.unwrap_or(Part::WHOLE);
+    if part != Part::WHOLE && args.json.is_some() {
+        let rule = "a part has no result of its own: give --json to sweep merge";
+        return Err(Failure::Usage(rule.to_owned()));
+    }
+    fs::create_dir_all(&folder).map_err(Failure::output(&folder))?;
+    let json_out = open(&args.json)?;
+    let had = run(&plan, part, Path::new(&folder))?;
+    if had > 0 {
+        eprintln!("went on after {had} drops that {folder} had already");
+    }
+    if part != Part::WHOLE {
+        let Part { part, parts } = part;
+        let text = format!(
+            "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
+        );
+        say(&[], &text);
+        return Ok(());
+    }
+    let journal = journal_of(part, Path::new(&folder));
+    finish(&plan, &[journal], &folder, &args.json, json_out)
+}
+
+fn merge(args: &MergeArgs) -> Result<(), Failure> {
+    let json_out = open(&args.json)?;
+    let (plan, journals) = journals(&args.folders)?;
+    let folder = args.folders.first().cloned().unwrap_or_default();
+    finish(&plan, &journals, &folder, &args.json, json_out)
+}
+
+fn finish(
+    plan: &Plan,
+    journals: &[PathBuf],
+    folder: &str,
+    json_name: &Option<String>,
+    mut json_out: Option<Output>,
+) -> Result<(), Failure> {
+    let written = write(plan, journals, Path::new(folder))?;
+    if let Some(out) = &mut json_out {
+        out.put(&written.json)?;
+    }
+    let mut text = table(plan, &written.points, Paint::for_stdout());
+    for name in &written.names {
+        text += &format!("wrote {name}\n");
+    }
+    let files = commit([json_out, None, None])?;
+    say(&[json_name], &(text + &files));
+    Ok(())
+}

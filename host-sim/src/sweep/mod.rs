@@ -1,0 +1,24 @@
+//! Many drops over parameters: how probable whirl is, when it comes, and how hard the rotor hits.
+//!
+//! A drop's random numbers depend on the plan's seed and the drop's number alone, so that a sweep gives
+//! the same bytes on any number of threads, in any number of parts, and however often it was interrupted.
+
+mod columns;
+mod draw;
+mod files;
+mod journal;
+mod map;
+mod page;
+mod parameter;
+mod parquet;
+mod plan;
+mod record;
+mod run;
+mod summary;
+mod table;
+
+pub use files::{Written, journal_of, journals, write};
+pub use plan::Plan;
+pub use run::{Part, run};
+pub use summary::Point;
+pub use table::table;

@@ -1,0 +1,156 @@
+//! What a drop of a sweep came to.
+
+use crate::history::{History, Regime};
+use crate::scene::Scene;
+
+/// Bytes of one in the journal.
+pub(super) const BYTES: usize = 61;
+
+/// One drop, SI; NaN where there is no such thing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Record {
+    /// Number of the drop.
+    pub index: u64,
+    /// At the end of the run.
+    pub regime: Regime,
+    pub impacts: u32,
+    /// Start of the first permanent contact, s.
+    pub contact_start: f64,
+    /// Start of the contact in which the rotor whirls, s.
+    pub whirl_start: f64,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed: f64,
+    /// Greatest normal impulse, N s.
+    pub impulse: f64,
+    /// Normal force at the end of the run, in permanent contact, N.
+    pub end_load: f64,
+    /// Frequency of the whirl at the end of the run, counter-clockwise positive, 1/s.
+    pub whirl_frequency: f64,
+}
+
+/// Every regime, at its number in the journal.
+pub(super) const REGIMES: [(Regime, &str); 6] = [
+    (Regime::Rest, "rest"),
+    (Regime::Pendulum, "pendulum"),
+    (Regime::ForwardWhirl, "forward_whirl"),
+    (Regime::BackwardWhirl, "backward_whirl"),
+    (Regime::Intermittent, "intermittent"),
+    (Regime::Bouncing, "bouncing"),
+];
+
+/// Place of a regime in [`REGIMES`].
+pub(super) fn number(regime: Regime) -> usize {
+    let found = REGIMES.iter().position(|(it, _)| *it == regime);
+    found.unwrap_or_default()
+}
+
+impl Record {
+    /// What `history` came to.
+    pub fn of(index: u64, scene: &Scene, history: &History) -> Self {
+        let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NAN, f64::max);
+        let whirls = matches!(history.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
+        let last_contact = history.contact_starts.last().copied();
+        let end = &history.end;
+        let ([x, y], [u, v]) = (end.position, end.velocity);
+        let radius = x.hypot(y);
+        let along = (x * v - y * u) / radius;
+        let in_contact = history.regime != Regime::Bouncing
+            && last_contact
+                .is_some_and(|start| history.lift_offs.iter().all(|lift| *lift <= start));
+        let pressing = along * along / radius - scene.run.gravity * y / radius;
+        Self {
+            index,
+            regime: history.regime,
+            impacts: history.impacts.len() as u32,
+            contact_start: history.contact_starts.first().copied().unwrap_or(f64::NAN),
+            whirl_start: if whirls {
+                last_contact.unwrap_or(f64::NAN)
+            } else {
+                f64::NAN
+            },
+            impact_speed: greatest(&mut history.impacts.iter().map(|it| it.normal_speed)),
+            impulse: greatest(&mut history.impacts.iter().map(|it| it.normal_impulse)),
+            end_load: if in_contact {
+                scene.rotor.mass * pressing
+            } else {
+                f64::NAN
+            },
+            whirl_frequency: if whirls {
+                along / radius / std::f64::consts::TAU
+            } else {
+                f64::NAN
+            },
+        }
+    }
+
+    /// As the journal has it.
+    pub fn bytes(&self) -> [u8; BYTES] {
+        let mut bytes = [0; BYTES];
+        let (head, values) = bytes.split_at_mut(13);
+        head[..8].copy_from_slice(&self.index.to_le_bytes());
+        head[8] = number(self.regime) as u8;
+        head[9..].copy_from_slice(&self.impacts.to_le_bytes());
+        for (place, value) in values.chunks_exact_mut(8).zip(self.values()) {
+            place.copy_from_slice(&value.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// From the journal; `None` where the bytes are none of it.
+    pub fn from_bytes(bytes: &[u8; BYTES]) -> Option<Self> {
+        let (head, values) = bytes.split_at(13);
+        let mut values = values
+            .chunks_exact(8)
+            .filter_map(|it| it.try_into().ok())
+            .map(f64::from_le_bytes);
+        let mut next = || values.next();
+        Some(Self {
+            index: u64::from_le_bytes(head[..8].try_into().ok()?),
+            regime: REGIMES.get(usize::from(head[8]))?.0,
+            impacts: u32::from_le_bytes(head[9..].try_into().ok()?),
+            contact_start: next()?,
+            whirl_start: next()?,
+            impact_speed: next()?,
+            impulse: next()?,
+            end_load: next()?,
+            whirl_frequency: next()?,
+        })
+    }
+
+    /// The numbers that follow the impacts.
+    pub fn values(&self) -> [f64; 6] {
+        [
+            self.contact_start,
+            self.whirl_start,
+            self.impact_speed,
+            self.impulse,
+            self.end_load,
+            self.whirl_frequency,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_journal_gives_back_what_it_was_given() {
+        for (number, (regime, _)) in REGIMES.into_iter().enumerate() {
+            let record = Record {
+                index: u64::MAX - number as u64,
+                regime,
+                impacts: 17,
+                contact_start: 0.068,
+                whirl_start: f64::NAN,
+                impact_speed: -0.0,
+                impulse: 1e-300,
+                end_load: f64::INFINITY,
+                whirl_frequency: -100.0,
+            };
+            let back = Record::from_bytes(&record.bytes()).expect("a record");
+            assert_eq!(back.bytes(), record.bytes());
+            assert_eq!(back.regime, regime);
+        }
+    }
+}
