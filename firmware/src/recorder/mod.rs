@@ -81,7 +81,7 @@ impl Plan {
         let rate = config.detector.sample_rate;
         // Rounded up: a higher rate is thinned out until it fits.
         let whole = (rate / FASTEST) as u16;
-        let decimation = whole.saturating_add(u16::from(rate % FASTEST > 0.0));
+        let decimation = whole.saturating_add(u16::from(f32::from(whole) * FASTEST < rate));
         let samples = |time: f32| (time * rate / f32::from(decimation)) as usize;
         let before = samples(BEFORE).clamp(1, CAPACITY / 2);
         Self {

@@ -46,15 +46,20 @@ impl<const N: usize> Row<N> {
     }
 
     pub(super) fn put(mut self, field: &[u8]) -> Self {
-        let free = self.bytes.get_mut(self.length..).unwrap_or_default();
-        for (byte, new) in free.iter_mut().zip(field) {
-            *byte = *new;
-            self.length += 1;
-        }
+        self.length += copy(self.bytes.get_mut(self.length..).unwrap_or_default(), field);
         self
     }
 
     pub(super) const fn bytes(self) -> [u8; N] {
         self.bytes
     }
+}
+
+/// How many bytes fitted. One copy of it for all fields: they are many.
+#[inline(never)]
+fn copy(room: &mut [u8], field: &[u8]) -> usize {
+    room.iter_mut()
+        .zip(field)
+        .map(|(byte, new)| *byte = *new)
+        .count()
 }
