@@ -4,10 +4,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// The program, in an empty folder of its own choice.
-pub fn touchdown(folder: &Path) -> assert_cmd::Command {
+/// Where it is.
+pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    let mut command = assert_cmd::Command::new(PROGRAM.get_or_init(build));
+    PROGRAM.get_or_init(build)
+}
+
+/// The program, in a folder of its own.
+pub fn touchdown(folder: &Path) -> assert_cmd::Command {
+    let mut command = assert_cmd::Command::new(program());
     command.current_dir(folder).env("NO_COLOR", "1");
     command
 }

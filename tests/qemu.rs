@@ -31,6 +31,7 @@ fn config() -> MonitorConfig {
         detector: DetectorConfig {
             sample_rate: SAMPLE_RATE,
             machine: MachineConfig {
+                mass: 3.42,
                 clearance: CLEARANCE,
                 gravity: GRAVITY,
                 rotor_radius: 24e-3,

@@ -33,7 +33,7 @@ impl App {
     /// One sample: every notice goes to the board, in order, and the output is driven anew. The
     /// notices come back for the recorder.
     pub fn tick(&mut self, board: &mut impl Board, sample: &Sample) -> Notices {
-        let notices = self.monitor.update(&mut self.state, sample);
+        let mut notices = self.monitor.update(&mut self.state, sample);
         for notice in &notices {
             if matches!(notice, Notice::Confirmed { .. }) {
                 self.trip();
@@ -41,6 +41,12 @@ impl App {
             board.report(notice);
         }
         board.drive(self.output);
+        // Last: it delays no output.
+        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
+            board.report(&notice);
+            // There is room: a tick gives fewer than NOTICES_PER_TICK.
+            let _ = notices.push(notice);
+        }
         notices
     }
 

@@ -31,6 +31,10 @@ pub fn notice(notice: &Notice) {
         Notice::Withdrawn { number, sample } => {
             info!("event {=u16}: withdrawn at sample {=u64}", number, sample);
         }
+        Notice::Outlook(outlook) => info!(
+            "whirl: forward {=f32}, backward {=f32}, as of sample {=u64}",
+            outlook.probability_forward, outlook.probability_backward, outlook.made_at
+        ),
     }
 }
 

@@ -1,9 +1,11 @@
 //! From the monitor's notices, on the sample clock, to events in seconds.
 
 use touchdown_core::event::{EventKind, Motion, Notice, Plane};
+use touchdown_core::forecast::Outlook;
 
 use crate::monitor_run::Answer;
-use crate::outcome::{DetectedEvent, Detection};
+use crate::names::channel_name;
+use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast};
 
 /// Places samples in time.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +37,7 @@ impl Timebase {
 /// The events of `answer`; a free fall has its confirmation or withdrawal with it.
 pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     let mut events: Vec<DetectedEvent> = Vec::new();
+    let mut forecasts = Vec::new();
     let mut numbers = Vec::new();
     for notice in &answer.notices {
         match *notice {
@@ -58,8 +61,13 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
                         Motion::Cylindrical => "cylindrical",
                         Motion::Conical => "conical",
                     },
+                    fault: event.fault.map(|fault| ChannelFault {
+                        channel: channel_name(fault.channel),
+                        kind: fault.kind,
+                    }),
                 });
             }
+            Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
             Notice::Confirmed { number, sample } => {
                 // From the end: numbers wrap round in a long run.
                 if let Some(index) = numbers.iter().rposition(|n| *n == number) {
@@ -75,9 +83,26 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     }
     Detection {
         events,
+        forecasts,
+        severity: answer.severity.into(),
         samples: answer.summary.samples,
         faults: answer.summary.faults,
+        conditions: answer.summary.conditions,
         state_hash: answer.summary.state_hash,
+    }
+}
+
+fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
+    let made_s = timebase.time(outlook.made_at as f64);
+    let time_left = outlook.onset.map(|onset| f64::from(onset.time_left));
+    Forecast {
+        from_s: timebase.time(outlook.from.samples()),
+        made_s,
+        probability_forward: f64::from(outlook.probability_forward),
+        probability_backward: f64::from(outlook.probability_backward),
+        time_left_s: time_left,
+        begins_s: time_left.map(|left| made_s + left),
+        growth_s: outlook.onset.map(|onset| f64::from(onset.growth_time)),
     }
 }
 
@@ -85,6 +110,7 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
 mod tests {
     use super::*;
     use touchdown_core::event::{Event, Moment};
+    use touchdown_core::severity::Severity;
     use touchdown_core::wire::Summary;
 
     #[test]
@@ -106,6 +132,7 @@ mod tests {
                 plane: Plane::Both,
                 normal_speed: 0.0,
                 motion: Motion::Cylindrical,
+                fault: None,
             })
         };
         let answer = Answer {
@@ -121,9 +148,11 @@ mod tests {
                     sample: 350,
                 },
             ],
+            severity: Severity::default(),
             summary: Summary {
                 samples: 1000,
                 faults: 2,
+                conditions: Default::default(),
                 state_hash: 0,
             },
             log: Vec::new(),

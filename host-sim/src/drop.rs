@@ -13,7 +13,7 @@ use crate::outcome::{Outcome, TracePoint};
 use crate::progress::Progress;
 use crate::rings::Histories;
 use crate::scene::Scene;
-use crate::sensors::{Motion, Sensors, SensorsState};
+use crate::sensors::{Faults, Motion, Sensors, SensorsState};
 use crate::stream::{Columns, StreamWriter, to_row};
 use crate::target::Target;
 use crate::trace::Trace;
@@ -55,6 +55,7 @@ struct Feed<'a, W> {
     truth: Truth<'a>,
     sensors: Sensors,
     seen: SensorsState,
+    faults: Faults,
     sensing: Sensing,
     trace: Trace,
     stream: Option<io::Result<StreamWriter<W>>>,
@@ -85,6 +86,7 @@ impl<'a, W: Write> Feed<'a, W> {
             truth: Truth::new(scene),
             seen: sensors.start(scene.run.seed),
             sensors,
+            faults: Faults::new(&scene.faults, &scene.sensors),
             sensing: Sensing::try_new(&scene.sensors.sensing())?,
             trace: Trace::default(),
             stream: stream.map(|out| StreamWriter::new(out, columns)),
@@ -121,7 +123,8 @@ impl<W: Write> Iterator for Feed<'_, W> {
             levitated: time < 0.0,
             bearing: bearing(self.scene, state.moving),
         };
-        let sample = self.sensors.read(&mut self.seen, &motion);
+        let mut sample = self.sensors.read(&mut self.seen, &motion);
+        self.faults.spoil(&mut sample, time);
         let [sensed, _] = self
             .sensing
             .convert(&sample, self.scene.sensors.fitted())

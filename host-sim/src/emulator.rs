@@ -9,7 +9,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use defmt_decoder::{DecodeError, Table};
-use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_core::wire::{self, Record};
@@ -107,12 +106,8 @@ impl Emulator {
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;
-        let (notices, summary) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
-        Ok(Answer {
-            notices,
-            summary,
-            log,
-        })
+        let answer = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
+        Ok(Answer { log, ..answer })
     }
 
     /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after
@@ -210,25 +205,33 @@ fn write_replay(
     Ok(count)
 }
 
-fn decode_answer(bytes: &[u8]) -> Option<(Vec<Notice>, wire::Summary)> {
+/// The log stays empty.
+fn decode_answer(bytes: &[u8]) -> Option<Answer> {
     let (records, []) = bytes
         .strip_prefix(&wire::ANSWER_MAGIC)?
         .as_chunks::<{ wire::NOTICE_BYTES }>()
     else {
         return None;
     };
-    let (last, records) = records.split_last()?;
-    let Some(Record::Summary(summary)) = wire::decode_record(last) else {
+    let (records, [severity, summary]) = records.split_last_chunk()?;
+    let (Some(Record::Severity(severity)), Some(Record::Summary(summary))) =
+        (wire::decode_record(severity), wire::decode_record(summary))
+    else {
         return None;
     };
     let notices = records
         .iter()
         .map(|record| match wire::decode_record(record)? {
             Record::Notice(notice) => Some(notice),
-            Record::Summary(_) => None,
+            Record::Severity(_) | Record::Summary(_) => None,
         })
         .collect::<Option<_>>()?;
-    Some((notices, summary))
+    Some(Answer {
+        notices,
+        severity,
+        summary,
+        log: Vec::new(),
+    })
 }
 
 fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {
@@ -250,6 +253,8 @@ fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use touchdown_core::event::Notice;
+    use touchdown_core::severity::Severity;
 
     #[test]
     fn missing_image_names_the_command_that_builds_it() {
@@ -274,13 +279,27 @@ mod tests {
         };
         bytes.extend(wire::encode_record(&Record::Notice(notice)));
         assert_eq!(decode_answer(&bytes), None);
+        let severity = Severity {
+            impacts: 2,
+            whirl_load: 40.5,
+            ..Severity::default()
+        };
+        bytes.extend(wire::encode_record(&Record::Severity(severity)));
+        assert_eq!(decode_answer(&bytes), None);
         let summary = wire::Summary {
             samples: 9,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 5,
         };
         bytes.extend(wire::encode_record(&Record::Summary(summary)));
-        assert_eq!(decode_answer(&bytes), Some((vec![notice], summary)));
+        let answer = Answer {
+            notices: vec![notice],
+            severity,
+            summary,
+            log: Vec::new(),
+        };
+        assert_eq!(decode_answer(&bytes), Some(answer));
         bytes.pop();
         assert_eq!(decode_answer(&bytes), None);
     }

@@ -1,12 +1,14 @@
 //! What `--json` writes; SI, full precision, unknown values null.
 
 use serde::Serialize;
+use touchdown_core::health::Condition;
+use touchdown_core::sample::CHANNELS;
 
 use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
 use crate::model_run::{RingEnd, validity};
-use crate::outcome::{DetectedEvent, Detection, Outcome};
+use crate::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
 use crate::reference::energy;
 use crate::scene::{Precision, Rung, Scene};
 
@@ -30,6 +32,8 @@ struct DropJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     validity: Option<Validity>,
     detector: EventsJson<'a>,
+    forecasts: &'a [Forecast],
+    severity: Severity,
 }
 
 #[derive(Serialize)]
@@ -109,13 +113,17 @@ struct EnergyJson<'a> {
 #[derive(Serialize)]
 struct EventsJson<'a> {
     events: &'a [DetectedEvent],
+    health: [Condition; CHANNELS],
 }
 
 #[derive(Serialize)]
 struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
+    forecasts: &'a [Forecast],
+    severity: Severity,
     samples: u64,
     faults: u64,
+    health: [Condition; CHANNELS],
 }
 
 /// `drop --json`.
@@ -143,7 +151,10 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         validity: validity(scene),
         detector: EventsJson {
             events: &outcome.detection.events,
+            health: outcome.detection.conditions,
         },
+        forecasts: &outcome.detection.forecasts,
+        severity: outcome.detection.severity,
     })
 }
 
@@ -151,8 +162,11 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
 pub fn replay(detection: &Detection) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: &detection.events,
+        forecasts: &detection.forecasts,
+        severity: detection.severity,
         samples: detection.samples,
         faults: detection.faults,
+        health: detection.conditions,
     })
 }
 

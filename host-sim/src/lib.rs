@@ -9,6 +9,7 @@ pub mod evenly;
 pub mod failure;
 pub mod fidelity;
 pub mod force;
+pub mod forecast_score;
 pub mod history;
 pub mod input_error;
 pub mod instructions;

@@ -220,6 +220,7 @@ mod tests {
             plane: "a",
             normal_speed_m_s: None,
             motion: "cylindrical",
+            fault: None,
         }
     }
 
@@ -243,8 +244,11 @@ mod tests {
     fn judge(truth: &History, events: Vec<DetectedEvent>) -> Matches {
         let detection = Detection {
             events,
+            forecasts: Vec::new(),
+            severity: crate::outcome::Severity::default(),
             samples: 0,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 0,
         };
         match_events(truth, &detection)

@@ -4,13 +4,16 @@ use touchdown_core::error::ConfigError;
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
+use touchdown_core::severity::Severity;
 use touchdown_core::wire::Summary;
 
 /// What the monitor said over a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// In the order of the ticks.
     pub notices: Vec<Notice>,
+    /// Of the last drop in it.
+    pub severity: Severity,
     /// Last.
     pub summary: Summary,
     /// What the target printed.
@@ -28,10 +31,12 @@ pub fn run(
     let mut notices = Vec::new();
     for sample in samples {
         notices.extend(monitor.update(&mut state, &sample));
+        notices.extend(monitor.look_ahead(&mut state));
         fingerprint.take(&state);
     }
     Ok(Answer {
         notices,
+        severity: *state.severity(),
         summary: fingerprint.summary(&state),
         log: Vec::new(),
     })

@@ -1,6 +1,7 @@
 //! What phases, events and regimes are called in text.
 
 use touchdown_core::event::EventKind;
+use touchdown_core::sample::CHANNELS;
 
 use crate::history::{PhaseKind, Regime};
 
@@ -30,6 +31,12 @@ pub fn event_name(event: EventKind) -> &'static str {
         EventKind::Levitated => "levitated",
         EventKind::SensorFault => "sensor fault",
     }
+}
+
+/// Name of a position channel.
+pub fn channel_name(channel: u8) -> &'static str {
+    const NAMES: [&str; CHANNELS] = ["ax", "ay", "bx", "by"];
+    NAMES.get(usize::from(channel)).unwrap_or(&"?")
 }
 
 /// Name of a regime.

@@ -7,6 +7,8 @@ use crate::model_run::RingEnd;
 use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
+use touchdown_core::health::{Condition, FaultKind};
+use touchdown_core::sample::CHANNELS;
 
 /// An event of the detector, with times in seconds since the release (or since the stream's zero).
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,6 +31,75 @@ pub struct DetectedEvent {
     pub normal_speed_m_s: Option<f64>,
     /// `cylindrical` or `conical`: whether the ends of the rotor went the same way or against each other.
     pub motion: &'static str,
+    /// Sensor faults only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<ChannelFault>,
+}
+
+/// What is wrong with which channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ChannelFault {
+    /// `ax`, `ay`, `bx` or `by`; the first of a plane stands for the plane where both are wrong.
+    pub channel: &'static str,
+    /// What.
+    pub kind: FaultKind,
+}
+
+/// What lay ahead, as the monitor saw it; the first of an episode, and where a probability had changed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Forecast {
+    /// Time stamp of the sample whose estimate it starts from, s.
+    pub from_s: f64,
+    /// Time stamp of the sample after which it was ready, s.
+    pub made_s: f64,
+    /// Of whirl with the spin, 0 to 1.
+    pub probability_forward: f64,
+    /// Of whirl against the spin, 0 to 1.
+    pub probability_backward: f64,
+    /// From `made_s` to the start of the contact that whirls, s; negative where it has begun, `None` where
+    /// no run whirls.
+    pub time_left_s: Option<f64>,
+    /// The start of that contact, s.
+    pub begins_s: Option<f64>,
+    /// From there to unbounded growth without gravity, rho0/(mu |v_t|), s.
+    pub growth_s: Option<f64>,
+}
+
+/// How hard the last drop was on the machine, as far as position and speed show it; see
+/// [`touchdown_core::severity::Severity`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Severity {
+    /// Impacts that were declared.
+    pub impacts: u16,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed_m_s: f64,
+    /// Greatest impulse along the normal, N s.
+    pub impulse_n_s: f64,
+    /// Sum over the impacts, N s.
+    pub total_impulse_n_s: f64,
+    /// Time in permanent contact, s.
+    pub dwell_s: f64,
+    /// Greatest speed of the centre in parts of sqrt(g rho0).
+    pub velocity_index: f64,
+    /// Greatest frequency of whirl, Hz.
+    pub whirl_frequency_hz: f64,
+    /// Greatest force of whirl on the wall, N.
+    pub whirl_load_n: f64,
+}
+
+impl From<touchdown_core::severity::Severity> for Severity {
+    fn from(it: touchdown_core::severity::Severity) -> Self {
+        Self {
+            impacts: it.impacts,
+            impact_speed_m_s: f64::from(it.impact_speed),
+            impulse_n_s: f64::from(it.impulse),
+            total_impulse_n_s: f64::from(it.total_impulse),
+            dwell_s: f64::from(it.dwell),
+            velocity_index: f64::from(it.velocity_index),
+            whirl_frequency_hz: f64::from(it.whirl_frequency),
+            whirl_load_n: f64::from(it.whirl_load),
+        }
+    }
 }
 
 /// What the detector said over a run.
@@ -36,10 +107,16 @@ pub struct DetectedEvent {
 pub struct Detection {
     /// In the order of declaration.
     pub events: Vec<DetectedEvent>,
+    /// In the order of time.
+    pub forecasts: Vec<Forecast>,
+    /// Of the last drop.
+    pub severity: Severity,
     /// Samples seen.
     pub samples: u64,
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
     /// Fingerprint of the detector's state over all ticks.
     pub state_hash: u32,
 }

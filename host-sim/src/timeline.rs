@@ -1,11 +1,12 @@
 //! What the terminal shows: the true phases beside what the detector said, in 80 columns.
 
 use touchdown_core::event::EventKind;
+use touchdown_core::health::Condition;
 
 use crate::history::{History, Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
 use crate::model_run::validity;
-use crate::names::{event_name, phase_name, regime_name};
+use crate::names::{channel_name, event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::paint::Paint;
 use crate::scene::Scene;
@@ -22,6 +23,8 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
+    text += &forecasts(&outcome.detection, paint);
+    text += &severity(&outcome.detection);
     text += &extras(outcome, &matches, paint);
     if let Some(validity) = validity(scene) {
         text += &format!("{validity}\n");
@@ -186,6 +189,49 @@ fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     text + "\n"
 }
 
+/// What was foretold, once anything was.
+fn forecasts(detection: &Detection, paint: Paint) -> String {
+    let all = &detection.forecasts;
+    if all.is_empty() {
+        return String::new();
+    }
+    let head = format!(
+        "\n{:<12}{:>12}{:>12}{:>15}",
+        "foretold", "forward", "backward", "whirls from ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    for forecast in all.iter().take(LISTED) {
+        text += &format!(
+            "{:<12}{:>12.2}{:>12.2}{:>15}\n",
+            millis(forecast.made_s),
+            forecast.probability_forward,
+            forecast.probability_backward,
+            optional(forecast.begins_s.map(millis)),
+        );
+    }
+    text + &more(all.len(), "forecasts")
+}
+
+fn severity(detection: &Detection) -> String {
+    let it = &detection.severity;
+    let mut text = format!(
+        "severity: {} impacts seen, up to {:.2} mm/s and {:.4} N s\n\
+         {} ms in contact; velocity index {:.2}\n",
+        it.impacts,
+        it.impact_speed_m_s * 1e3,
+        it.impulse_n_s,
+        millis(it.dwell_s),
+        it.velocity_index,
+    );
+    if it.whirl_load_n > 0.0 {
+        text += &format!(
+            "whirl up to {:.0} Hz, {:.0} N\n",
+            it.whirl_frequency_hz, it.whirl_load_n
+        );
+    }
+    text
+}
+
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text = String::new();
     if outcome.model.regime != outcome.truth.regime {
@@ -196,13 +242,27 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         let line = format!("{} events that did not happen", matches.false_events.len());
         text += &(paint.bad(&line) + "\n");
     }
+    let told = outcome.detection.events.iter().filter_map(|event| {
+        let fault = event.fault?;
+        let (channel, kind) = (fault.channel, fault.kind.name());
+        let at = millis(event.declared_s);
+        Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
+    });
+    let told: Vec<_> = told.collect();
+    text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
+    text += &more(told.len(), "sensor faults");
     text + &samples_line(&outcome.detection)
 }
 
 /// What the detector was fed, and the fingerprint by which two machines are compared.
 fn samples_line(detection: &Detection) -> String {
+    let conditions = (0..).zip(detection.conditions);
+    let bad: String = conditions
+        .filter(|(_, condition)| *condition != Condition::Ok)
+        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it.name()))
+        .collect();
     format!(
-        "{} samples, {} unusable channel values; detector state {:08x}\n",
+        "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
         detection.samples, detection.faults, detection.state_hash
     )
 }
@@ -222,8 +282,11 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
     }
     for event in &detection.events {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
+        let fault = event
+            .fault
+            .map(|fault| format!("  {} {}", fault.channel, fault.kind.name()));
         let line = format!(
-            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}",
+            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             event_name(event.event),
             event.onset_s,
             event.declared_s,
@@ -234,6 +297,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             },
             event.plane,
             speed.unwrap_or_default(),
+            fault.unwrap_or_default(),
         );
         text += &format!("{}\n", line.trim_end());
     }

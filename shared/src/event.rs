@@ -1,5 +1,8 @@
 //! What the detector reports.
 
+use crate::forecast::Outlook;
+use crate::health::Fault;
+
 /// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(pub i64);
@@ -52,9 +55,9 @@ pub enum EventKind {
     Rolling = 3,
     /// It swings at the bottom of the retainer.
     Pendulum = 4,
-    /// One full turn round the retainer with the spin.
+    /// It goes round the retainer with the spin: a full turn, or bound to.
     ForwardWhirl = 5,
-    /// One full turn round the retainer against the spin.
+    /// It goes round the retainer against the spin: a full turn, or bound to.
     BackwardWhirl = 6,
     /// Permanent contact ended.
     LiftOff = 7,
@@ -62,7 +65,7 @@ pub enum EventKind {
     Rest = 8,
     /// Floating, under control.
     Levitated = 9,
-    /// A channel delivers no usable value.
+    /// A channel is not to be trusted; the event says why.
     SensorFault = 10,
 }
 
@@ -123,6 +126,8 @@ pub struct Event {
     pub normal_speed: f32,
     /// How the rotor moved when it was declared.
     pub motion: Motion,
+    /// What is wrong with which channel, of a sensor fault.
+    pub fault: Option<Fault>,
 }
 
 /// What a tick says: a new event, or the fate of an earlier free fall.
@@ -144,10 +149,12 @@ pub enum Notice {
         /// The sample whose tick withdrew it.
         sample: u64,
     },
+    /// What lies ahead, where that is news.
+    Outlook(Outlook),
 }
 
 /// Most notices that one tick can give.
-pub const NOTICES_PER_TICK: usize = 6;
+pub const NOTICES_PER_TICK: usize = 10;
 
 /// The notices of one tick.
 pub type Notices = heapless::Vec<Notice, NOTICES_PER_TICK>;

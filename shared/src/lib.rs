@@ -10,6 +10,8 @@
 pub mod detect;
 pub mod error;
 pub mod event;
+pub mod forecast;
+pub mod health;
 pub mod log;
 pub mod model;
 pub mod monitor;
@@ -17,5 +19,6 @@ pub mod real;
 pub mod sample;
 pub mod scales;
 pub mod sensing;
+pub mod severity;
 pub mod tachometer;
 pub mod wire;

@@ -1,12 +1,17 @@
-//! The whole tick: sensing, then the detector.
+//! The whole tick: sensing, the sensors' health, then the detector.
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
 
-use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip};
+use crate::detect::{
+    Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
+};
 use crate::error::ConfigError;
-use crate::event::{Motion, Notices};
-use crate::sample::Sample;
+use crate::event::{Motion, Notice, Notices};
+use crate::forecast::{Forecast, ForecastState, Outlook};
+use crate::health::{Condition, Health, HealthState};
+use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Sensing, SensingConfig};
+use crate::severity::{Severeness, Severity, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
 
@@ -27,10 +32,12 @@ pub struct MonitorConfig {
 /// Coefficients of the tick.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    fitted: u8,
     sensing: Sensing,
+    health: Health,
     tachometers: Option<Tachometers>,
     detector: Detector,
+    forecast: Forecast,
+    severeness: Severeness,
 }
 
 /// What the tick carries from sample to sample.
@@ -38,22 +45,28 @@ pub struct Monitor {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
+    health: HealthState,
     tachometers: TachometersState,
     inner_ring: Option<Speed>,
     detector: DetectorState,
+    spin: Option<f32>,
+    forecast: ForecastState,
+    severity: SeverityState,
 }
 
 impl Monitor {
     /// Checks `config` and prepares the tick.
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
         Ok(Self {
-            fitted: config.fitted,
             sensing: Sensing::try_new(&config.sensing)?,
             tachometers: config
                 .tachometers
                 .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
+            health: Health::new(&config.detector, &config.sensing, config.fitted),
+            forecast: Forecast::try_new(&config.detector)?,
+            severeness: Severeness::try_new(&config.detector)?,
         })
     }
 
@@ -64,31 +77,57 @@ impl Monitor {
 
     /// One tick. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
-        let reading = self.sensing.convert(sample, self.fitted);
+        let phases = state.detector.phases();
+        let reading = self
+            .health
+            .update(&mut state.health, &self.sensing, sample, phases);
+        state.spin = sample.spin.filter(|spin| spin.is_finite());
+        let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
         state.faults += u64::from(reading.unusable.count_ones());
+        state.faults += u64::from(spin.is_none() && sample.spin.is_some());
         let mut notices = Notices::new();
         self.detector.update(
             &mut state.detector,
             &reading,
             &Signals {
-                spin: sample.spin,
+                spin,
                 retainer,
                 levitated: sample.levitated,
             },
             &mut notices,
         );
+        let strain = self.detector.strain(&state.detector);
+        self.severeness.take(&mut state.severity, &strain, &notices);
         notices
+    }
+
+    /// A slice of the forecast, below the tick: after each and before the next. Bounded; cannot fail. What
+    /// lies ahead, where that is news.
+    pub fn look_ahead(&self, state: &mut MonitorState) -> Option<Notice> {
+        let (forecast, sample) = (&mut state.forecast, state.samples.saturating_sub(1));
+        if state.detector.phase() < Phase::FreeFall {
+            *forecast = ForecastState::default();
+            return None;
+        }
+        if !forecast.is_busy()
+            && let Some(estimate) = self.detector.estimate(&state.detector, state.spin)
+            && self.forecast.is_known(estimate.speed_error)
+        {
+            self.forecast.start(forecast, &estimate);
+        }
+        self.forecast.work(forecast, sample)?;
+        forecast.news().map(Notice::Outlook)
     }
 
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
         let Some(tachometers) = &self.tachometers else {
             return Retainer::Fixed;
         };
-        let (edges, spin) = (&sample.edges, sample.spin);
+        let edges = &sample.edges;
         state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
-        match spin {
+        match state.spin {
             Some(spin) => {
                 Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
             }
@@ -103,9 +142,14 @@ impl MonitorState {
         self.samples
     }
 
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub fn faults(&self) -> u64 {
         self.faults
+    }
+
+    /// What can be had of each channel.
+    pub fn conditions(&self) -> [Condition; CHANNELS] {
+        self.health.conditions()
     }
 
     /// The present phase.
@@ -133,6 +177,16 @@ impl MonitorState {
         self.detector.slip()
     }
 
+    /// The last forecast of this episode.
+    pub fn outlook(&self) -> Option<&Outlook> {
+        self.forecast.last()
+    }
+
+    /// What the last drop has done to the machine so far; zeros before the first.
+    pub fn severity(&self) -> &Severity {
+        &self.severity.so_far
+    }
+
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
         self.detector.is_armed()
@@ -158,8 +212,15 @@ impl Fingerprint {
         self.0.update(&state.samples.to_le_bytes());
         self.0.update(&state.faults.to_le_bytes());
         state
+            .health
+            .fingerprint(|value| self.0.update(&bits(value).to_le_bytes()));
+        state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
+        let severity = state.severity().words();
+        for value in state.forecast.words().into_iter().chain(severity) {
+            self.0.update(&value.to_bits().to_le_bytes());
+        }
     }
 
     /// What the run added up to.
@@ -167,6 +228,7 @@ impl Fingerprint {
         Summary {
             samples: state.samples,
             faults: state.faults,
+            conditions: state.conditions(),
             state_hash: self.0.finalize(),
         }
     }

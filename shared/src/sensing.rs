@@ -2,8 +2,9 @@
 //! axes.
 
 use crate::error::ConfigError;
+use crate::health::Found;
 use crate::real::sin_cos;
-use crate::sample::Sample;
+use crate::sample::{CHANNELS, Sample};
 
 /// Sensor planes.
 pub const PLANES: usize = 2;
@@ -30,6 +31,10 @@ pub struct Reading {
     pub planes: [Option<[f32; 2]>; PLANES],
     /// Bit i is set if fitted channel i delivered no usable value.
     pub unusable: u8,
+    /// How far the mean over the planes has moved because one is lost or back, m.
+    pub moved: [f32; 2],
+    /// What this sample showed to be wrong, by channel.
+    pub found: [Option<Found>; CHANNELS],
 }
 
 impl Reading {
@@ -89,22 +94,31 @@ impl Sensing {
     /// scale come out as unusable.
     pub fn convert(&self, sample: &Sample, fitted: u8) -> Reading {
         let mut reading = Reading::default();
-        let channel = |index: usize| {
-            let count = sample.counts.get(index).copied().unwrap_or(0);
+        let mut counts = [None; CHANNELS];
+        for (index, (slot, count)) in counts.iter_mut().zip(sample.counts).enumerate() {
             let usable = sample.is_valid(index) && count > 0 && count < self.full_scale;
-            usable.then(|| (f32::from(count) - self.zero_count) * self.resolution)
-        };
-        for (plane, [sin, cos]) in self.rotation.into_iter().enumerate() {
-            let (first, second) = (channel(2 * plane), channel(2 * plane + 1));
-            for (index, value) in [(2 * plane, first), (2 * plane + 1, second)] {
-                if value.is_none() {
-                    reading.unusable |= fitted & (1 << index);
-                }
-            }
-            if let (Some(u), Some(v), Some(slot)) = (first, second, reading.planes.get_mut(plane)) {
-                *slot = Some([cos * u - sin * v, sin * u + cos * v]);
+            *slot = usable.then_some(f32::from(count));
+            if !usable {
+                reading.unusable |= fitted & (1 << index);
             }
         }
+        reading.planes = self.place(counts);
         reading
+    }
+
+    /// Positions of the planes, m, from their channels' counts, whole or not.
+    pub fn place(&self, [ax, ay, bx, by]: [Option<f32>; CHANNELS]) -> [Option<[f32; 2]>; PLANES] {
+        let [a, b] = self.rotation;
+        [self.rotate(a, ax, ay), self.rotate(b, bx, by)]
+    }
+
+    fn rotate(
+        &self,
+        [sin, cos]: [f32; 2],
+        first: Option<f32>,
+        second: Option<f32>,
+    ) -> Option<[f32; 2]> {
+        let [u, v] = [first?, second?].map(|count| (count - self.zero_count) * self.resolution);
+        Some([cos * u - sin * v, sin * u + cos * v])
     }
 }

@@ -2,15 +2,19 @@
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
 //! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
-//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, and last the one of [`Summary`].
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, then that of the [`Severity`], and last the
+//! one of [`Summary`].
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use crate::forecast::{Onset, Outlook};
+use crate::health::{Condition, Fault, FaultKind};
 use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use crate::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x02";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x03";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x02";
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x03";
 /// Bytes of a sample record.
 pub const SAMPLE_BYTES: usize = 20;
 /// Bytes of a notice record.
@@ -74,8 +78,10 @@ pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
 pub struct Summary {
     /// Samples seen.
     pub samples: u64,
-    /// Channel values that were unusable.
+    /// Channel values that were unusable, or not used.
     pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
     /// Fingerprint of the detector's state over all ticks.
     pub state_hash: u32,
 }
@@ -85,6 +91,8 @@ pub struct Summary {
 pub enum Record {
     /// A notice, as it was given.
     Notice(Notice),
+    /// The last record but one: of the last drop.
+    Severity(Severity),
     /// The last record.
     Summary(Summary),
 }
@@ -93,8 +101,13 @@ const DECLARED: u8 = 1;
 const CONFIRMED: u8 = 2;
 const WITHDRAWN: u8 = 3;
 const SUMMARY: u8 = 4;
+const OUTLOOK: u8 = 5;
+const SEVERITY: u8 = 6;
 
-/// Record to bytes: tag, kind, plane, motion, number (u16), two zero bytes, then three 8-byte fields.
+/// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
+/// three 8-byte fields. The summary has the conditions of the channels at 4. Of an
+/// outlook: tag, whether it has an onset, two zero bytes, then numbers of four bytes around the sample. Of
+/// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32).
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
@@ -106,6 +119,9 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(8, &event.onset.0.to_le_bytes());
             put(16, &event.declared.to_le_bytes());
             put(24, &event.normal_speed.to_le_bytes());
+            if let Some(Fault { channel, kind }) = event.fault {
+                put(6, &[1 + kind as u8, channel]);
+            }
         }
         Record::Notice(Notice::Confirmed { number, sample }) => {
             put(0, &[CONFIRMED]);
@@ -117,8 +133,39 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(4, &number.to_le_bytes());
             put(16, &sample.to_le_bytes());
         }
+        Record::Notice(Notice::Outlook(outlook)) => {
+            let onset = outlook
+                .onset
+                .map_or([0.0; 2], |it| [it.time_left, it.growth_time]);
+            let made_at = Moment::of_sample(outlook.made_at);
+            let age = made_at.0.saturating_sub(outlook.from.0) as u32;
+            put(0, &[OUTLOOK, u8::from(outlook.onset.is_some())]);
+            put(4, &outlook.probability_forward.to_le_bytes());
+            put(8, &outlook.probability_backward.to_le_bytes());
+            put(12, &age.to_le_bytes());
+            put(16, &outlook.made_at.to_le_bytes());
+            put(24, &onset[0].to_le_bytes());
+            put(28, &onset[1].to_le_bytes());
+        }
+        Record::Severity(it) => {
+            put(0, &[SEVERITY]);
+            put(2, &it.impacts.to_le_bytes());
+            let fields = [
+                it.impact_speed,
+                it.impulse,
+                it.total_impulse,
+                it.dwell,
+                it.velocity_index,
+                it.whirl_frequency,
+                it.whirl_load,
+            ];
+            for (at, field) in (4..).step_by(4).zip(fields) {
+                put(at, &field.to_le_bytes());
+            }
+        }
         Record::Summary(summary) => {
             put(0, &[SUMMARY]);
+            put(4, &summary.conditions.map(|it| it as u8));
             put(8, &summary.samples.to_le_bytes());
             put(16, &summary.faults.to_le_bytes());
             put(24, &summary.state_hash.to_le_bytes());
@@ -127,14 +174,15 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     bytes
 }
 
-/// Bytes to record; `None` for an unknown tag, kind, plane or motion.
+/// Bytes to record; `None` for an unknown tag, kind, plane, motion, fault or condition.
 pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
     let eight = |at: usize| {
         let mut field = [0; 8];
         field.copy_from_slice(&bytes[at..at + 8]);
         field
     };
-    let four = [bytes[24], bytes[25], bytes[26], bytes[27]];
+    let four = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
+    let real = |at: usize| f32::from_le_bytes(four(at));
     let number = u16::from_le_bytes([bytes[4], bytes[5]]);
     let sample = u64::from_le_bytes(eight(16));
     Some(match bytes[0] {
@@ -144,16 +192,54 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             onset: Moment(i64::from_le_bytes(eight(8))),
             declared: sample,
             plane: *[Plane::A, Plane::B, Plane::Both].get(usize::from(bytes[2]))?,
-            normal_speed: f32::from_le_bytes(four),
+            normal_speed: real(24),
             motion: *[Motion::Cylindrical, Motion::Conical].get(usize::from(bytes[3]))?,
+            fault: fault(bytes[6], bytes[7])?,
         })),
         CONFIRMED => Record::Notice(Notice::Confirmed { number, sample }),
         WITHDRAWN => Record::Notice(Notice::Withdrawn { number, sample }),
+        OUTLOOK => Record::Notice(Notice::Outlook(Outlook {
+            from: Moment(Moment::of_sample(sample).0 - i64::from(u32::from_le_bytes(four(12)))),
+            made_at: sample,
+            probability_forward: real(4),
+            probability_backward: real(8),
+            onset: (bytes[1] != 0).then(|| Onset {
+                time_left: real(24),
+                growth_time: real(28),
+            }),
+        })),
+        SEVERITY => Record::Severity(Severity {
+            impacts: u16::from_le_bytes([bytes[2], bytes[3]]),
+            impact_speed: real(4),
+            impulse: real(8),
+            total_impulse: real(12),
+            dwell: real(16),
+            velocity_index: real(20),
+            whirl_frequency: real(24),
+            whirl_load: real(28),
+        }),
         SUMMARY => Record::Summary(Summary {
             samples: u64::from_le_bytes(eight(8)),
             faults: sample,
-            state_hash: u32::from_le_bytes(four),
+            conditions: conditions([bytes[4], bytes[5], bytes[6], bytes[7]])?,
+            state_hash: u32::from_le_bytes(four(24)),
         }),
         _ => return None,
     })
+}
+
+fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {
+    let Some(kind) = code.checked_sub(1) else {
+        return Some(None);
+    };
+    let kind = *FaultKind::ALL.get(usize::from(kind))?;
+    (usize::from(channel) < CHANNELS).then_some(Some(Fault { channel, kind }))
+}
+
+fn conditions(codes: [u8; CHANNELS]) -> Option<[Condition; CHANNELS]> {
+    let mut conditions = [Condition::Ok; CHANNELS];
+    for (condition, code) in conditions.iter_mut().zip(codes) {
+        *condition = *Condition::ALL.get(usize::from(code))?;
+    }
+    Some(conditions)
 }

@@ -35,6 +35,7 @@ const IMPACT: Notice = Notice::Declared(Event {
     plane: Plane::Both,
     normal_speed: 0.25,
     motion: Motion::Cylindrical,
+    fault: None,
 });
 
 fn counts(number: u32) -> [u16; 4] {

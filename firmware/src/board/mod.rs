@@ -46,6 +46,7 @@ pub fn default_config() -> MonitorConfig {
         detector: DetectorConfig {
             sample_rate: SAMPLE_RATE_HZ as f32,
             machine: MachineConfig {
+                mass: 3.42,
                 clearance: 0.3e-3,
                 gravity: 9.81,
                 rotor_radius: 24e-3,

@@ -71,6 +71,7 @@ impl Rig {
             plane: Plane::A,
             normal_speed: if kind == EventKind::Impact { 0.2 } else { 0.0 },
             motion: Motion::Cylindrical,
+            fault: None,
         })
     }
 

@@ -3,7 +3,7 @@
 use super::Subject;
 use crate::history::{History, PhaseKind, Recorder, RotorState};
 use crate::matching::regime_event;
-use crate::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
+use crate::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use crate::reference::{Machine, Reference, Start};
 use touchdown_core::event::EventKind;
 
@@ -109,6 +109,7 @@ fn detection(truth: &History) -> Detection {
         plane: "both",
         normal_speed_m_s: None,
         motion: "cylindrical",
+        fault: None,
     };
     let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
         PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
@@ -128,6 +129,7 @@ fn detection(truth: &History) -> Detection {
     let impacts = hard.map(|impact| DetectedEvent {
         normal_speed_m_s: Some(0.98 * impact.normal_speed),
         motion: "cylindrical",
+        fault: None,
         ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
     });
     let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();
@@ -139,8 +141,11 @@ fn detection(truth: &History) -> Detection {
     events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
+        forecasts: Vec::new(),
+        severity: Severity::default(),
         samples: 25_000,
         faults: 3,
+        conditions: Default::default(),
         state_hash: 0,
     }
 }

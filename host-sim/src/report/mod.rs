@@ -5,11 +5,13 @@ pub(crate) mod chart;
 mod displacement;
 mod energy;
 pub mod force;
+mod foresight;
 mod moving;
 pub(crate) mod orbit;
 mod parameters;
 mod phase_plane;
 pub(crate) mod regions;
+mod severity;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod text;
@@ -139,7 +141,9 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             }
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
+        section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
+        section { h2 { "Severity" } (severity::severity(outcome)) }
         section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
         @if let Some(ledger) = &outcome.ledger {
             section { h2 { "Energy" } (energy::energy(ledger)) }

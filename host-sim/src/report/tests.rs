@@ -4,7 +4,7 @@ use super::force::Press;
 use super::text::si;
 use super::{Subject, fixture, render};
 use crate::history::{Recorder, RotorState};
-use crate::outcome::{Detection, Outcome};
+use crate::outcome::{Detection, Outcome, Severity};
 use crate::reference::{Machine, Start};
 use std::path::Path;
 
@@ -49,8 +49,11 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         trace: Vec::new(),
         detection: Detection {
             events: Vec::new(),
+            forecasts: Vec::new(),
+            severity: Severity::default(),
             samples: 0,
             faults: 0,
+            conditions: Default::default(),
             state_hash: 0,
         },
     }

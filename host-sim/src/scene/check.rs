@@ -5,6 +5,7 @@ use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
 use super::contact::{materials, step_in_contact};
+use super::faults::faults;
 use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
 use super::flaw::Flaw;
 use super::limits;
@@ -36,6 +37,8 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
     let materials = materials(file.materials.as_ref())?;
+    let sensors = sensors(&file.sensors, tachometers)?;
+    let faults = faults(&file.fault, &sensors, &run)?;
     let mut scene = Scene {
         name: name.to_owned(),
         title: file.title,
@@ -50,7 +53,8 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         model,
         auto,
         materials,
-        sensors: sensors(&file.sensors, tachometers)?,
+        sensors,
+        faults,
         tuning: file.detector,
     };
     if scene.model.rung == Rung::Hertz {

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use touchdown_core::detect::Tuning;
 
+use super::faults::FaultTable;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
 
@@ -31,6 +32,8 @@ pub(super) struct SceneFile {
     pub materials: Option<MaterialsTable>,
     #[serde(default)]
     pub sensors: SensorsTable,
+    #[serde(default)]
+    pub fault: Vec<FaultTable>,
     #[serde(default)]
     pub detector: Tuning,
 }

@@ -5,6 +5,7 @@ mod builtin;
 mod check;
 mod contact;
 mod explain;
+mod faults;
 mod file;
 mod flaw;
 pub mod limits;
@@ -34,7 +35,7 @@ use crate::input_error::InputError;
 use crate::model_run::compliance;
 use crate::reference::Machine;
 pub use crate::reference::Start;
-use crate::sensors::{SensorsConfig, Tachometers};
+use crate::sensors::{SensorFault, SensorsConfig, Tachometers};
 
 /// A valid scene; SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +68,8 @@ pub struct Scene {
     pub materials: Materials,
     /// The sensor chain.
     pub sensors: SensorsConfig,
+    /// Which of them fail.
+    pub faults: Vec<SensorFault>,
     /// The detector's thresholds and times.
     pub tuning: Tuning,
 }
@@ -209,6 +212,7 @@ impl Scene {
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,
                 machine: MachineConfig {
+                    mass: mass as f32,
                     clearance: self.retainer.clearance as f32,
                     gravity: self.run.gravity as f32,
                     rotor_radius: radius as f32,

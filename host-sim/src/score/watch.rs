@@ -131,6 +131,7 @@ impl Drop {
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
         while let Some((sample, instant)) = feed.next() {
             notices.extend(monitor.update(&mut state, &sample));
+            notices.extend(monitor.look_ahead(&mut state));
             instants.extend(instant.map(|instant| Instant {
                 told: state.phase(),
                 ..instant
@@ -138,6 +139,7 @@ impl Drop {
         }
         let answer = Answer {
             notices,
+            severity: *state.severity(),
             summary: Fingerprint::default().summary(&state),
             log: Vec::new(),
         };

@@ -4,9 +4,11 @@
 //! converter. Beside them the pulses of a ball bearing.
 
 mod config;
+mod faults;
 mod tachometer;
 
 pub use config::SensorsConfig;
+pub use faults::{Failing, Faults, SensorFault};
 pub use tachometer::Tachometers;
 
 use std::f64::consts::TAU;

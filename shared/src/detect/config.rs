@@ -7,6 +7,8 @@ use crate::scales::{not_negative, positive};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MachineConfig {
+    /// Rotor mass, kg; for impulses and loads only.
+    pub mass: f32,
     /// Radial clearance of the retainer, m.
     pub clearance: f32,
     /// Gravity, downwards, m/s^2; 0 for a vertical machine.
@@ -56,6 +58,13 @@ pub struct Tuning {
     pub contact_error: f32,
     /// Time without motion that counts as levitated again or at rest, s.
     pub still_time: f32,
+    /// Standard deviation of the friction coefficient for a forecast, as a part of it.
+    pub friction_error: f32,
+    /// Standard deviation of the configured restitution for a forecast, before any impact has shown it.
+    pub restitution_error: f32,
+    /// Changes of motion that a forecast solves for after each tick; one in contact counts as three, and is
+    /// solved if it is the first.
+    pub forecast_changes: u8,
 }
 
 impl Default for Tuning {
@@ -72,6 +81,9 @@ impl Default for Tuning {
             tilt_error: 3.0,
             contact_error: 0.15,
             still_time: 0.05,
+            friction_error: 0.1,
+            restitution_error: 0.05,
+            forecast_changes: 3,
         }
     }
 }
@@ -103,6 +115,7 @@ impl DetectorConfig {
 
 impl MachineConfig {
     fn validate(&self) -> Result<(), ConfigError> {
+        positive("mass", self.mass)?;
         positive("clearance", self.clearance)?;
         not_negative("gravity", self.gravity)?;
         positive("rotor_radius", self.rotor_radius)?;
@@ -139,7 +152,11 @@ impl Tuning {
         ] {
             positive(name, value)?;
         }
+        not_negative("friction_error", self.friction_error)?;
+        not_negative("restitution_error", self.restitution_error)?;
         for (name, part) in [
+            ("friction_error", self.friction_error),
+            ("restitution_error", self.restitution_error),
             ("confirm_travel", self.confirm_travel),
             ("wall_tolerance", self.wall_tolerance),
         ] {

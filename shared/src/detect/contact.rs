@@ -9,6 +9,7 @@ use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+use crate::forecast::Place;
 use crate::real::sqrt;
 
 /// Slip, m/s, that a speed sensor resolves.
@@ -168,7 +169,7 @@ impl ContactTest {
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
         let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
         let on_wall = fix.filter(|_| state.lift.is_at_wall());
-        let regime = on_wall.and_then(|fix| self.regime(state, fix, surface));
+        let regime = on_wall.and_then(|fix| self.regime(state, fix, surface, slip));
         [kind, regime]
     }
 
@@ -240,13 +241,24 @@ impl ContactTest {
         }
     }
 
-    fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32) -> Option<Finding> {
+    /// Whether it is bound to go round: it has the energy to pass the top with the wall still pressing. Friction
+    /// that drives it only adds to that, and rolling takes less, so no more need be known than the way of the slip.
+    fn goes_round(&self, state: &Touching, slip: f32) -> bool {
+        let swing = state.swing();
+        let rate = swing.rate.abs() - SURE * state.track.rate_spread();
+        let over_the_top = self.machine.gravity / self.machine.clearance * (3.0 + 2.0 * swing.cos);
+        rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
+    }
+
+    fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32, slip: f32) -> Option<Finding> {
         let swing = *state.swing();
         let block = state.still.take(fix.position, self.still_samples);
         let clear = CLEAR_SWING * sqrt(fix.variance) / self.machine.clearance;
         let turned_back = state.turning.take(swing.turned, clear);
-        let (found, age) = if swing.turned.abs() >= TAU {
-            let with_spin = swing.turned * surface >= 0.0;
+        let has_turned = swing.turned.abs() >= TAU;
+        let (found, age) = if has_turned || self.goes_round(state, slip) {
+            let way = if has_turned { swing.turned } else { swing.rate };
+            let with_spin = way * surface >= 0.0;
             let whirl = if with_spin {
                 Regime::ForwardWhirl
             } else {
@@ -296,6 +308,26 @@ impl Touching {
     pub(crate) fn outward(&self) -> [f32; 2] {
         let swing = self.swing();
         [swing.sin, -swing.cos]
+    }
+
+    /// Where the rotor is for a forecast, at `speed` along the wall (m/s) and samples of `period` (s).
+    pub(crate) fn place(&self, speed: f32, period: f32) -> Place {
+        Place::Wall {
+            outward: self.outward(),
+            speed,
+            age: self.age as f32 * period,
+            turned: self.swing().turned,
+        }
+    }
+
+    /// Samples since it began.
+    pub(crate) fn age(&self) -> u32 {
+        self.age
+    }
+
+    /// Whether it is known to go round.
+    pub(crate) fn whirls(&self) -> bool {
+        matches!(self.regime, Regime::ForwardWhirl | Regime::BackwardWhirl)
     }
 
     /// Distance from the wall, m, while it may be lifting off.

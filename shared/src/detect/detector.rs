@@ -5,7 +5,7 @@ use crate::detect::config::DetectorConfig;
 use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
 use crate::detect::flight::{Fix, FlightTest, Listener, direction};
-use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square};
+use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square, sum};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
@@ -15,7 +15,9 @@ use crate::detect::slip::Slip;
 use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
+use crate::forecast::Estimate;
 use crate::sensing::{PLANES, Reading};
+use crate::severity::Strain;
 
 /// Standard deviations by which a rotor has moved for certain.
 const MOVED: f32 = 8.0;
@@ -54,8 +56,6 @@ pub struct DetectorState {
     /// First position, m, and whether the rotor has been at the wall since.
     origin: Option<[f32; 2]>,
     off_wall: bool,
-    /// Channels whose fault has been told.
-    faulty: u8,
 }
 
 impl Detector {
@@ -100,7 +100,14 @@ impl Detector {
             next_number: &mut next_number,
             notices,
         };
-        self.faults(state, reading, &mut teller);
+        for (channel, found) in (0..).zip(reading.found) {
+            if let Some(found) = found {
+                teller.tell_fault(channel, found);
+            }
+        }
+        if reading.moved != [0.0; 2] {
+            state.shift(reading.moved);
+        }
         self.orbiting.advance(&mut state.orbit, signals.spin);
         let fix = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
@@ -135,6 +142,25 @@ impl Detector {
         state.next_number = next_number;
     }
 
+    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
+    /// move as one.
+    pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
+        if state.ends.are_alone() {
+            return None;
+        }
+        let at = Moment::of_sample(state.sample.saturating_sub(1));
+        self.ladder.estimate(&state.rotor, at, spin)
+    }
+
+    /// What the rotor goes through; of ends that are apart the one that is worse off.
+    pub(crate) fn strain(&self, state: &DetectorState) -> Strain {
+        let of = |rungs: &Rungs| self.ladder.strain(rungs);
+        match state.ends.alone() {
+            [a, b] => of(a).worse(&of(b)),
+            _ => of(&state.rotor),
+        }
+    }
+
     /// Each end's position, where seen.
     fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Fix>; PLANES] {
         let fix = |position| Fix {
@@ -143,15 +169,6 @@ impl Detector {
             variance: state.noise.variance(1, self.resolution),
         };
         reading.planes.map(|position| position.map(fix))
-    }
-
-    fn faults(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
-        let new = reading.unusable & !state.faulty;
-        state.faulty = reading.unusable;
-        if new != 0 {
-            let ends = [new & 0b0011 != 0, new & 0b1100 != 0];
-            teller.tell_of(ends, EventKind::SensorFault);
-        }
     }
 
     /// The rotor as a whole.
@@ -380,6 +397,23 @@ impl Detector {
 }
 
 impl DetectorState {
+    /// The mean over the planes has moved by `way` (m), the rotor has not.
+    fn shift(&mut self, way: [f32; 2]) {
+        self.levitation.shift(way);
+        self.orbit.shift(way);
+        self.listener.shift(way);
+        if let Some(origin) = &mut self.origin {
+            *origin = sum(*origin, way);
+        }
+        if !self.ends.are_alone() {
+            let outward = self.rotor.contact.outward();
+            let farther = way[0] * outward[0] + way[1] * outward[1];
+            let track = &mut self.rotor.flight.track;
+            track.position = sum(track.position, way);
+            self.rotor.contact = self.rotor.contact.at_one_end(farther);
+        }
+    }
+
     /// The present phase; of ends that are apart the one that is further on.
     pub fn phase(&self) -> Phase {
         let [a, b] = self.phases();
@@ -432,7 +466,7 @@ impl DetectorState {
 }
 
 /// The bits of a NaN differ between machines that agree on everything else.
-fn bits(value: f32) -> u32 {
+pub(crate) fn bits(value: f32) -> u32 {
     if value.is_nan() {
         0x7fc0_0000
     } else {

@@ -2,6 +2,7 @@
 
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
+use crate::detect::ladder::sum;
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
@@ -63,6 +64,11 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
+    /// What is measured has moved by `way`, m.
+    pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        self.track.position = sum(self.track.position, way);
+    }
+
     /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
     /// clearly louder counts.
     pub(crate) fn loudness(&self) -> f32 {
@@ -248,10 +254,12 @@ impl FlightTest {
     }
 
     /// Part of the flight after an impact in which another is impossible, s: it leaves the wall with
-    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall.
+    /// speed v and comes back to it after 2 v/(v_t^2/rho + v^2/rho + g cos phi), on a flat wall. Gravity that
+    /// pulls it off the wall hurries it to the other side, so it counts as well.
     fn shortest_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
         let launch = flight.series.restitution(&self.machine) * last.normal_speed;
-        let back = last.pressing + launch * launch / self.machine.clearance;
+        let pull = self.machine.gravity * last.outward[1].max(0.0);
+        let back = last.pressing + 2.0 * pull + launch * launch / self.machine.clearance;
         if back > 0.0 {
             IMPOSSIBLE * 2.0 * launch / back
         } else {
@@ -322,6 +330,7 @@ mod tests {
             &DetectorConfig {
                 sample_rate,
                 machine: MachineConfig {
+                    mass: 3.42,
                     clearance: 3e-4,
                     gravity: 9.81,
                     rotor_radius: 0.024,

@@ -10,6 +10,9 @@ use crate::detect::signals::Signals;
 use crate::detect::still::Still;
 use crate::detect::teller::{Pending, Teller};
 use crate::event::{EventKind, Moment};
+use crate::forecast::{Estimate, Place};
+use crate::real::sqrt;
+use crate::severity::Strain;
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
@@ -136,6 +139,69 @@ impl Ladder {
     pub(crate) fn part(&self, rungs: &mut Rungs, fix: &Fix, loudness: f32) {
         rungs.flight = self.flight.part(&rungs.flight, fix, loudness);
         rungs.still = Still::default();
+    }
+
+    /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
+    pub(crate) fn estimate(
+        &self,
+        rungs: &Rungs,
+        at: Moment,
+        spin: Option<f32>,
+    ) -> Option<Estimate> {
+        let machine = &self.machine;
+        let series = &rungs.flight.series;
+        let mut estimate = Estimate {
+            at,
+            place: Place::Air {
+                position: rungs.flight.track.position,
+                velocity: rungs.flight.track.velocity,
+            },
+            speed_error: rungs.flight.track.speed_error(),
+            spin: spin.unwrap_or(machine.spin),
+            restitution: series.restitution(machine),
+            clear_impacts: series.weight(),
+        };
+        match rungs.phase {
+            Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
+            Phase::Sliding | Phase::Rolling => {
+                let contact = &rungs.contact;
+                let speed = contact.swing().rate * machine.clearance;
+                let radius = machine.rotor_radius;
+                // Against a ring that turns, or where it rolls, the slip is known and not the spin.
+                if let Some(slip) = &contact.slip {
+                    estimate.spin = (slip.speed - speed) / radius;
+                } else if contact.kind == Some(Kind::Rolling) {
+                    estimate.spin = -speed / radius;
+                }
+                estimate.speed_error = contact.track.rate_spread() * machine.clearance;
+                estimate.place = contact.place(speed, self.period);
+            }
+            _ => return None,
+        }
+        Some(estimate)
+    }
+
+    /// What the rotor goes through, for its severity.
+    pub(crate) fn strain(&self, rungs: &Rungs) -> Strain {
+        let (track, contact) = (&rungs.flight.track, &rungs.contact);
+        let clearance = self.machine.clearance;
+        let [u, v] = track.velocity;
+        let mut strain = Strain {
+            is_released: rungs.phase >= Phase::FreeFall,
+            speed: sqrt(u * u + v * v),
+            speed_error: track.speed_error(),
+            restitution: rungs.flight.series.restitution(&self.machine),
+            to_come: rungs.flight.series.to_come(&self.machine),
+            ..Strain::default()
+        };
+        if rungs.phase.is_contact() {
+            let rate = contact.swing().rate;
+            strain.speed = clearance * rate.abs();
+            strain.speed_error = clearance * contact.track.rate_spread();
+            strain.contact_age = Some(contact.age());
+            strain.whirl = contact.whirls().then_some(rate);
+        }
+        strain
     }
 
     /// Whether it may be at the wall.
@@ -312,4 +378,9 @@ pub(crate) fn is_home(fix: &Fix, home: [f32; 2], variance: f32) -> bool {
 pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     dx * dx + dy * dy
+}
+
+/// Of two ways, m.
+pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0] + b[0], a[1] + b[1]]
 }

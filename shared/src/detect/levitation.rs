@@ -1,6 +1,7 @@
 //! What is learnt while the rotor floats: where, and how quietly.
 
 use crate::detect::config::Tuning;
+use crate::detect::ladder::sum;
 
 /// Seconds that the learnt position follows after arming.
 const FOLLOW_TIME: f32 = 0.5;
@@ -72,6 +73,12 @@ impl Learning {
 }
 
 impl Levitation {
+    /// What is measured has moved by `way`, m.
+    pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        self.mean = sum(self.mean, way);
+        self.halfway = sum(self.halfway, way);
+    }
+
     /// Whether learning has just begun, or begun again.
     pub(crate) fn is_fresh(&self) -> bool {
         self.count == 0

@@ -40,6 +40,7 @@ mod track;
 mod wall;
 
 pub use config::{DetectorConfig, MachineConfig, Tuning};
+pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};
 pub use ladder::Phase;
 pub use signals::{Retainer, Signals};

@@ -97,6 +97,22 @@ impl Series {
         (seen + PRIOR_WEIGHT * machine.restitution) / (weight + PRIOR_WEIGHT)
     }
 
+    /// Weight of the impacts in the restitution, in clear ones.
+    pub(crate) fn weight(&self) -> f32 {
+        self.seen[1]
+    }
+
+    /// Sum of the speeds into the wall, m/s, of the impacts after the last one, on a wall that presses evenly.
+    pub(crate) fn to_come(&self, machine: &MachineConfig) -> f32 {
+        let restitution = self.restitution(machine);
+        match &self.last {
+            Some(last) if self.ends.is_some() && restitution < 1.0 => {
+                last.normal_speed * restitution / (1.0 - restitution)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Another series, with what has been learnt and taken in this one.
     pub(crate) fn anew(&self) -> Self {
         Self {
@@ -162,6 +178,7 @@ mod tests {
     use super::*;
 
     const MACHINE: MachineConfig = MachineConfig {
+        mass: 3.42,
         clearance: 3e-4,
         gravity: 9.81,
         rotor_radius: 0.024,

@@ -1,6 +1,7 @@
 //! What a tick says.
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
+use crate::health::{Fault, Found};
 use crate::sensing::PLANES;
 
 /// A declared fall that is neither confirmed nor withdrawn.
@@ -47,6 +48,7 @@ impl Teller<'_> {
             plane: self.plane,
             normal_speed,
             motion: self.motion,
+            fault: None,
         }));
         number
     }
@@ -62,6 +64,26 @@ impl Teller<'_> {
         let number = self.tell(kind, 0.0, 0.0);
         self.plane = whole;
         number
+    }
+
+    /// Declares a fault.
+    pub(crate) fn tell_fault(&mut self, channel: u8, found: Found) {
+        let number = *self.next_number;
+        *self.next_number = number.wrapping_add(1);
+        let age = found.age as f32;
+        let _ = self.notices.push(Notice::Declared(Event {
+            number,
+            kind: EventKind::SensorFault,
+            onset: Moment::of_sample(self.sample).later(-age),
+            declared: self.sample,
+            plane: if channel < 2 { Plane::A } else { Plane::B },
+            normal_speed: 0.0,
+            motion: self.motion,
+            fault: Some(Fault {
+                channel,
+                kind: found.kind,
+            }),
+        }));
     }
 
     /// Confirms or withdraws the pending fall, if there is one.

@@ -1,6 +1,7 @@
 //! Position and velocity in flight: a Kalman filter of a ballistic path, the same for both axes.
 
 use crate::detect::jump::Jump;
+use crate::real::sqrt;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +105,11 @@ impl Track {
             velocity,
             covariance: [variance, 0.0, spread * spread],
         }
+    }
+
+    /// Standard deviation of the velocity on each axis, m/s.
+    pub(crate) fn speed_error(&self) -> f32 {
+        sqrt(self.covariance[2].max(0.0))
     }
 
     /// Takes a velocity jump in.

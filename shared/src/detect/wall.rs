@@ -116,7 +116,9 @@ impl WallFilter {
         let k = self.stiffness;
         let slide = &mut track.slide;
         let pressing = slide.rate * slide.rate + k * slide.cos;
-        slide.predict(friction * pressing.max(0.0) - k * slide.sin, dt);
+        // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
+        let growth = 1.0 + friction * slide.rate * dt;
+        slide.predict(growth * (friction * pressing.max(0.0) - k * slide.sin), dt);
         let roll = &mut track.roll;
         roll.predict(-k * self.rolling * roll.sin, dt);
         let [aa, ar, rr] = track.covariance;
@@ -152,9 +154,10 @@ impl WallTrack {
 }
 
 impl Swing {
+    /// A rate of more than a radian in a sample is not followed.
     fn predict(&mut self, acceleration: f32, dt: f32) {
         let angle = (self.rate + 0.5 * acceleration * dt) * dt;
-        self.rate += acceleration * dt;
+        self.rate = (self.rate + acceleration * dt).clamp(-1.0 / dt, 1.0 / dt);
         self.rotate(angle);
     }
 

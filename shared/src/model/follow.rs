@@ -73,10 +73,7 @@ impl<R: Precision> Rigid<R> {
                     let hurry = impacts > IMPACTS_PER_STEP;
                     self.impact(state, &flight, to, hurry, sink);
                 }
-                &Motion::Settling { onto, stuck } => {
-                    state.begun = state.ends;
-                    self.enter_contact(state, onto, grip(stuck), sink);
-                }
+                &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, sink),
                 Motion::Contact(_) if stretches < STRETCHES_PER_STEP => {
                     if watch(state) {
                         continue;
@@ -94,6 +91,35 @@ impl<R: Precision> Rigid<R> {
         if impacts > IMPACTS_PER_STEP || stretches >= STRETCHES_PER_STEP {
             state.shortened = state.shortened.saturating_add(1);
         }
+    }
+
+    /// Goes to the next change of motion and through it alone; false where none lies ahead.
+    pub(crate) fn next_change(
+        &self,
+        state: &mut RigidState<R>,
+        mut sink: impl FnMut(Happening<R>),
+    ) -> bool {
+        if state.ends == Instant::NEVER {
+            return false;
+        }
+        state.now = state.ends;
+        match &state.motion {
+            &Motion::Flight { flight, to } => self.impact(state, &flight, to, false, &mut sink),
+            &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, &mut sink),
+            Motion::Contact(_) => self.end_of_stretch(state, &mut sink),
+        }
+        true
+    }
+
+    fn settled(
+        &self,
+        state: &mut RigidState<R>,
+        onto: WallState<R>,
+        stuck: bool,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        state.begun = state.ends;
+        self.enter_contact(state, onto, grip(stuck), sink);
     }
 
     fn impact(

@@ -56,6 +56,21 @@ impl<R: Precision> RigidState<R> {
         self.solved
     }
 
+    /// Whether it is in the air up to the next change.
+    pub(crate) fn is_flying(&self) -> bool {
+        matches!(&self.motion, Motion::Flight { .. })
+    }
+
+    /// Whole turns round the retainer in the contact's stretches so far, and the angle beyond them, rad.
+    pub(crate) fn turned(&self) -> (i64, R) {
+        self.turns.parts()
+    }
+
+    /// Surface speed of the spin at the last change.
+    pub(crate) fn spin(&self) -> R {
+        self.spin.value()
+    }
+
     pub(crate) fn is_rolling(&self) -> bool {
         matches!(&self.motion, Motion::Contact(contact) if contact.mode == Mode::Rolling)
     }

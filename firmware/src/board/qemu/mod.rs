@@ -89,6 +89,8 @@ fn run() -> Result<(), Failure> {
         }
     }
     let summary = fingerprint.summary(app.state());
+    let severity = *app.state().severity();
+    board.answer.write(&Record::Severity(severity))?;
     board.answer.write(&Record::Summary(summary))?;
     info!(
         "end: {=u64} samples, {=u64} faults",

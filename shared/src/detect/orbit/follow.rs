@@ -138,6 +138,12 @@ impl Follow {
 }
 
 impl Orbit {
+    /// About another centre, `way` (m) off.
+    pub(super) fn shift(&mut self, [x, y]: [f32; 2]) {
+        self.centre[0] += x;
+        self.centre[1] += y;
+    }
+
     /// Square of its radius, m^2: mean of the axes' amplitudes.
     pub(super) fn square(&self) -> f32 {
         let [[a, b], [c, d]] = self.waves[0];

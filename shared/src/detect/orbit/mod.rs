@@ -118,6 +118,14 @@ impl Orbiting {
 }
 
 impl OrbitState {
+    /// What is measured has moved by `way`, m: a search begins again.
+    pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        match &mut self.orbit {
+            Some(orbit) => orbit.shift(way),
+            None => *self = Self::default(),
+        }
+    }
+
     /// Whether there is no orbit to be fitted first.
     pub(crate) fn is_fitted(&self, orbiting: &Orbiting) -> bool {
         self.orbit.is_none() || self.count >= orbiting.fit_samples

@@ -1,0 +1,100 @@
+//! Where one plane has been on average: whether a rotor can be there.
+//!
+//! Whatever a rotor does, its mean over more than a swing is not beyond the wall; and one that lies or swings on
+//! the wall does so at the bottom.
+
+use crate::real::sqrt;
+
+/// Part of the clearance that a rotor which swings moves about by, at most; one that whirls does by more.
+const SWING: f32 = 0.35;
+/// Times the tolerance of the wall that it may seem beyond it.
+const BEYOND: f32 = 3.0;
+/// Part of the radius by which a rotor lies at a side or the top.
+const ASIDE: f32 = 0.9;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lie {
+    clearance: f32,
+    /// Mean radius that is beyond the wall, m.
+    beyond: f32,
+    /// Whether there is a bottom, and friction cannot hold a rotor at a side.
+    falls: bool,
+    looks: u16,
+}
+
+/// What has been seen of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Lying {
+    looks: u16,
+    /// All the time.
+    touches: bool,
+    first: [f32; 2],
+    sum: [f32; 2],
+    square: f32,
+}
+
+/// Where a rotor cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// At the top.
+    Top,
+    /// At a side.
+    Side,
+    /// Beyond the wall, along x (0) or along y (1).
+    Beyond(u8),
+}
+
+impl Lie {
+    /// Judges after so many looks; lengths in m.
+    pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
+        Self {
+            clearance,
+            beyond: clearance + BEYOND * tolerance,
+            falls,
+            looks,
+        }
+    }
+
+    /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot.
+    pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2], touches: bool) -> Option<Place> {
+        if it.looks == 0 {
+            it.first = position;
+            it.touches = true;
+        }
+        let [x, y] = [position[0] - it.first[0], position[1] - it.first[1]];
+        it.sum[0] += x;
+        it.sum[1] += y;
+        it.square += x * x + y * y;
+        it.touches &= touches;
+        it.looks += 1;
+        if it.looks < self.looks {
+            return None;
+        }
+        let count = f32::from(it.looks);
+        let [x, y] = it.sum.map(|sum| sum / count);
+        let variance = it.square / count - x * x - y * y;
+        let mean = [x + it.first[0], y + it.first[1]];
+        let touches = it.touches;
+        *it = Lying::default();
+        let swing = SWING * self.clearance;
+        self.judge(mean, touches && variance < swing * swing)
+    }
+
+    fn judge(&self, [x, y]: [f32; 2], lies: bool) -> Option<Place> {
+        let radius = sqrt(x * x + y * y);
+        if radius > self.beyond {
+            return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
+        }
+        if !(lies && self.falls && radius > 0.5 * self.clearance) {
+            return None;
+        }
+        if y > ASIDE * radius {
+            Some(Place::Top)
+        } else if x.abs() > ASIDE * radius {
+            Some(Place::Side)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Two planes of one rotor: the mean of both moves when one is lost or comes back, the rotor does not.
+
+use crate::sensing::PLANES;
+
+/// Samples that half the difference of the planes is learnt over. Chosen: eight times as long as a stuck
+/// channel goes unnoticed.
+const MEMORY: f32 = 128.0;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    /// Half difference, m, beyond which the ends of a rotor that does not float are apart.
+    tolerance: f32,
+}
+
+/// What is known of the two.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pairing {
+    /// Half the difference, a - b, m.
+    half: [f32; 2],
+    seen: [bool; PLANES],
+}
+
+impl Pair {
+    pub(crate) fn new(tolerance: f32) -> Self {
+        Self { tolerance }
+    }
+
+    /// Takes the planes, m, both with values of their own where `own`; how far the mean of those that are seen
+    /// has moved because others are seen than before, m. Ends that are apart each go their own way: no move.
+    pub(crate) fn take(
+        &self,
+        pairing: &mut Pairing,
+        planes: &[Option<[f32; 2]>; PLANES],
+        own: bool,
+        floats: bool,
+    ) -> [f32; 2] {
+        let before = pairing.seen;
+        let seen = planes.map(|plane| plane.is_some());
+        if seen == [false; PLANES] {
+            return [0.0; 2];
+        }
+        pairing.seen = seen;
+        if let [Some(a), Some(b)] = planes {
+            let now = [0.5 * (a[0] - b[0]), 0.5 * (a[1] - b[1])];
+            // One sample says less of a rotor that floats than what was learnt of it.
+            if before == [false; PLANES] || (before != seen && !floats) {
+                pairing.half = now;
+            } else if own && before == seen {
+                for (half, now) in pairing.half.iter_mut().zip(now) {
+                    *half += (now - *half) / MEMORY;
+                }
+            }
+        }
+        let [x, y] = pairing.half;
+        let apart = x * x + y * y > self.tolerance * self.tolerance;
+        if before == seen || before == [false; PLANES] || (apart && !floats) {
+            return [0.0; 2];
+        }
+        let way = side(seen) - side(before);
+        [way * x, way * y]
+    }
+}
+
+/// Where the mean is, in half differences from the middle.
+fn side(seen: [bool; PLANES]) -> f32 {
+    f32::from(u8::from(seen[0])) - f32::from(u8::from(seen[1]))
+}
+
+impl Pairing {
+    /// Along which the planes are farther apart, 0 or 1.
+    pub(crate) fn axis(&self) -> usize {
+        let [x, y] = self.half;
+        usize::from(y.abs() > x.abs())
+    }
+
+    /// What the next tick goes on from.
+    pub(crate) fn words(&self) -> [f32; 2] {
+        self.half
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [f32; 2] = [30e-6, 0.0];
+    const B: [f32; 2] = [10e-6, 4e-6];
+
+    #[test]
+    fn the_mean_moves_by_what_it_is_told() {
+        let (pair, mut pairing) = (Pair::new(20e-6), Pairing::default());
+        let mut mean = None;
+        for planes in [
+            [Some(A), Some(B)],
+            [Some(A), None],
+            [None, Some(B)],
+            [Some(A), Some(B)],
+            [None, Some(B)],
+        ] {
+            let moved = pair.take(&mut pairing, &planes, true, true);
+            let seen: Vec<_> = planes.into_iter().flatten().collect();
+            let now = [0, 1].map(|k| seen.iter().map(|it| it[k]).sum::<f32>() / seen.len() as f32);
+            for k in 0..2 {
+                let way = mean.map_or(0.0, |mean: [f32; 2]| now[k] - mean[k]);
+                assert!((moved[k] - way).abs() < 1e-12, "{planes:?}: {moved:?}");
+            }
+            mean = Some(now);
+        }
+    }
+
+    #[test]
+    fn ends_that_are_apart_do_not_move_each_other() {
+        let (pair, mut pairing) = (Pair::new(5e-6), Pairing::default());
+        pair.take(&mut pairing, &[Some(A), Some(B)], true, false);
+        let moved = pair.take(&mut pairing, &[Some(A), None], true, false);
+        assert_eq!(moved, [0.0; 2]);
+    }
+}
