@@ -4,7 +4,7 @@ use touchdown_core::config_block::Patrol;
 use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::error::ConfigError;
-use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
@@ -60,10 +60,11 @@ impl App {
     }
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
-    /// outputs, and last of all the watchdog is fed.
-    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample, lost: u32) {
+    /// outputs, and last of all the watchdog is fed. The notices come back for the recorder.
+    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample, lost: u32) -> Notices {
         let mut dropped = false;
-        for notice in &self.monitor.update(&mut self.state, sample) {
+        let mut notices = self.monitor.update(&mut self.state, sample);
+        for notice in &notices {
             dropped |= self.is_drop(notice);
             self.permit.hear(notice);
             board.report(notice);
@@ -76,8 +77,11 @@ impl App {
         // After the outputs: it delays none of them.
         if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
             board.report(&notice);
+            // There is room: a tick gives fewer than NOTICES_PER_TICK.
+            let _ = notices.push(notice);
         }
         board.feed();
+        notices
     }
 
     /// Whether a notice trips: a confirmed fall, whirl, or permanent contact of what floated.

@@ -18,3 +18,6 @@ pub mod outputs;
 pub mod overrun;
 pub mod permit;
 pub mod speed;
+pub mod recorder;
+pub mod store;
+pub mod w25q;

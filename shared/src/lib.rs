@@ -18,6 +18,7 @@ pub mod forecast;
 pub mod health;
 #[cfg(feature = "serde")]
 pub mod link;
+pub mod log;
 pub mod model;
 pub mod monitor;
 pub mod real;

@@ -1,0 +1,265 @@
+//! One buffer's state: a history, then an episode, then nothing again.
+
+use heapless::Vec;
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::log::block::{Block, Kind};
+use touchdown_core::log::ending::{Closing, Ending};
+use touchdown_core::log::header::Header;
+use touchdown_core::log::reader;
+use touchdown_core::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_core::wire::{self, NOTICE_BYTES, Record};
+
+use super::{CAPACITY, Plan};
+
+/// Notices of an episode; those beyond are counted.
+const NOTICES: usize = 64;
+/// Notices of a block.
+const NOTICES_PER_BLOCK: usize = touchdown_core::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
+/// Bytes of a severity and its version.
+const SEVERITY_BYTES: usize = 64;
+const COPIES: u8 = reader::COPIES as u8;
+
+/// What began an episode.
+#[derive(Clone, Copy, Debug)]
+struct Trigger {
+    kind: EventKind,
+    tick: u64,
+    /// Samples to be recorded, those before it included.
+    planned: usize,
+    continues: bool,
+}
+
+/// How far the store has come.
+#[derive(Clone, Copy, Debug)]
+struct Fetched {
+    blocks: u16,
+    headers: u8,
+    samples: usize,
+    notices: usize,
+    severity: bool,
+    endings: u8,
+}
+
+/// A buffer's state.
+#[derive(Clone, Debug)]
+pub(super) struct Capture {
+    /// Place of the first sample in the ring.
+    first: usize,
+    held: usize,
+    /// Tick of the last sample.
+    newest: u64,
+    trigger: Option<Trigger>,
+    closing: Option<(Closing, u64)>,
+    notices: Vec<[u8; NOTICE_BYTES], NOTICES>,
+    notices_lost: u32,
+    touched: bool,
+    fastest: f32,
+    severity: Vec<u8, SEVERITY_BYTES>,
+    fetched: Fetched,
+}
+
+impl Capture {
+    pub(super) const EMPTY: Self = Self {
+        first: 0,
+        held: 0,
+        newest: 0,
+        trigger: None,
+        closing: None,
+        notices: Vec::new(),
+        notices_lost: 0,
+        touched: false,
+        fastest: 0.0,
+        severity: Vec::new(),
+        fetched: Fetched {
+            blocks: 0,
+            headers: 0,
+            samples: 0,
+            notices: 0,
+            severity: false,
+            endings: 0,
+        },
+    };
+
+    /// Whether it holds no episode.
+    pub(super) fn is_idle(&self) -> bool {
+        self.trigger.is_none()
+    }
+
+    /// Whether it has all samples of its episode.
+    pub(super) fn is_full(&self) -> bool {
+        self.trigger.is_some_and(|it| self.held >= it.planned)
+    }
+
+    /// Whether the store has all of its episode.
+    pub(super) fn is_fetched(&self) -> bool {
+        self.fetched.endings == COPIES
+    }
+
+    /// Whether the retainer was touched.
+    pub(super) fn has_touched(&self) -> bool {
+        self.touched
+    }
+
+    /// Tick of the trigger.
+    pub(super) fn trigger(&self) -> u64 {
+        self.trigger.map_or(0, |it| it.tick)
+    }
+
+    pub(super) fn record(
+        &mut self,
+        buffer: &mut [Counts; CAPACITY],
+        counts: Counts,
+        plan: &Plan,
+        tick: u64,
+    ) {
+        if let Some(place) = buffer.get_mut(wrapped(self.first + self.held)) {
+            *place = counts;
+        }
+        self.newest = tick;
+        if self.trigger.is_none() && self.held == plan.before {
+            self.first = wrapped(self.first + 1);
+        } else {
+            self.held += 1;
+        }
+    }
+
+    /// Begins an episode, or goes on with one that has ended but is still being recorded.
+    pub(super) fn begin(&mut self, kind: EventKind, tick: u64, continues: bool, plan: &Plan) {
+        self.closing = None;
+        self.trigger.get_or_insert(Trigger {
+            kind,
+            tick,
+            planned: self.held + plan.after,
+            continues,
+        });
+    }
+
+    pub(super) fn note(&mut self, notice: &Notice) {
+        let record = wire::encode_record(&Record::Notice(*notice));
+        if self.notices.push(record).is_err() {
+            self.notices_lost = self.notices_lost.saturating_add(1);
+        }
+        if let Notice::Declared(event) = notice {
+            self.touched |= !matches!(
+                event.kind,
+                EventKind::FreeFall | EventKind::Levitated | EventKind::SensorFault
+            );
+            self.fastest = self.fastest.max(event.normal_speed);
+        }
+    }
+
+    pub(super) fn end(&mut self, closing: Closing, tick: u64) {
+        self.closing = Some((closing, tick));
+    }
+
+    pub(super) fn set_severity(&mut self, version: u8, bytes: &[u8]) {
+        self.severity.clear();
+        for &byte in [version].iter().chain(bytes) {
+            // Too long a one is cut off; its own version says how long it should be.
+            let _ = self.severity.push(byte);
+        }
+    }
+
+    /// The next block, if it is ready.
+    pub(super) fn fetch(&mut self, buffer: &[Counts; CAPACITY], plan: &Plan) -> Option<Block> {
+        let trigger = self.trigger.filter(|_| self.held > 0)?;
+        let complete = self.is_full() && self.fetched.samples == self.held;
+        let block = self
+            .header(&trigger, plan)
+            .or_else(|| self.waveform(buffer))
+            .or_else(|| self.events(complete && self.closing.is_some()))
+            .or_else(|| {
+                let (closing, last) = self.closing.filter(|_| complete)?;
+                self.severity()
+                    .or_else(|| Some(self.ending(&trigger, closing, last, plan)))
+            })?;
+        self.fetched.blocks += 1;
+        Some(block)
+    }
+
+    fn header(&mut self, trigger: &Trigger, plan: &Plan) -> Option<Block> {
+        if self.fetched.headers == COPIES {
+            return None;
+        }
+        self.fetched.headers += 1;
+        let config = &plan.config;
+        let recorded = (self.held as u64).saturating_sub(1) * u64::from(plan.decimation);
+        let header = Header {
+            firmware: plan.identity.firmware,
+            config_hash: plan.identity.config_hash,
+            boot: plan.identity.boot,
+            sample_rate: config.sample_rate,
+            decimation: plan.decimation,
+            fitted: config.fitted,
+            trigger_kind: trigger.kind,
+            trigger: trigger.tick,
+            first: self.newest - recorded.min(self.newest),
+            planned: trigger.planned as u32,
+            resolution: config.resolution,
+            zero_count: config.zero_count,
+            full_scale: config.full_scale,
+        };
+        Some(Block::of(Kind::Header, &header.encode()))
+    }
+
+    /// A whole block, or what is left of the last one.
+    fn waveform(&mut self, buffer: &[Counts; CAPACITY]) -> Option<Block> {
+        let start = self.fetched.samples;
+        let ready = self.held - start;
+        if ready == 0 || (ready < SAMPLES_PER_BLOCK && !self.is_full()) {
+            return None;
+        }
+        let samples = (start..self.held)
+            .filter_map(|number| buffer.get(wrapped(self.first + number)).copied());
+        let (block, taken) = Waveform::block(start as u32, samples);
+        self.fetched.samples += taken;
+        Some(block)
+    }
+
+    /// A whole block, or at the end what is left.
+    fn events(&mut self, last: bool) -> Option<Block> {
+        let ready = self.notices.get(self.fetched.notices..)?;
+        if ready.is_empty() || (ready.len() < NOTICES_PER_BLOCK && !last) {
+            return None;
+        }
+        let mut block = Block::new(Kind::Events);
+        for notice in ready.iter().take(NOTICES_PER_BLOCK) {
+            block.push(notice);
+            self.fetched.notices += 1;
+        }
+        Some(block)
+    }
+
+    fn severity(&mut self) -> Option<Block> {
+        if self.fetched.severity || self.severity.is_empty() {
+            return None;
+        }
+        self.fetched.severity = true;
+        Some(Block::of(Kind::Severity, &self.severity))
+    }
+
+    fn ending(&mut self, trigger: &Trigger, closing: Closing, last: u64, plan: &Plan) -> Block {
+        let left = u16::from(COPIES - self.fetched.endings);
+        self.fetched.endings += 1;
+        let ending = Ending {
+            closing,
+            landing: self.touched && !trigger.continues,
+            blocks: self.fetched.blocks + left,
+            samples: self.held as u32,
+            notices: self.notices.len() as u32,
+            notices_lost: self.notices_lost,
+            index: self.fastest / plan.fall_speed,
+            last,
+        };
+        Block::of(Kind::Ending, &ending.encode())
+    }
+}
+
+/// A place in the ring; `place` is below twice its size.
+fn wrapped(place: usize) -> usize {
+    if place < CAPACITY {
+        place
+    } else {
+        place - CAPACITY
+    }
+}

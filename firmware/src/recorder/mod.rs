@@ -1,0 +1,293 @@
+//! Records drops in RAM, for the store to write down.
+//!
+//! Two buffers: samples go into one, as a history of the last 50 ms until a drop is declared, then
+//! until 200 ms after it. From then on they go into the other. A block can be fetched as soon as its
+//! samples are there, so what a failing supply leaves is all but the last few milliseconds.
+
+mod capture;
+
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::log::block::Block;
+use touchdown_core::log::ending::Closing;
+use touchdown_core::log::waveform::{self, Counts};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::real;
+use touchdown_core::sample::Sample;
+
+use self::capture::Capture;
+
+/// Samples of a buffer.
+pub const CAPACITY: usize = 5_000;
+/// Recorded samples per second at most, Hz: so a buffer lasts for what is recorded.
+const FASTEST: f32 = 20_000.0;
+
+const BUFFERS: usize = 2;
+/// Recorded before the trigger, s.
+const BEFORE: f32 = 0.05;
+/// Recorded after the trigger, s.
+const AFTER: f32 = 0.2;
+/// Without a notice for so long, s, a drop is over.
+const QUIET: f32 = 1.0;
+/// No episode is longer, s, so that one is complete however long the rotor whirls.
+const LONGEST: f32 = 10.0;
+/// Standard gravity, m/s^2.
+const GRAVITY: f32 = 9.806_65;
+
+/// The buffers: 80 kB, all zero at first, for a static.
+pub struct Memory([[Counts; CAPACITY]; BUFFERS]);
+
+impl Memory {
+    /// Empty buffers.
+    pub const EMPTY: Self = Self([[[0; 4]; CAPACITY]; BUFFERS]);
+}
+
+/// What the recorder is told of the machine: the same in every header.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Identity {
+    /// The firmware's name and version, filled up with zeros.
+    pub firmware: [u8; 16],
+    /// Checksum of the configuration in force.
+    pub config_hash: u32,
+    /// Times switched on.
+    pub boot: u32,
+}
+
+/// Numbers of samples and ticks that follow from the configuration.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    identity: Identity,
+    config: Scaling,
+    decimation: u16,
+    before: usize,
+    after: usize,
+    quiet: u64,
+    longest: u64,
+    /// Speed of a fall through the clearance under standard gravity, however the rotor lies, m/s.
+    fall_speed: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Scaling {
+    fitted: u8,
+    sample_rate: f32,
+    resolution: f32,
+    zero_count: f32,
+    full_scale: u16,
+}
+
+impl Plan {
+    /// Of a configuration that the monitor has accepted.
+    fn new(config: &MonitorConfig, identity: Identity) -> Self {
+        let rate = config.detector.sample_rate;
+        // Rounded up: a higher rate is thinned out until it fits.
+        let whole = (rate / FASTEST) as u16;
+        let decimation = whole.saturating_add(u16::from(f32::from(whole) * FASTEST < rate));
+        let samples = |time: f32| (time * rate / f32::from(decimation)) as usize;
+        let before = samples(BEFORE).clamp(1, CAPACITY / 2);
+        Self {
+            identity,
+            config: Scaling {
+                fitted: config.fitted,
+                sample_rate: rate,
+                resolution: config.sensing.resolution,
+                zero_count: config.sensing.zero_count,
+                full_scale: config.sensing.full_scale,
+            },
+            decimation,
+            before,
+            after: samples(AFTER).clamp(1, CAPACITY - before),
+            quiet: (QUIET * rate) as u64,
+            longest: (LONGEST * rate) as u64,
+            fall_speed: real::sqrt(2.0 * GRAVITY * config.detector.machine.clearance),
+        }
+    }
+}
+
+/// The drop that goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drop {
+    None,
+    /// Its notices go to this buffer's capture.
+    Recorded(usize),
+    /// Both buffers were in use when it began.
+    Lost,
+}
+
+/// Records drops.
+pub struct Recorder<'m> {
+    memory: &'m mut Memory,
+    plan: Plan,
+    captures: [Capture; BUFFERS],
+    tick: u64,
+    /// Ticks until a sample is recorded.
+    skip: u16,
+    /// Buffer that samples go into.
+    recording: Option<usize>,
+    /// Buffer that is fetched from.
+    fetching: usize,
+    drop: Drop,
+    last_notice: u64,
+    /// The last episode was as long as one may be, and its drop goes on.
+    continues: bool,
+    lost: u32,
+}
+
+impl<'m> Recorder<'m> {
+    /// For samples that the monitor takes with `config`, which it has accepted.
+    pub fn new(memory: &'m mut Memory, config: &MonitorConfig, identity: Identity) -> Self {
+        Self {
+            memory,
+            plan: Plan::new(config, identity),
+            captures: [const { Capture::EMPTY }; BUFFERS],
+            tick: 0,
+            skip: 0,
+            recording: Some(0),
+            fetching: 0,
+            drop: Drop::None,
+            last_notice: 0,
+            continues: false,
+            lost: 0,
+        }
+    }
+
+    /// One sample and what the monitor said to it. Bounded; writes RAM only.
+    pub fn take(&mut self, sample: &Sample, notices: &[Notice]) {
+        if self.skip == 0 {
+            self.skip = self.plan.decimation;
+            self.record(waveform::counts(sample));
+        }
+        self.skip -= 1;
+        for notice in notices {
+            self.note(notice);
+        }
+        self.watch();
+        self.tick += 1;
+    }
+
+    /// The next block to be stored, if one is ready. Bounded: copies at most a block. A block is
+    /// given once, those of an episode in order and none of another in between.
+    pub fn fetch(&mut self) -> Option<Block> {
+        let next = (self.fetching + 1) % BUFFERS;
+        if self.is_idle(self.fetching) && !self.is_idle(next) {
+            self.fetching = next;
+        }
+        let at = self.fetching;
+        let (capture, counts) = (self.captures.get_mut(at)?, self.memory.0.get(at)?);
+        let block = capture.fetch(counts, &self.plan);
+        if capture.is_fetched() {
+            *capture = Capture::EMPTY;
+            // Where samples had nowhere to go, they have now.
+            self.recording.get_or_insert(at);
+        }
+        block
+    }
+
+    /// How severe the present drop is: a version and that version's bytes. The last call counts.
+    pub fn set_severity(&mut self, version: u8, bytes: &[u8]) {
+        if let Drop::Recorded(at) = self.drop
+            && let Some(capture) = self.captures.get_mut(at)
+        {
+            capture.set_severity(version, bytes);
+        }
+    }
+
+    /// Drops since reset of which nothing was recorded, as both buffers were in use.
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+
+    fn is_idle(&self, at: usize) -> bool {
+        self.captures.get(at).is_none_or(Capture::is_idle)
+    }
+
+    fn record(&mut self, counts: Counts) {
+        let Some(at) = self.recording else {
+            return;
+        };
+        let (Some(capture), Some(buffer)) = (self.captures.get_mut(at), self.memory.0.get_mut(at))
+        else {
+            return;
+        };
+        capture.record(buffer, counts, &self.plan, self.tick);
+        if capture.is_full() {
+            let other = (at + 1) % BUFFERS;
+            self.recording = self.is_idle(other).then_some(other);
+        }
+    }
+
+    fn note(&mut self, notice: &Notice) {
+        if self.drop == Drop::None
+            && let Some(kind) = trigger(notice)
+        {
+            self.begin(kind);
+        }
+        self.last_notice = self.tick;
+        let levitated =
+            matches!(notice, Notice::Declared(event) if event.kind == EventKind::Levitated);
+        let withdrawn = matches!(notice, Notice::Withdrawn { .. });
+        let mut untouched = true;
+        if let Drop::Recorded(at) = self.drop
+            && let Some(capture) = self.captures.get_mut(at)
+        {
+            capture.note(notice);
+            untouched = !capture.has_touched();
+        }
+        if levitated {
+            self.end(Closing::Levitated);
+        } else if withdrawn && untouched {
+            self.end(Closing::Withdrawn);
+        }
+    }
+
+    fn begin(&mut self, kind: EventKind) {
+        let continues = self.continues && self.tick - self.last_notice < self.plan.quiet;
+        self.continues = false;
+        self.drop = Drop::Lost;
+        if let Some(at) = self.recording
+            && let Some(capture) = self.captures.get_mut(at)
+        {
+            capture.begin(kind, self.tick, continues, &self.plan);
+            self.drop = Drop::Recorded(at);
+        } else if !continues {
+            self.lost = self.lost.saturating_add(1);
+        }
+    }
+
+    fn end(&mut self, closing: Closing) {
+        if let Drop::Recorded(at) = self.drop
+            && let Some(capture) = self.captures.get_mut(at)
+        {
+            capture.end(closing, self.tick);
+        }
+        self.continues = closing == Closing::Longest;
+        self.drop = Drop::None;
+    }
+
+    /// Ends a drop that says no more, or too much.
+    fn watch(&mut self) {
+        if self.drop == Drop::None {
+            return;
+        }
+        if self.tick - self.last_notice >= self.plan.quiet {
+            self.end(Closing::Quiet);
+        } else if let Drop::Recorded(at) = self.drop
+            && let Some(capture) = self.captures.get(at)
+            && self.tick - capture.trigger() >= self.plan.longest
+        {
+            self.end(Closing::Longest);
+        }
+    }
+}
+
+/// What begins an episode: a fall, or any contact.
+fn trigger(notice: &Notice) -> Option<EventKind> {
+    let Notice::Declared(event) = notice else {
+        return None;
+    };
+    match event.kind {
+        EventKind::LiftOff | EventKind::Rest | EventKind::Levitated | EventKind::SensorFault => {
+            None
+        }
+        kind => Some(kind),
+    }
+}

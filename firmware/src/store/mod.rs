@@ -1,0 +1,272 @@
+//! The drop log in serial NOR flash.
+//!
+//! [`Store::work`] does at most one program or erase a call, so that a low-priority task can call it
+//! and nothing waits for it. In flash there are two sectors of counters and then slots of twelve
+//! sectors, an episode each: `docs/log.md` says what makes them safe against a cut of power.
+
+mod layout;
+mod ledger;
+mod slots;
+
+use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash};
+use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind};
+use touchdown_core::log::counters::Counters;
+use touchdown_core::log::ending::Ending;
+
+use self::layout::{BLOCKS_PER_SLOT, Layout, SECTORS_PER_SLOT};
+pub use self::layout::{EPISODE_BYTES, bytes_of};
+use self::ledger::Ledger;
+use self::slots::Slots;
+
+/// Slots that must stay unlocked: one to write to, one to erase meanwhile, one to keep.
+const LEAST_UNLOCKED: usize = 3;
+
+/// Why the log cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MountError<E> {
+    /// The flash is smaller than the slots, or there are fewer slots than it takes.
+    Size,
+    /// Of the flash.
+    Flash(E),
+}
+
+/// Why an episode cannot be locked or unlocked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LockError<E> {
+    /// There is no such episode.
+    Unknown,
+    /// Too few slots would be left for new episodes.
+    NoRoom,
+    /// It has been locked and unlocked too often.
+    WornOut,
+    /// Of the flash.
+    Flash(E),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// A slot is to be found and erased.
+    Unprepared,
+    /// Sectors of `slot` before `sector` are erased.
+    Erasing { slot: usize, sector: u32 },
+    /// `slot` is erased.
+    Ready { slot: usize },
+    /// Blocks before `block` are written.
+    Writing { slot: usize, block: u32 },
+}
+
+/// The drop log, of `SLOTS` episodes.
+#[derive(Clone, Debug)]
+pub struct Store<const SLOTS: usize> {
+    layout: Layout,
+    ledger: Ledger,
+    slots: Slots<SLOTS>,
+    state: State,
+    clearing: bool,
+    /// Lost drops since reset that are counted in.
+    lost: u32,
+}
+
+impl<const SLOTS: usize> Store<SLOTS> {
+    /// Finds what is in `flash` from `base` on, a multiple of 4096. Only reads; takes as long as
+    /// reading 8 KiB and 800 bytes a slot, and two episodes more after a cut of power.
+    pub fn mount<F: NorFlash>(flash: &mut F, base: u32) -> Result<Self, MountError<F::Error>> {
+        let layout = Layout { base };
+        let size = base as usize + bytes_of(SLOTS);
+        if SLOTS < LEAST_UNLOCKED || flash.capacity() < size {
+            return Err(MountError::Size);
+        }
+        let mut ledger = Ledger::mount(flash, layout).map_err(MountError::Flash)?;
+        let slots = Slots::mount(flash, layout).map_err(MountError::Flash)?;
+        let counted = ledger.counters().episodes;
+        for (slot, sequence) in slots.after(counted) {
+            let ending = slots::ending(flash, layout, slot, sequence).map_err(MountError::Flash)?;
+            ledger.update(|counters| counters.count(sequence, ending.as_ref()));
+        }
+        ledger.update(|counters| counters.boots = counters.boots.saturating_add(1));
+        Ok(Self {
+            layout,
+            ledger,
+            slots,
+            state: State::Unprepared,
+            clearing: false,
+            lost: 0,
+        })
+    }
+
+    /// Does the next thing: one operation on `flash` at most. `fetch` is called at most once, and
+    /// only if its block can be written at once. Whether there may be more to do.
+    ///
+    /// On an error the block that was fetched is lost, which the episode shows; all else is tried
+    /// again by the next call.
+    pub fn work<F: MultiwriteNorFlash>(
+        &mut self,
+        flash: &mut F,
+        fetch: impl FnOnce() -> Option<Block>,
+    ) -> Result<bool, F::Error> {
+        match self.state {
+            State::Writing { slot, block } => match fetch() {
+                Some(next) => self.write(flash, slot, block, &next).map(|()| true),
+                None => Ok(false),
+            },
+            _ if self.ledger.is_ahead() => self.ledger.write(flash).map(|()| true),
+            _ if self.clearing => self.clear_next(flash),
+            State::Unprepared => self.prepare(flash),
+            State::Erasing { slot, sector } => self.erase(flash, slot, sector).map(|()| true),
+            State::Ready { slot } => match fetch() {
+                Some(next) => self.begin(flash, slot, &next).map(|()| true),
+                None => Ok(false),
+            },
+        }
+    }
+
+    /// The lifetime counters; the flash has them after the next few calls of [`Self::work`].
+    pub fn counters(&self) -> &Counters {
+        self.ledger.counters()
+    }
+
+    /// Counts the drops of which nothing was recorded, given their number since reset.
+    pub fn count_lost(&mut self, since_reset: u32) {
+        let more = since_reset.saturating_sub(self.lost);
+        if more > 0 {
+            self.lost = since_reset;
+            self.ledger
+                .update(|counters| counters.lost = counters.lost.saturating_add(more));
+        }
+    }
+
+    /// Number of each episode and whether it is locked, in no order.
+    pub fn episodes(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
+        self.slots.episodes()
+    }
+
+    /// Reads bytes of an episode from `offset` on; how many, 0 past its end or if there is no such
+    /// episode. An episode has [`EPISODE_BYTES`], erased ones at the end.
+    pub fn read<F: NorFlash>(
+        &self,
+        flash: &mut F,
+        sequence: u32,
+        offset: u32,
+        bytes: &mut [u8],
+    ) -> Result<usize, F::Error> {
+        let left = (EPISODE_BYTES as u32).saturating_sub(offset) as usize;
+        let length = left.min(bytes.len());
+        match (self.slots.find(sequence), bytes.get_mut(..length)) {
+            (Some(slot), Some(bytes)) if length > 0 => {
+                flash.read(self.layout.slot(slot) + offset, bytes)?;
+                Ok(length)
+            }
+            _ => Ok(0),
+        }
+    }
+
+    /// Keeps an episode, or gives it free to be overwritten. One operation.
+    pub fn set_locked<F: MultiwriteNorFlash>(
+        &mut self,
+        flash: &mut F,
+        sequence: u32,
+        locked: bool,
+    ) -> Result<(), LockError<F::Error>> {
+        let slot = self.slots.find(sequence).ok_or(LockError::Unknown)?;
+        if self.slots.is_locked(slot) == locked {
+            return Ok(());
+        }
+        if locked && self.slots.unlocked() <= LEAST_UNLOCKED {
+            return Err(LockError::NoRoom);
+        }
+        let marks = slots::marks(flash, self.layout, slot).map_err(LockError::Flash)?;
+        let toggle = marks.toggle.ok_or(LockError::WornOut)?;
+        let address = self.layout.marks(slot) + u32::from(toggle);
+        flash.write(address, &[0]).map_err(LockError::Flash)?;
+        self.slots.set_locked(slot, locked);
+        Ok(())
+    }
+
+    /// Gives up all episodes that are not locked, one a call of [`Self::work`].
+    pub fn clear(&mut self) {
+        self.clearing = true;
+    }
+
+    /// Marks the oldest episode as given up, if its slot has one.
+    fn prepare<F: MultiwriteNorFlash>(&mut self, flash: &mut F) -> Result<bool, F::Error> {
+        let Some(slot) = self.slots.oldest() else {
+            return Ok(false);
+        };
+        if self.slots.is_used(slot) {
+            self.release(flash, slot)?;
+        }
+        self.state = State::Erasing { slot, sector: 0 };
+        Ok(true)
+    }
+
+    fn clear_next<F: MultiwriteNorFlash>(&mut self, flash: &mut F) -> Result<bool, F::Error> {
+        match self.slots.oldest_used() {
+            Some(slot) => self.release(flash, slot).map(|()| true),
+            None => {
+                self.clearing = false;
+                Ok(true)
+            }
+        }
+    }
+
+    fn release<F: NorFlash>(&mut self, flash: &mut F, slot: usize) -> Result<(), F::Error> {
+        flash.write(self.layout.marks(slot), &layout::RELEASED)?;
+        self.slots.give_up(slot);
+        Ok(())
+    }
+
+    /// From the first sector, the one with the header, to the last, the one with the mark.
+    fn erase<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        slot: usize,
+        sector: u32,
+    ) -> Result<(), F::Error> {
+        let (from, to) = self.layout.sector(slot, sector);
+        flash.erase(from, to)?;
+        let sector = sector + 1;
+        self.state = if sector == SECTORS_PER_SLOT {
+            State::Ready { slot }
+        } else {
+            State::Erasing { slot, sector }
+        };
+        Ok(())
+    }
+
+    fn begin<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        slot: usize,
+        first: &Block,
+    ) -> Result<(), F::Error> {
+        // What is left of an episode that had too many blocks has no place.
+        if first.kind() != Kind::Header {
+            return Ok(());
+        }
+        let newest = self.slots.newest().max(self.counters().episodes);
+        self.slots.take(slot, newest.saturating_add(1));
+        self.write(flash, slot, 0, first)
+    }
+
+    fn write<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        slot: usize,
+        block: u32,
+        next: &Block,
+    ) -> Result<(), F::Error> {
+        let sequence = self.slots.sequence(slot);
+        let ending = Ending::decode(next.payload()).filter(|_| next.kind() == Kind::Ending);
+        let complete = ending.is_some_and(|it| u32::from(it.blocks) == block + 1);
+        if complete || block + 1 == BLOCKS_PER_SLOT {
+            self.ledger
+                .update(|counters| counters.count(sequence, ending.as_ref()));
+            self.state = State::Unprepared;
+        } else {
+            let block = block + 1;
+            self.state = State::Writing { slot, block };
+        }
+        let address = self.layout.slot(slot) + block * BLOCK_BYTES as u32;
+        flash.write(address, &next.seal(sequence, block as u16))
+    }
+}

@@ -1,0 +1,153 @@
+//! Which episode is in which slot.
+
+use embedded_storage::nor_flash::NorFlash;
+use touchdown_core::log::block::{BLOCK_BYTES, Kind, Page};
+use touchdown_core::log::ending::Ending;
+use touchdown_core::log::marks::{MARKS_BYTES, Marks};
+
+use super::layout::{BLOCKS_PER_SLOT, Layout};
+
+/// Pages of which one tells whose slot it is: so many may be damaged but one.
+const FIRST_PAGES: u32 = 3;
+
+/// Number of the slot's episode, from 1; 0 if it has none.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    sequence: u32,
+    locked: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Slots<const SLOTS: usize>([Slot; SLOTS]);
+
+impl<const SLOTS: usize> Slots<SLOTS> {
+    pub(super) fn mount<F: NorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
+        let mut slots = [Slot::default(); SLOTS];
+        for (number, slot) in slots.iter_mut().enumerate() {
+            let marks = marks(flash, layout, number)?;
+            if marks.released {
+                continue;
+            }
+            slot.sequence = owner(flash, layout, number)?;
+            slot.locked = marks.locked && slot.sequence != 0;
+        }
+        Ok(Self(slots))
+    }
+
+    /// Slots with episodes after `sequence`, and these.
+    pub(super) fn after(&self, sequence: u32) -> impl Iterator<Item = (usize, u32)> + '_ {
+        let numbered = self.0.iter().map(|slot| slot.sequence).enumerate();
+        numbered.filter(move |&(_, it)| it > sequence)
+    }
+
+    pub(super) fn episodes(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let used = self.0.iter().filter(|slot| slot.sequence != 0);
+        used.map(|slot| (slot.sequence, slot.locked))
+    }
+
+    pub(super) fn find(&self, sequence: u32) -> Option<usize> {
+        self.0
+            .iter()
+            .position(|slot| slot.sequence == sequence && sequence != 0)
+    }
+
+    pub(super) fn newest(&self) -> u32 {
+        self.0.iter().map(|slot| slot.sequence).max().unwrap_or(0)
+    }
+
+    pub(super) fn unlocked(&self) -> usize {
+        self.0.iter().filter(|slot| !slot.locked).count()
+    }
+
+    /// Slot to be written next: an empty one, or else the oldest that is not locked.
+    pub(super) fn oldest(&self) -> Option<usize> {
+        self.least(|_| true)
+    }
+
+    /// Oldest episode that is not locked.
+    pub(super) fn oldest_used(&self) -> Option<usize> {
+        self.least(|slot| slot.sequence != 0)
+    }
+
+    fn least(&self, among: impl Fn(&Slot) -> bool) -> Option<usize> {
+        let slots = self.0.iter().enumerate();
+        slots
+            .filter(|(_, slot)| !slot.locked && among(slot))
+            .min_by_key(|(_, slot)| slot.sequence)
+            .map(|(number, _)| number)
+    }
+
+    pub(super) fn sequence(&self, slot: usize) -> u32 {
+        self.0.get(slot).map_or(0, |it| it.sequence)
+    }
+
+    pub(super) fn is_used(&self, slot: usize) -> bool {
+        self.sequence(slot) != 0
+    }
+
+    pub(super) fn is_locked(&self, slot: usize) -> bool {
+        self.0.get(slot).is_some_and(|it| it.locked)
+    }
+
+    pub(super) fn take(&mut self, slot: usize, sequence: u32) {
+        self.set(slot, sequence, false);
+    }
+
+    pub(super) fn give_up(&mut self, slot: usize) {
+        self.set(slot, 0, false);
+    }
+
+    pub(super) fn set_locked(&mut self, slot: usize, locked: bool) {
+        self.set(slot, self.sequence(slot), locked);
+    }
+
+    fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
+        if let Some(slot) = self.0.get_mut(slot) {
+            *slot = Slot { sequence, locked };
+        }
+    }
+}
+
+/// Marks of a slot.
+pub(super) fn marks<F: NorFlash>(
+    flash: &mut F,
+    layout: Layout,
+    slot: usize,
+) -> Result<Marks, F::Error> {
+    let mut bytes = [0; MARKS_BYTES];
+    flash.read(layout.marks(slot), &mut bytes)?;
+    Ok(Marks::decode(&bytes))
+}
+
+/// Ending of episode `sequence` in `slot`, if it has one.
+pub(super) fn ending<F: NorFlash>(
+    flash: &mut F,
+    layout: Layout,
+    slot: usize,
+    sequence: u32,
+) -> Result<Option<Ending>, F::Error> {
+    let mut bytes = [0; BLOCK_BYTES];
+    for block in (0..BLOCKS_PER_SLOT).rev() {
+        flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, &mut bytes)?;
+        if let Page::Sealed(sealed) = Page::open(&bytes)
+            && sealed.sequence == sequence
+            && sealed.kind == Some(Kind::Ending)
+            && let Some(ending) = Ending::decode(sealed.payload)
+        {
+            return Ok(Some(ending));
+        }
+    }
+    Ok(None)
+}
+
+/// Episode that the first pages of a slot belong to; 0 for none.
+fn owner<F: NorFlash>(flash: &mut F, layout: Layout, slot: usize) -> Result<u32, F::Error> {
+    let mut bytes = [0; BLOCK_BYTES];
+    for block in 0..FIRST_PAGES {
+        flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, &mut bytes)?;
+        if let Page::Sealed(sealed) = Page::open(&bytes) {
+            return Ok(sealed.sequence);
+        }
+    }
+    Ok(0)
+}

@@ -1,0 +1,146 @@
+//! A recorder that is fed with noise and drops, and remembers what it was fed with.
+
+use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::log::header::Header;
+use touchdown_core::log::reader::{Item, Reader, Report, Verdict};
+use touchdown_core::log::waveform::Counts;
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
+use touchdown_firmware::board::default_config;
+use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+
+use super::chip::random;
+
+pub const IDENTITY: Identity = Identity {
+    firmware: *b"touchdown 0.1.0\0",
+    config_hash: 0xc0ff_ee00,
+    boot: 7,
+};
+
+/// The rig's configuration at `rate`.
+pub fn config(rate: f32) -> MonitorConfig {
+    let mut config = default_config();
+    config.detector.sample_rate = rate;
+    config
+}
+
+/// Feeds a recorder.
+pub struct Rig {
+    pub recorder: Recorder<'static>,
+    /// Counts of every tick since reset.
+    pub fed: Vec<Counts>,
+    seed: u64,
+    number: u16,
+}
+
+impl Rig {
+    pub fn new(rate: f32, seed: u64) -> Self {
+        let memory = Box::leak(Box::new(Memory::EMPTY));
+        Self {
+            recorder: Recorder::new(memory, &config(rate), IDENTITY),
+            fed: Vec::new(),
+            seed: seed | 1,
+            number: 0,
+        }
+    }
+
+    /// One tick, with an event of each of `kinds`.
+    pub fn tick(&mut self, kinds: &[EventKind]) {
+        let counts: Counts = core::array::from_fn(|_| random(&mut self.seed) as u16 & 0x0fff);
+        let sample = Sample {
+            counts,
+            valid: 0x0f,
+            spin: None,
+            levitated: None,
+            edges: [None; TACHOMETERS],
+        };
+        assert_eq!(counts.len(), CHANNELS);
+        let notices: Vec<_> = kinds.iter().map(|&kind| self.declared(kind)).collect();
+        self.fed.push(counts);
+        self.recorder.take(&sample, &notices);
+    }
+
+    fn declared(&mut self, kind: EventKind) -> Notice {
+        self.number += 1;
+        let now = self.fed.len() as u64;
+        Notice::Declared(Event {
+            number: self.number,
+            kind,
+            onset: Moment::of_sample(now),
+            declared: now,
+            plane: Plane::A,
+            normal_speed: if kind == EventKind::Impact { 0.2 } else { 0.0 },
+            motion: Motion::Cylindrical,
+            fault: None,
+        })
+    }
+
+    /// What happens in tick `tick` of a drop that is levitated again after `length` ticks.
+    pub fn drop_tick(&mut self, tick: usize, length: usize) {
+        match tick {
+            0 => self.tick(&[EventKind::FreeFall]),
+            _ if tick == length => self.tick(&[EventKind::LiftOff, EventKind::Levitated]),
+            _ if tick < length && tick % 37 == 36 => self.tick(&[EventKind::Impact]),
+            _ => self.tick(&[]),
+        }
+    }
+}
+
+/// An episode as it was read.
+pub struct Read {
+    pub report: Report,
+    pub header: Option<Header>,
+    pub samples: Vec<Option<Counts>>,
+    pub notices: usize,
+}
+
+pub fn read(bytes: &[u8]) -> Read {
+    let mut reader = Reader::new(bytes);
+    let mut read = Read {
+        report: Report::default(),
+        header: None,
+        samples: Vec::new(),
+        notices: 0,
+    };
+    for item in &mut reader {
+        match item {
+            Item::Header(header) => read.header = Some(header),
+            Item::Waveform(waveform) => {
+                let end = waveform.start as usize + waveform.samples().len();
+                read.samples.resize(read.samples.len().max(end), None);
+                for (number, counts) in waveform.samples().enumerate() {
+                    read.samples[waveform.start as usize + number] = Some(counts);
+                }
+            }
+            Item::Events(events) => {
+                assert!(events.notices().all(|it| it.is_some()));
+                read.notices += events.notices().count();
+            }
+            Item::Severity(..) | Item::Ending(_) => {}
+        }
+    }
+    read.report = reader.finish();
+    read
+}
+
+impl Read {
+    /// Whether each sample that is there is the one that was fed.
+    pub fn agrees(&self, fed: &[Counts]) -> bool {
+        let Some(header) = &self.header else {
+            return self.samples.is_empty();
+        };
+        self.samples.iter().enumerate().all(|(number, counts)| {
+            let tick = header.first as usize + number * usize::from(header.decimation);
+            counts.is_none_or(|counts| fed.get(tick) == Some(&counts))
+        })
+    }
+
+    /// Whether all of it is there and right.
+    pub fn is_whole(&self, fed: &[Counts]) -> bool {
+        let planned = self.header.map_or(0, |it| it.planned as usize);
+        self.report.verdict() == Verdict::Whole
+            && self.samples.len() == planned
+            && self.samples.iter().all(Option::is_some)
+            && self.agrees(fed)
+    }
+}

@@ -1,0 +1,195 @@
+//! Power is cut at every operation on the flash in a campaign of drops, in every way that an
+//! operation can be torn. Whatever is left: earlier episodes are whole, the one being written is
+//! whole or marked incomplete, the counters never go back, and the next drop is recorded.
+
+mod common;
+
+use common::chip::{Bus, Chip, NoDelay, Tear, flash};
+use common::rig::{Rig, read};
+use touchdown_core::log::counters::Counters;
+use touchdown_core::log::reader::Verdict;
+use touchdown_core::log::waveform::Counts;
+use touchdown_firmware::store::{EPISODE_BYTES, Store};
+use touchdown_firmware::w25q::W25q;
+
+const SLOTS: usize = 4;
+/// 256 KiB: counters and four slots.
+const CAPACITY: u8 = 20;
+
+type Log = Store<SLOTS>;
+type Flash = W25q<Bus, NoDelay>;
+
+#[derive(Default)]
+struct Tally {
+    cuts: usize,
+    episodes: usize,
+    incomplete: usize,
+}
+
+/// What must be in the flash at some moment.
+struct Known {
+    /// Episodes that are complete, as the store says.
+    complete: Vec<u32>,
+    /// The one that is being written or given up, which may be there or not.
+    open: Option<u32>,
+    /// The counters that were last written in full.
+    counters: Counters,
+    /// What the episodes add up to.
+    landings: u32,
+}
+
+fn episode(log: &Log, flash: &mut Flash, sequence: u32) -> Vec<u8> {
+    let mut bytes = vec![0; EPISODE_BYTES];
+    let length = log.read(flash, sequence, 0, &mut bytes).unwrap();
+    assert_eq!(length, EPISODE_BYTES);
+    bytes
+}
+
+/// After the cut: mounts, checks all that is there, and records one more drop.
+fn check(chip: Chip, known: &Known, fed: &[Vec<Counts>], tally: &mut Tally, at: &str) {
+    let (mut flash, bus) = flash(chip);
+    let mut log = Log::mount(&mut flash, 0).unwrap();
+    tally.cuts += 1;
+    let found: Vec<u32> = log.episodes().map(|(sequence, _)| sequence).collect();
+    for sequence in &known.complete {
+        assert!(found.contains(sequence), "{at}: episode {sequence} is gone");
+    }
+    for &sequence in &found {
+        let bytes = episode(&log, &mut flash, sequence);
+        let read = read(&bytes);
+        let fed = &fed[sequence as usize - 1];
+        tally.episodes += 1;
+        assert_eq!(read.report.sequence, Some(sequence), "{at}");
+        if known.complete.contains(&sequence) {
+            assert!(read.is_whole(fed), "{at}: {sequence} is {:?}", read.report);
+        } else {
+            assert_eq!(known.open, Some(sequence), "{at}: an episode from nowhere");
+            assert!(read.agrees(fed), "{at}: {sequence} has wrong samples");
+            match read.report.verdict() {
+                Verdict::Whole => assert!(read.is_whole(fed), "{at}"),
+                Verdict::Incomplete => tally.incomplete += 1,
+                verdict => panic!("{at}: {sequence} is {verdict:?}: {:?}", read.report),
+            }
+        }
+    }
+    let counters = *log.counters();
+    assert!(counters.landings >= known.counters.landings, "{at}");
+    assert!(counters.weight >= known.counters.weight, "{at}");
+    assert!(counters.episodes >= known.counters.episodes, "{at}");
+    assert!(counters.boots > known.counters.boots, "{at}");
+    assert!(
+        counters.landings >= known.landings && counters.landings <= known.landings + 1,
+        "{at}: {} landings, {} happened",
+        counters.landings,
+        known.landings
+    );
+    let mut rig = Rig::new(RATE, 99);
+    let before = log.episodes().map(|(it, _)| it).max().unwrap_or(0);
+    one_drop(&mut rig, &mut log, &mut flash, |_| {});
+    let newest = log.episodes().map(|(it, _)| it).max().unwrap();
+    assert!(
+        newest > before && newest > counters.episodes.min(before),
+        "{at}"
+    );
+    let bytes = episode(&log, &mut flash, newest);
+    let read = read(&bytes);
+    assert!(
+        read.is_whole(&rig.fed),
+        "{at}: the next is {:?}",
+        read.report
+    );
+    assert_eq!(log.counters().landings, counters.landings + 1, "{at}");
+    assert_eq!(bus.0.borrow().set_bits, 0, "{at}: programmed over data");
+}
+
+/// Ticks per second of the campaign.
+const RATE: f32 = 2_000.0;
+
+/// Feeds a drop and lets the store work until it has nothing left to do; `look` comes after every
+/// call of `work`.
+fn one_drop(rig: &mut Rig, log: &mut Log, flash: &mut Flash, mut look: impl FnMut(&Log)) {
+    for _ in 0..150 {
+        rig.tick(&[]);
+    }
+    for tick in 0..600 {
+        rig.drop_tick(tick, 450);
+        if tick % 3 == 0 {
+            log.work(flash, || rig.recorder.fetch()).unwrap();
+            look(log);
+        }
+    }
+    while log.work(flash, || rig.recorder.fetch()).unwrap() {
+        look(log);
+    }
+    look(log);
+}
+
+#[test]
+fn power_may_be_cut_at_any_operation() {
+    let (mut flash, bus) = flash(Chip::new(CAPACITY));
+    let mut fed: Vec<Vec<Counts>> = Vec::new();
+    let mut tally = Tally::default();
+    let mut complete: Vec<u32> = Vec::new();
+    let mut written = Counters::default();
+    let mut operations = 0;
+    for boot in 0..3 {
+        let mut log = Log::mount(&mut flash, 0).unwrap();
+        for drop in 0..4_u32 {
+            let number = boot * 4 + drop + 1;
+            let mut rig = Rig::new(RATE, u64::from(number) * 7919);
+            // The samples are known beforehand: the same rig, fed the same way.
+            fed.push(forecast(number));
+            let mut pending = *log.counters();
+            one_drop(&mut rig, &mut log, &mut flash, |log| {
+                let chip = bus.0.borrow();
+                if chip.operations == operations {
+                    return;
+                }
+                assert_eq!(chip.operations, operations + 1, "one operation a call");
+                operations = chip.operations;
+                let found: Vec<u32> = log.episodes().map(|(it, _)| it).collect();
+                // Those that are given up by this very operation may be there or not.
+                let gone = complete.iter().copied().find(|it| !found.contains(it));
+                complete.retain(|it| found.contains(it));
+                let open = gone.or_else(|| found.iter().copied().find(|it| !complete.contains(it)));
+                let known = Known {
+                    complete: complete.clone(),
+                    open,
+                    counters: written,
+                    landings: number - 1,
+                };
+                for (way, tear) in Tear::ALL.into_iter().enumerate() {
+                    let torn = chip.torn(tear, (operations * 5 + way) as u64 * 0x9e37_79b9);
+                    let at = format!("operation {operations}, {tear:?}, {:?}", chip.last_name());
+                    check(torn, &known, &fed, &mut tally, &at);
+                }
+                // From the next operation on, what this one did stands.
+                if log.counters().episodes == number && !complete.contains(&number) {
+                    complete.push(number);
+                }
+                if pending == *log.counters() && chip.wrote_counters() {
+                    written = pending;
+                }
+                pending = *log.counters();
+            });
+            assert_eq!(rig.fed, fed[number as usize - 1]);
+            assert_eq!(log.counters().landings, number);
+        }
+    }
+    println!(
+        "{} operations, {} cuts, {} episodes checked, {} of them incomplete",
+        operations, tally.cuts, tally.episodes, tally.incomplete
+    );
+    assert!(tally.cuts == operations * Tear::ALL.len() && tally.incomplete > 0);
+}
+
+fn forecast(number: u32) -> Vec<Counts> {
+    let mut rig = Rig::new(RATE, u64::from(number) * 7919);
+    for _ in 0..150 {
+        rig.tick(&[]);
+    }
+    for tick in 0..600 {
+        rig.drop_tick(tick, 450);
+    }
+    rig.fed
+}

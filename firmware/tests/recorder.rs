@@ -1,0 +1,282 @@
+//! What is recorded of a drop, and what is not.
+
+mod common;
+
+use common::rig::{IDENTITY, Read, Rig, config, read};
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::log::block::{BLOCK_BYTES, Kind};
+use touchdown_core::log::ending::{Closing, Ending};
+use touchdown_core::log::reader::{Item, Reader, Verdict};
+use touchdown_core::monitor::Monitor;
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_firmware::recorder::{CAPACITY, Memory, Recorder};
+use touchdown_firmware::store::EPISODE_BYTES;
+
+/// All blocks that are ready, sealed one after another.
+fn fetch(rig: &mut Rig) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while let Some(block) = rig.recorder.fetch() {
+        let index = bytes.len() / BLOCK_BYTES;
+        bytes.extend(block.seal(1, index as u16));
+        let ending = Ending::decode(block.payload()).filter(|_| block.kind() == Kind::Ending);
+        if ending.is_some_and(|it| usize::from(it.blocks) == index + 1) {
+            break;
+        }
+    }
+    bytes
+}
+
+fn ending(bytes: &[u8]) -> Ending {
+    let mut endings = Reader::new(bytes).filter_map(|item| match item {
+        Item::Ending(ending) => Some(ending),
+        _ => None,
+    });
+    endings.next().expect("no ending")
+}
+
+fn quiet(rig: &mut Rig, ticks: usize) {
+    (0..ticks).for_each(|_| rig.tick(&[]));
+}
+
+/// A drop of 0.3 s after `before` ticks at `rate`.
+fn dropped(rate: f32, before: usize) -> (Rig, Read) {
+    let mut rig = Rig::new(rate, 5);
+    quiet(&mut rig, before);
+    let length = (0.3 * rate) as usize;
+    (0..=length).for_each(|tick| rig.drop_tick(tick, length));
+    let read = read(&fetch(&mut rig));
+    assert!(read.is_whole(&rig.fed));
+    (rig, read)
+}
+
+#[test]
+fn fifty_milliseconds_before_and_two_hundred_after() {
+    let (_, read) = dropped(20_000.0, 3_000);
+    let header = read.header.unwrap();
+    assert_eq!((header.trigger, header.first), (3_000, 2_001));
+    assert_eq!((header.planned, header.decimation), (5_000, 1));
+    assert_eq!(read.samples.len(), CAPACITY);
+    assert_eq!(header.trigger_kind, EventKind::FreeFall);
+    assert_eq!(header.config_hash, IDENTITY.config_hash);
+}
+
+#[test]
+fn soon_after_reset_there_is_less_before() {
+    let (_, read) = dropped(20_000.0, 10);
+    let header = read.header.unwrap();
+    assert_eq!((header.first, header.planned), (0, 4_011));
+}
+
+#[test]
+fn other_rates_are_thinned_out_or_shorter() {
+    for (rate, decimation, samples) in [
+        (1_000.0, 1, 250),
+        (20_000.0, 1, 5_000),
+        (20_001.0, 2, 2_500),
+        (50_000.0, 3, 4_166),
+        (100_000.0, 5, 5_000),
+    ] {
+        let (_, read) = dropped(rate, rate as usize / 10);
+        let header = read.header.unwrap();
+        assert_eq!(header.decimation, decimation, "{rate}");
+        // Two samples fewer at most, from rounding both parts down.
+        assert!(samples - header.planned <= 2, "{rate}: {}", header.planned);
+        assert_eq!(header.sample_rate, rate);
+    }
+}
+
+#[test]
+fn channels_without_a_value_are_marked() {
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let mut recorder = Recorder::new(memory, &config(1_000.0), IDENTITY);
+    let sample = Sample {
+        counts: [1, 2, 3, 4],
+        valid: 0b0101,
+        spin: None,
+        levitated: None,
+        edges: [None; TACHOMETERS],
+    };
+    (0..100).for_each(|_| recorder.take(&sample, &[]));
+    assert_eq!(recorder.fetch(), None);
+    let mut rig = Rig::new(1_000.0, 1);
+    rig.recorder = recorder;
+    (0..400).for_each(|tick| rig.drop_tick(tick, 300));
+    let read = read(&fetch(&mut rig));
+    assert_eq!(read.samples[0], Some([1, 0xffff, 3, 0xffff]));
+}
+
+#[test]
+fn samples_can_be_fetched_before_the_drop_is_over() {
+    let mut rig = Rig::new(20_000.0, 8);
+    quiet(&mut rig, 2_000);
+    rig.tick(&[EventKind::FreeFall]);
+    quiet(&mut rig, 60);
+    let read = read(&fetch(&mut rig));
+    assert_eq!(read.report.verdict(), Verdict::Incomplete);
+    // 1000 before and 60 after: all but less than a block.
+    assert_eq!(read.samples.len(), 1_050);
+    assert!(read.agrees(&rig.fed));
+}
+
+#[test]
+fn the_second_of_two_drops_waits_and_the_third_is_counted() {
+    let mut rig = Rig::new(2_000.0, 8);
+    quiet(&mut rig, 200);
+    for _ in 0..3 {
+        (0..500).for_each(|tick| rig.drop_tick(tick, 450));
+    }
+    assert_eq!(rig.recorder.lost(), 1);
+    for trigger in [200, 700] {
+        let read = read(&fetch(&mut rig));
+        assert!(read.is_whole(&rig.fed));
+        assert_eq!(read.header.unwrap().trigger, trigger);
+    }
+    assert_eq!(rig.recorder.fetch(), None);
+    // Both buffers are free again.
+    (0..600).for_each(|tick| rig.drop_tick(tick, 450));
+    assert!(read(&fetch(&mut rig)).is_whole(&rig.fed));
+    assert_eq!(rig.recorder.lost(), 1);
+}
+
+#[test]
+fn one_drop_is_one_episode_until_it_has_been_quiet() {
+    let mut rig = Rig::new(1_000.0, 8);
+    quiet(&mut rig, 100);
+    rig.tick(&[EventKind::FreeFall]);
+    for _ in 0..5 {
+        quiet(&mut rig, 900);
+        rig.tick(&[EventKind::Impact]);
+    }
+    quiet(&mut rig, 999);
+    let mut bytes = fetch(&mut rig);
+    assert_eq!(read(&bytes).report.verdict(), Verdict::Incomplete);
+    rig.tick(&[]);
+    let index = bytes.len() / BLOCK_BYTES;
+    let rest = std::iter::from_fn(|| rig.recorder.fetch());
+    for (number, block) in rest.enumerate() {
+        bytes.extend(block.seal(1, (index + number) as u16));
+    }
+    let read = read(&bytes);
+    assert!(read.is_whole(&rig.fed));
+    assert_eq!(read.notices, 6);
+    let ending = ending(&bytes);
+    assert_eq!((ending.closing, ending.landing), (Closing::Quiet, true));
+    // 0.2 m/s over a fall through 0.3 mm.
+    assert!((ending.index - 0.2 / (2.0_f32 * 9.806_65 * 0.3e-3).sqrt()).abs() < 1e-5);
+}
+
+#[test]
+fn endless_contact_is_split_and_counted_once() {
+    let mut rig = Rig::new(1_000.0, 8);
+    quiet(&mut rig, 100);
+    rig.tick(&[EventKind::Impact]);
+    for tick in 0..14_000 {
+        let kinds: &[_] = if tick % 100 == 50 {
+            &[EventKind::BackwardWhirl]
+        } else {
+            &[]
+        };
+        rig.tick(kinds);
+    }
+    quiet(&mut rig, 1_100);
+    let first = ending(&fetch(&mut rig));
+    assert_eq!((first.closing, first.landing), (Closing::Longest, true));
+    assert_eq!((first.notices, first.notices_lost), (64, 37));
+    let second = ending(&fetch(&mut rig));
+    assert_eq!((second.closing, second.landing), (Closing::Quiet, false));
+    assert_eq!(rig.recorder.lost(), 0);
+}
+
+#[test]
+fn the_longest_episode_fits_its_slot() {
+    let mut rig = Rig::new(20_000.0, 8);
+    rig.recorder.set_severity(1, &[0; 200]);
+    quiet(&mut rig, 2_000);
+    rig.tick(&[EventKind::FreeFall]);
+    rig.recorder.set_severity(1, &[0; 200]);
+    (0..100).for_each(|_| rig.tick(&[EventKind::Impact]));
+    quiet(&mut rig, 21_000);
+    let bytes = fetch(&mut rig);
+    assert_eq!(read(&bytes).report.verdict(), Verdict::Whole);
+    assert_eq!(bytes.len() / BLOCK_BYTES, 2 + 167 + 10 + 1 + 2);
+    assert!(bytes.len() <= EPISODE_BYTES);
+}
+
+#[test]
+fn a_withdrawn_fall_is_no_landing() {
+    let mut rig = Rig::new(1_000.0, 8);
+    quiet(&mut rig, 100);
+    rig.tick(&[EventKind::FreeFall]);
+    quiet(&mut rig, 10);
+    let sample = Sample {
+        counts: [0; 4],
+        valid: 0,
+        spin: None,
+        levitated: None,
+        edges: [None; TACHOMETERS],
+    };
+    let notice = Notice::Withdrawn {
+        number: 1,
+        sample: 111,
+    };
+    rig.recorder.take(&sample, &[notice]);
+    (0..300).for_each(|_| rig.recorder.take(&sample, &[]));
+    let ending = ending(&fetch(&mut rig));
+    assert_eq!(
+        (ending.closing, ending.landing),
+        (Closing::Withdrawn, false)
+    );
+}
+
+#[test]
+fn what_is_no_contact_begins_nothing() {
+    let mut rig = Rig::new(1_000.0, 8);
+    for kind in [
+        EventKind::LiftOff,
+        EventKind::Rest,
+        EventKind::Levitated,
+        EventKind::SensorFault,
+    ] {
+        rig.tick(&[kind]);
+        quiet(&mut rig, 300);
+        assert_eq!(rig.recorder.fetch(), None, "{kind:?}");
+    }
+}
+
+#[test]
+fn ticks_are_numbered_as_the_monitor_does() {
+    let config = config(20_000.0);
+    let monitor = Monitor::try_new(&config).unwrap();
+    let mut state = monitor.start();
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let mut recorder = Recorder::new(memory, &config, IDENTITY);
+    let mut declared = None;
+    for tick in 0..12_000_u32 {
+        // Levitated in the centre, then 9.81 m/s^2 downwards from tick 8000 on.
+        let fallen = f64::from(tick.saturating_sub(8_000)) / 20_000.0;
+        let fall = (0.5 * 9.81 * fallen * fallen).min(0.3e-3) / (2_000e-6 / 4_096.0);
+        let dither = (tick.wrapping_mul(2_654_435_761) >> 30) as u16;
+        let sample = Sample {
+            counts: [
+                2_048 + dither,
+                2_048 + dither - fall as u16,
+                2_048 + dither,
+                2_048 + dither - fall as u16,
+            ],
+            valid: 0x0f,
+            spin: None,
+            levitated: None,
+            edges: [None; TACHOMETERS],
+        };
+        let notices = monitor.update(&mut state, &sample);
+        if let Some(Notice::Declared(event)) = notices.first() {
+            declared.get_or_insert(event.declared);
+        }
+        recorder.take(&sample, &notices);
+    }
+    let mut rig = Rig::new(20_000.0, 1);
+    rig.recorder = recorder;
+    let header = read(&fetch(&mut rig)).header.expect("no drop");
+    assert_eq!(Some(header.trigger), declared);
+    assert!((8_000..8_400).contains(&header.trigger));
+}

@@ -1,0 +1,80 @@
+//! The last block of an episode: it is complete.
+
+use super::fields::{Fields, Row};
+
+/// Bytes of an ending.
+pub const ENDING_BYTES: usize = 28;
+
+/// Why an episode ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Closing {
+    /// The rotor floats again.
+    Levitated = 0,
+    /// The fall was withdrawn before anything was touched.
+    Withdrawn = 1,
+    /// Nothing was reported for as long as an episode waits.
+    Quiet = 2,
+    /// As long as an episode may be; the drop goes on.
+    Longest = 3,
+}
+
+impl Closing {
+    const ALL: [Self; 4] = [Self::Levitated, Self::Withdrawn, Self::Quiet, Self::Longest];
+}
+
+/// What an episode added up to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ending {
+    /// Why it ended.
+    pub closing: Closing,
+    /// Whether it counts as a landing: the retainer was touched, and no earlier episode tells of
+    /// the same drop.
+    pub landing: bool,
+    /// Blocks of the episode, this one and the copies of header and ending included.
+    pub blocks: u16,
+    /// Samples recorded.
+    pub samples: u32,
+    /// Notices recorded.
+    pub notices: u32,
+    /// Notices for which there was no room.
+    pub notices_lost: u32,
+    /// Velocity index: speed of the fastest impact, as a multiple of the speed of a fall through
+    /// the clearance under standard gravity; 0 if none was measured.
+    pub index: f32,
+    /// Tick at which it ended.
+    pub last: u64,
+}
+
+impl Ending {
+    /// As bytes.
+    pub fn encode(&self) -> [u8; ENDING_BYTES] {
+        Row::new()
+            .put(&[self.closing as u8, u8::from(self.landing)])
+            .put(&self.blocks.to_le_bytes())
+            .put(&self.samples.to_le_bytes())
+            .put(&self.notices.to_le_bytes())
+            .put(&self.notices_lost.to_le_bytes())
+            .put(&self.index.to_le_bytes())
+            .put(&self.last.to_le_bytes())
+            .bytes()
+    }
+
+    /// From bytes; `None` if they are too few or the reason is unknown.
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        let mut fields = Fields(bytes);
+        Some(Self {
+            closing: *Closing::ALL.get(usize::from(fields.u8()?))?,
+            landing: fields.u8()? != 0,
+            blocks: fields.u16()?,
+            samples: fields.u32()?,
+            notices: fields.u32()?,
+            notices_lost: fields.u32()?,
+            index: fields.f32()?,
+            last: fields.u64()?,
+        })
+    }
+}

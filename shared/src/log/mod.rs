@@ -1,0 +1,26 @@
+//! The bytes of the drop log, as firmware writes and desktop reads them: `docs/log.md`.
+//!
+//! An episode is a sequence of [`block::Block`]s of one flash page each: header, waveform, events,
+//! severity, ending. Each block carries its episode, its place and a checksum, so any part of an
+//! episode is known for what it is. The ending comes last: without it the episode is incomplete.
+
+pub mod block;
+pub mod counters;
+pub mod ending;
+mod fields;
+pub mod header;
+pub mod marks;
+pub mod reader;
+pub mod waveform;
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+
+/// Version of the format; in every header.
+pub const FORMAT: u16 = 1;
+
+/// Without a table: it would take 1 KiB of flash, and no tick waits for a checksum.
+static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+fn checksum(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}
