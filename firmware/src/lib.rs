@@ -17,7 +17,7 @@ mod journal;
 pub mod outputs;
 pub mod overrun;
 pub mod permit;
-pub mod speed;
 pub mod recorder;
+pub mod speed;
 pub mod store;
 pub mod w25q;
