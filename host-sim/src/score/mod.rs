@@ -36,6 +36,9 @@ use crate::failure::Failure;
 use crate::target::Target;
 use watch::Drop;
 
+/// Drops with the names of their cases.
+type Named = Vec<(String, Drop)>;
+
 /// What is measured together.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
@@ -45,7 +48,7 @@ pub struct Group {
     pub about: &'static str,
     run: fn(&Plan) -> Result<Findings, Failure>,
     /// Some of its drops, to compare two targets with.
-    drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure>,
+    drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Named, Failure>,
 }
 
 /// All of them.

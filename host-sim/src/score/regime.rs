@@ -164,7 +164,11 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
             EventKind::BackwardWhirl => -1.0,
             _ => continue,
         };
-        wrong_signs += usize::from(turns(&watched, event.declared_s) * sign < 0.0);
+        // One that is bound to go round may be declared before it has gone back over where it began.
+        let lift_offs = watched.truth.lift_offs.iter();
+        let over = lift_offs.copied().find(|it| *it > event.declared_s);
+        let gone = turns(&watched, over.unwrap_or(end).min(end));
+        wrong_signs += usize::from(gone * sign < 0.0);
     }
     Ok(Seen {
         regime: settled.then(|| (row(regime), column(&watched))),

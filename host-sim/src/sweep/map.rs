@@ -72,17 +72,15 @@ fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
         y: &y,
         height: HEIGHT,
     };
-    let of: [(&str, fn(&Point) -> f64); 3] = [
-        ("limit", |it| it.whirl_low),
-        ("limit", |it| it.whirl_high),
-        ("impact", |it| it.whirl_probability),
-    ];
+    let values = |it: &Point| [it.whirl_low, it.whirl_high, it.whirl_probability];
     let mut order: Vec<_> = places.into_iter().zip(points).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let curves = html! {
-        @for (class, value) in of {
+        @for (which, class) in ["limit", "limit", "impact"].into_iter().enumerate() {
             @let mut pen = chart.pen();
-            @for (place, point) in &order { ({ pen.line_to(*place, 100.0 * value(point)); "" }) }
+            @for (place, point) in &order {
+                ({ pen.line_to(*place, 100.0 * values(point)[which]); "" })
+            }
             (pen.finish(class))
         }
     };

@@ -157,7 +157,8 @@ impl Swing {
     /// A rate of more than a radian in a sample is not followed.
     fn predict(&mut self, acceleration: f32, dt: f32) {
         let angle = (self.rate + 0.5 * acceleration * dt) * dt;
-        self.rate = (self.rate + acceleration * dt).clamp(-1.0 / dt, 1.0 / dt);
+        // Not `clamp`: bounds that it cannot see through may be the wrong way round, and it would say so.
+        self.rate = (self.rate + acceleration * dt).max(-1.0 / dt).min(1.0 / dt);
         self.rotate(angle);
     }
 
