@@ -19,7 +19,7 @@ const SURE: f32 = 3.0;
 /// Way back from the last turning point, in standard deviations of the position, that makes a swing.
 const CLEAR_SWING: f32 = 12.0;
 
-/// Part of gravity with which the wall must press on a rotor for its way back to be a swing: near the sides
+/// Cosine of the angle from the bottom up to which a rotor that goes back swings: near the sides
 /// one that has left the wall comes back as well.
 const SWINGS: f32 = 0.3;
 
@@ -273,7 +273,7 @@ impl ContactTest {
                 Regime::BackwardWhirl
             };
             (whirl, state.age as f32)
-        } else if turned_back && self.pressing(&swing) >= SWINGS * self.machine.gravity {
+        } else if turned_back && swing.cos >= SWINGS {
             (Regime::Pendulum, state.turning.age as f32)
         } else if block
             .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)
