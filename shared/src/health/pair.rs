@@ -99,7 +99,7 @@ mod tests {
             [None, Some(B)],
         ] {
             let moved = pair.take(&mut pairing, &planes, true, true);
-            let seen: Vec<_> = planes.into_iter().flatten().collect();
+            let seen: heapless::Vec<_, PLANES> = planes.into_iter().flatten().collect();
             let now = [0, 1].map(|k| seen.iter().map(|it| it[k]).sum::<f32>() / seen.len() as f32);
             for k in 0..2 {
                 let way = mean.map_or(0.0, |mean: [f32; 2]| now[k] - mean[k]);
