@@ -103,7 +103,7 @@ impl Series {
     }
 
     /// Sum of the speeds into the wall, m/s, of the impacts after the last one, on a wall that presses evenly.
-    pub(crate) fn to_come(&self, machine: &MachineConfig) -> f32 {
+    pub(crate) fn ahead(&self, machine: &MachineConfig) -> f32 {
         let restitution = self.restitution(machine);
         match &self.last {
             Some(last) if self.ends.is_some() && restitution < 1.0 => {
