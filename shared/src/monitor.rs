@@ -229,7 +229,7 @@ impl Fingerprint {
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
         let severity = state.severity().words();
         for value in state.forecast.words().into_iter().chain(severity) {
-            self.0.update(&value.to_bits().to_le_bytes());
+            self.0.update(&bits(value).to_le_bytes());
         }
     }
 

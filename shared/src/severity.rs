@@ -70,7 +70,7 @@ pub(crate) struct Strain {
     /// As seen in the impacts.
     pub(crate) restitution: f32,
     /// Sum of the speeds into the wall that the series has yet to come, m/s.
-    pub(crate) to_come: f32,
+    pub(crate) ahead: f32,
 }
 
 impl Severeness {
@@ -136,7 +136,7 @@ impl Severeness {
             let samples = if state.was_in_contact { 1 } else { age };
             state.so_far.dwell += samples as f32 * self.period;
             if !state.was_in_contact {
-                state.speeds += strain.to_come;
+                state.speeds += strain.ahead;
                 self.impulses(state, strain.restitution);
             }
         }
