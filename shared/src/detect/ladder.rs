@@ -192,7 +192,7 @@ impl Ladder {
             speed: sqrt(u * u + v * v),
             speed_error: track.speed_error(),
             restitution: rungs.flight.series.restitution(&self.machine),
-            to_come: rungs.flight.series.yet_to_come(&self.machine),
+            ahead: rungs.flight.series.yet_to_come(&self.machine),
             ..Strain::default()
         };
         if rungs.phase.is_contact() {
