@@ -222,17 +222,16 @@ impl FlightTest {
 
     /// Foresees the end of the series anew, once the flight shows how it began.
     fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
-        let (Some(after), Some(last)) = (
-            flight.series.shown_after(&self.machine, self.period),
-            flight.series.last(),
-        ) else {
+        let (Some(after), Some(last)) =
+            (flight.series.shown_after(self.period), flight.series.last())
+        else {
             return;
         };
         let flown = fix.now.since(last.at);
         if flown >= after {
-            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            let error = flight.track.speed_error();
-            (flight.series).relaunch(velocity, error * error, &self.machine, self.period);
+            let [u, v] = (self.ballistic).velocity_before(&flight.track, flown * self.period);
+            let along = v * last.outward[0] - u * last.outward[1];
+            (flight.series).relaunch(along, &self.machine, self.period);
         }
     }
 

@@ -11,8 +11,6 @@ const PRIOR_WEIGHT: f32 = 1.0;
 /// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
 const CLEAR_SPEED: f32 = 0.02;
 
-/// Spread of a launch speed that follows from the speed into the wall and restitution, part of it.
-const LAUNCH_SPREAD: f32 = 0.15;
 /// Part of the first flight after an impact that shows well how the rotor left the wall.
 const SHOWN: f32 = 0.6;
 
@@ -93,7 +91,9 @@ pub(crate) struct Series {
     impulse: f32,
     last: Option<Bounce>,
     ends: Option<Moment>,
-    /// Whether the launch after the last impact is still that which followed from the impact.
+    /// Speed, m/s, with which the rotor left the wall at the last impact.
+    launch: f32,
+    /// Whether its velocity along the wall is still that which followed from the impact.
     assumed: bool,
 }
 
@@ -129,38 +129,27 @@ impl Series {
         }
     }
 
-    /// Samples after the last impact from which on its launch is shown by the flight itself; `None` where it
+    /// Samples after the last impact from which on the flight shows how it began; `None` where it
     /// has been taken from there.
-    pub(crate) fn shown_after(&self, machine: &MachineConfig, period: f32) -> Option<f32> {
+    pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.restitution(machine) * last.normal_speed / last.pressing;
+        let flight = 2.0 * self.launch / last.pressing;
         (last.pressing > 0.0).then_some(SHOWN * flight / period)
     }
 
-    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to
-    /// `variance`. Just after an impact its velocity along the wall is hardly known, and the wall's
-    /// pressing grows with its square.
-    pub(crate) fn relaunch(
-        &mut self,
-        [u, v]: [f32; 2],
-        variance: f32,
-        machine: &MachineConfig,
-        period: f32,
-    ) {
+    /// Takes the velocity along the wall, counter-clockwise (m/s), with which the flight shows that the rotor left
+    /// it. Just after an impact it is hardly known, and the wall's pressing grows with its square. How fast the
+    /// rotor left the wall is known better from the impacts.
+    pub(crate) fn relaunch(&mut self, along: f32, machine: &MachineConfig, period: f32) {
         self.assumed = false;
         let restitution = self.restitution(machine);
         let Some(last) = self.last.as_mut() else {
             return;
         };
-        let [x, y] = last.outward;
-        last.along = v * x - u * y;
-        last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
-        let (expected, shown) = (restitution * last.normal_speed, -(u * x + v * y));
-        let spread = LAUNCH_SPREAD * expected;
-        let trust = spread * spread / (spread * spread + variance);
-        let launch = expected + trust * (shown - expected);
-        let (rest, at) = (last.rest(launch, restitution, machine), last.at);
-        self.ends = rest.map(|time| at.later(time / period));
+        last.along = along;
+        last.pressing = along * along / machine.clearance - machine.gravity * last.outward[1];
+        let rest = last.rest(self.launch, restitution, machine);
+        self.ends = rest.map(|time| last.at.later(time / period));
     }
 
     /// Whether `bounce` is as fast as the flight since the last impact lets expect, and before the foreseen end.
@@ -193,7 +182,8 @@ impl Series {
             speed = timed_speed(last, &bounce, period).unwrap_or(speed);
         }
         let restitution = self.restitution(machine);
-        let rest = bounce.rest(restitution * speed, restitution, machine);
+        self.launch = restitution * speed;
+        let rest = bounce.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
