@@ -229,9 +229,9 @@ impl FlightTest {
         };
         let flown = fix.now.since(last.at);
         if flown >= after {
-            let [u, v] = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            let along = v * last.outward[0] - u * last.outward[1];
-            (flight.series).relaunch(along, &self.machine, self.period);
+            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
+            let error = flight.track.speed_error() * flight.bank.loudness();
+            (flight.series).relaunch(velocity, error, &self.machine, self.period);
         }
     }
 

@@ -11,6 +11,10 @@ const PRIOR_WEIGHT: f32 = 1.0;
 /// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
 const CLEAR_SPEED: f32 = 0.02;
 
+/// Standard deviations by which a flight contradicts what restitution lets expect of its launch, and the speed,
+/// m/s, from which on it may.
+const CONTRADICTS: f32 = 4.0;
+const CLEAR_LAUNCH: f32 = 0.01;
 /// Part of the first flight after an impact that shows well how the rotor left the wall.
 const SHOWN: f32 = 0.6;
 
@@ -137,17 +141,28 @@ impl Series {
         (last.pressing > 0.0).then_some(SHOWN * flight / period)
     }
 
-    /// Takes the velocity along the wall, counter-clockwise (m/s), with which the flight shows that the rotor left
-    /// it. Just after an impact it is hardly known, and the wall's pressing grows with its square. How fast the
-    /// rotor left the wall is known better from the impacts.
-    pub(crate) fn relaunch(&mut self, along: f32, machine: &MachineConfig, period: f32) {
+    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
+    /// after an impact that along the wall is hardly known, and the wall's pressing grows with its square. How
+    /// fast it left the wall is known better from the impacts, unless the flight contradicts them.
+    pub(crate) fn relaunch(
+        &mut self,
+        [u, v]: [f32; 2],
+        error: f32,
+        machine: &MachineConfig,
+        period: f32,
+    ) {
         self.assumed = false;
         let restitution = self.restitution(machine);
         let Some(last) = self.last.as_mut() else {
             return;
         };
-        last.along = along;
-        last.pressing = along * along / machine.clearance - machine.gravity * last.outward[1];
+        let [x, y] = last.outward;
+        last.along = v * x - u * y;
+        last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
+        let shown = -(u * x + v * y);
+        if (shown - self.launch).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
+            self.launch = shown;
+        }
         let rest = last.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| last.at.later(time / period));
     }
