@@ -228,7 +228,14 @@ fn a_stream_replays_to_the_same_events() {
         .output()
         .unwrap();
     let replay: Value = serde_json::from_slice(&replay.stdout).unwrap();
-    let documented = ["events", "faults", "forecasts", "health", "samples", "severity"];
+    let documented = [
+        "events",
+        "faults",
+        "forecasts",
+        "health",
+        "samples",
+        "severity",
+    ];
     assert_eq!(keys(&replay), documented);
     assert_eq!(replay["samples"], 4401);
     assert_eq!(replay["faults"], 0);
