@@ -220,8 +220,12 @@ impl FlightTest {
         self.contact(flight, fix)
     }
 
-    /// Foresees the end of the series anew, once the flight shows how it began.
+    /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
+    /// well, it does not.
     fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
+        if flight.bank.loudness() > 1.0 {
+            return;
+        }
         let (Some(after), Some(last)) =
             (flight.series.shown_after(self.period), flight.series.last())
         else {
@@ -230,7 +234,7 @@ impl FlightTest {
         let flown = fix.now.since(last.at);
         if flown >= after {
             let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            let error = flight.track.speed_error() * flight.bank.loudness();
+            let error = flight.track.speed_error();
             (flight.series).relaunch(velocity, error, &self.machine, self.period);
         }
     }
