@@ -259,7 +259,7 @@ impl FlightTest {
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
         let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
-        if flight.series.foresees(&bounce, self.period) {
+        if flight.bank.loudness() <= 1.0 && flight.series.foresees(&bounce, self.period) {
             faintest *= EXPECTED;
         }
         if radius < self.near || normal_speed <= faintest {
