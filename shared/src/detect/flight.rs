@@ -251,14 +251,16 @@ impl FlightTest {
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
-        let bounce = Bounce {
+        let mut bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
             along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
+            faint: false,
         };
         let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        bounce.faint = normal_speed <= faintest;
         if flight.bank.loudness() <= 1.0 && flight.series.foresees(&bounce, self.period) {
             faintest *= EXPECTED;
         }
