@@ -4,6 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, ensure};
 
+/// What marks a function that calls through a pointer.
+pub const POINTERS: &str = "pointers in ";
+
 /// From `address` on there is code, or data.
 #[derive(Clone, Copy, Debug)]
 pub struct Region {
@@ -125,7 +128,7 @@ impl Graph {
         }
         path.pop();
         if node.through_pointer {
-            open.insert(format!("pointers in {name}"));
+            open.insert(format!("{POINTERS}{name}"));
         }
         if node.function.frame.is_none() {
             open.insert(name.clone());
@@ -235,6 +238,12 @@ mod tests {
         };
         let functions = vec![function("a", 0, 4, Some(8)), function("b", 4, 4, Some(8))];
         let graph = Graph::new(0, &code, &mut [code_only], functions);
-        assert!(graph.deepest("a").unwrap_err().to_string().contains("no bound"));
+        assert!(
+            graph
+                .deepest("a")
+                .unwrap_err()
+                .to_string()
+                .contains("no bound")
+        );
     }
 }

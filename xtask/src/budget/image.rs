@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context, bail, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-use super::calls::{Function, Graph, Region};
+use super::calls::{self, Function, Graph, Region};
 
 /// Names of what a panic needs.
 const PANICS: [&str; 2] = ["rust_begin_unwind", "panicking"];
@@ -52,9 +52,8 @@ fn reached(elf: &[u8]) -> anyhow::Result<Reached> {
 fn is_soft_float(name: &str) -> bool {
     let name = name.rsplit("::").next().unwrap_or(name);
     let arm = name.strip_prefix("__aeabi_");
-    let of_f64 = |rest: &str| {
-        rest.starts_with('d') || rest.ends_with("2d") || rest.starts_with("cd")
-    };
+    let of_f64 =
+        |rest: &str| rest.starts_with('d') || rest.ends_with("2d") || rest.starts_with("cd");
     let integers = ["div0"];
     arm.is_some_and(|rest| of_f64(rest) && !integers.iter().any(|it| rest.contains(it)))
         || (name.starts_with("__") && name.contains("df"))
@@ -70,6 +69,12 @@ pub struct Stack {
 }
 
 impl Stack {
+    /// Functions that call through a pointer.
+    fn pointers(&self) -> impl Iterator<Item = &str> {
+        let open = self.open.iter();
+        open.filter_map(|it| it.strip_prefix(calls::POINTERS))
+    }
+
     /// Of the deepest chain from the start, and of the interrupt on top of it.
     pub fn bytes(&self) -> u64 {
         self.main + EXCEPTION_FRAME + self.interrupt
@@ -81,9 +86,11 @@ impl fmt::Display for Stack {
         let (main, interrupt) = (self.main, self.interrupt);
         write!(
             f,
-            "{} bytes: main {main}, registers {EXCEPTION_FRAME}, interrupt {interrupt}; not in it: {}",
+            "{} bytes: main {main}, registers {EXCEPTION_FRAME}, interrupt {interrupt}; not in it: {} functions \
+             without a stated frame, and pointers in {}",
             self.bytes(),
-            self.open.join(", ")
+            self.open.len() - self.pointers().count(),
+            self.pointers().collect::<Vec<_>>().join(", ")
         )
     }
 }

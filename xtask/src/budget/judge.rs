@@ -29,8 +29,8 @@ pub struct Limits {
 impl Limits {
     /// Of this file.
     pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(file)
-            .with_context(|| format!("cannot read {}", file.display()))?;
+        let text =
+            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
         toml::from_str(&text).with_context(|| format!("{}", file.display()))
     }
 }
@@ -39,12 +39,24 @@ impl Limits {
 fn rows(budget: &Budget, limits: &Limits) -> Vec<(String, u64, Option<u64>)> {
     let (tick, limit) = (budget.tick, limits.tick);
     let mut rows = vec![
-        ("tick_typical", tick.instructions_typical.into(), limit.instructions_typical.into()),
-        ("tick_worst", tick.instructions_worst.into(), limit.instructions_worst.into()),
+        (
+            "tick_typical",
+            tick.instructions_typical.into(),
+            limit.instructions_typical.into(),
+        ),
+        (
+            "tick_worst",
+            tick.instructions_worst.into(),
+            limit.instructions_worst.into(),
+        ),
         ("flash_bytes", budget.flash_bytes, limits.flash_bytes),
         ("ram_bytes", budget.ram_bytes, limits.ram_bytes),
         ("stack_bytes", budget.stack_bytes, limits.stack_bytes),
-        ("soft_float_symbols", budget.soft_float_symbols, limits.soft_float_symbols),
+        (
+            "soft_float_symbols",
+            budget.soft_float_symbols,
+            limits.soft_float_symbols,
+        ),
     ]
     .into_iter()
     .map(|(name, measured, limit): (&str, u64, u64)| (name.to_owned(), measured, Some(limit)))

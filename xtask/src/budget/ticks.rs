@@ -39,7 +39,14 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
     let folder = image.with_extension("run");
     fs::create_dir_all(&folder).context("cannot make a folder to count in")?;
     let status = Command::new("qemu-system-arm")
-        .args(["-M", "netduinoplus2", "-display", "none", "-monitor", "none"])
+        .args([
+            "-M",
+            "netduinoplus2",
+            "-display",
+            "none",
+            "-monitor",
+            "none",
+        ])
         .args(["-serial", "none"])
         .args(["-semihosting-config", "enable=on,target=native"])
         .args(COUNTING)
@@ -132,7 +139,10 @@ mod tests {
     fn typical_is_of_the_orbit_and_worst_of_all() {
         let table = Table::parse(TEXT).unwrap();
         let tick = table.tick().unwrap();
-        assert_eq!((tick.instructions_typical, tick.instructions_worst), (500, 2500));
+        assert_eq!(
+            (tick.instructions_typical, tick.instructions_worst),
+            (500, 2500)
+        );
         let parts = table.parts();
         assert_eq!(parts.len(), 1);
         assert_eq!(parts[0].part, "detector");

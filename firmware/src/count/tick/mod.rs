@@ -42,20 +42,30 @@ pub fn main(memory: &'static mut Memory) -> ! {
         let (whole, notices) = whole(&counter, scene, memory);
         write("tick", whole);
         let parts = parts(&counter, scene, memory);
-        PARTS.into_iter().zip(parts).for_each(|(part, tally)| write(part, tally));
+        PARTS
+            .into_iter()
+            .zip(parts)
+            .for_each(|(part, tally)| write(part, tally));
         table.line(format_args!("notices|{name}|{notices}"));
     }
     semihosting::process::exit(0)
 }
 
+// Frames of their own: each has an application on its stack.
+#[inline(never)]
 fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
-    let (mut app, mut board, mut recorder) = prepare(scene, memory);
+    let mut bench = prepare(scene, memory);
+    let Bench {
+        app,
+        board,
+        recorder,
+    } = &mut bench;
     let mut tally = Tally::default();
     let mut told = 0;
     scene.play(|sample| {
         let sample = black_box(sample);
         let (notices, instructions) = counter.count(|| {
-            let notices = app.tick(&mut board, sample, 0);
+            let notices = app.tick(board, sample, 0);
             recorder.take(sample, &notices);
             notices
         });
@@ -67,8 +77,14 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
     (tally, told)
 }
 
+#[inline(never)]
 fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
-    let (mut app, mut board, mut recorder) = prepare(scene, memory);
+    let mut bench = prepare(scene, memory);
+    let Bench {
+        app,
+        board,
+        recorder,
+    } = &mut bench;
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
         let sample = black_box(sample);
@@ -77,7 +93,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let seen = black_box(&seen);
         let (mut notices, detector) = counter.count(|| monitor.detect(state, seen));
         let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
-        let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
+        let ((), outputs) = counter.count(|| app.follow(board, &notices, 0));
         let (monitor, state) = app.monitor();
         let (outlook, forecast) = counter.count(|| monitor.look_ahead(state));
         if let Some(outlook) = outlook {
@@ -85,25 +101,38 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         }
         let ((), recording) = counter.count(|| recorder.take(sample, &notices));
         let counts = [sensing, detector, forecast, severity, recording, outputs];
-        tallies.iter_mut().zip(counts).for_each(|(tally, it)| tally.add(it));
+        tallies
+            .iter_mut()
+            .zip(counts)
+            .for_each(|(tally, it)| tally.add(it));
         recorder.fetch();
     });
     tallies
 }
 
-fn prepare<'m>(scene: &Scene, memory: &'m mut Memory) -> (App, Idle, Recorder<'m>) {
+#[inline(never)]
+fn prepare<'m>(scene: &Scene, memory: &'m mut Memory) -> Bench<'m> {
     let config = scene.config();
-    let app = App::try_new(&config, Faults::NONE).expect("a valid configuration");
-    let board = Idle(config_block::encode(&Settings {
-        monitor: config,
-        wiring: Wiring::default(),
-    }));
     let identity = Identity {
         firmware: [0; 16],
         config_hash: 0,
         boot: 0,
     };
-    (app, board, Recorder::new(memory, &config, identity))
+    Bench {
+        app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
+        board: Idle(config_block::encode(&Settings {
+            monitor: config,
+            wiring: Wiring::default(),
+        })),
+        recorder: Recorder::new(memory, &config, identity),
+    }
+}
+
+/// What ticks.
+struct Bench<'m> {
+    app: App,
+    board: Idle,
+    recorder: Recorder<'m>,
 }
 
 /// A board whose registers take nothing.

@@ -2,7 +2,7 @@
 
 use core::f32::consts::TAU;
 
-use touchdown_core::model::{Precision, Rigid, RigidConfig, Start, Stepper};
+use touchdown_core::model::{Rigid, RigidConfig, Start, Stepper};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::real::{Poly32, Real};
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
@@ -207,9 +207,7 @@ impl Scene {
                 counts,
                 valid: 0b1111,
                 spin: self.speed_known.then_some(machine.spin),
-                levitated: self
-                    .levitation_known
-                    .then_some(at < self.release[0]),
+                levitated: self.levitation_known.then_some(at < self.release[0]),
                 edges: [self.ring.then_some(edges), None],
             };
             const { assert!(TACHOMETERS == 2) };
