@@ -51,6 +51,7 @@ mod image {
         lost: u32,
     ) {
         let notices = app.tick(&mut Bare(config), sample, lost);
+        recorder.set_severity(app.state().severity());
         recorder.take(sample, &notices);
     }
 

@@ -66,6 +66,7 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
         let sample = black_box(sample);
         let (notices, instructions) = counter.count(|| {
             let notices = app.tick(board, sample, 0);
+            recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
             notices
         });
@@ -99,7 +100,10 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         if let Some(outlook) = outlook {
             let _ = notices.push(outlook);
         }
-        let ((), recording) = counter.count(|| recorder.take(sample, &notices));
+        let ((), recording) = counter.count(|| {
+            recorder.set_severity(app.state().severity());
+            recorder.take(sample, &notices);
+        });
         let counts = [sensing, detector, forecast, severity, recording, outputs];
         tallies
             .iter_mut()
