@@ -6,6 +6,15 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+/// What starts on the chip; `touchdown-tick` never does.
+const IMAGES: [&str; 5] = [
+    "touchdown-firmware",
+    "touchdown-qemu",
+    "touchdown-count",
+    "touchdown-count-rigid",
+    "touchdown-count-tick",
+];
+
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=../memory.x");
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
@@ -21,7 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = env::var("OUT_DIR")?;
     fs::copy("../memory.x", Path::new(&out).join("memory.x"))?;
     println!("cargo::rustc-link-search={out}");
-    println!("cargo::rustc-link-arg-bins=-Tlink.x");
-    println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+    for name in IMAGES {
+        println!("cargo::rustc-link-arg-bin={name}=-Tlink.x");
+        println!("cargo::rustc-link-arg-bin={name}=-Tdefmt.x");
+    }
     Ok(())
 }

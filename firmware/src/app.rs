@@ -62,9 +62,22 @@ impl App {
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
     /// outputs, and last of all the watchdog is fed. The notices come back for the recorder.
     pub fn tick(&mut self, board: &mut impl Board, sample: &Sample, lost: u32) -> Notices {
-        let mut dropped = false;
         let mut notices = self.monitor.update(&mut self.state, sample);
-        for notice in &notices {
+        self.follow(board, &notices, lost);
+        // After the outputs: it delays none of them.
+        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
+            board.report(&notice);
+            // There is room: a tick gives fewer than NOTICES_PER_TICK.
+            let _ = notices.push(notice);
+        }
+        board.feed();
+        notices
+    }
+
+    /// What follows from the notices of a tick, outputs included.
+    pub(crate) fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
+        let mut dropped = false;
+        for notice in notices {
             dropped |= self.is_drop(notice);
             self.permit.hear(notice);
             board.report(notice);
@@ -74,14 +87,12 @@ impl App {
         self.watch_itself(board.config(), position.is_some(), lost);
         self.condition.mode = self.next_mode(dropped);
         board.drive(self.outputs());
-        // After the outputs: it delays none of them.
-        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
-            board.report(&notice);
-            // There is room: a tick gives fewer than NOTICES_PER_TICK.
-            let _ = notices.push(notice);
-        }
-        board.feed();
-        notices
+    }
+
+    /// The monitor and its state, for who counts the parts of a tick.
+    #[cfg(target_os = "none")]
+    pub(crate) fn monitor(&mut self) -> (&Monitor, &mut MonitorState) {
+        (&self.monitor, &mut self.state)
     }
 
     /// Whether a notice trips: a confirmed fall, whirl, or permanent contact of what floated.

@@ -12,6 +12,7 @@ pub mod board;
 #[cfg(target_os = "none")]
 pub mod count;
 pub mod crash;
+pub mod drop_log;
 #[cfg(target_os = "none")]
 mod journal;
 pub mod outputs;

@@ -9,6 +9,7 @@ use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::reader::{Item, Reader, Verdict};
 use touchdown_core::monitor::Monitor;
 use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::severity::Severity;
 use touchdown_firmware::recorder::{CAPACITY, Memory, Recorder};
 use touchdown_firmware::store::EPISODE_BYTES;
 
@@ -190,10 +191,10 @@ fn endless_contact_is_split_and_counted_once() {
 #[test]
 fn the_longest_episode_fits_its_slot() {
     let mut rig = Rig::new(20_000.0, 8);
-    rig.recorder.set_severity(1, &[0; 200]);
+    rig.recorder.set_severity(&Severity::default());
     quiet(&mut rig, 2_000);
     rig.tick(&[EventKind::FreeFall]);
-    rig.recorder.set_severity(1, &[0; 200]);
+    rig.recorder.set_severity(&Severity::default());
     (0..100).for_each(|_| rig.tick(&[EventKind::Impact]));
     quiet(&mut rig, 21_000);
     let bytes = fetch(&mut rig);

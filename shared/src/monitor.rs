@@ -11,7 +11,7 @@ use crate::event::{Motion, Notice, Notices};
 use crate::forecast::{Forecast, ForecastState, Outlook};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
-use crate::sensing::{PLANES, Sensing, SensingConfig};
+use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severeness, Severity, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::wire::Summary;
@@ -39,6 +39,13 @@ pub struct Monitor {
     detector: Detector,
     forecast: Forecast,
     severeness: Severeness,
+}
+
+/// What the sensors say in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    reading: Reading,
+    signals: Signals,
 }
 
 /// What the tick carries from sample to sample.
@@ -79,6 +86,15 @@ impl Monitor {
 
     /// One tick. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
+        let seen = self.sense(state, sample);
+        let notices = self.detect(state, &seen);
+        self.weigh(state, &notices);
+        notices
+    }
+
+    /// First part of a tick: what the sensors say, and whether they can be believed.
+    #[inline]
+    pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
         let phases = state.detector.phases();
         let reading = self
             .health
@@ -93,20 +109,29 @@ impl Monitor {
             .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
         state.faults += u64::from(spin.is_none() && sample.spin.is_some());
+        let signals = Signals {
+            spin,
+            retainer,
+            levitated: sample.levitated,
+        };
+        Seen { reading, signals }
+    }
+
+    /// Second part: the detector.
+    #[inline]
+    pub fn detect(&self, state: &mut MonitorState, seen: &Seen) -> Notices {
         let mut notices = Notices::new();
-        self.detector.update(
-            &mut state.detector,
-            &reading,
-            &Signals {
-                spin,
-                retainer,
-                levitated: sample.levitated,
-            },
-            &mut notices,
-        );
-        let strain = self.detector.strain(&state.detector);
-        self.severeness.take(&mut state.severity, &strain, &notices);
+        let detector = &mut state.detector;
+        self.detector
+            .update(detector, &seen.reading, &seen.signals, &mut notices);
         notices
+    }
+
+    /// Last part: what it does to the machine.
+    #[inline]
+    pub fn weigh(&self, state: &mut MonitorState, notices: &Notices) {
+        let strain = self.detector.strain(&state.detector);
+        self.severeness.take(&mut state.severity, &strain, notices);
     }
 
     /// A slice of the forecast, below the tick: after each and before the next. Bounded; cannot fail. What

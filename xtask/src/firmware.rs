@@ -11,10 +11,11 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-const IMAGES: [&str; 4] = [
+const IMAGES: [&str; 5] = [
     "touchdown-firmware",
     "touchdown-qemu",
     "touchdown-count-rigid",
+    "touchdown-count-tick",
     "touchdown-count",
 ];
 /// Those that use no rung but the rigid one.
@@ -26,7 +27,7 @@ const RAM_START: u64 = 0x2000_0000;
 /// Builds all images.
 pub fn build() -> anyhow::Result<()> {
     println!("Firmware: building for {TARGET}");
-    let images = target_directory().join(TARGET).join("release");
+    let images = images();
     let without = images.join(WITHOUT_RUNGS);
     fs::create_dir_all(&without).context("cannot make a folder for images")?;
     // These first: the others take their names.
@@ -46,10 +47,39 @@ pub fn build() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What an image is built with besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extra {
+    /// Nothing.
+    None,
+    /// A section that tells each function's stack.
+    StackSizes,
+}
+
+/// Builds one image.
+pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
+    let mut cargo = Machine::look().toolchain.cargo("rustc");
+    cargo.args(["--quiet", "--release", "--package", "touchdown-firmware"]);
+    cargo.args(["--bin", name]).current_dir(workspace());
+    if extra == Extra::StackSizes {
+        // The flag is for nightly compilers; this one is stable.
+        cargo.env("RUSTC_BOOTSTRAP", "1");
+        cargo.args(["--", "-Zemit-stack-sizes"]);
+    }
+    let status = cargo.status().context("cannot start cargo")?;
+    ensure!(status.success(), "{name} does not build ({status})");
+    Ok(())
+}
+
+/// Folder of the images.
+pub fn images() -> PathBuf {
+    target_directory().join(TARGET).join("release")
+}
+
 fn cargo(arguments: &[&str]) -> anyhow::Result<()> {
     let status = Machine::look()
         .toolchain
-        .build()
+        .cargo("build")
         .args(["--quiet", "--release", "--package", "touchdown-firmware"])
         .args(arguments)
         .current_dir(workspace())
@@ -64,7 +94,7 @@ fn target_directory() -> PathBuf {
 }
 
 /// Flash and RAM that an image takes, bytes.
-fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
+pub fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
     let file = object::File::parse(&*bytes)?;
     let stack = file.symbols().find(|it| it.name() == Ok("_stack_start"));

@@ -1,5 +1,6 @@
-//! `cargo xtask`: set-up, firmware build, counts of instructions and tests.
+//! `cargo xtask`: set-up, firmware build, counts of instructions, budget and tests.
 
+mod budget;
 mod firmware;
 mod instructions;
 mod machine;
@@ -8,7 +9,7 @@ mod tally;
 mod test;
 mod toolchain;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -33,6 +34,12 @@ enum Task {
     Firmware,
     /// Build the images, count the model's instructions in the emulator, write the tables
     Instructions,
+    /// Measure what the firmware takes of the chip; fails above the limits of firmware/budget.toml
+    Budget {
+        /// Write the figures to this file
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
     /// Set up what is missing, build the images, and run every test
     Test {
         /// Do not ask
@@ -46,6 +53,7 @@ fn main() -> ExitCode {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
+        Task::Budget { json } => budget::run(json.as_deref()),
         Task::Test { yes } => setup::run(yes)
             .and_then(|()| firmware::build())
             .and_then(|()| test::run()),

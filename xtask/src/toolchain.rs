@@ -35,15 +35,15 @@ impl Toolchain {
         }
     }
 
-    /// `cargo build` for the target, still without a package.
-    pub fn build(self) -> Command {
+    /// `cargo build` or `cargo rustc` for the target, still without a package.
+    pub fn cargo(self, command: &str) -> Command {
         match self {
             Self::Default => {
                 let mut cargo = default_cargo();
-                cargo.args(["build", "--target", TARGET]);
+                cargo.args([command, "--target", TARGET]);
                 cargo
             }
-            Self::Debian => debian_build(),
+            Self::Debian => debian_cargo(command),
         }
     }
 }
@@ -58,7 +58,7 @@ pub fn default_cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-fn debian_build() -> Command {
+fn debian_cargo(command: &str) -> Command {
     let mut cargo = Command::new("/usr/bin/cargo");
     // rustup's cargo left these for its own compiler.
     for name in ["CARGO", "RUSTUP_TOOLCHAIN", "LD_LIBRARY_PATH"] {
@@ -69,7 +69,7 @@ fn debian_build() -> Command {
         // -Zbuild-std is for nightly compilers; this one is stable.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld")
-        .args(["build", "--target", TARGET])
+        .args([command, "--target", TARGET])
         .arg("-Zbuild-std=core,compiler_builtins");
     cargo
 }

@@ -7,11 +7,12 @@ mod image {
     use defmt_semihosting as _;
     use panic_probe as _;
     use stm32f4 as _;
-    use touchdown_firmware::board::qemu;
+    use touchdown_firmware::{board::qemu, recorder::Memory};
 
     #[entry]
     fn main() -> ! {
-        qemu::main()
+        static mut MEMORY: Memory = Memory::EMPTY;
+        qemu::main(MEMORY)
     }
 
     // The runtime asks for an unsafe function; there is nothing unsafe in it.

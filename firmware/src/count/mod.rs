@@ -8,6 +8,7 @@ mod drop;
 mod functions;
 #[cfg(feature = "rungs")]
 mod rungs;
+pub mod tick;
 
 use core::fmt::Write as _;
 

@@ -6,7 +6,9 @@ use touchdown_core::log::block::{Block, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::header::Header;
 use touchdown_core::log::reader;
+use touchdown_core::log::severity;
 use touchdown_core::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_core::severity::Severity;
 use touchdown_core::wire::{self, NOTICE_BYTES, Record};
 
 use super::{CAPACITY, Plan};
@@ -15,8 +17,6 @@ use super::{CAPACITY, Plan};
 const NOTICES: usize = 64;
 /// Notices of a block.
 const NOTICES_PER_BLOCK: usize = touchdown_core::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
-/// Bytes of a severity and its version.
-const SEVERITY_BYTES: usize = 64;
 const COPIES: u8 = reader::COPIES as u8;
 
 /// What began an episode.
@@ -54,7 +54,7 @@ pub(super) struct Capture {
     notices_lost: u32,
     touched: bool,
     fastest: f32,
-    severity: Vec<u8, SEVERITY_BYTES>,
+    severity: Option<Severity>,
     fetched: Fetched,
 }
 
@@ -69,7 +69,7 @@ impl Capture {
         notices_lost: 0,
         touched: false,
         fastest: 0.0,
-        severity: Vec::new(),
+        severity: None,
         fetched: Fetched {
             blocks: 0,
             headers: 0,
@@ -152,12 +152,8 @@ impl Capture {
         self.closing = Some((closing, tick));
     }
 
-    pub(super) fn set_severity(&mut self, version: u8, bytes: &[u8]) {
-        self.severity.clear();
-        for &byte in [version].iter().chain(bytes) {
-            // Too long a one is cut off; its own version says how long it should be.
-            let _ = self.severity.push(byte);
-        }
+    pub(super) fn set_severity(&mut self, severity: &Severity) {
+        self.severity = Some(*severity);
     }
 
     /// The next block, if it is ready.
@@ -231,11 +227,12 @@ impl Capture {
     }
 
     fn severity(&mut self) -> Option<Block> {
-        if self.fetched.severity || self.severity.is_empty() {
+        let payload = severity::encode(self.severity.as_ref()?);
+        if self.fetched.severity {
             return None;
         }
         self.fetched.severity = true;
-        Some(Block::of(Kind::Severity, &self.severity))
+        Some(Block::of(Kind::Severity, &payload))
     }
 
     fn ending(&mut self, trigger: &Trigger, closing: Closing, last: u64, plan: &Plan) -> Block {

@@ -13,6 +13,7 @@ use touchdown_core::log::waveform::{self, Counts};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::real;
 use touchdown_core::sample::Sample;
+use touchdown_core::severity::Severity;
 
 use self::capture::Capture;
 
@@ -50,6 +51,23 @@ pub struct Identity {
     pub config_hash: u32,
     /// Times switched on.
     pub boot: u32,
+}
+
+impl Identity {
+    /// This firmware with this configuration block.
+    pub fn new(block: &[u8], boot: u32) -> Self {
+        let mut firmware = [0; 16];
+        let name = concat!("touchdown ", env!("CARGO_PKG_VERSION"));
+        firmware
+            .iter_mut()
+            .zip(name.bytes())
+            .for_each(|(to, from)| *to = from);
+        Self {
+            firmware,
+            config_hash: block.last_chunk().map_or(0, |end| u32::from_le_bytes(*end)),
+            boot,
+        }
+    }
 }
 
 /// Numbers of samples and ticks that follow from the configuration.
@@ -182,12 +200,13 @@ impl<'m> Recorder<'m> {
         block
     }
 
-    /// How severe the present drop is: a version and that version's bytes. The last call counts.
-    pub fn set_severity(&mut self, version: u8, bytes: &[u8]) {
+    /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call
+    /// counts.
+    pub fn set_severity(&mut self, severity: &Severity) {
         if let Drop::Recorded(at) = self.drop
             && let Some(capture) = self.captures.get_mut(at)
         {
-            capture.set_severity(version, bytes);
+            capture.set_severity(severity);
         }
     }
 

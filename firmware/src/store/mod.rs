@@ -140,6 +140,29 @@ impl<const SLOTS: usize> Store<SLOTS> {
         self.slots.episodes()
     }
 
+    /// Number of each episode that is not being written, in no order.
+    pub fn written(&self) -> impl Iterator<Item = u32> + '_ {
+        let open = match self.state {
+            State::Writing { slot, .. } => self.slots.sequence(slot),
+            _ => 0,
+        };
+        let numbers = self.episodes().map(|(number, _)| number);
+        numbers.filter(move |&number| number != open)
+    }
+
+    /// Gives an episode up, locked or not; `false` if there is none or it is being written. One operation.
+    pub fn erase_episode<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        sequence: u32,
+    ) -> Result<bool, F::Error> {
+        let is_written = self.written().any(|number| number == sequence);
+        match self.slots.find(sequence).filter(|_| is_written) {
+            Some(slot) => self.release(flash, slot).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
     /// Reads bytes of an episode from `offset` on; how many, 0 past its end or if there is no such
     /// episode. An episode has [`EPISODE_BYTES`], erased ones at the end.
     pub fn read<F: NorFlash>(

@@ -348,8 +348,9 @@ impl Detector {
             Phase::Levitated => {
                 // The mean of both need not move when the rotor only tilts.
                 let (homes, variance) = state.ends.homes(&state.levitation);
-                let far = [0, 1].map(|end| {
-                    let (position, home) = (ends[end].position, homes[end]);
+                let [home_a, home_b] = homes;
+                let far = [(a, home_a), (b, home_b)].map(|(fix, home)| {
+                    let position = fix.position;
                     self.ladder.is_far(position, home) && Ends::is_off(position, home, variance)
                 });
                 if far == [false; PLANES] || !state.levitation.is_armed() {

@@ -34,6 +34,22 @@ impl Log for () {
     }
 }
 
+/// A controller whose log may be missing.
+impl<L: Log> Log for Option<L> {
+    fn episodes(&mut self) -> Option<(u32, u32)> {
+        self.as_mut()?.episodes()
+    }
+
+    fn fetch(&mut self, episode: u32, offset: u32, chunk: &mut Chunk) -> Result<u32, Refusal> {
+        let log = self.as_mut().ok_or(Refusal::NoEpisode)?;
+        log.fetch(episode, offset, chunk)
+    }
+
+    fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
+        self.as_mut().ok_or(Refusal::NoEpisode)?.erase(episode)
+    }
+}
+
 /// The controller, as the link sees it.
 pub trait Device {
     /// What goes on now. The link fills in its own counter.

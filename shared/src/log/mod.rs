@@ -11,15 +11,14 @@ mod fields;
 pub mod header;
 pub mod marks;
 pub mod reader;
+#[cfg(feature = "serde")]
+pub mod severity;
 pub mod waveform;
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use crate::checksum::CRC;
 
 /// Version of the format; in every header.
 pub const FORMAT: u16 = 1;
-
-/// Without a table: it would take 1 KiB of flash, and no tick waits for a checksum.
-static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 fn checksum(bytes: &[u8]) -> u32 {
     CRC.checksum(bytes)

@@ -59,7 +59,7 @@ impl<R: Precision> Series<R> {
         series.tangential[0] = start;
         let mut mirrored = zero;
         let mut divisor = series.pace;
-        for k in 0..=R::SERIES_ORDER {
+        for k in 0..R::SERIES_ORDER + 1 {
             mirrored[R::SERIES_ORDER - k] = series.tangential[k];
             let [square, turned_sin, turned_cos] =
                 products::<R>([&series.tangential, &series.sin, &series.cos], &mirrored, k);

@@ -4,6 +4,7 @@
 //! the next sample, 50 us later; a tick that is not loses samples, which are counted and latched,
 //! and goes on. What it reports goes through a queue to the idle loop, which logs and serves the link.
 
+mod chip;
 mod clocks;
 mod converter;
 mod inputs;
@@ -19,7 +20,8 @@ use core::panic::PanicInfo;
 use cortex_m::peripheral::{DWT, SCB};
 use critical_section::Mutex;
 use defmt::{error, info};
-use heapless::spsc::{Producer, Queue};
+use embedded_hal::delay::DelayNs;
+use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::config_block::{self, Block, BlockError, Settings};
 use touchdown_core::controller::{Fault, Faults, Outputs};
@@ -27,6 +29,7 @@ use touchdown_core::event::Notice;
 use touchdown_core::link::Server;
 use touchdown_core::sample::Sample;
 
+use self::chip::{Chip, Cycles, Spi};
 use self::clocks::{APB2_HZ, CORE_HZ};
 use self::converter::Converter;
 use self::inputs::Inputs;
@@ -36,14 +39,22 @@ use super::serial::Serial;
 use super::{BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
 use crate::crash::{Cause, Crash};
+use crate::drop_log::DropLog;
 use crate::journal;
 use crate::overrun::Overruns;
+use crate::recorder::{self, Identity, Recorder};
+use crate::w25q::W25q;
+
+/// The drop log in the chip on the board, 2 MiB.
+type ChipLog = DropLog<Chip, LOG_SLOTS>;
+const LOG_SLOTS: usize = 42;
 
 /// What outlives main's frame.
 pub struct Memory {
     /// Notices on their way to log and link. If it is full they are lost and counted; events are
     /// numbered, so a gap shows.
     outbox: Queue<Notice, 64>,
+    samples: recorder::Memory,
     // Without a value of its own: one would take as much flash.
     tick: MaybeUninit<Tick>,
 }
@@ -54,6 +65,7 @@ impl Memory {
     pub const fn new() -> Self {
         Self {
             outbox: Queue::new(),
+            samples: recorder::Memory::EMPTY,
             tick: MaybeUninit::uninit(),
         }
     }
@@ -99,6 +111,7 @@ impl Board for Silicon {
 
 struct Tick {
     app: App,
+    recorder: Recorder<'static>,
     converter: Converter,
     inputs: Inputs,
     board: Silicon,
@@ -109,60 +122,17 @@ struct Tick {
 
 /// Starts sampling; logs, and serves the link.
 pub fn main(memory: &'static mut Memory) -> ! {
-    let (Some(core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
-        unreachable!("main runs once");
+    let Some((mut serial, mut remote, mut inbox)) = start(memory) else {
+        idle()
     };
-    let pins = OutputPins::new(chip.GPIOC, &chip.RCC);
-    info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
-    let (block, settings, found) = found_at_power_on(&chip.RCC);
-    journal::config(&settings.monitor);
-    let app = match App::try_new(&settings.monitor, found) {
-        Ok(app) => app,
-        Err(refusal) => {
-            error!("config: {=str}", refusal.parameter());
-            idle()
-        }
-    };
-
-    clocks::start(&chip.RCC, &chip.FLASH);
-    start_cycle_counter(core.DCB, core.DWT);
-    let converter = Converter::new(
-        chip.ADC1,
-        &chip.ADC_COMMON,
-        chip.TIM2,
-        &chip.GPIOA,
-        &chip.RCC,
-    );
-    remote::wire(&chip.GPIOB, &chip.RCC);
-    let mut serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
-    let (outbox, mut inbox) = memory.outbox.split();
-    let tick = memory.tick.write(Tick {
-        app,
-        inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
-        board: Silicon {
-            pins,
-            watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU),
-            outbox,
-            lost_notices: 0,
-            block,
-        },
-        overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),
-        at: DWT::cycle_count(),
-        converter,
-    });
-    tick.converter.start();
-    critical_section::with(|cs| TICK.replace(cs, Some(tick)));
-    // SAFETY: what the handler needs is in place, and no critical section is open.
-    unsafe { NVIC::unmask(Interrupt::ADC) };
-
     let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
-    let mut remote = Remote::new(chip.FLASH, chip.RCC);
     let mut known = (Outputs::SAFE, Faults::NONE, 0);
     loop {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
             server.notice(&notice).iter().for_each(|it| serial.send(it));
         }
+        remote.work();
         if let Some(byte) = serial.poll() {
             let answer = server.take(byte, &mut remote);
             answer.iter().for_each(|it| serial.send(it));
@@ -190,6 +160,74 @@ pub fn main(memory: &'static mut Memory) -> ! {
             SCB::sys_reset();
         }
     }
+}
+
+/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
+/// the first interrupt.
+#[inline(never)]
+fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'static, Notice>)> {
+    let (Some(core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
+        unreachable!("main runs once");
+    };
+    let pins = OutputPins::new(chip.GPIOC, &chip.RCC);
+    info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
+    let (block, settings, found) = found_at_power_on(&chip.RCC);
+    journal::config(&settings.monitor);
+    let app = match App::try_new(&settings.monitor, found) {
+        Ok(app) => app,
+        Err(refusal) => {
+            error!("config: {=str}", refusal.parameter());
+            return None;
+        }
+    };
+
+    clocks::start(&chip.RCC, &chip.FLASH);
+    start_cycle_counter(core.DCB, core.DWT);
+    let converter = Converter::new(
+        chip.ADC1,
+        &chip.ADC_COMMON,
+        chip.TIM2,
+        &chip.GPIOA,
+        &chip.RCC,
+    );
+    remote::wire(&chip.GPIOB, &chip.RCC);
+    let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
+    let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
+    let (outbox, inbox) = memory.outbox.split();
+    let board = Silicon {
+        pins,
+        watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU),
+        outbox,
+        lost_notices: 0,
+        block,
+    };
+    let identity = Identity::new(board.config(), log.as_ref().map_or(0, DropLog::boot));
+    let tick = memory.tick.write(Tick {
+        app,
+        recorder: Recorder::new(&mut memory.samples, &settings.monitor, identity),
+        inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
+        board,
+        overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),
+        at: DWT::cycle_count(),
+        converter,
+    });
+    tick.converter.start();
+    critical_section::with(|cs| TICK.replace(cs, Some(tick)));
+    // SAFETY: what the handler needs is in place, and no critical section is open.
+    unsafe { NVIC::unmask(Interrupt::ADC) };
+    Some((serial, Remote::new(chip.FLASH, chip.RCC, log), inbox))
+}
+
+/// The log in the chip, where one answers: without it the monitor works all the same.
+fn mount(spi: Spi) -> Option<ChipLog> {
+    // Data sheet W25Q64JV, power-up timing.
+    Cycles.delay_ms(5);
+    let chip = W25q::try_new(spi, Cycles).ok();
+    let log = chip.and_then(|chip| ChipLog::mount(chip).ok());
+    if log.is_none() {
+        error!("no flash for the drop log");
+    }
+    log
 }
 
 /// The configuration, and what was wrong.
@@ -241,7 +279,9 @@ pub fn on_converted() {
             levitated: tick.inputs.levitated(),
             ..tick.converter.take()
         };
-        tick.app.tick(&mut tick.board, &sample, lost);
+        let notices = tick.app.tick(&mut tick.board, &sample, lost);
+        tick.recorder.set_severity(tick.app.state().severity());
+        tick.recorder.take(&sample, &notices);
     });
 }
 

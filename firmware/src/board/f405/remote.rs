@@ -7,7 +7,7 @@ use touchdown_core::link::{Device, Log, Refusal, State};
 
 use super::clocks::CORE_HZ;
 use super::outputs::Watchdog;
-use super::{record, store, with_tick};
+use super::{ChipLog, record, store, with_tick};
 use crate::board::{Board, SAMPLE_RATE_HZ};
 
 /// PB6 sends, PB7 receives: USART1.
@@ -25,18 +25,27 @@ pub fn wire(pins: &GPIOB, rcc: &RCC) {
 pub struct Remote {
     flash: FLASH,
     rcc: RCC,
-    log: (),
+    log: Option<ChipLog>,
     wants_reset: bool,
 }
 
 impl Remote {
     /// With nothing asked yet.
-    pub fn new(flash: FLASH, rcc: RCC) -> Self {
+    pub fn new(flash: FLASH, rcc: RCC, log: Option<ChipLog>) -> Self {
         Self {
             flash,
             rcc,
-            log: (),
+            log,
             wants_reset: false,
+        }
+    }
+
+    /// Does the log's next thing, if the chip is ready for it.
+    pub fn work(&mut self) {
+        let Some(log) = &mut self.log else { return };
+        if log.flash().is_busy() == Ok(false) {
+            let lost = with_tick(|tick| tick.recorder.lost()).unwrap_or(0);
+            log.work(lost, || with_tick(|tick| tick.recorder.fetch()).flatten());
         }
     }
 

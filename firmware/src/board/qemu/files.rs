@@ -10,21 +10,27 @@ use touchdown_core::sample::Sample;
 use touchdown_core::wire::{self, Record};
 
 use super::Failure;
+use super::nor::NorFile;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
 /// Samples read at once; a semihosting call costs far more than a sample.
 const BLOCK: usize = 256;
 
-/// Opens the replay and the answer file, in the order of the command line.
-pub fn open() -> Result<(Replay, Answer), Failure> {
+/// Opens the replay and the answer file, and that of the log if there is one, in the order of the command line.
+pub fn open() -> Result<(Replay, Answer, Option<NorFile>), Failure> {
     let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
     let mut names = &arguments;
     let mut next = || names.next()?.ok();
-    let (Some(replay), Some(answer), None) = (next(), next(), next()) else {
+    let (Some(replay), Some(answer), log, None) = (next(), next(), next(), next()) else {
         return Err(Failure::CommandLine);
     };
-    Ok((Replay::open(replay)?, Answer::create(answer)?))
+    let log = log.map(|name| NorFile::open(terminated(name, &mut [0; COMMAND_LINE_BYTES])?));
+    Ok((
+        Replay::open(replay)?,
+        Answer::create(answer)?,
+        log.transpose()?,
+    ))
 }
 
 fn terminated<'a>(

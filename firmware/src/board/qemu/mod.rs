@@ -3,6 +3,7 @@
 
 mod counter;
 mod files;
+mod nor;
 mod remote;
 
 use defmt::{Debug2Format, Display2Format, error, info};
@@ -14,10 +15,13 @@ use touchdown_core::wire::Record;
 
 pub use self::counter::Counter;
 use self::files::Answer;
+use self::nor::NorFile;
 use self::remote::Line;
 use super::Board;
 use crate::app::App;
+use crate::drop_log::DropLog;
 use crate::journal;
+use crate::recorder::{Identity, Memory, Recorder};
 
 /// Why a run failed; the exit status.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +35,15 @@ pub enum Failure {
     Config = 4,
     /// The answer could not be written.
     Answer = 5,
+    /// The log's file could not be used.
+    Log = 6,
 }
+
+/// The drop log in a file.
+pub(crate) type FileLog = DropLog<NorFile, LOG_SLOTS>;
+
+/// Episodes of the log's file.
+const LOG_SLOTS: usize = 8;
 
 struct Emulated {
     answer: Answer,
@@ -64,9 +76,9 @@ impl Board for Emulated {
 }
 
 /// Runs the replay file that the command line names, and exits the emulator.
-pub fn main() -> ! {
+pub fn main(memory: &'static mut Memory) -> ! {
     info!("touchdown {=str} on qemu", env!("CARGO_PKG_VERSION"));
-    let status = match run() {
+    let status = match run(memory) {
         Ok(()) => 0,
         Err(failure) => {
             error!("failed: {}", Debug2Format(&failure));
@@ -81,8 +93,11 @@ pub fn abort() -> ! {
     semihosting::process::abort()
 }
 
-fn run() -> Result<(), Failure> {
-    let (mut replay, answer) = files::open()?;
+fn run(memory: &mut Memory) -> Result<(), Failure> {
+    let (mut replay, answer, log) = files::open()?;
+    let mut log = log
+        .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
+        .transpose()?;
     let config = replay.config()?;
     journal::config(&config);
     let mut app = App::try_new(&config, Faults::NONE).map_err(|refusal| {
@@ -99,15 +114,22 @@ fn run() -> Result<(), Failure> {
         line: Line::new(config.detector.sample_rate),
         failed: false,
     };
+    let boot = log.as_ref().map_or(0, DropLog::boot);
+    let mut recorder = Recorder::new(memory, &config, Identity::new(&board.block, boot));
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
     while let Some(samples) = replay.samples()? {
         for sample in samples {
-            app.tick(&mut board, &sample, 0);
+            let notices = app.tick(&mut board, &sample, 0);
+            recorder.set_severity(app.state().severity());
+            recorder.take(&sample, &notices);
             fingerprint.take(app.state());
         }
         // Between blocks of samples: the link is no part of the tick.
-        board.line.serve(&mut app, &board.block);
+        if let Some(log) = &mut log {
+            store(log, &mut recorder);
+        }
+        board.line.serve(&mut app, &board.block, &mut log);
     }
     let summary = fingerprint.summary(app.state());
     let severity = *app.state().severity();
@@ -117,8 +139,16 @@ fn run() -> Result<(), Failure> {
         "end: {=u64} samples, {=u64} faults",
         summary.samples, summary.faults
     );
+    if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
+        return Err(Failure::Log);
+    }
     if board.failed {
         return Err(Failure::Answer);
     }
     Ok(())
+}
+
+/// All that is ready.
+fn store(log: &mut FileLog, recorder: &mut Recorder<'_>) {
+    while !log.flash().has_failed() && log.work(recorder.lost(), || recorder.fetch()) {}
 }

@@ -5,6 +5,7 @@ use touchdown_core::config_block::{Block, Settings};
 use touchdown_core::event::Notice;
 use touchdown_core::link::{Device, Log, Refusal, Server, State};
 
+use super::FileLog;
 use crate::app::App;
 use crate::board::STATE_SAMPLES;
 use crate::board::serial::Serial;
@@ -36,12 +37,8 @@ impl Line {
     }
 
     /// Takes what has come, and sends until nothing is left.
-    pub fn serve(&mut self, app: &mut App, block: &Block) {
-        let mut remote = Remote {
-            app,
-            block,
-            log: (),
-        };
+    pub fn serve(&mut self, app: &mut App, block: &Block, log: &mut Option<FileLog>) {
+        let mut remote = Remote { app, block, log };
         if remote.app.state().samples() >= self.told + STATE_SAMPLES {
             self.told = remote.app.state().samples();
             let frame = self.server.state(&mut remote);
@@ -61,7 +58,7 @@ impl Line {
 struct Remote<'a> {
     app: &'a mut App,
     block: &'a Block,
-    log: (),
+    log: &'a mut Option<FileLog>,
 }
 
 impl Device for Remote<'_> {
@@ -84,6 +81,6 @@ impl Device for Remote<'_> {
     }
 
     fn log(&mut self) -> &mut impl Log {
-        &mut self.log
+        self.log
     }
 }

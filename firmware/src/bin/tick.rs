@@ -1,0 +1,69 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! The tick and nothing else: linked to be looked at, never run. A panic handler or soft-float f64 among its
+//! symbols is reachable from the tick: `cargo xtask budget`.
+
+#[cfg(target_os = "none")]
+mod image {
+    use core::panic::PanicInfo;
+
+    use touchdown_core::controller::Outputs;
+    use touchdown_core::event::Notice;
+    use touchdown_core::sample::Sample;
+    use touchdown_firmware::app::App;
+    use touchdown_firmware::board::Board;
+    use touchdown_firmware::recorder::Recorder;
+
+    /// Registers that notices and outputs go to.
+    struct Bare(&'static [u8]);
+
+    const REGISTER: *mut u8 = 0x4000_0000 as *mut u8;
+
+    fn write(byte: u8) {
+        // SAFETY: never run.
+        unsafe { REGISTER.write_volatile(byte) }
+    }
+
+    impl Board for Bare {
+        fn report(&mut self, notice: &Notice) {
+            write(matches!(notice, Notice::Declared(_)) as u8);
+        }
+
+        fn drive(&mut self, outputs: Outputs) {
+            write(outputs.bits());
+        }
+
+        fn config(&self) -> &[u8] {
+            self.0
+        }
+
+        fn feed(&mut self) {
+            write(0);
+        }
+    }
+
+    /// All the linker keeps hangs on this.
+    #[unsafe(no_mangle)]
+    extern "C" fn _start(
+        app: &mut App,
+        recorder: &mut Recorder<'static>,
+        config: &'static &'static [u8],
+        sample: &Sample,
+        lost: u32,
+    ) {
+        let notices = app.tick(&mut Bare(config), sample, lost);
+        recorder.set_severity(app.state().severity());
+        recorder.take(sample, &notices);
+    }
+
+    #[panic_handler]
+    fn panic(_: &PanicInfo) -> ! {
+        loop {
+            write(1);
+        }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    println!("touchdown-tick is never run: cargo xtask budget looks at it");
+}

@@ -1,0 +1,112 @@
+//! NOR flash in a file of the desktop, by semihosting: what is programmed only clears bits.
+
+use core::ffi::CStr;
+
+use embedded_storage::nor_flash::{
+    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashErrorKind, ReadNorFlash, check_erase,
+    check_read, check_write,
+};
+use semihosting::fs::File;
+use semihosting::io::{Read, Seek, SeekFrom, Write};
+
+use super::{Failure, LOG_SLOTS};
+use crate::store::bytes_of;
+
+const SECTOR_BYTES: usize = 4096;
+const PAGE_BYTES: usize = 256;
+const BYTES: usize = bytes_of(LOG_SLOTS);
+
+/// The file.
+pub struct NorFile {
+    file: File,
+    failed: bool,
+}
+
+impl NorFile {
+    /// A file that is there, or a new one, all erased.
+    pub fn open(name: &CStr) -> Result<Self, Failure> {
+        let there = File::options().read(true).write(true).open(name);
+        let is_new = there.is_err();
+        let file = match there {
+            Ok(file) => file,
+            Err(_) => {
+                File::create(name).map_err(|_| Failure::Log)?;
+                let again = File::options().read(true).write(true).open(name);
+                again.map_err(|_| Failure::Log)?
+            }
+        };
+        let mut flash = Self {
+            file,
+            failed: false,
+        };
+        if is_new {
+            flash.erase(0, BYTES as u32).map_err(|_| Failure::Log)?;
+        }
+        Ok(flash)
+    }
+
+    /// Whether the file could not be read or written.
+    pub fn has_failed(&self) -> bool {
+        self.failed
+    }
+
+    fn put(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
+        let done = self.file.seek(SeekFrom::Start(offset.into())).is_ok()
+            && self.file.write_all(bytes).is_ok();
+        self.outcome(done)
+    }
+
+    fn outcome(&mut self, done: bool) -> Result<(), NorFlashErrorKind> {
+        self.failed |= !done;
+        done.then_some(()).ok_or(NorFlashErrorKind::Other)
+    }
+}
+
+impl ErrorType for NorFile {
+    type Error = NorFlashErrorKind;
+}
+
+impl ReadNorFlash for NorFile {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        check_read(self, offset, bytes.len())?;
+        let done = self.file.seek(SeekFrom::Start(offset.into())).is_ok()
+            && self.file.read_exact(bytes).is_ok();
+        self.outcome(done)
+    }
+
+    fn capacity(&self) -> usize {
+        BYTES
+    }
+}
+
+impl NorFlash for NorFile {
+    const WRITE_SIZE: usize = 1;
+    const ERASE_SIZE: usize = SECTOR_BYTES;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
+        check_erase(self, from, to)?;
+        (from..to)
+            .step_by(PAGE_BYTES)
+            .try_for_each(|page| self.put(page, &[0xff; PAGE_BYTES]))
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
+        check_write(self, offset, bytes.len())?;
+        for (start, piece) in (offset..).step_by(PAGE_BYTES).zip(bytes.chunks(PAGE_BYTES)) {
+            let mut held = [0; PAGE_BYTES];
+            let Some(held) = held.get_mut(..piece.len()) else {
+                continue;
+            };
+            self.read(start, held)?;
+            held.iter_mut()
+                .zip(piece)
+                .for_each(|(held, new)| *held &= new);
+            self.put(start, held)?;
+        }
+        Ok(())
+    }
+}
+
+impl MultiwriteNorFlash for NorFile {}

@@ -1,0 +1,159 @@
+//! How many instructions a tick and its parts take: an image for the emulator that writes a table of
+//! counts to the file `tick.csv` of the desktop.
+//!
+//! Each stream is played twice: once for the whole ticks, once part by part. The parts add up to a
+//! little more or less than the whole, which the compiler optimises as one.
+
+mod scenes;
+
+use core::hint::black_box;
+
+use semihosting::fs::File;
+use touchdown_core::config_block::{self, Block, Settings, Wiring};
+use touchdown_core::controller::{Faults, Outputs};
+use touchdown_core::event::Notice;
+
+use self::scenes::{SCENES, Scene};
+use super::{Counter, Table, Tally};
+use crate::app::App;
+use crate::board::Board;
+use crate::recorder::{Identity, Memory, Recorder};
+
+const PARTS: [&str; 6] = [
+    "sensing and health",
+    "detector",
+    "forecast slice",
+    "severity",
+    "recorder",
+    "outputs",
+];
+
+/// Counts everything and exits the emulator.
+pub fn main(memory: &'static mut Memory) -> ! {
+    let counter = Counter::take();
+    let mut table = Table(File::create(c"tick.csv").expect("a writable folder"));
+    table.line(format_args!("compiler,{}", env!("COMPILER")));
+    for scene in &SCENES {
+        let name = scene.name;
+        let mut write = |part, tally: Tally| {
+            let Tally { calls, sum, worst } = tally;
+            table.line(format_args!("{part}|{name}|{calls}|{sum}|{worst}"));
+        };
+        let (whole, notices) = whole(&counter, scene, memory);
+        write("tick", whole);
+        let parts = parts(&counter, scene, memory);
+        PARTS
+            .into_iter()
+            .zip(parts)
+            .for_each(|(part, tally)| write(part, tally));
+        table.line(format_args!("notices|{name}|{notices}"));
+    }
+    semihosting::process::exit(0)
+}
+
+// Frames of their own: each has an application on its stack.
+#[inline(never)]
+fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
+    let mut bench = prepare(scene, memory);
+    let Bench {
+        app,
+        board,
+        recorder,
+    } = &mut bench;
+    let mut tally = Tally::default();
+    let mut told = 0;
+    scene.play(|sample| {
+        let sample = black_box(sample);
+        let (notices, instructions) = counter.count(|| {
+            let notices = app.tick(board, sample, 0);
+            recorder.set_severity(app.state().severity());
+            recorder.take(sample, &notices);
+            notices
+        });
+        told += notices.len() as u32;
+        tally.add(instructions);
+        // What the loop below the tick does.
+        recorder.fetch();
+    });
+    (tally, told)
+}
+
+#[inline(never)]
+fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
+    let mut bench = prepare(scene, memory);
+    let Bench {
+        app,
+        board,
+        recorder,
+    } = &mut bench;
+    let mut tallies = [Tally::default(); PARTS.len()];
+    scene.play(|sample| {
+        let sample = black_box(sample);
+        let (monitor, state) = app.monitor();
+        let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
+        let seen = black_box(&seen);
+        let (mut notices, detector) = counter.count(|| monitor.detect(state, seen));
+        let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
+        let ((), outputs) = counter.count(|| app.follow(board, &notices, 0));
+        let (monitor, state) = app.monitor();
+        let (outlook, forecast) = counter.count(|| monitor.look_ahead(state));
+        if let Some(outlook) = outlook {
+            let _ = notices.push(outlook);
+        }
+        let ((), recording) = counter.count(|| {
+            recorder.set_severity(app.state().severity());
+            recorder.take(sample, &notices);
+        });
+        let counts = [sensing, detector, forecast, severity, recording, outputs];
+        tallies
+            .iter_mut()
+            .zip(counts)
+            .for_each(|(tally, it)| tally.add(it));
+        recorder.fetch();
+    });
+    tallies
+}
+
+#[inline(never)]
+fn prepare<'m>(scene: &Scene, memory: &'m mut Memory) -> Bench<'m> {
+    let config = scene.config();
+    let identity = Identity {
+        firmware: [0; 16],
+        config_hash: 0,
+        boot: 0,
+    };
+    Bench {
+        app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
+        board: Idle(config_block::encode(&Settings {
+            monitor: config,
+            wiring: Wiring::default(),
+        })),
+        recorder: Recorder::new(memory, &config, identity),
+    }
+}
+
+/// What ticks.
+struct Bench<'m> {
+    app: App,
+    board: Idle,
+    recorder: Recorder<'m>,
+}
+
+/// A board whose registers take nothing.
+struct Idle(Block);
+
+impl Board for Idle {
+    fn report(&mut self, notice: &Notice) {
+        black_box(notice);
+    }
+
+    fn drive(&mut self, outputs: Outputs) {
+        black_box(outputs);
+    }
+
+    fn config(&self) -> &[u8] {
+        &self.0
+    }
+
+    fn feed(&mut self) {}
+}

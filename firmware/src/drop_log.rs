@@ -1,0 +1,71 @@
+//! The drop log of a board: the recorder's blocks into flash, and episodes out of it for the link.
+
+use embedded_storage::nor_flash::MultiwriteNorFlash;
+use touchdown_core::link::{CHUNK_BYTES, Chunk, Log, Refusal};
+use touchdown_core::log::block::Block;
+
+use crate::store::{EPISODE_BYTES, MountError, Store};
+
+/// A store of `SLOTS` episodes in its flash.
+pub struct DropLog<F, const SLOTS: usize> {
+    store: Store<SLOTS>,
+    flash: F,
+}
+
+impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
+    /// Finds what is in `flash`, which has nothing but the log.
+    pub fn mount(mut flash: F) -> Result<Self, MountError<F::Error>> {
+        let store = Store::mount(&mut flash, 0)?;
+        Ok(Self { store, flash })
+    }
+
+    /// The flash.
+    pub fn flash(&mut self) -> &mut F {
+        &mut self.flash
+    }
+
+    /// Times switched on.
+    pub fn boot(&self) -> u32 {
+        self.store.counters().boots
+    }
+
+    /// Writes or erases once at most; `lost` is the recorder's count. Whether there may be more to do: an
+    /// error is tried again.
+    pub fn work(&mut self, lost: u32, fetch: impl FnOnce() -> Option<Block>) -> bool {
+        self.store.count_lost(lost);
+        self.store.work(&mut self.flash, fetch).unwrap_or(false)
+    }
+}
+
+impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
+    fn episodes(&mut self) -> Option<(u32, u32)> {
+        let numbers = self.store.written();
+        numbers.fold(None, |range, number| {
+            let (first, last) = range.unwrap_or((number, number));
+            Some((number.min(first), number.max(last)))
+        })
+    }
+
+    fn fetch(&mut self, episode: u32, offset: u32, chunk: &mut Chunk) -> Result<u32, Refusal> {
+        if !self.store.written().any(|it| it == episode) {
+            return Err(Refusal::NoEpisode);
+        }
+        let mut bytes = [0; CHUNK_BYTES];
+        let read = self
+            .store
+            .read(&mut self.flash, episode, offset, &mut bytes);
+        let length = read.map_err(|_| Refusal::StoreFailed)?;
+        chunk.clear();
+        // A chunk has that room.
+        let _ = chunk.extend_from_slice(bytes.get(..length).unwrap_or_default());
+        Ok(EPISODE_BYTES as u32)
+    }
+
+    fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
+        match self.store.erase_episode(&mut self.flash, episode) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(Refusal::NoEpisode),
+            Err(_) => Err(Refusal::StoreFailed),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Payload of a severity block: version, then [`Severity`] in postcard.
+
+use heapless::Vec;
+
+use crate::severity::Severity;
+
+/// Version of the bytes behind it.
+pub const VERSION: u8 = 1;
+/// Bytes with the version, at most: a varint of 16 bits and seven f32.
+pub const SEVERITY_BYTES: usize = 1 + 3 + 7 * 4;
+
+/// Severity to payload.
+pub fn encode(severity: &Severity) -> Vec<u8, SEVERITY_BYTES> {
+    let mut bytes = [0; SEVERITY_BYTES - 1];
+    // It always fits.
+    let body = postcard::to_slice(severity, &mut bytes).map_or(&[][..], |body| &*body);
+    let mut payload = Vec::new();
+    let _ = payload.push(VERSION);
+    let _ = payload.extend_from_slice(body);
+    payload
+}
+
+/// What follows the version to severity; `None` for another version or too few bytes.
+pub fn decode(version: u8, bytes: &[u8]) -> Option<Severity> {
+    let severity = postcard::from_bytes(bytes).ok();
+    severity.filter(|_| version == VERSION)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn severity_comes_back() {
+        let severity = Severity {
+            impacts: u16::MAX,
+            impact_speed: 0.1,
+            impulse: 0.2,
+            total_impulse: f32::MAX,
+            dwell: -0.0,
+            velocity_index: 1.41,
+            whirl_frequency: 160.0,
+            whirl_load: 1e4,
+        };
+        let bytes = encode(&severity);
+        assert_eq!(bytes.len(), SEVERITY_BYTES);
+        let (version, rest) = bytes.split_first().unwrap();
+        assert_eq!(decode(*version, rest), Some(severity));
+        assert_eq!(decode(2, rest), None);
+        assert_eq!(decode(*version, &rest[1..]), None);
+    }
+}

@@ -1,0 +1,164 @@
+//! What an image's symbols and code say: what the tick can reach, and the stack.
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, bail, ensure};
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+
+use super::calls::{self, Function, Graph, Region};
+
+/// Names of what a panic needs.
+const PANICS: [&str; 2] = ["rust_begin_unwind", "panicking"];
+/// Where the core puts registers before an interrupt, with those of the floating-point unit: 26 words and one to
+/// align them (ARMv7-M Architecture Reference Manual, B1.5.6 and B1.5.7).
+const EXCEPTION_FRAME: u64 = 4 * 27;
+
+/// What can be reached in an image that has the tick and nothing else.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reached {
+    /// Functions of a panic.
+    pub panics: Vec<String>,
+    /// Functions for f64.
+    pub soft_float: Vec<String>,
+}
+
+/// Reads the symbols of the image.
+pub fn look(image: &Path) -> anyhow::Result<Reached> {
+    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    reached(&bytes)
+}
+
+fn reached(elf: &[u8]) -> anyhow::Result<Reached> {
+    let file = object::File::parse(elf)?;
+    let mut found = Reached::default();
+    let mut functions = 0;
+    for symbol in file.symbols().filter(|it| it.kind() == SymbolKind::Text) {
+        let name = symbol.name()?;
+        functions += 1;
+        if PANICS.iter().any(|it| name.contains(it)) {
+            found.panics.push(name.to_owned());
+        } else if is_soft_float(name) {
+            found.soft_float.push(name.to_owned());
+        }
+    }
+    // A stripped image would pass whatever is in it.
+    ensure!(functions > 0, "the image has no symbols");
+    Ok(found)
+}
+
+/// Whether it computes in f64: Run-time ABI for the Arm Architecture, tables 2 to 8, and GCC's names.
+fn is_soft_float(name: &str) -> bool {
+    let name = name.rsplit("::").next().unwrap_or(name);
+    let arm = name.strip_prefix("__aeabi_");
+    let of_f64 =
+        |rest: &str| rest.starts_with('d') || rest.ends_with("2d") || rest.starts_with("cd");
+    let integers = ["div0"];
+    arm.is_some_and(|rest| of_f64(rest) && !integers.iter().any(|it| rest.contains(it)))
+        || (name.starts_with("__") && name.contains("df"))
+}
+
+/// Stack of an image, in bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stack {
+    main: u64,
+    interrupt: u64,
+    /// Functions called through a pointer, or compiled elsewhere, whose frames are not in it.
+    open: Vec<String>,
+}
+
+impl Stack {
+    /// Functions that call through a pointer.
+    fn pointers(&self) -> impl Iterator<Item = &str> {
+        let open = self.open.iter();
+        open.filter_map(|it| it.strip_prefix(calls::POINTERS))
+    }
+
+    /// Of the deepest chain from the start, and of the interrupt on top of it.
+    pub fn bytes(&self) -> u64 {
+        self.main + EXCEPTION_FRAME + self.interrupt
+    }
+}
+
+impl fmt::Display for Stack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (main, interrupt) = (self.main, self.interrupt);
+        write!(
+            f,
+            "{} bytes: main {main}, registers {EXCEPTION_FRAME}, interrupt {interrupt}; not in it: {} functions \
+             without a stated frame, and pointers in {}",
+            self.bytes(),
+            self.open.len() - self.pointers().count(),
+            self.pointers().collect::<Vec<_>>().join(", ")
+        )
+    }
+}
+
+/// Adds up the deepest chains.
+pub fn stack(image: &Path) -> anyhow::Result<Stack> {
+    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let graph = graph(&bytes)?;
+    let deepest = |name: &str| {
+        let deepest = graph.deepest(name)?;
+        for line in &deepest.chain {
+            println!("    {line}");
+        }
+        Ok::<_, anyhow::Error>(deepest)
+    };
+    let (main, interrupt) = (deepest("Reset")?, deepest("ADC")?);
+    let mut open = [main.open, interrupt.open].concat();
+    open.sort();
+    open.dedup();
+    Ok(Stack {
+        main: main.bytes,
+        interrupt: interrupt.bytes,
+        open,
+    })
+}
+
+fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
+    let file = object::File::parse(elf)?;
+    let text = file.section_by_name(".text").context("no code")?;
+    let code = text.data()?;
+    let frames = match file.section_by_name(".stack_sizes") {
+        Some(section) => frames(section.data()?)?,
+        None => bail!("the image tells no stack sizes"),
+    };
+    let mut regions = vec![];
+    let mut functions = vec![];
+    for symbol in file.symbols() {
+        let (name, address) = (symbol.name()?, symbol.address());
+        if name.starts_with("$t") || name.starts_with("$d") {
+            regions.push(Region {
+                address,
+                is_code: name.starts_with("$t"),
+            });
+        } else if symbol.kind() == SymbolKind::Text && symbol.size() > 0 {
+            let address = address & !1;
+            let frame = frames.iter().find(|(at, _)| *at == address);
+            functions.push(Function {
+                name: format!("{:#}", rustc_demangle::demangle(name)),
+                address,
+                size: symbol.size(),
+                frame: frame.map(|(_, bytes)| *bytes),
+            });
+        }
+    }
+    Ok(Graph::new(text.address(), code, &mut regions, functions))
+}
+
+/// Address and frame of each function: an address of four bytes, then a ULEB128.
+fn frames(mut bytes: &[u8]) -> anyhow::Result<Vec<(u64, u64)>> {
+    let mut frames = vec![];
+    while let Some((address, rest)) = bytes.split_first_chunk() {
+        let address = u64::from(u32::from_le_bytes(*address) & !1);
+        let length = rest.iter().position(|byte| byte & 0x80 == 0);
+        let (number, after) = rest.split_at(length.context("a stack size that was cut")? + 1);
+        let number = number.iter().rev();
+        let frame = number.fold(0, |sum, byte| sum << 7 | u64::from(byte & 0x7f));
+        frames.push((address, frame));
+        bytes = after;
+    }
+    Ok(frames)
+}

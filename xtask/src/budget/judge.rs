@@ -1,0 +1,206 @@
+//! Limits, and what is above them.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context;
+use serde::Deserialize;
+
+use super::{Budget, Instructions};
+
+/// What fails the check, and what is aimed at.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    tick: Instructions,
+    flash_bytes: u64,
+    ram_bytes: u64,
+    stack_bytes: u64,
+    panic_free: bool,
+    soft_float_symbols: u64,
+    /// Worst of each part.
+    parts: BTreeMap<String, u32>,
+    #[serde(default)]
+    goals: BTreeMap<String, u64>,
+}
+
+impl Limits {
+    /// Of this file.
+    pub fn read(file: &Path) -> anyhow::Result<Self> {
+        let text =
+            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+        toml::from_str(&text).with_context(|| format!("{}", file.display()))
+    }
+}
+
+/// Name, measured and limit, where there is a number to compare.
+fn rows(budget: &Budget, limits: &Limits) -> Vec<(String, u64, Option<u64>)> {
+    let (tick, limit) = (budget.tick, limits.tick);
+    let mut rows = vec![
+        (
+            "tick_typical",
+            tick.instructions_typical.into(),
+            limit.instructions_typical.into(),
+        ),
+        (
+            "tick_worst",
+            tick.instructions_worst.into(),
+            limit.instructions_worst.into(),
+        ),
+        ("flash_bytes", budget.flash_bytes, limits.flash_bytes),
+        ("ram_bytes", budget.ram_bytes, limits.ram_bytes),
+        ("stack_bytes", budget.stack_bytes, limits.stack_bytes),
+        (
+            "soft_float_symbols",
+            budget.soft_float_symbols,
+            limits.soft_float_symbols,
+        ),
+    ]
+    .into_iter()
+    .map(|(name, measured, limit): (&str, u64, u64)| (name.to_owned(), measured, Some(limit)))
+    .collect::<Vec<_>>();
+    rows.extend(budget.parts.iter().map(|part| {
+        let limit = limits.parts.get(&part.part).copied().map(u64::from);
+        let worst = part.instructions.instructions_worst.into();
+        (part.part.clone(), worst, limit)
+    }));
+    rows
+}
+
+/// What breaks its limit, or has none.
+pub fn breaches(budget: &Budget, limits: &Limits) -> Vec<String> {
+    let mut breaches = vec![];
+    for (name, measured, limit) in rows(budget, limits) {
+        match limit {
+            Some(limit) if measured <= limit => {}
+            Some(limit) => breaches.push(format!("{name}: {measured}, limit {limit}")),
+            None => breaches.push(format!("{name}: {measured}, and no limit")),
+        }
+    }
+    let counted = |name: &String| budget.parts.iter().any(|part| part.part == *name);
+    let missing = limits.parts.keys().filter(|name| !counted(name));
+    breaches.extend(missing.map(|name| format!("{name}: not counted")));
+    if limits.panic_free && !budget.panic_free {
+        breaches.push("panic_free: a panic can be reached from the tick".into());
+    }
+    breaches
+}
+
+/// For the eye.
+pub fn table(budget: &Budget, limits: &Limits) -> String {
+    let mut text = String::new();
+    for (name, measured, limit) in rows(budget, limits) {
+        let limit = limit.map_or("none".into(), |it| it.to_string());
+        let goal = limits.goals.get(&name);
+        let goal = goal.map_or(String::new(), |it| {
+            let met = if measured <= *it { "met" } else { "NOT MET" };
+            format!(", goal {it} {met}")
+        });
+        let _ = writeln!(text, "  {name:20} {measured:7}  limit {limit}{goal}");
+    }
+    let _ = writeln!(text, "  panic_free           {}", budget.panic_free);
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::budget::Part;
+
+    const LIMITS: &str = "
+        flash_bytes = 100_000
+        ram_bytes = 90_000
+        stack_bytes = 8_000
+        panic_free = true
+        soft_float_symbols = 0
+        tick = { instructions_typical = 1_500, instructions_worst = 4_000 }
+        [parts]
+        detector = 3_000
+        [goals]
+        tick_worst = 2_000
+    ";
+
+    fn within() -> (Budget, Limits) {
+        let budget = Budget {
+            parts: vec![Part {
+                part: "detector".into(),
+                instructions: Instructions {
+                    instructions_typical: 700,
+                    instructions_worst: 3_000,
+                },
+            }],
+            tick: Instructions {
+                instructions_typical: 1_500,
+                instructions_worst: 4_000,
+            },
+            flash_bytes: 100_000,
+            ram_bytes: 90_000,
+            stack_bytes: 8_000,
+            panic_free: true,
+            soft_float_symbols: 0,
+        };
+        (budget, toml::from_str(LIMITS).unwrap())
+    }
+
+    /// The one breach after `plant`.
+    fn breach(plant: impl FnOnce(&mut Budget)) -> String {
+        let (mut budget, limits) = within();
+        plant(&mut budget);
+        let breaches = breaches(&budget, &limits);
+        assert_eq!(breaches.len(), 1, "{breaches:?}");
+        breaches[0].clone()
+    }
+
+    #[test]
+    fn what_is_at_its_limits_passes_though_a_goal_is_not_met() {
+        let (budget, limits) = within();
+        assert_eq!(breaches(&budget, &limits), [""; 0]);
+        assert!(table(&budget, &limits).contains("goal 2000 NOT MET"));
+    }
+
+    #[test]
+    fn each_figure_above_its_limit_fails() {
+        let of = |plant: fn(&mut Budget)| breach(plant);
+        assert!(of(|it| it.tick.instructions_worst += 1).starts_with("tick_worst"));
+        assert!(of(|it| it.tick.instructions_typical += 1).starts_with("tick_typical"));
+        assert!(of(|it| it.parts[0].instructions.instructions_worst += 1).starts_with("detector"));
+        assert!(of(|it| it.flash_bytes += 1).starts_with("flash_bytes"));
+        assert!(of(|it| it.ram_bytes += 1).starts_with("ram_bytes"));
+        assert!(of(|it| it.stack_bytes += 1).starts_with("stack_bytes"));
+        assert!(of(|it| it.soft_float_symbols = 1).starts_with("soft_float_symbols"));
+        assert!(of(|it| it.panic_free = false).starts_with("panic_free"));
+    }
+
+    #[test]
+    fn a_part_without_a_limit_or_a_count_fails() {
+        assert_eq!(breach(|it| it.parts.clear()), "detector: not counted");
+        let more = |it: &mut Budget| {
+            it.parts.push(Part {
+                part: "new".into(),
+                instructions: it.tick,
+            });
+        };
+        assert_eq!(breach(more), "new: 4000, and no limit");
+    }
+
+    #[test]
+    fn the_limits_in_force_can_be_read() {
+        Limits::read(&crate::workspace().join("firmware/budget.toml")).unwrap();
+    }
+
+    #[test]
+    fn json_has_the_names_that_were_agreed() {
+        let (budget, _) = within();
+        let json = serde_json::to_string(&budget).unwrap();
+        assert_eq!(
+            json,
+            r#"{"parts":[{"part":"detector","instructions_typical":700,"instructions_worst":3000}],"#
+                .to_owned()
+                + r#""tick":{"instructions_typical":1500,"instructions_worst":4000},"#
+                + r#""flash_bytes":100000,"ram_bytes":90000,"stack_bytes":8000,"#
+                + r#""panic_free":true,"soft_float_symbols":0}"#
+        );
+    }
+}

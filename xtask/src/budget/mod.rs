@@ -1,0 +1,96 @@
+//! What the firmware takes of the chip, against its limits: `firmware/budget.toml`.
+
+mod calls;
+mod image;
+mod judge;
+mod ticks;
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use serde::{Deserialize, Serialize};
+
+use crate::firmware::{self, Extra};
+use crate::workspace;
+
+use self::judge::Limits;
+
+/// Measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Budget {
+    /// Of the tick.
+    parts: Vec<Part>,
+    /// All of it.
+    tick: Instructions,
+    /// Of the image for silicon.
+    flash_bytes: u64,
+    /// Likewise, without the stack.
+    ram_bytes: u64,
+    /// Deepest chain of calls, an interrupt on top.
+    stack_bytes: u64,
+    /// No panic can be reached from the tick.
+    panic_free: bool,
+    /// Functions for f64 that can be reached from the tick.
+    soft_float_symbols: u64,
+}
+
+/// Of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Instructions {
+    /// Mean while the rotor floats on its orbit.
+    instructions_typical: u32,
+    /// Greatest that was met in any stream.
+    instructions_worst: u32,
+}
+
+/// A part of the tick.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    part: String,
+    #[serde(flatten)]
+    instructions: Instructions,
+}
+
+/// Builds, counts and looks; writes `json` if given. Fails above a limit.
+pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
+    println!("Budget: building");
+    let images = firmware::images();
+    firmware::build_one("touchdown-count-tick", Extra::None)?;
+    firmware::build_one("touchdown-tick", Extra::StackSizes)?;
+    firmware::build_one("touchdown-firmware", Extra::StackSizes)?;
+
+    let table = ticks::count(&images.join("touchdown-count-tick"))?;
+    print!("{}", table.by_scene());
+    let tick = image::look(&images.join("touchdown-tick"))?;
+    for name in tick.panics.iter().chain(&tick.soft_float) {
+        println!("  reachable from the tick: {name}");
+    }
+    let silicon = images.join("touchdown-firmware");
+    let (flash_bytes, ram_bytes) = firmware::size(&silicon)?;
+    let stack = image::stack(&silicon)?;
+    println!("  stack: {stack}");
+
+    let budget = Budget {
+        parts: table.parts(),
+        tick: table.tick()?,
+        flash_bytes,
+        ram_bytes,
+        stack_bytes: stack.bytes(),
+        panic_free: tick.panics.is_empty(),
+        soft_float_symbols: tick.soft_float.len() as u64,
+    };
+    if let Some(file) = json {
+        let text = serde_json::to_string_pretty(&budget)? + "\n";
+        fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    let limits = Limits::read(&workspace().join("firmware/budget.toml"))?;
+    print!("{}", judge::table(&budget, &limits));
+    let breaches = judge::breaches(&budget, &limits);
+    ensure!(
+        breaches.is_empty(),
+        "over budget:\n  {}",
+        breaches.join("\n  ")
+    );
+    Ok(())
+}
