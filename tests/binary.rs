@@ -18,7 +18,7 @@ pub fn touchdown(folder: &Path) -> assert_cmd::Command {
 }
 
 /// Cargo gives a test only the programs of its own package, so the test builds the other one, beside
-/// itself: `target/<profile>/deps/<test>`.
+/// itself: `target/<profile>/deps/<test>`. As `cargo test --workspace` does, which has built it then.
 fn build() -> PathBuf {
     let test = std::env::current_exe().expect("the test has a path");
     let profile = test
@@ -26,20 +26,20 @@ fn build() -> PathBuf {
         .nth(2)
         .expect("deps is in a profile's folder");
     let target = profile.parent().expect("the profile's folder is in target");
-    let name = match profile.file_name().and_then(|name| name.to_str()) {
-        Some("debug") | None => "dev",
-        Some(other) => other,
-    };
-    let built = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args([
-            "build",
-            "--quiet",
-            "--package",
-            "touchdown-sim",
-            "--bin",
-            "touchdown",
-        ])
-        .args(["--profile", name])
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args([
+        "test",
+        "--quiet",
+        "--no-run",
+        "--workspace",
+        "--test",
+        "program",
+    ]);
+    match profile.file_name().and_then(|name| name.to_str()) {
+        Some("debug") | None => {}
+        Some(other) => drop(cargo.args(["--profile", other])),
+    }
+    let built = cargo
         .arg("--target-dir")
         .arg(target)
         .current_dir(env!("CARGO_MANIFEST_DIR"))

@@ -144,12 +144,14 @@ fn drop_json_has_the_documented_shape() {
             "contact_starts_s",
             "detector",
             "final",
+            "forecasts",
             "impacts",
             "lift_offs_s",
             "model",
             "phases",
             "regime",
-            "rolling_starts_s"
+            "rolling_starts_s",
+            "severity"
         ]
     );
     assert_eq!(keys(&json["model"]), ["precision", "rung", "step_s"]);
@@ -226,7 +228,15 @@ fn a_stream_replays_to_the_same_events() {
         .output()
         .unwrap();
     let replay: Value = serde_json::from_slice(&replay.stdout).unwrap();
-    assert_eq!(keys(&replay), ["events", "faults", "samples"]);
+    let documented = [
+        "events",
+        "faults",
+        "forecasts",
+        "health",
+        "samples",
+        "severity",
+    ];
+    assert_eq!(keys(&replay), documented);
     assert_eq!(replay["samples"], 4401);
     assert_eq!(replay["faults"], 0);
     assert_eq!(replay["events"], drop["detector"]["events"]);

@@ -21,7 +21,7 @@ within = 0.5
 speed_mm_s = 50
 [[parameter]]
 key = "retainer.friction"
-values = [0.1, 0.2, 0.4]
+values = [0.05, 0.1, 0.15]
 [[parameter]]
 key = "retainer.restitution"
 from = 0.3

@@ -90,7 +90,7 @@ impl Case {
                     angle: sign * random.random_range(0.15..0.25),
                     tangential: sign * random.random_range(0.085..0.095),
                 };
-                Ok(Drop::of(plan, scene))
+                Ok(Drop::of(plan, scene).before_fast_whirl())
             }
         }
     }

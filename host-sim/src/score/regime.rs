@@ -28,8 +28,6 @@ const SETTLED: f64 = 0.1;
 const LONG: f64 = 3.0;
 /// Turns of a whirl that has to be declared: one, and time to say so.
 const CERTAIN: f64 = 1.5;
-/// Fastest whirl, turns/s: twenty samples a turn.
-const FASTEST: f64 = 1e3;
 /// A pendulum that swings less, over that time, cannot be told from rest: three standard deviations of
 /// the noise, either way, m.
 const STILL: f64 = 6e-6;
@@ -225,7 +223,7 @@ fn is_blurred(watched: &Watched, end: f64) -> bool {
 /// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let drops = campaign::map(plan, "regime", &CASES, |case, mut random| {
-        seen(&case.drop(plan, &mut random)?.before(FASTEST))
+        seen(&case.drop(plan, &mut random)?.before_fast_whirl())
     })?;
     let mut rows = Vec::new();
     let mut counts = [[0_u64; KINDS + 1]; KINDS];

@@ -89,16 +89,17 @@ impl Drop {
         truth::simulate(&scene).regime
     }
 
-    /// Ends the run where the whirl gets faster than `rate` (turns/s), which the rigid laws let grow
-    /// without bound.
-    pub fn before(mut self, rate: f64) -> Self {
+    /// Ends the run where the whirl gets faster than 1000 turns/s, twenty samples a turn: the rigid laws
+    /// let it grow without bound.
+    pub fn before_fast_whirl(mut self) -> Self {
+        const FASTEST: f64 = 1e3;
         const LOOK: f64 = 1e-3;
         let scene = self.scene.clone();
         let mut truth = Truth::new(&scene);
         let (mut time, mut turns) = (0.0, 0.0);
         while time < scene.run.duration {
             let now = truth.advance(time).rotor.turns_in_contact;
-            if (now - turns).abs() > rate * LOOK {
+            if (now - turns).abs() > FASTEST * LOOK {
                 self.scene.run.duration = time;
                 break;
             }

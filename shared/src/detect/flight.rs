@@ -220,19 +220,22 @@ impl FlightTest {
         self.contact(flight, fix)
     }
 
-    /// Foresees the end of the series anew, once the flight shows how it began.
+    /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
+    /// well, it does not.
     fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
-        let (Some(after), Some(last)) = (
-            flight.series.shown_after(&self.machine, self.period),
-            flight.series.last(),
-        ) else {
+        if flight.bank.loudness() > 1.0 {
+            return;
+        }
+        let (Some(after), Some(last)) =
+            (flight.series.shown_after(self.period), flight.series.last())
+        else {
             return;
         };
         let flown = fix.now.since(last.at);
         if flown >= after {
             let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
             let error = flight.track.speed_error();
-            (flight.series).relaunch(velocity, error * error, &self.machine, self.period);
+            (flight.series).relaunch(velocity, error, &self.machine, self.period);
         }
     }
 
@@ -248,15 +251,17 @@ impl FlightTest {
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
-        let bounce = Bounce {
+        let mut bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
             along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
+            faint: false,
         };
         let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
-        if flight.series.foresees(&bounce, self.period) {
+        bounce.faint = normal_speed <= faintest;
+        if flight.bank.loudness() <= 1.0 && flight.series.foresees(&bounce, self.period) {
             faintest *= EXPECTED;
         }
         if radius < self.near || normal_speed <= faintest {

@@ -11,8 +11,10 @@ const PRIOR_WEIGHT: f32 = 1.0;
 /// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
 const CLEAR_SPEED: f32 = 0.02;
 
-/// Spread of a launch speed that follows from the speed into the wall and restitution, part of it.
-const LAUNCH_SPREAD: f32 = 0.15;
+/// Standard deviations by which a flight contradicts what restitution lets expect of its launch, and the speed,
+/// m/s, from which on it may.
+const CONTRADICTS: f32 = 4.0;
+const CLEAR_LAUNCH: f32 = 0.01;
 /// Part of the first flight after an impact that shows well how the rotor left the wall.
 const SHOWN: f32 = 0.6;
 
@@ -32,6 +34,8 @@ pub(crate) struct Bounce {
     pub(crate) outward: [f32; 2],
     /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
     pub(crate) pressing: f32,
+    /// Slower than what a rotor lying on the wall may seem to do.
+    pub(crate) faint: bool,
 }
 
 /// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
@@ -93,7 +97,9 @@ pub(crate) struct Series {
     impulse: f32,
     last: Option<Bounce>,
     ends: Option<Moment>,
-    /// Whether the launch after the last impact is still that which followed from the impact.
+    /// Speed, m/s, with which the rotor left the wall at the last impact.
+    launch: f32,
+    /// Whether its velocity along the wall is still that which followed from the impact.
     assumed: bool,
 }
 
@@ -129,21 +135,21 @@ impl Series {
         }
     }
 
-    /// Samples after the last impact from which on its launch is shown by the flight itself; `None` where it
+    /// Samples after the last impact from which on the flight shows how it began; `None` where it
     /// has been taken from there.
-    pub(crate) fn shown_after(&self, machine: &MachineConfig, period: f32) -> Option<f32> {
+    pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.restitution(machine) * last.normal_speed / last.pressing;
+        let flight = 2.0 * self.launch / last.pressing;
         (last.pressing > 0.0).then_some(SHOWN * flight / period)
     }
 
-    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to
-    /// `variance`. Just after an impact its velocity along the wall is hardly known, and the wall's
-    /// pressing grows with its square.
+    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
+    /// after an impact that along the wall is hardly known, and the wall's pressing grows with its square. How
+    /// fast it left the wall is known better from the impacts, unless the flight contradicts them.
     pub(crate) fn relaunch(
         &mut self,
         [u, v]: [f32; 2],
-        variance: f32,
+        error: f32,
         machine: &MachineConfig,
         period: f32,
     ) {
@@ -155,17 +161,18 @@ impl Series {
         let [x, y] = last.outward;
         last.along = v * x - u * y;
         last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
-        let (expected, shown) = (restitution * last.normal_speed, -(u * x + v * y));
-        let spread = LAUNCH_SPREAD * expected;
-        let trust = spread * spread / (spread * spread + variance);
-        let launch = expected + trust * (shown - expected);
-        let (rest, at) = (last.rest(launch, restitution, machine), last.at);
-        self.ends = rest.map(|time| at.later(time / period));
+        let shown = -(u * x + v * y);
+        if (shown - self.launch).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
+            self.launch = shown;
+        }
+        let rest = last.rest(self.launch, restitution, machine);
+        self.ends = rest.map(|time| last.at.later(time / period));
     }
 
-    /// Whether `bounce` is as fast as the flight since the last impact lets expect, and before the foreseen end.
+    /// Whether `bounce` is as fast as the flight since the last impact lets expect, and before the foreseen end. Not
+    /// after a faint one: what a rotor lying on the wall seems to do fits together as well.
     pub(crate) fn foresees(&self, bounce: &Bounce, period: f32) -> bool {
-        let fits = |last| timed_speed(last, bounce, period).is_some();
+        let fits = |last: &Bounce| !last.faint && timed_speed(last, bounce, period).is_some();
         self.ends.is_some_and(|end| bounce.at < end) && self.last.as_ref().is_some_and(fits)
     }
 
@@ -193,7 +200,8 @@ impl Series {
             speed = timed_speed(last, &bounce, period).unwrap_or(speed);
         }
         let restitution = self.restitution(machine);
-        let rest = bounce.rest(restitution * speed, restitution, machine);
+        self.launch = restitution * speed;
+        let rest = bounce.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
@@ -246,6 +254,7 @@ mod tests {
             along: 0.0,
             outward: [0.0, -1.0],
             pressing: 9.81,
+            faint: false,
         }
     }
 
