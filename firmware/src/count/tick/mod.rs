@@ -51,21 +51,18 @@ pub fn main(memory: &'static mut Memory) -> ! {
     semihosting::process::exit(0)
 }
 
-// Frames of their own: each has an application on its stack.
+// Frames of their own, here and below: there is room for one application on the stack and a half.
 #[inline(never)]
 fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
-    let mut bench = prepare(scene, memory);
-    let Bench {
-        app,
-        board,
-        recorder,
-    } = &mut bench;
+    let mut app = application(scene);
+    let mut recorder = recorder(scene, memory);
+    let mut board = board(scene);
     let mut tally = Tally::default();
     let mut told = 0;
     scene.play(|sample| {
         let sample = black_box(sample);
         let (notices, instructions) = counter.count(|| {
-            let notices = app.tick(board, sample, 0);
+            let notices = app.tick(&mut board, sample, 0);
             recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
             notices
@@ -80,12 +77,9 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
 
 #[inline(never)]
 fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
-    let mut bench = prepare(scene, memory);
-    let Bench {
-        app,
-        board,
-        recorder,
-    } = &mut bench;
+    let mut app = application(scene);
+    let mut recorder = recorder(scene, memory);
+    let mut board = board(scene);
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
         let sample = black_box(sample);
@@ -94,7 +88,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let seen = black_box(&seen);
         let (mut notices, detector) = counter.count(|| monitor.detect(state, seen));
         let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
-        let ((), outputs) = counter.count(|| app.follow(board, &notices, 0));
+        let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let (monitor, state) = app.monitor();
         let (outlook, forecast) = counter.count(|| monitor.look_ahead(state));
         if let Some(outlook) = outlook {
@@ -115,28 +109,21 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
 }
 
 #[inline(never)]
-fn prepare<'m>(scene: &Scene, memory: &'m mut Memory) -> Bench<'m> {
-    let config = scene.config();
-    let identity = Identity {
-        firmware: [0; 16],
-        config_hash: 0,
-        boot: 0,
-    };
-    Bench {
-        app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
-        board: Idle(config_block::encode(&Settings {
-            monitor: config,
-            wiring: Wiring::default(),
-        })),
-        recorder: Recorder::new(memory, &config, identity),
-    }
+fn application(scene: &Scene) -> App {
+    App::try_new(&scene.config(), Faults::NONE).expect("a valid configuration")
 }
 
-/// What ticks.
-struct Bench<'m> {
-    app: App,
-    board: Idle,
-    recorder: Recorder<'m>,
+#[inline(never)]
+fn recorder<'m>(scene: &Scene, memory: &'m mut Memory) -> Recorder<'m> {
+    Recorder::new(memory, &scene.config(), Identity::new(&[], 0))
+}
+
+#[inline(never)]
+fn board(scene: &Scene) -> Idle {
+    Idle(config_block::encode(&Settings {
+        monitor: scene.config(),
+        wiring: Wiring::default(),
+    }))
 }
 
 /// A board whose registers take nothing.
