@@ -15,10 +15,6 @@ const SERIES_MARGIN: f32 = 5e-4;
 
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
-/// Part of the faintest impact's speed from which on one is believed that comes when it is expected.
-const EXPECTED: f32 = 0.8;
-/// Pressing, in gravities, up to which it is: where whirl grows, nothing is foreseen.
-const CALM: f32 = 3.0;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -253,21 +249,14 @@ impl FlightTest {
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
-        let mut bounce = Bounce {
+        let bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
             along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
-            faint: false,
         };
-        let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
-        bounce.faint = normal_speed <= faintest;
-        let is_calm =
-            flight.bank.loudness() <= 1.0 && bounce.pressing <= CALM * self.machine.gravity;
-        if is_calm && flight.series.foresees(&bounce, self.period) {
-            faintest *= EXPECTED;
-        }
+        let faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
         if radius < self.near || normal_speed <= faintest {
             return None;
         }

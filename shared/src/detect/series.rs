@@ -36,8 +36,6 @@ pub(crate) struct Bounce {
     pub(crate) outward: [f32; 2],
     /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
     pub(crate) pressing: f32,
-    /// Slower than what a rotor lying on the wall may seem to do.
-    pub(crate) faint: bool,
 }
 
 /// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
@@ -172,13 +170,6 @@ impl Series {
         self.ends = rest.map(|time| last.at.later(time / period));
     }
 
-    /// Whether `bounce` is as fast as the flight since the last impact lets expect, and before the foreseen end. Not
-    /// after a faint one: what a rotor lying on the wall seems to do fits together as well.
-    pub(crate) fn foresees(&self, bounce: &Bounce, period: f32) -> bool {
-        let fits = |last: &Bounce| !last.faint && timed_speed(last, bounce, period).is_some();
-        self.ends.is_some_and(|end| bounce.at < end) && self.last.as_ref().is_some_and(fits)
-    }
-
     /// The last impact.
     pub(crate) fn last(&self) -> Option<&Bounce> {
         self.last.as_ref()
@@ -257,7 +248,6 @@ mod tests {
             along: 0.0,
             outward: [0.0, -1.0],
             pressing: 9.81,
-            faint: false,
         }
     }
 
