@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::controller::Faults;
 use touchdown_core::error::ConfigError;
-use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::monitor::{Monitor, MonitorConfig};
 
 use crate::app::App;
 use crate::recorder::{self, Identity, Recorder};
@@ -47,7 +47,8 @@ fn application<'a>(
     config: &MonitorConfig,
     found: Faults,
 ) -> Result<&'a mut App, ConfigError> {
-    Ok(place.write(App::try_new(config, found)?))
+    let monitor = Monitor::try_new(config)?;
+    Ok(place.write(App::new(monitor, config, found)))
 }
 
 #[inline(never)]
