@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod detection;
 pub mod drop;
+pub mod drop_log;
 pub mod elastic;
 pub mod emulator;
 pub mod evenly;

@@ -27,6 +27,7 @@ Examples:
   touchdown limits                      how the model holds at its extremes
   touchdown score --quick               how late, how blind and how nervous the detector is
   touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
+  touchdown log list flash.bin          the drops that the firmware recorded
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -120,6 +121,11 @@ pub(super) enum Command {
     /// Drop a rotor thousands of times over parameters: how probable whirl is, when, and how hard
     #[command(after_help = SWEEP)]
     Sweep(SweepArgs),
+    /// List, show, export or verify the drops that the firmware recorded
+    Log {
+        #[command(subcommand)]
+        what: LogCommand,
+    },
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -314,6 +320,61 @@ pub(super) struct MergeArgs {
     /// Points with probabilities and intervals as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(super) enum LogCommand {
+    /// Each episode with its state, trigger and severity, and the lifetime counters
+    List {
+        /// A dump of the log's flash, or a file of one episode
+        file: String,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+    /// One episode with its events
+    Show {
+        /// A dump of the log's flash, or a file of one episode
+        file: String,
+        /// Its number; the newest without
+        number: Option<u32>,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+    /// One episode as a stream that `replay` reads, as COMTRADE or as JSON
+    Export {
+        /// A dump of the log's flash, or a file of one episode
+        file: String,
+        /// Its number; the newest without
+        number: Option<u32>,
+        /// What to write
+        #[arg(long, value_enum, default_value_t)]
+        format: ExportFormat,
+        /// Where to; `-` is standard output. COMTRADE takes the name with .cfg and .dat
+        #[arg(long, value_name = "FILE")]
+        out: String,
+    },
+    /// List, and fail where an episode is damaged; one that was cut off is not
+    Verify {
+        /// A dump of the log's flash, or a file of one episode
+        file: String,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+}
+
+/// What `log export` writes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExportFormat {
+    /// A stream: time from the trigger, displacements
+    #[default]
+    Csv,
+    /// IEEE C37.111-1999, ASCII data
+    Comtrade,
+    /// Header, events, severity, ending
+    Json,
 }
 
 /// `K/N`.

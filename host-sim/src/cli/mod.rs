@@ -3,6 +3,7 @@
 mod args;
 mod force;
 mod limits;
+mod log;
 mod paper;
 mod score;
 mod subject;
@@ -42,6 +43,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Score(args)) => score::measure(&args),
         Some(Command::Sweep(args)) => sweep::sweep(&args),
+        Some(Command::Log { what }) => log::log(&what),
         Some(Command::Scene { what }) => {
             match what {
                 SceneCommand::Explain { scene } => {

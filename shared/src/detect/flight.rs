@@ -17,6 +17,8 @@ const SERIES_MARGIN: f32 = 5e-4;
 const IMPOSSIBLE: f32 = 0.3;
 /// Part of the faintest impact's speed from which on one is believed that comes when it is expected.
 const EXPECTED: f32 = 0.8;
+/// Pressing, in gravities, up to which it is: where whirl grows, nothing is foreseen.
+const CALM: f32 = 3.0;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -261,7 +263,9 @@ impl FlightTest {
         };
         let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
         bounce.faint = normal_speed <= faintest;
-        if flight.bank.loudness() <= 1.0 && flight.series.foresees(&bounce, self.period) {
+        let is_calm =
+            flight.bank.loudness() <= 1.0 && bounce.pressing <= CALM * self.machine.gravity;
+        if is_calm && flight.series.foresees(&bounce, self.period) {
             faintest *= EXPECTED;
         }
         if radius < self.near || normal_speed <= faintest {

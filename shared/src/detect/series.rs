@@ -17,6 +17,8 @@ const CONTRADICTS: f32 = 4.0;
 const CLEAR_LAUNCH: f32 = 0.01;
 /// Part of the first flight after an impact that shows well how the rotor left the wall.
 const SHOWN: f32 = 0.6;
+/// Samples that this must take: fewer show it no better than the impact did.
+const LONG_ENOUGH: f32 = 16.0;
 
 /// Part by which flight time and speed may disagree where the wall counts as flat.
 const FLAT: f32 = 0.25;
@@ -140,7 +142,8 @@ impl Series {
     pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
         let flight = 2.0 * self.launch / last.pressing;
-        (last.pressing > 0.0).then_some(SHOWN * flight / period)
+        let after = SHOWN * flight / period;
+        (last.pressing > 0.0 && after >= LONG_ENOUGH).then_some(after)
     }
 
     /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
