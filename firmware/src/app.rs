@@ -37,9 +37,13 @@ struct Tested {
 impl App {
     /// Checks `config` and prepares the tick; `found` is what was wrong at power-on.
     pub fn try_new(config: &MonitorConfig, found: Faults) -> Result<Self, ConfigError> {
-        let monitor = Monitor::try_new(config)?;
+        Ok(Self::new(Monitor::try_new(config)?, config, found))
+    }
+
+    /// With the monitor of `config`. Nothing here can fail, so that it is made in its place.
+    pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
-        Ok(Self {
+        Self {
             state: monitor.start(),
             monitor,
             patrol: Patrol::default(),
@@ -56,7 +60,7 @@ impl App {
             },
             tested: Tested::default(),
             lost: 0,
-        })
+        }
     }
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the

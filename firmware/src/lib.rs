@@ -15,6 +15,7 @@ pub mod crash;
 pub mod drop_log;
 #[cfg(target_os = "none")]
 mod journal;
+pub mod memory;
 pub mod outputs;
 pub mod overrun;
 pub mod permit;

@@ -25,6 +25,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::config_block::{self, Block, BlockError, Settings};
 use touchdown_core::controller::{Fault, Faults, Outputs};
+use touchdown_core::error::ConfigError;
 use touchdown_core::event::Notice;
 use touchdown_core::link::Server;
 use touchdown_core::sample::Sample;
@@ -41,8 +42,9 @@ use crate::app::App;
 use crate::crash::{Cause, Crash};
 use crate::drop_log::DropLog;
 use crate::journal;
+use crate::memory;
 use crate::overrun::Overruns;
-use crate::recorder::{self, Identity, Recorder};
+use crate::recorder::{Identity, Recorder};
 use crate::w25q::W25q;
 
 /// The drop log in the chip on the board, 2 MiB.
@@ -54,7 +56,7 @@ pub struct Memory {
     /// Notices on their way to log and link. If it is full they are lost and counted; events are
     /// numbered, so a gap shows.
     outbox: Queue<Notice, 64>,
-    samples: recorder::Memory,
+    monitor: memory::Memory,
     // Without a value of its own: one would take as much flash.
     tick: MaybeUninit<Tick>,
 }
@@ -65,7 +67,7 @@ impl Memory {
     pub const fn new() -> Self {
         Self {
             outbox: Queue::new(),
-            samples: recorder::Memory::EMPTY,
+            monitor: memory::Memory::EMPTY,
             tick: MaybeUninit::uninit(),
         }
     }
@@ -87,6 +89,15 @@ enum InForce {
     Default(Block),
 }
 
+impl InForce {
+    fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Stored(block) => block,
+            Self::Default(block) => block,
+        }
+    }
+}
+
 impl Board for Silicon {
     fn report(&mut self, notice: &Notice) {
         let is_lost = self.outbox.enqueue(*notice).is_err();
@@ -98,10 +109,7 @@ impl Board for Silicon {
     }
 
     fn config(&self) -> &[u8] {
-        match &self.block {
-            InForce::Stored(block) => block,
-            InForce::Default(block) => block,
-        }
+        self.block.bytes()
     }
 
     fn feed(&mut self) {
@@ -110,8 +118,8 @@ impl Board for Silicon {
 }
 
 struct Tick {
-    app: App,
-    recorder: Recorder<'static>,
+    app: &'static mut App,
+    recorder: &'static mut Recorder<'static>,
     converter: Converter,
     inputs: Inputs,
     board: Silicon,
@@ -138,7 +146,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
             answer.iter().for_each(|it| serial.send(it));
         }
         let (outputs, faults, samples) = with_tick(|tick| {
-            let app = &tick.app;
+            let app = &*tick.app;
             (app.outputs(), app.condition().faults, app.state().samples())
         })
         .unwrap_or_default();
@@ -173,14 +181,6 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
     let (block, settings, found) = found_at_power_on(&chip.RCC);
     journal::config(&settings.monitor);
-    let app = match App::try_new(&settings.monitor, found) {
-        Ok(app) => app,
-        Err(refusal) => {
-            error!("config: {=str}", refusal.parameter());
-            return None;
-        }
-    };
-
     clocks::start(&chip.RCC, &chip.FLASH);
     start_cycle_counter(core.DCB, core.DWT);
     let converter = Converter::new(
@@ -194,6 +194,10 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
     let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
+    let identity = Identity::new(block.bytes(), log.as_ref().map_or(0, DropLog::boot));
+    let filled = memory.monitor.fill(&settings.monitor, found, identity);
+    let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
+    let (app, recorder) = filled.inspect_err(refused).ok()?;
     let board = Silicon {
         pins,
         watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU),
@@ -201,10 +205,9 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
         lost_notices: 0,
         block,
     };
-    let identity = Identity::new(board.config(), log.as_ref().map_or(0, DropLog::boot));
     let tick = memory.tick.write(Tick {
         app,
-        recorder: Recorder::new(&mut memory.samples, &settings.monitor, identity),
+        recorder,
         inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
         board,
         overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),

@@ -18,10 +18,10 @@ use self::files::Answer;
 use self::nor::NorFile;
 use self::remote::Line;
 use super::Board;
-use crate::app::App;
 use crate::drop_log::DropLog;
 use crate::journal;
-use crate::recorder::{Identity, Memory, Recorder};
+use crate::memory::Memory;
+use crate::recorder::{Identity, Recorder};
 
 /// Why a run failed; the exit status.
 #[derive(Clone, Copy, Debug)]
@@ -93,17 +93,13 @@ pub fn abort() -> ! {
     semihosting::process::abort()
 }
 
-fn run(memory: &mut Memory) -> Result<(), Failure> {
+fn run(memory: &'static mut Memory) -> Result<(), Failure> {
     let (mut replay, answer, log) = files::open()?;
     let mut log = log
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
     let config = replay.config()?;
     journal::config(&config);
-    let mut app = App::try_new(&config, Faults::NONE).map_err(|refusal| {
-        error!("config: {}", Display2Format(&refusal));
-        Failure::Config
-    })?;
     let mut board = Emulated {
         answer,
         outputs: Outputs::SAFE,
@@ -115,7 +111,12 @@ fn run(memory: &mut Memory) -> Result<(), Failure> {
         failed: false,
     };
     let boot = log.as_ref().map_or(0, DropLog::boot);
-    let mut recorder = Recorder::new(memory, &config, Identity::new(&board.block, boot));
+    let identity = Identity::new(&board.block, boot);
+    let filled = memory.fill(&config, Faults::NONE, identity);
+    let (app, recorder) = filled.map_err(|refusal| {
+        error!("config: {}", Display2Format(&refusal));
+        Failure::Config
+    })?;
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
     while let Some(samples) = replay.samples()? {
@@ -127,9 +128,9 @@ fn run(memory: &mut Memory) -> Result<(), Failure> {
         }
         // Between blocks of samples: the link is no part of the tick.
         if let Some(log) = &mut log {
-            store(log, &mut recorder);
+            store(log, recorder);
         }
-        board.line.serve(&mut app, &board.block, &mut log);
+        board.line.serve(app, &board.block, &mut log);
     }
     let summary = fingerprint.summary(app.state());
     let severity = *app.state().severity();

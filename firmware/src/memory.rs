@@ -1,0 +1,62 @@
+//! What outlives main's frame on every board: 80 kB of samples, application and recorder.
+//!
+//! Application and recorder are made in functions of their own, so that their copies are gone from the stack
+//! before the first tick.
+
+use core::mem::MaybeUninit;
+
+use touchdown_core::controller::Faults;
+use touchdown_core::error::ConfigError;
+use touchdown_core::monitor::{Monitor, MonitorConfig};
+
+use crate::app::App;
+use crate::recorder::{self, Identity, Recorder};
+
+/// Places for them, for a static.
+pub struct Memory {
+    samples: recorder::Memory,
+    // Without values of their own: these would take as much flash.
+    app: MaybeUninit<App>,
+    recorder: MaybeUninit<Recorder<'static>>,
+}
+
+impl Memory {
+    /// Nothing in its place yet.
+    pub const EMPTY: Self = Self {
+        samples: recorder::Memory::EMPTY,
+        app: MaybeUninit::uninit(),
+        recorder: MaybeUninit::uninit(),
+    };
+
+    /// Application and recorder; `found` is what was wrong at power-on.
+    pub fn fill(
+        &'static mut self,
+        config: &MonitorConfig,
+        found: Faults,
+        identity: Identity,
+    ) -> Result<(&'static mut App, &'static mut Recorder<'static>), ConfigError> {
+        let app = application(&mut self.app, config, found)?;
+        let recorder = recorder(&mut self.recorder, &mut self.samples, config, identity);
+        Ok((app, recorder))
+    }
+}
+
+#[inline(never)]
+fn application<'a>(
+    place: &'a mut MaybeUninit<App>,
+    config: &MonitorConfig,
+    found: Faults,
+) -> Result<&'a mut App, ConfigError> {
+    let monitor = Monitor::try_new(config)?;
+    Ok(place.write(App::new(monitor, config, found)))
+}
+
+#[inline(never)]
+fn recorder<'a, 'm>(
+    place: &'a mut MaybeUninit<Recorder<'m>>,
+    samples: &'m mut recorder::Memory,
+    config: &MonitorConfig,
+    identity: Identity,
+) -> &'a mut Recorder<'m> {
+    place.write(Recorder::new(samples, config, identity))
+}
