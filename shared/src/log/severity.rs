@@ -47,6 +47,6 @@ mod tests {
         let (version, rest) = bytes.split_first().unwrap();
         assert_eq!(decode(*version, rest), Some(severity));
         assert_eq!(decode(2, rest), None);
-        assert_eq!(decode(*version, &rest[1..]), None);
+        assert_eq!(decode(*version, &rest[..rest.len() - 1]), None);
     }
 }
