@@ -27,9 +27,12 @@ const LONGEST_REST: f64 = 1e-2;
 
 impl<R: Precision> Rigid<R> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
+    #[inline]
     pub fn step(&self, state: &mut RigidState<R>, mut sink: impl FnMut(Happening<R>)) {
         state.now = Instant::at_tick(state.now.tick + 1);
-        self.follow(state, &mut sink, |_| false);
+        if state.ends.is_reached_at(state.now) {
+            self.follow(state, &mut sink, |_| false);
+        }
     }
 
     /// Goes to `until`, which is not before now, by those steps alone in which something changes, and
@@ -58,7 +61,8 @@ impl<R: Precision> Rigid<R> {
     }
 
     /// Goes through the changes up to now. Before a stretch of contact ends, `watch` may put it off, and
-    /// says so.
+    /// says so. Never inlined: a step in which nothing changes is to stay a comparison.
+    #[inline(never)]
     pub(crate) fn follow(
         &self,
         state: &mut RigidState<R>,
