@@ -10,9 +10,9 @@ use super::campaign;
 use super::figure::{Curve, Figure};
 use super::impact::dropped;
 use super::quiet::{Case, listen};
-use super::statistics::median;
 use crate::failure::Failure;
 use crate::scene::Scene;
+use crate::statistics::median;
 
 const TRAVELS: [f32; 7] = [0.05, 0.1, 0.17, 0.25, 0.3, 0.4, 0.5];
 /// Without and with the signal.

@@ -10,13 +10,13 @@ use super::campaign;
 use super::figure::Figure;
 use super::impact::{JUMP, dropped};
 use super::row::Row;
-use super::statistics::{median, quantile, share};
 use super::watch::{Drop, Watched};
 use super::{Findings, Plan};
 use crate::failure::Failure;
 use crate::history::PhaseKind;
 use crate::matching::match_events;
 use crate::scene::{Scene, Start};
+use crate::statistics::{median, quantile, share};
 
 /// Part of the contacts that has to be dated within the time allowed.
 const MOST: f64 = 0.99;

@@ -12,12 +12,12 @@ use super::campaign;
 use super::figure::{Curve, Figure, histogram};
 use super::levitated::Levitated;
 use super::row::Row;
-use super::statistics::{median, quantile};
 use super::watch::Drop;
 use super::{Findings, Plan};
 use crate::evenly::{direction, in_disc};
 use crate::failure::Failure;
 use crate::scene::Scene;
+use crate::statistics::{median, quantile};
 
 /// Of the latency's median to the bound, in white noise.
 const WHITE: f64 = 1.15;

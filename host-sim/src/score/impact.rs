@@ -10,13 +10,13 @@ use super::campaign;
 use super::figure::{Curve, Figure, histogram};
 use super::levitated::Levitated;
 use super::row::Row;
-use super::statistics::{median, quantile, share};
 use super::watch::Drop;
 use super::{Findings, Plan};
 use crate::evenly::in_disc;
 use crate::failure::Failure;
 use crate::matching::match_events;
 use crate::scene::Scene;
+use crate::statistics::{median, quantile, share};
 
 /// Velocity jump `(1 + e) v_n` from which an impact has to be found, m/s.
 pub const JUMP: f64 = 18e-3;

@@ -17,7 +17,6 @@ mod page;
 mod quiet;
 mod regime;
 mod row;
-mod statistics;
 mod table;
 mod watch;
 

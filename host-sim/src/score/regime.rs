@@ -9,12 +9,12 @@ use super::figure::Figure;
 use super::impact::dropped;
 use super::levitated::Levitated;
 use super::row::Row;
-use super::statistics::{median, quantile, share};
 use super::watch::{Drop, Watched};
 use super::{Findings, Plan};
 use crate::failure::Failure;
 use crate::history::{History, Regime};
 use crate::scene::{Scene, Start};
+use crate::statistics::{median, quantile, share};
 
 /// Part of the regimes that has to be told right.
 const RIGHT: f64 = 0.99;

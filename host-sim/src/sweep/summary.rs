@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::record::{REGIMES, Record, number};
 use crate::history::Regime;
+use crate::statistics::median;
 use crate::wilson;
 
 /// A point of the grid.
@@ -58,18 +59,13 @@ impl Gathered {
         }
     }
 
-    pub fn finish(
-        mut self,
-        point: u64,
-        values: serde_json::Map<String, serde_json::Value>,
-    ) -> Point {
+    pub fn finish(self, point: u64, values: serde_json::Map<String, serde_json::Value>) -> Point {
         let drops: u64 = self.counts.iter().sum();
         let of = |regime| self.counts[number(regime)];
         let backward = of(Regime::BackwardWhirl);
         let whirls = of(Regime::ForwardWhirl) + backward;
         let (whirl_low, whirl_high) = wilson::interval(whirls, drops);
         let names = REGIMES.iter().map(|(_, name)| (*name).to_owned());
-        self.whirl_starts.sort_by(f64::total_cmp);
         let [impact_speed_max_m_s, impulse_max_n_s, end_load_max_n] = self.greatest;
         Point {
             point,
@@ -80,15 +76,10 @@ impl Gathered {
             whirl_low,
             whirl_high,
             backward_probability: backward as f64 / drops as f64,
-            whirl_start_median_s: median(&self.whirl_starts),
+            whirl_start_median_s: Some(median(&self.whirl_starts)).filter(|it| it.is_finite()),
             impact_speed_max_m_s,
             impulse_max_n_s,
             end_load_max_n,
         }
     }
-}
-
-/// Of values in order; the lower of two in the middle.
-fn median(sorted: &[f64]) -> Option<f64> {
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied()
 }
