@@ -95,7 +95,15 @@ impl Plan {
         let file = parsed(name, text)?;
         let fail = |span, rule: String| InputError::at_span(name, text, span, rule);
         let scene_name = file.scene.get_ref();
-        let heading = Scene::parse(scene_name, scene_text)?.heading().to_owned();
+        let scene = Scene::parse(scene_name, scene_text)?;
+        if scene.auto.is_some() {
+            let rule = format!(
+                "scene {scene_name:?} leaves the model open (fidelity = \"auto\"): a sweep needs one rung, which \
+                 `touchdown scene explain` chooses for one drop"
+            );
+            return Err(fail(file.scene.span(), rule));
+        }
+        let heading = scene.heading().to_owned();
         let base = toml::from_str(scene_text).map_err(|error| {
             fail(
                 file.scene.span(),
@@ -278,6 +286,15 @@ mod tests {
         assert_eq!(of(0), [0.1, 0.3]);
         assert_eq!(of(2), [0.1, 0.8]);
         assert_eq!(of(3), [0.2, 0.3]);
+    }
+
+    #[test]
+    fn a_scene_that_leaves_the_model_open_is_refused() {
+        let scene = format!("fidelity = \"auto\"\n{}", BUILT_IN[0].text);
+        let text = "drops = 1\nscene = \"open\"\n";
+        let error = Plan::of_texts("plan.toml", text, &scene).expect_err("auto");
+        assert_eq!(error.line(), Some(2), "{error}");
+        assert!(error.rule().contains("fidelity"), "{error}");
     }
 
     #[test]
