@@ -20,6 +20,7 @@ use touchdown_core::monitor::Monitor;
 
 use crate::scene::{Scene, Start};
 use crate::sensors::{Motion, Sensors};
+use crate::statistics::quantile;
 use crate::truth::{Truth, Units};
 
 /// Length of a drop, in sqrt(rho0/g).
@@ -349,9 +350,7 @@ fn reliability(pairs: &[(f64, f64)]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-fn quantiles(mut values: Vec<f64>) -> Option<Quantiles> {
-    values.sort_by(f64::total_cmp);
-    let last = values.len().checked_sub(1)?;
-    let at = |part: f64| values[(part * last as f64).round() as usize];
-    Some([0.05, 0.25, 0.5, 0.75, 0.95].map(at))
+fn quantiles(values: Vec<f64>) -> Option<Quantiles> {
+    let at = |part| quantile(&values, part);
+    (!values.is_empty()).then(|| [0.05, 0.25, 0.5, 0.75, 0.95].map(at))
 }

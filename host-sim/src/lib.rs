@@ -34,6 +34,7 @@ pub mod rings;
 pub mod scene;
 pub mod score;
 pub mod sensors;
+pub mod severity_score;
 pub mod statistics;
 pub mod stream;
 pub mod sweep;

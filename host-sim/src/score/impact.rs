@@ -141,7 +141,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
         ..Seen::default()
     };
     for (impact, found) in truth.impacts.iter().zip(matches.of_kind(EventKind::Impact)) {
-        let jump = (1.0 + case.restitution) * impact.normal_speed;
+        let jump = drop.jump(impact);
         if jump < JUMP {
             continue;
         }

@@ -11,12 +11,15 @@ mod contact;
 mod disturbance;
 mod fall;
 mod figure;
+mod forecast;
 mod impact;
 mod levitated;
 mod page;
 mod quiet;
 mod regime;
 mod row;
+mod sensors;
+mod severity;
 mod table;
 mod watch;
 
@@ -75,6 +78,24 @@ pub const GROUPS: &[Group] = &[
         about: "how drops of random machines end",
         run: regime::run,
         drops: regime::drops,
+    },
+    Group {
+        name: "forecast",
+        about: "whirl foretold, in drops of random machines",
+        run: forecast::run,
+        drops: forecast::drops,
+    },
+    Group {
+        name: "severity",
+        about: "impulses, dwell, velocity and whirl load of the same drops",
+        run: severity::run,
+        drops: severity::drops,
+    },
+    Group {
+        name: "sensors",
+        about: "sensors that fail in a drop: named, and no harm done",
+        run: sensors::run,
+        drops: sensors::drops,
     },
     Group {
         name: "quiet",

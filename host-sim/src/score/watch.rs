@@ -9,11 +9,11 @@ use super::levitated::Levitated;
 use super::{Plan, bound};
 use crate::detection::{Timebase, detection};
 use crate::failure::Failure;
-use crate::history::{History, PhaseKind, Regime};
+use crate::history::{History, Impact, PhaseKind, Regime};
 use crate::monitor_run::Answer;
 use crate::outcome::Detection;
 use crate::scene::{Scene, Start};
-use crate::sensors::{Motion, Sensors, SensorsState};
+use crate::sensors::{Faults, Motion, Sensors, SensorsState};
 use crate::truth::{self, Truth};
 
 /// A drop and what the monitor is told of its machine.
@@ -108,6 +108,16 @@ impl Drop {
         self
     }
 
+    /// Samples a second.
+    pub fn rate(&self) -> f64 {
+        self.scene.run.sample_rate
+    }
+
+    /// Change of the velocity into the wall by an impact, m/s.
+    pub fn jump(&self, impact: &Impact) -> f64 {
+        (1.0 + self.scene.retainer.restitution) * impact.normal_speed
+    }
+
     /// When the run ends, s since the release.
     pub fn end(&self) -> f64 {
         self.scene.run.duration
@@ -183,6 +193,7 @@ struct Feed<'a> {
     drop: &'a Drop,
     sensors: Sensors,
     seen: SensorsState,
+    faults: Faults,
     truth: Truth<'a>,
     next: u64,
 }
@@ -195,6 +206,7 @@ impl<'a> Feed<'a> {
             drop,
             seen: sensors.start(scene.run.seed),
             sensors,
+            faults: Faults::new(&scene.faults, &scene.sensors),
             truth: Truth::new(scene),
             next: 0,
         })
@@ -210,7 +222,8 @@ impl<'a> Feed<'a> {
             Some(floats) if time < 0.0 => (held(&floats, time), None),
             _ => self.fallen(time),
         };
-        let sample = self.sensors.read(&mut self.seen, &motion);
+        let mut sample = self.sensors.read(&mut self.seen, &motion);
+        self.faults.spoil(&mut sample, time);
         Some((sample, instant))
     }
 
