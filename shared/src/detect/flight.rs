@@ -23,6 +23,14 @@ const WHITE_LEVEL: f32 = 0.6;
 /// From this ratio to it on, the sensors are louder than white noise.
 const LOUD: f32 = 1.5;
 
+/// Samples in a row that no flight and no impact explains, which are left out: a spike. More are a motion.
+const LEFT_OUT: u8 = 2;
+/// Way of an impact in the sample after it, in samples' ways of the speed before it: twice that speed is the most that
+/// it takes off. Twice as much again, for two samples.
+const KICK: f32 = 4.0;
+/// Standard deviations of the speed.
+const FASTER: f32 = 3.0;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightTest {
@@ -33,6 +41,8 @@ pub(crate) struct FlightTest {
     machine: MachineConfig,
     period: f32,
     threshold: f32,
+    /// Standard deviations that noise does not reach.
+    certain: f32,
     /// Radius from which on the wall is near, m.
     near: f32,
     /// Samples near the wall, without impact, that no bounce of that height lasts.
@@ -48,6 +58,8 @@ pub(crate) struct Airborne {
     /// The impacts so far.
     pub(crate) series: Series,
     near_wall: u32,
+    /// Samples in a row that are left out.
+    left_out: u8,
     /// Radius from which on the rotor may lie on the wall, m.
     lies: f32,
     /// Samples that it has.
@@ -129,6 +141,7 @@ impl FlightTest {
             machine,
             period: 1.0 / config.sample_rate,
             threshold,
+            certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
         }
@@ -181,11 +194,21 @@ impl FlightTest {
     /// To the next sample without a usable position.
     pub(crate) fn skip(&self, flight: &mut Airborne) {
         self.ballistic.predict(&mut flight.track);
+        self.jumps.predict(&mut flight.bank);
     }
 
     /// Takes the next sample.
     pub(crate) fn take(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
         self.ballistic.predict(&mut flight.track);
+        if !self.is_possible(&flight.track, fix) {
+            if flight.left_out < LEFT_OUT {
+                flight.left_out += 1;
+                self.jumps.predict(&mut flight.bank);
+                return self.contact(flight, fix);
+            }
+        } else {
+            flight.left_out = 0;
+        }
         let innovation = self
             .ballistic
             .correct(&mut flight.track, fix.position, fix.variance);
@@ -216,6 +239,20 @@ impl FlightTest {
         }
         self.relaunch(flight, fix);
         self.contact(flight, fix)
+    }
+
+    /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
+    /// the one before, which takes it inward and along the wall by no more than its speed.
+    fn is_possible(&self, track: &Track, fix: &Fix) -> bool {
+        let noise = self.certain * track.spread(fix.variance);
+        let [u, v] = track.velocity;
+        let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
+        let kick = KICK * self.period * speed;
+        let ([nx, ny], _) = direction(track.position);
+        let [x, y] = track.position;
+        let [dx, dy] = [fix.position[0] - x, fix.position[1] - y];
+        let (out, along) = (dx * nx + dy * ny, dy * nx - dx * ny);
+        out < noise && out > -noise - kick && along.abs() < noise + kick
     }
 
     /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as

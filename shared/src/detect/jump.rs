@@ -121,8 +121,8 @@ impl JumpTest {
         Some(self.jump(bank, index, inward))
     }
 
-    /// Takes the innovation of a sample; the statistic is that of a jump along `inward`.
-    pub(crate) fn update(&self, bank: &mut JumpBank, innovation: &Innovation, inward: [f32; 2]) {
+    /// To the next sample.
+    pub(crate) fn predict(&self, bank: &mut JumpBank) {
         if bank.wait == 0 {
             bank.wait = self.stride;
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
@@ -136,12 +136,19 @@ impl JumpTest {
             bank.next = (bank.next + 1) % CANDIDATES;
         }
         bank.wait -= 1;
+        for candidate in bank.candidates.iter_mut().filter(|c| c.used) {
+            candidate.age = candidate.age.saturating_add(1);
+            candidate.effect[0] += self.period * candidate.effect[1];
+        }
+    }
+
+    /// Takes the innovation of a sample; the statistic is that of a jump along `inward`.
+    pub(crate) fn update(&self, bank: &mut JumpBank, innovation: &Innovation, inward: [f32; 2]) {
+        self.predict(bank);
         let [rx, ry] = innovation.residual;
         let weight = 1.0 / innovation.variance;
         bank.statistic = 0.0;
         for candidate in bank.candidates.iter_mut().filter(|c| c.used) {
-            candidate.age = candidate.age.saturating_add(1);
-            candidate.effect[0] += self.period * candidate.effect[1];
             let seen = candidate.effect[0];
             candidate.information += seen * seen * weight;
             candidate.sum[0] += seen * rx * weight;

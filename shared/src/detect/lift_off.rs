@@ -9,6 +9,8 @@ const MEMORY: f32 = 256.0;
 /// Distance that the test is tuned to, in standard deviations: above what noise and the waves of a
 /// sensor's error do, below what a flight soon reaches.
 const SHIFT: f32 = 4.0;
+/// Most that one sample can say, in standard deviations: a spike alone is no lift-off.
+const LOUDEST: f32 = SHIFT;
 
 /// Part of the way from lift-off to detection at which the crossing is placed at the latest: nearer to
 /// detection the samples since say nothing of when it began.
@@ -48,7 +50,7 @@ impl LiftOff {
         let sigma = sqrt(variance);
         self.gap = self.wall - radius;
         let inward = self.gap / sigma;
-        self.sum = (self.sum + SHIFT * (inward - 0.5 * SHIFT)).max(0.0);
+        self.sum = (self.sum + SHIFT * (inward.min(LOUDEST) - 0.5 * SHIFT)).max(0.0);
         if self.count < WARM_UP {
             self.sum = 0.0;
         }
@@ -80,6 +82,11 @@ mod tests {
         for k in 0..1_000 {
             let noise = if k % 2 == 0 { 1e-6 } else { -1e-6 };
             assert_eq!(test.take(300e-6 + noise, 1e-12, 25.0), None);
+        }
+        // A spike, and a pair of them.
+        for k in 0..200 {
+            let gap = if k % 50 < 2 { 40e-6 } else { 0.0 };
+            assert_eq!(test.take(300e-6 - gap, 1e-12, 25.0), None);
         }
         // 20 um after 40 samples, growing with the cube.
         let found = (1..200).find_map(|k| {

@@ -8,12 +8,16 @@
 //! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
 
 use crate::detect::config::Tuning;
+use crate::real::sqrt;
 
 /// Instants in the bank.
 const CANDIDATES: usize = 32;
 
 /// Mean of the largest statistic of the bank in white noise, as the test below measures it.
 const WHITE_LEVEL: f32 = 1.8;
+/// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
+/// before it is that far in a sample.
+const LOUDEST: f32 = 6.0;
 /// Seconds over which the mean is learnt.
 const LEVEL_TIME: f32 = 0.2;
 
@@ -89,6 +93,9 @@ impl Release {
             bank.next = (bank.next + 1) % CANDIDATES;
         }
         bank.wait -= 1;
+        let loudness = (bank.level / WHITE_LEVEL).max(1.0);
+        let most = LOUDEST * sqrt(variance * loudness);
+        let (x, y) = (x.min(most).max(-most), y.min(most).max(-most));
         let scale = 0.5 / variance;
         let half_gravity = 0.5 * self.gravity;
         let (mut best, mut falls) = ((0.0, 0), (0.0, 0));
@@ -110,7 +117,7 @@ impl Release {
             }
         }
         bank.statistic = best.0;
-        let threshold = self.threshold * (bank.level / WHITE_LEVEL).max(1.0);
+        let threshold = self.threshold * loudness;
         bank.count = (bank.count + 1.0).min(self.memory);
         bank.level += (best.0 - bank.level) / bank.count;
         if best.0 <= threshold {

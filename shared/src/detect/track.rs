@@ -107,6 +107,11 @@ impl Track {
         }
     }
 
+    /// Standard deviation of a position (m) of this variance (m^2) from the foreseen one, on each axis.
+    pub(crate) fn spread(&self, variance: f32) -> f32 {
+        sqrt(self.covariance[0] + variance)
+    }
+
     /// Standard deviation of the velocity on each axis, m/s.
     pub(crate) fn speed_error(&self) -> f32 {
         sqrt(self.covariance[2].max(0.0))

@@ -361,6 +361,7 @@ impl Watched {
     /// From a place that has not been foreseen.
     fn restart(&mut self) {
         self.position = self.value;
+        self.innovation = 0.0;
         self.velocity = 0.0;
         self.acceleration = 0.0;
         self.bad = 0;
@@ -406,6 +407,19 @@ fn stuck_after(innovations: f32, threshold: f32) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The first value is not foreseen: it must not count as noise.
+    #[test]
+    fn noise_is_known_once_it_is_used() {
+        let watch = Watch::new(25.3, 80.0, 4095);
+        let mut it = Watched::default();
+        for k in 0..WARM_UP {
+            let count = 2_048 + 2 * (k % 2);
+            let look = watch.look(&mut it, Some(count), true);
+            watch.take(&mut it, look, true, false);
+        }
+        assert!(it.variance < 10.0, "{}", it.variance);
+    }
 
     /// 1 um at 12 bit over 2 mm: the likeliest count has the probability 0.19.
     #[test]

@@ -1,12 +1,10 @@
 //! Where one plane has been on average: whether a rotor can be there.
 //!
-//! Whatever a rotor does, its mean over more than a swing is not beyond the wall; and one that lies or swings on
-//! the wall does so at the bottom.
+//! Whatever a rotor does, it is not beyond the wall; and one that lies or swings on the wall does so, on average over
+//! some swings, at the bottom.
 
 use crate::real::sqrt;
 
-/// Part of the clearance that a rotor which swings moves about by, at most; one that whirls does by more.
-const SWING: f32 = 0.35;
 /// Times the tolerance of the wall that it may seem beyond it.
 const BEYOND: f32 = 3.0;
 /// Part of the radius by which a rotor lies at a side or the top.
@@ -16,7 +14,7 @@ const ASIDE: f32 = 0.9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lie {
     clearance: f32,
-    /// Mean radius that is beyond the wall, m.
+    /// Square of the radius that is beyond the wall, m^2.
     beyond: f32,
     /// Whether there is a bottom, and friction cannot hold a rotor at a side.
     falls: bool,
@@ -48,9 +46,10 @@ pub(crate) enum Place {
 impl Lie {
     /// Judges after so many looks; lengths in m.
     pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
+        let beyond = clearance + BEYOND * tolerance;
         Self {
             clearance,
-            beyond: clearance + BEYOND * tolerance,
+            beyond: beyond * beyond,
             falls,
             looks,
         }
@@ -73,20 +72,21 @@ impl Lie {
         }
         let count = f32::from(it.looks);
         let [x, y] = it.sum.map(|sum| sum / count);
-        let variance = it.square / count - x * x - y * y;
-        let mean = [x + it.first[0], y + it.first[1]];
+        let [u, v] = it.first;
+        let square = it.square / count + u * (2.0 * x + u) + v * (2.0 * y + v);
         let touches = it.touches;
         *it = Lying::default();
-        let swing = SWING * self.clearance;
-        self.judge(mean, touches && variance < swing * swing)
+        self.judge([x + u, y + v], square, touches)
     }
 
-    fn judge(&self, [x, y]: [f32; 2], lies: bool) -> Option<Place> {
-        let radius = sqrt(x * x + y * y);
-        if radius > self.beyond {
+    /// By the mean place, m, and the mean square of the radius, m^2.
+    fn judge(&self, [x, y]: [f32; 2], square: f32, touches: bool) -> Option<Place> {
+        if square > self.beyond {
             return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
         }
-        if !(lies && self.falls && radius > 0.5 * self.clearance) {
+        let radius = sqrt(x * x + y * y);
+        // Nearer to the centre is the mean of one that whirls or swings far.
+        if !(touches && self.falls && radius > 0.5 * self.clearance) {
             return None;
         }
         if y > ASIDE * radius {

@@ -33,6 +33,8 @@ const REACH: f32 = 4.0;
 const LEAST_ORBIT: f32 = 2.0;
 /// Most friction with which a rotor does not lie at a side.
 const STEEP: f32 = 1.0;
+/// Swings of a pendulum that its mean place is taken over. Chosen: what is left of one more moves it by 15 degrees.
+const SWINGS: f32 = 3.0;
 /// Looks a second where the spin does not say how many.
 const LOOKS_PER_SECOND: f32 = 1_000.0;
 
@@ -72,7 +74,13 @@ impl Health {
         let quarter = core::f32::consts::FRAC_PI_2 / machine.spin.abs().max(1e-3) * rate;
         let every = quarter.min(rate / LOOKS_PER_SECOND).clamp(1.0, 256.0);
         let tolerance = tuning.wall_tolerance * machine.clearance;
-        let looks = (tuning.still_time * rate / every).clamp(16.0, 60_000.0);
+        let swing = core::f32::consts::TAU * sqrt(machine.clearance / machine.gravity);
+        let time = if swing.is_finite() {
+            tuning.still_time.max(SWINGS * swing)
+        } else {
+            tuning.still_time
+        };
+        let looks = (time * rate / every).clamp(16.0, 60_000.0);
         Self {
             fitted,
             watch: Watch::new(
