@@ -12,7 +12,7 @@ use core::mem::MaybeUninit;
 use semihosting::fs::File;
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
 use touchdown_core::controller::{Faults, Outputs};
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Notice, Notices};
 
 use self::scenes::{SCENES, Scene};
 use super::{Counter, Table, Tally};
@@ -21,6 +21,7 @@ use crate::board::Board;
 use crate::memory;
 use crate::recorder::{self, Identity, Recorder};
 
+/// All but the forecast, which is below the tick, are parts of it.
 const PARTS: [&str; 6] = [
     "sensing and health",
     "detector",
@@ -74,15 +75,15 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
     let app = application(scene, app);
     let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
+    let mut notices = Notices::new();
     let mut tally = Tally::default();
     let mut told = 0;
     scene.play(|sample| {
         let sample = black_box(sample);
-        let (notices, instructions) = counter.count(|| {
-            let notices = app.tick(&mut board, sample, 0);
+        let ((), instructions) = counter.count(|| {
+            app.tick(&mut board, sample, 0, &mut notices);
             recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
-            notices
         });
         told += notices.len() as u32;
         tally.add(instructions);
@@ -98,24 +99,25 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     let app = application(scene, app);
     let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
+    let mut lookout = memory::lookout(&scene.config()).expect("a valid configuration");
+    let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
         let sample = black_box(sample);
         let (monitor, state) = app.monitor();
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
-        let (mut notices, detector) = counter.count(|| monitor.detect(state, seen));
+        let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
         let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
-        let (monitor, state) = app.monitor();
-        let (outlook, forecast) = counter.count(|| monitor.look_ahead(state));
-        if let Some(outlook) = outlook {
-            let _ = notices.push(outlook);
-        }
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
         });
+        let (outlook, forecast) = counter.count(|| lookout.work(&app.sight(lookout.asks())));
+        if let Some(outlook) = outlook {
+            recorder.hear(&outlook);
+        }
         let counts = [sensing, detector, forecast, severity, recording, outputs];
         tallies
             .iter_mut()
