@@ -5,6 +5,7 @@ use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::{EventKind, Notice, Notices};
+use touchdown_core::forecast::Sight;
 use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
@@ -64,18 +65,22 @@ impl App {
     }
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
-    /// outputs, and last of all the watchdog is fed. The notices come back for the recorder.
-    pub fn tick(&mut self, board: &mut impl Board, sample: &Sample, lost: u32) -> Notices {
-        let mut notices = self.monitor.update(&mut self.state, sample);
-        self.follow(board, &notices, lost);
-        // After the outputs: it delays none of them.
-        if let Some(notice) = self.monitor.look_ahead(&mut self.state) {
-            board.report(&notice);
-            // There is room: a tick gives fewer than NOTICES_PER_TICK.
-            let _ = notices.push(notice);
-        }
+    /// outputs, and last of all the watchdog is fed. The notices are left for the recorder.
+    pub fn tick(
+        &mut self,
+        board: &mut impl Board,
+        sample: &Sample,
+        lost: u32,
+        notices: &mut Notices,
+    ) {
+        self.monitor.tick(&mut self.state, sample, notices);
+        self.follow(board, notices, lost);
         board.feed();
-        notices
+    }
+
+    /// What the forecast below the tick needs; an estimate only where it `asks` for one.
+    pub fn sight(&self, asks: bool) -> Sight {
+        self.monitor.sight(&self.state, asks)
     }
 
     /// What follows from the notices of a tick, outputs included.

@@ -7,6 +7,7 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::controller::Faults;
 use touchdown_core::error::ConfigError;
+use touchdown_core::forecast::Lookout;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 
 use crate::app::App;
@@ -42,13 +43,19 @@ impl Memory {
 }
 
 #[inline(never)]
-fn application<'a>(
+pub(crate) fn application<'a>(
     place: &'a mut MaybeUninit<App>,
     config: &MonitorConfig,
     found: Faults,
 ) -> Result<&'a mut App, ConfigError> {
     let monitor = Monitor::try_new(config)?;
     Ok(place.write(App::new(monitor, config, found)))
+}
+
+/// The forecast, which whoever runs below the tick keeps.
+#[inline(never)]
+pub fn lookout(config: &MonitorConfig) -> Result<Lookout, ConfigError> {
+    Lookout::try_new(&config.detector)
 }
 
 #[inline(never)]

@@ -2,7 +2,7 @@
 
 use touchdown_core::config_block::{self, Block, Patrol};
 use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
-use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
@@ -78,7 +78,8 @@ impl Bench {
     fn take(&mut self, sample: &Sample, lost: u32) -> u8 {
         self.board.driven.clear();
         self.board.fed = 0;
-        self.app.tick(&mut self.board, sample, lost);
+        self.app
+            .tick(&mut self.board, sample, lost, &mut Notices::new());
         self.tick += 1;
         assert_eq!(
             self.board.driven,

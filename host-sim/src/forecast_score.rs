@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::forecast::Outlook;
+use touchdown_core::forecast::{Lookout, Outlook};
 use touchdown_core::monitor::Monitor;
 
 use crate::scene::{Scene, Start};
@@ -115,6 +115,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
     let mut seen = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&told.monitor_config())?;
     let mut state = monitor.start();
+    let mut lookout = Lookout::try_new(&told.monitor_config().detector)?;
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
     let (mut case, mut contact, mut asked) = (Case::new(), None, None);
@@ -161,9 +162,9 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
                 _ => {}
             }
         }
-        let before = state.outlook().map(|it| it.made_at);
-        monitor.look_ahead(&mut state);
-        let outlook = state.outlook().filter(|it| Some(it.made_at) != before);
+        let before = lookout.last().map(|it| it.made_at);
+        lookout.look(&monitor, &state);
+        let outlook = lookout.last().filter(|it| Some(it.made_at) != before);
         let (Some(&outlook), None) = (outlook, case.whirl) else {
             continue;
         };

@@ -2,6 +2,7 @@
 
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::Notice;
+use touchdown_core::forecast::Lookout;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
@@ -27,12 +28,13 @@ pub fn run(
 ) -> Result<Answer, ConfigError> {
     let monitor = Monitor::try_new(config)?;
     let mut state = monitor.start();
+    let mut lookout = Lookout::try_new(&config.detector)?;
     let mut fingerprint = Fingerprint::default();
     let mut notices = Vec::new();
     for sample in samples {
         notices.extend(monitor.update(&mut state, &sample));
-        notices.extend(monitor.look_ahead(&mut state));
-        fingerprint.take(&state);
+        notices.extend(lookout.look(&monitor, &state));
+        fingerprint.take(&state, &lookout);
     }
     Ok(Answer {
         notices,

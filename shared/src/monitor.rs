@@ -8,7 +8,7 @@ use crate::detect::{
 };
 use crate::error::ConfigError;
 use crate::event::{Motion, Notice, Notices};
-use crate::forecast::{Forecast, ForecastState, Outlook};
+use crate::forecast::{Lookout, Sight};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
@@ -37,7 +37,6 @@ pub struct Monitor {
     health: Health,
     tachometers: Option<Tachometers>,
     detector: Detector,
-    forecast: Forecast,
     severeness: Severeness,
 }
 
@@ -59,7 +58,6 @@ pub struct MonitorState {
     inner_ring: Option<Speed>,
     detector: DetectorState,
     spin: Option<f32>,
-    forecast: ForecastState,
     severity: SeverityState,
 }
 
@@ -74,7 +72,6 @@ impl Monitor {
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
-            forecast: Forecast::try_new(&config.detector)?,
             severeness: Severeness::try_new(&config.detector)?,
         })
     }
@@ -84,12 +81,19 @@ impl Monitor {
         MonitorState::default()
     }
 
-    /// One tick. Bounded; cannot fail.
+    /// One tick: what it has to say. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
-        let seen = self.sense(state, sample);
-        let notices = self.detect(state, &seen);
-        self.weigh(state, &notices);
+        let mut notices = Notices::new();
+        self.tick(state, sample, &mut notices);
         notices
+    }
+
+    /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
+    #[inline]
+    pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
+        let seen = self.sense(state, sample);
+        self.detect(state, &seen, notices);
+        self.weigh(state, notices);
     }
 
     /// First part of a tick: what the sensors say, and whether they can be believed.
@@ -117,39 +121,35 @@ impl Monitor {
         Seen { reading, signals }
     }
 
-    /// Second part: the detector.
+    /// Second part: the detector. What was in `notices` goes.
     #[inline]
-    pub fn detect(&self, state: &mut MonitorState, seen: &Seen) -> Notices {
-        let mut notices = Notices::new();
+    pub fn detect(&self, state: &mut MonitorState, seen: &Seen, notices: &mut Notices) {
+        notices.clear();
         let detector = &mut state.detector;
         self.detector
-            .update(detector, &seen.reading, &seen.signals, &mut notices);
-        notices
+            .update(detector, &seen.reading, &seen.signals, notices);
     }
 
     /// Last part: what it does to the machine.
     #[inline]
-    pub fn weigh(&self, state: &mut MonitorState, notices: &Notices) {
+    pub fn weigh(&self, state: &mut MonitorState, notices: &[Notice]) {
         let strain = self.detector.strain(&state.detector);
         self.severeness.take(&mut state.severity, &strain, notices);
     }
 
-    /// A slice of the forecast, below the tick: after each and before the next. Bounded; cannot fail. What
-    /// lies ahead, where that is news.
-    pub fn look_ahead(&self, state: &mut MonitorState) -> Option<Notice> {
-        let (forecast, sample) = (&mut state.forecast, state.samples.saturating_sub(1));
-        if state.detector.phase() < Phase::FreeFall {
-            *forecast = ForecastState::default();
-            return None;
+    /// What the forecast below the tick needs of the last one; an estimate only where it `asks` for one.
+    pub fn sight(&self, state: &MonitorState, asks: bool) -> Sight {
+        let is_released = state.detector.phase() >= Phase::FreeFall;
+        let estimate = if asks && is_released {
+            self.detector.estimate(&state.detector, state.spin)
+        } else {
+            None
+        };
+        Sight {
+            sample: state.samples.saturating_sub(1),
+            is_released,
+            estimate,
         }
-        if !forecast.is_busy()
-            && let Some(estimate) = self.detector.estimate(&state.detector, state.spin)
-            && self.forecast.is_known(estimate.speed_error)
-        {
-            self.forecast.start(forecast, &estimate);
-        }
-        self.forecast.work(forecast, sample)?;
-        forecast.news().map(Notice::Outlook)
     }
 
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
@@ -214,11 +214,6 @@ impl MonitorState {
         self.detector.slip()
     }
 
-    /// The last forecast of this episode.
-    pub fn outlook(&self) -> Option<&Outlook> {
-        self.forecast.last()
-    }
-
     /// What the last drop has done to the machine so far; zeros before the first.
     pub fn severity(&self) -> &Severity {
         &self.severity.so_far
@@ -242,8 +237,8 @@ impl Default for Fingerprint {
 }
 
 impl Fingerprint {
-    /// Takes in the state after a tick.
-    pub fn take(&mut self, state: &MonitorState) {
+    /// Takes in the state after a tick, and that of the forecast below it.
+    pub fn take(&mut self, state: &MonitorState, lookout: &Lookout) {
         self.0.update(&state.samples.to_le_bytes());
         self.0.update(&state.faults.to_le_bytes());
         state
@@ -253,7 +248,7 @@ impl Fingerprint {
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
         let severity = state.severity().words();
-        for value in state.forecast.words().into_iter().chain(severity) {
+        for value in lookout.words().into_iter().chain(severity) {
             self.0.update(&bits(value).to_le_bytes());
         }
     }

@@ -7,7 +7,7 @@ mod image {
     use core::panic::PanicInfo;
 
     use touchdown_core::controller::Outputs;
-    use touchdown_core::event::Notice;
+    use touchdown_core::event::{Notice, Notices};
     use touchdown_core::sample::Sample;
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
@@ -49,10 +49,11 @@ mod image {
         config: &'static &'static [u8],
         sample: &Sample,
         lost: u32,
+        notices: &mut Notices,
     ) {
-        let notices = app.tick(&mut Bare(config), sample, lost);
+        app.tick(&mut Bare(config), sample, lost, notices);
         recorder.set_severity(app.state().severity());
-        recorder.take(sample, &notices);
+        recorder.take(sample, notices);
     }
 
     #[panic_handler]

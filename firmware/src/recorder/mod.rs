@@ -182,6 +182,11 @@ impl<'m> Recorder<'m> {
         self.tick += 1;
     }
 
+    /// What the forecast says between two ticks.
+    pub fn hear(&mut self, notice: &Notice) {
+        self.note(notice);
+    }
+
     /// The next block to be stored, if one is ready. Bounded: copies at most a block. A block is
     /// given once, those of an episode in order and none of another in between.
     pub fn fetch(&mut self) -> Option<Block> {

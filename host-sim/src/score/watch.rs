@@ -2,6 +2,7 @@
 
 use touchdown_core::detect::Phase;
 use touchdown_core::error::ConfigError;
+use touchdown_core::forecast::Lookout;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 
@@ -138,11 +139,12 @@ impl Drop {
     pub fn watch(&self) -> Result<Watched, Failure> {
         let monitor = Monitor::try_new(&self.monitor).map_err(refused)?;
         let mut state = monitor.start();
+        let mut lookout = Lookout::try_new(&self.monitor.detector).map_err(refused)?;
         let mut feed = Feed::new(self).map_err(refused)?;
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
         while let Some((sample, instant)) = feed.next() {
             notices.extend(monitor.update(&mut state, &sample));
-            notices.extend(monitor.look_ahead(&mut state));
+            notices.extend(lookout.look(&monitor, &state));
             instants.extend(instant.map(|instant| Instant {
                 told: state.phase(),
                 ..instant

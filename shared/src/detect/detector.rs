@@ -225,9 +225,9 @@ impl Detector {
         self.learning.take(&mut state.levitation, fix.position);
         if state.levitation.is_fresh() {
             // It still moved: what the tests learnt of it goes as well.
-            state.listener = Listener::default();
-            state.release = ReleaseBank::default();
-            state.orbit = OrbitState::default();
+            state.listener.forget();
+            state.release.forget();
+            state.orbit.forget();
         }
         let floats = (state.levitation.mean, state.levitation.variance);
         let residual = self
@@ -263,8 +263,8 @@ impl Detector {
             return;
         };
         self.ladder.fly(&mut state.rotor, fix, None, loudness);
-        let number = teller.tell(EventKind::FreeFall, f32::from(age), 0.0);
-        state.pending = Some(Pending::new(number, fix.now.later(-f32::from(age))));
+        let number = teller.tell(EventKind::FreeFall, age, 0.0);
+        state.pending = Some(Pending::new(number, fix.now.later(-age)));
         if signals.levitated == Some(false) {
             teller.close(&mut state.pending, true);
         }
@@ -306,10 +306,10 @@ impl Detector {
         teller.close(&mut state.pending, false);
         state.rotor.phase = Phase::Levitated;
         state.levitation = Levitation::default();
-        state.listener = Listener::default();
-        state.release = ReleaseBank::default();
-        state.orbit = OrbitState::default();
-        state.ends = Ends::default();
+        state.listener.forget();
+        state.release.forget();
+        state.orbit.forget();
+        state.ends.forget();
     }
 
     fn touching(
@@ -388,9 +388,9 @@ impl Detector {
             state.rotor.phase = Phase::Levitated;
             return;
         }
-        if let Some(rotor) = self.ends.join(ends, fixes) {
-            state.rotor = rotor;
-            if rotor.phase == Phase::Levitated {
+        if let Some(joined) = self.ends.join(ends, fixes) {
+            state.rotor = *joined;
+            if state.rotor.phase == Phase::Levitated {
                 self.learn_again(state, teller);
             }
         }

@@ -55,7 +55,8 @@ pub(crate) struct Ends {
     lean: [f32; 2],
     lifts: bool,
     /// Each end's own, while they are apart.
-    alone: Option<[Rungs; PLANES]>,
+    alone: [Rungs; PLANES],
+    are_alone: bool,
 }
 
 impl EndsTest {
@@ -125,15 +126,10 @@ impl EndsTest {
         let outward = rotor.contact.outward();
         let [_, e] = ends.mean;
         let wall = e[0] * outward[0] + e[1] * outward[1];
-        let mut alone = [*rotor; PLANES];
-        for ((rungs, fix), wall) in alone.iter_mut().zip(fixes).zip([wall, -wall]) {
-            if rotor.phase.is_contact() {
-                rungs.contact = rotor.contact.at_one_end(wall);
-            } else {
-                self.ladder.part(rungs, fix, loudness);
-            }
+        for ((rungs, fix), wall) in ends.alone.iter_mut().zip(fixes).zip([wall, -wall]) {
+            self.ladder.part(rungs, rotor, fix, wall, loudness);
         }
-        ends.alone = Some(alone);
+        ends.are_alone = true;
         ends.together = 0;
         ends.lifts = false;
     }
@@ -151,7 +147,7 @@ impl EndsTest {
         let (levitation, loudness) = floating;
         let (homes, variance) = ends.homes(levitation);
         let whole = teller.plane;
-        let alone = ends.alone.iter_mut().flatten();
+        let alone = ends.alone.iter_mut();
         for (((rungs, fix), home), plane) in alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B]) {
             teller.plane = plane;
             match (rungs.phase, fix) {
@@ -204,8 +200,12 @@ impl EndsTest {
     }
 
     /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.
-    pub(crate) fn join(&self, ends: &mut Ends, fixes: &[Option<Fix>; PLANES]) -> Option<Rungs> {
-        let [a, b] = ends.alone.as_ref()?;
+    pub(crate) fn join<'a>(
+        &self,
+        ends: &'a mut Ends,
+        fixes: &[Option<Fix>; PLANES],
+    ) -> Option<&'a Rungs> {
+        let [a, b] = &mut ends.alone;
         let joined = match fixes {
             [Some(_), None] => a,
             [None, Some(_)] => b,
@@ -213,11 +213,9 @@ impl EndsTest {
             _ if a.phase == Phase::Levitated && b.phase == Phase::Levitated => a,
             _ => return None,
         };
-        let joined = Rungs {
-            contact: joined.contact.of_both(),
-            ..*joined
-        };
-        ends.unite();
+        joined.contact = joined.contact.of_both();
+        ends.are_alone = false;
+        ends.apart = 0;
         Some(joined)
     }
 }
@@ -236,26 +234,39 @@ impl Ends {
         square(position, home) > APART * APART * variance
     }
 
+    /// Forgets all.
+    pub(crate) fn forget(&mut self) {
+        self.levitation = Levitation::default();
+        self.mean = [[0.0; 2]; 2];
+        self.count = 0;
+        self.power = [0.0; 2];
+        self.variance = 0.0;
+        self.together = 0;
+        self.lean = [0.0; 2];
+        self.lifts = false;
+        self.unite();
+    }
+
     /// The rotor moves as one again.
     pub(crate) fn unite(&mut self) {
-        self.alone = None;
+        self.are_alone = false;
         self.apart = 0;
     }
 
     /// Whether each end has a ladder of its own.
     pub(crate) fn are_alone(&self) -> bool {
-        self.alone.is_some()
+        self.are_alone
     }
 
     /// Each end's phase, while they are apart.
     pub(crate) fn phases(&self) -> Option<[Phase; PLANES]> {
-        let alone = self.alone.as_ref()?;
-        Some([alone[0].phase, alone[1].phase])
+        let [a, b] = &self.alone;
+        self.are_alone.then_some([a.phase, b.phase])
     }
 
     /// Each end's own, while they are apart.
     pub(crate) fn alone(&self) -> &[Rungs] {
-        self.alone.as_ref().map_or(&[], |alone| alone.as_slice())
+        if self.are_alone { &self.alone } else { &[] }
     }
 
     /// How the rotor moves.

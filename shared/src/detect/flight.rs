@@ -66,6 +66,23 @@ pub(crate) struct Airborne {
     lying: u32,
 }
 
+impl Airborne {
+    /// Nothing has been seen of the wall yet.
+    fn restart(&mut self, loudness: f32) {
+        self.bank.begin(loudness);
+        self.near_wall = 0;
+        self.lying = 0;
+    }
+
+    /// What is known of another one, but for impacts under way.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.track = other.track;
+        self.series = other.series;
+        self.lies = other.lies;
+        self.restart(other.bank.loudness());
+    }
+}
+
 /// How loud the impact test is while the rotor floats.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Listener {
@@ -76,6 +93,13 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
+    /// Forgets all.
+    pub(crate) fn forget(&mut self) {
+        self.bank.begin(0.0);
+        self.level = 0.0;
+        self.count = 0.0;
+    }
+
     /// What is measured has moved by `way`, m.
     pub(crate) fn shift(&mut self, way: [f32; 2]) {
         self.track.position = sum(self.track.position, way);
@@ -149,30 +173,21 @@ impl FlightTest {
 
     /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
     /// (m) at which it lay: what is clearly inside of it is no contact, however near.
-    pub(crate) fn start(&self, fix: &Fix, wall: Option<f32>, loudness: f32) -> Airborne {
+    pub(crate) fn start(&self, flight: &mut Airborne, fix: &Fix, wall: Option<f32>, loudness: f32) {
         let clear = CLEAR_OF_WALL * sqrt(fix.variance);
-        Airborne {
-            track: Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED),
-            bank: JumpBank::new(loudness),
-            lies: wall.map_or(self.near, |wall| wall - clear),
-            ..Airborne::default()
-        }
+        flight.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+        flight.series = Series::default();
+        flight.lies = wall.map_or(self.near, |wall| wall - clear);
+        flight.restart(loudness);
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
-    pub(crate) fn part(&self, both: &Airborne, fix: &Fix, loudness: f32) -> Airborne {
-        Airborne {
-            track: Track::new(
-                fix.position,
-                fix.variance,
-                both.track.velocity,
-                UNKNOWN_SPEED,
-            ),
-            bank: JumpBank::new(loudness),
-            series: both.series.anew(),
-            lies: both.lies,
-            ..Airborne::default()
-        }
+    pub(crate) fn part(&self, flight: &mut Airborne, both: &Airborne, fix: &Fix, loudness: f32) {
+        let velocity = both.track.velocity;
+        flight.track = Track::new(fix.position, fix.variance, velocity, UNKNOWN_SPEED);
+        flight.series = both.series.anew();
+        flight.lies = both.lies;
+        flight.restart(loudness);
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
@@ -194,7 +209,7 @@ impl FlightTest {
     /// To the next sample without a usable position.
     pub(crate) fn skip(&self, flight: &mut Airborne) {
         self.ballistic.predict(&mut flight.track);
-        self.jumps.predict(&mut flight.bank);
+        self.jumps.skip(&mut flight.bank);
     }
 
     /// Takes the next sample.
@@ -203,7 +218,7 @@ impl FlightTest {
         if !self.is_possible(&flight.track, fix) {
             if flight.left_out < LEFT_OUT {
                 flight.left_out += 1;
-                self.jumps.predict(&mut flight.bank);
+                self.jumps.skip(&mut flight.bank);
                 return self.contact(flight, fix);
             }
         } else {

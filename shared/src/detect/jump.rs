@@ -22,8 +22,8 @@ pub(crate) struct JumpTest {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Candidate {
-    age: u16,
-    used: bool,
+    /// Samples since its instant.
+    age: f32,
     /// Error of position (m per m/s) and velocity that a unit jump has left.
     effect: [f32; 2],
     information: f32,
@@ -34,6 +34,8 @@ struct Candidate {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct JumpBank {
     candidates: [Candidate; CANDIDATES],
+    /// How many of them there are so far.
+    live: usize,
     next: usize,
     wait: u16,
     /// Largest statistic of the last sample.
@@ -43,12 +45,10 @@ pub(crate) struct JumpBank {
 }
 
 impl JumpBank {
-    /// An empty bank.
-    pub(crate) fn new(loudness: f32) -> Self {
-        Self {
-            loudness,
-            ..Self::default()
-        }
+    /// Empties it.
+    pub(crate) fn begin(&mut self, loudness: f32) {
+        self.loudness = loudness;
+        self.restart();
     }
 
     /// Factor on the threshold.
@@ -58,7 +58,15 @@ impl JumpBank {
 
     /// Forgets what was under way.
     pub(crate) fn restart(&mut self) {
-        *self = Self::new(self.loudness);
+        self.live = 0;
+        self.next = 0;
+        self.wait = 0;
+        self.statistic = 0.0;
+    }
+
+    /// The candidates that there are.
+    fn candidates(&self) -> &[Candidate] {
+        self.candidates.get(..self.live).unwrap_or_default()
     }
 }
 
@@ -121,42 +129,51 @@ impl JumpTest {
         Some(self.jump(bank, index, inward))
     }
 
-    /// To the next sample.
-    pub(crate) fn predict(&self, bank: &mut JumpBank) {
+    /// To the next sample, which is left out.
+    pub(crate) fn skip(&self, bank: &mut JumpBank) {
+        self.open(bank);
+        for candidate in bank.candidates.iter_mut().take(bank.live) {
+            candidate.predict(self.period);
+        }
+    }
+
+    /// Opens a new candidate, if it is time.
+    fn open(&self, bank: &mut JumpBank) {
         if bank.wait == 0 {
             bank.wait = self.stride;
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
                 // On average half a sample before the sample, and half a stride with it.
                 *slot = Candidate {
-                    used: true,
                     effect: [-0.5 * self.period, 1.0],
                     ..Candidate::default()
                 };
             }
+            bank.live = bank.live.max(bank.next + 1);
             bank.next = (bank.next + 1) % CANDIDATES;
         }
         bank.wait -= 1;
-        for candidate in bank.candidates.iter_mut().filter(|c| c.used) {
-            candidate.age = candidate.age.saturating_add(1);
-            candidate.effect[0] += self.period * candidate.effect[1];
-        }
     }
 
     /// Takes the innovation of a sample; the statistic is that of a jump along `inward`.
     pub(crate) fn update(&self, bank: &mut JumpBank, innovation: &Innovation, inward: [f32; 2]) {
-        self.predict(bank);
+        self.open(bank);
         let [rx, ry] = innovation.residual;
         let weight = 1.0 / innovation.variance;
-        bank.statistic = 0.0;
-        for candidate in bank.candidates.iter_mut().filter(|c| c.used) {
+        let mut statistic = 0.0;
+        for candidate in bank.candidates.iter_mut().take(bank.live) {
+            candidate.predict(self.period);
             let seen = candidate.effect[0];
             candidate.information += seen * seen * weight;
             candidate.sum[0] += seen * rx * weight;
             candidate.sum[1] += seen * ry * weight;
             candidate.effect[0] -= innovation.gain[0] * seen;
             candidate.effect[1] -= innovation.gain[1] * seen;
-            bank.statistic = bank.statistic.max(candidate.statistic(inward));
+            let this = candidate.statistic(inward);
+            if this > statistic {
+                statistic = this;
+            }
         }
+        bank.statistic = statistic;
     }
 
     /// The likeliest instant. Just after an impact a small jump long ago explains the first sample as
@@ -165,14 +182,14 @@ impl JumpTest {
     fn likeliest(&self, bank: &JumpBank, approach: &Approach, inward: [f32; 2]) -> Option<usize> {
         let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
         let mut best = (f32::NEG_INFINITY, None);
-        for (index, candidate) in bank.candidates.iter().enumerate() {
+        for (index, candidate) in bank.candidates().iter().enumerate() {
             let statistic = candidate.statistic(inward);
             if statistic <= 0.5 * bank.statistic {
                 continue;
             }
             let scale = 1.0 / candidate.information;
             let along = (candidate.sum[0] * inward[0] + candidate.sum[1] * inward[1]) * scale;
-            let time = f32::from(candidate.age) * self.period;
+            let time = candidate.age * self.period;
             let speed = approach.speed + (1.0 - candidate.effect[1]) * along - approach.pull * time;
             if along < STOPPED * speed && !past_doubt {
                 continue;
@@ -189,14 +206,13 @@ impl JumpTest {
     }
 
     fn jump(&self, bank: &JumpBank, index: usize, inward: [f32; 2]) -> Jump {
-        let found = bank.candidates.get(index).copied().unwrap_or_default();
+        let found = bank.candidates().get(index).copied().unwrap_or_default();
         // The peak between neighbouring instants, by a parabola through the three.
         let neighbour = |step: usize| {
             let at = (index + step) % CANDIDATES;
-            let near = bank.candidates.get(at).copied().unwrap_or_default();
-            let apart = i32::from(near.age) - i32::from(found.age);
-            (near.used && apart.unsigned_abs() == u32::from(self.stride))
-                .then(|| near.statistic(inward))
+            let near = bank.candidates().get(at)?;
+            let apart = (near.age - found.age).abs();
+            (apart == f32::from(self.stride)).then(|| near.statistic(inward))
         };
         let shift = match (neighbour(CANDIDATES - 1), neighbour(1)) {
             (Some(older), Some(younger)) => {
@@ -211,7 +227,7 @@ impl JumpTest {
         };
         let scale = 1.0 / found.information;
         Jump {
-            age: (f32::from(found.age) - 0.5 + shift).max(0.0),
+            age: (found.age - 0.5 + shift).max(0.0),
             change: found.sum.map(|sum| sum * scale),
             variance: scale,
             effect: found.effect,
@@ -222,6 +238,11 @@ impl JumpTest {
 }
 
 impl Candidate {
+    fn predict(&mut self, period: f32) {
+        self.age += 1.0;
+        self.effect[0] += period * self.effect[1];
+    }
+
     fn statistic(&self, [nx, ny]: [f32; 2]) -> f32 {
         let along = self.sum[0] * nx + self.sum[1] * ny;
         if along > 0.0 && self.information > 0.0 {

@@ -131,15 +131,31 @@ impl Ladder {
 
     /// Into flight, from lying on a wall at the radius `wall` (m) where it lifted off.
     pub(crate) fn fly(&self, rungs: &mut Rungs, fix: &Fix, wall: Option<f32>, loudness: f32) {
-        rungs.flight = self.flight.start(fix, wall, loudness);
+        self.flight.start(&mut rungs.flight, fix, wall, loudness);
         rungs.phase = Phase::FreeFall;
         rungs.still = Still::default();
     }
 
-    /// The flight of one end, `fix`, goes on from that of the rotor.
-    pub(crate) fn part(&self, rungs: &mut Rungs, fix: &Fix, loudness: f32) {
-        rungs.flight = self.flight.part(&rungs.flight, fix, loudness);
-        rungs.still = Still::default();
+    /// One end, `fix`, goes on from the rotor as a whole; where that lies on the wall, the end does so `wall` (m)
+    /// farther out.
+    pub(crate) fn part(
+        &self,
+        rungs: &mut Rungs,
+        rotor: &Rungs,
+        fix: &Fix,
+        wall: f32,
+        loudness: f32,
+    ) {
+        rungs.phase = rotor.phase;
+        if rotor.phase.is_contact() {
+            rungs.flight.follow(&rotor.flight);
+            rungs.contact = rotor.contact.at_one_end(wall);
+            rungs.still = rotor.still;
+        } else {
+            (self.flight).part(&mut rungs.flight, &rotor.flight, fix, loudness);
+            rungs.contact = rotor.contact;
+            rungs.still = Still::default();
+        }
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.

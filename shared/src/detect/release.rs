@@ -33,8 +33,8 @@ pub(crate) struct Release {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Candidate {
-    /// Samples since its instant; 0 while unused.
-    age: u16,
+    /// Samples since its instant.
+    age: f32,
     sum: [f32; 2],
     energy: f32,
 }
@@ -43,6 +43,8 @@ struct Candidate {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ReleaseBank {
     candidates: [Candidate; CANDIDATES],
+    /// How many of them there are so far.
+    live: usize,
     next: usize,
     wait: u16,
     /// Largest statistic of the last sample.
@@ -54,11 +56,17 @@ pub(crate) struct ReleaseBank {
 impl ReleaseBank {
     /// Forgets what was under way, not what was learnt.
     pub(crate) fn restart(&mut self) {
-        *self = Self {
-            level: self.level,
-            count: self.count,
-            ..Self::default()
-        };
+        self.live = 0;
+        self.next = 0;
+        self.wait = 0;
+        self.statistic = 0.0;
+    }
+
+    /// Forgets what was learnt as well.
+    pub(crate) fn forget(&mut self) {
+        self.restart();
+        self.level = 0.0;
+        self.count = 0.0;
     }
 }
 
@@ -81,15 +89,13 @@ impl Release {
         bank: &mut ReleaseBank,
         [x, y]: [f32; 2],
         variance: f32,
-    ) -> Option<u16> {
+    ) -> Option<f32> {
         if bank.wait == 0 {
             bank.wait = self.stride;
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
-                *slot = Candidate {
-                    age: 0,
-                    ..Candidate::default()
-                };
+                *slot = Candidate::default();
             }
+            bank.live = bank.live.max(bank.next + 1);
             bank.next = (bank.next + 1) % CANDIDATES;
         }
         bank.wait -= 1;
@@ -97,11 +103,10 @@ impl Release {
         let most = LOUDEST * sqrt(variance * loudness);
         let (x, y) = (x.min(most).max(-most), y.min(most).max(-most));
         let scale = 0.5 / variance;
-        let half_gravity = 0.5 * self.gravity;
-        let (mut best, mut falls) = ((0.0, 0), (0.0, 0));
-        for candidate in &mut bank.candidates {
-            candidate.age = candidate.age.saturating_add(1);
-            let time = f32::from(candidate.age) * self.period;
+        let mut best = (0.0, 0.0);
+        for candidate in bank.candidates.iter_mut().take(bank.live) {
+            candidate.age += 1.0;
+            let time = candidate.age * self.period;
             let w = time * time;
             candidate.sum[0] += x * w;
             candidate.sum[1] += y * w;
@@ -110,10 +115,6 @@ impl Release {
             let any = (a * a + b * b) * scale / candidate.energy;
             if any > best.0 {
                 best = (any, candidate.age);
-            }
-            let fall = -b * half_gravity - 0.5 * half_gravity * half_gravity * candidate.energy;
-            if fall > falls.0 {
-                falls = (fall, candidate.age);
             }
         }
         bank.statistic = best.0;
@@ -124,8 +125,22 @@ impl Release {
             return None;
         }
         // With gravity known, the instant follows from the fall's shape far better.
-        let is_a_fall = falls.0 > 0.5 * self.threshold * variance;
-        Some(if is_a_fall { falls.1 } else { best.1 })
+        let (likelihood, age) = self.fall(bank);
+        let is_a_fall = likelihood > 0.5 * self.threshold * variance;
+        Some(if is_a_fall { age } else { best.1 })
+    }
+
+    /// Log likelihood of the likeliest fall, times the variance, and its age in samples.
+    fn fall(&self, bank: &ReleaseBank) -> (f32, f32) {
+        let half_gravity = 0.5 * self.gravity;
+        let mut best = (0.0, 0.0);
+        for Candidate { age, sum, energy } in bank.candidates.iter().take(bank.live) {
+            let fall = -sum[1] * half_gravity - 0.5 * half_gravity * half_gravity * energy;
+            if fall > best.0 {
+                best = (fall, *age);
+            }
+        }
+        best
     }
 }
 

@@ -2,16 +2,18 @@
 //!
 //! From the estimated state the core's model runs ahead, once for the estimate and once for each end of
 //! its main uncertainties. The part of the runs that whirl is the probability. A run takes many ticks:
-//! each [`Forecast::work`] does a bounded slice of it, below the tick.
+//! each [`Lookout::work`] does a bounded slice of it, below the tick.
 //!
 //! | file | says |
 //! |---|---|
+//! | `lookout` | what the tick hands over, and when a forecast starts |
 //! | `estimate` | where the rotor is, and how well that is known |
 //! | `points` | from where the runs start |
 //! | `run` | what becomes of one of them |
 //! | `threshold` | whether a rotor on the wall whirls, in closed form |
 
 mod estimate;
+mod lookout;
 mod points;
 mod run;
 mod threshold;
@@ -25,6 +27,7 @@ use crate::model::{Rigid, RigidConfig};
 use crate::scales::Scales;
 
 pub use estimate::{Estimate, Place};
+pub use lookout::{Lookout, Sight};
 
 /// Speed of a rotor without weight that the magnets let go, m/s: sets the scales where gravity is 0.
 const DRIFT: f32 = 0.05;
@@ -37,7 +40,7 @@ const NEWS: f32 = 0.1;
 
 /// Coefficients.
 #[derive(Clone, Debug)]
-pub struct Forecast {
+struct Forecast {
     tuning: Tuning,
     sample_rate: f32,
     model: Rigid<f32>,
@@ -45,7 +48,7 @@ pub struct Forecast {
 
 /// A forecast under way, and the last one made.
 #[derive(Clone, Debug, Default)]
-pub struct ForecastState {
+struct ForecastState {
     estimate: Option<Estimate>,
     point: usize,
     run: Option<Run>,
@@ -91,7 +94,7 @@ struct Tally {
 
 impl Forecast {
     /// Checks `config` and prepares the model.
-    pub fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
+    fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let machine = &config.machine;
         let radius = machine.rotor_radius;
@@ -117,12 +120,12 @@ impl Forecast {
 
     /// Whether a velocity known to `error` (m/s) is worth a forecast: to a good part of what a fall
     /// through the clearance gives.
-    pub fn is_known(&self, error: f32) -> bool {
+    fn is_known(&self, error: f32) -> bool {
         error < WELL_KNOWN * self.model.scales().speed
     }
 
     /// Starts a forecast from `estimate`; one under way is dropped.
-    pub fn start(&self, state: &mut ForecastState, estimate: &Estimate) {
+    fn start(&self, state: &mut ForecastState, estimate: &Estimate) {
         state.estimate = Some(*estimate);
         state.point = 0;
         state.run = None;
@@ -131,7 +134,7 @@ impl Forecast {
 
     /// A slice of the work, after the tick of `sample`: bounded by `forecast_changes`. The outlook, where
     /// it is ready.
-    pub fn work(&self, state: &mut ForecastState, sample: u64) -> Option<Outlook> {
+    fn work(&self, state: &mut ForecastState, sample: u64) -> Option<Outlook> {
         let mut spent = 0;
         while spent < self.tuning.forecast_changes {
             let estimate = state.estimate.as_ref()?;
@@ -204,7 +207,7 @@ impl Tally {
 
 impl ForecastState {
     /// Whether a forecast is under way.
-    pub fn is_busy(&self) -> bool {
+    fn is_busy(&self) -> bool {
         self.estimate.is_some()
     }
 
@@ -219,13 +222,13 @@ impl ForecastState {
     }
 
     /// The last outlook.
-    pub fn last(&self) -> Option<&Outlook> {
+    fn last(&self) -> Option<&Outlook> {
         self.last.as_ref()
     }
 
     /// The last outlook, if it says something new: the first of an episode, and where a probability has
     /// changed by a tenth.
-    pub(crate) fn news(&mut self) -> Option<Outlook> {
+    fn news(&mut self) -> Option<Outlook> {
         let outlook = self.last?;
         let now = [outlook.probability_forward, outlook.probability_backward];
         let is_new = self.told.is_none_or(|told| {
@@ -239,7 +242,7 @@ impl ForecastState {
     }
 
     /// Words that show any difference in what was worked out.
-    pub(crate) fn words(&self) -> [f32; 5] {
+    fn words(&self) -> [f32; 5] {
         let (forward, backward, left) = self.last.as_ref().map_or((0.0, 0.0, 0.0), |it| {
             let left = it.onset.map_or(0.0, |onset| onset.time_left);
             (it.probability_forward, it.probability_backward, left)

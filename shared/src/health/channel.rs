@@ -61,6 +61,8 @@ pub(crate) struct Watched {
     count: u16,
     repeats: u16,
     stuck_after: u16,
+    /// Whether that is known no longer.
+    stale: bool,
     /// The last values used.
     last: [f32; 3],
     /// Samples in a row that are no good, why, how far off the first of them was, and whether all are as far.
@@ -76,6 +78,8 @@ pub(crate) struct Watched {
     pub(crate) condition: Condition,
     /// Whether the condition stays.
     latched: bool,
+    /// Whether nothing is known against it, and it well enough to go on.
+    ready: bool,
 }
 
 impl Default for Watched {
@@ -92,6 +96,7 @@ impl Default for Watched {
             count: 0,
             repeats: 0,
             stuck_after: u16::MAX,
+            stale: false,
             last: [0.0; 3],
             bad: 0,
             cause: FaultKind::Missing,
@@ -102,6 +107,7 @@ impl Default for Watched {
             shift: 0.0,
             condition: Condition::Ok,
             latched: false,
+            ready: false,
         }
     }
 }
@@ -115,6 +121,8 @@ pub(crate) enum Look {
     Loud,
     /// Far off.
     Off,
+    /// Not quite or as foreseen, of a channel that is sound: its value is taken.
+    Settled,
     /// Far off, as others are: the rotor moves.
     Motion,
     /// There is none.
@@ -159,7 +167,7 @@ impl Watch {
         it.count = count;
         it.value = value - it.shift;
         it.innovation = it.value - it.position;
-        if it.seen < WARM_UP || it.blind > 0 {
+        if !it.ready && (it.seen < WARM_UP || it.blind > 0) {
             return Look::Calm;
         }
         let square = it.innovation * it.innovation;
@@ -176,7 +184,11 @@ impl Watch {
     /// Square of what an innovation may be.
     fn bound(&self, it: &Watched, floats: bool) -> f32 {
         let noise = 2.0 * self.threshold * it.variance;
-        if floats { noise } else { noise.max(self.reach) }
+        if floats || noise > self.reach {
+            noise
+        } else {
+            self.reach
+        }
     }
 
     /// The value of a sample that is as foreseen, of a channel that is sound.
@@ -202,6 +214,7 @@ impl Watch {
             let [a, b, _] = it.last;
             it.last = [value, a, b];
         }
+        it.ready = it.is_ready();
         taken
     }
 
@@ -220,7 +233,7 @@ impl Watch {
                 it.restart();
                 return (Some(it.value), None);
             }
-            Look::Calm | Look::Loud | Look::Motion => return self.sound(it),
+            Look::Calm | Look::Loud | Look::Motion | Look::Settled => return self.sound(it),
         };
         it.sound = 0;
         let value = it.value;
@@ -329,8 +342,8 @@ impl Watch {
         it.velocity += VELOCITY_GAIN * innovation;
         it.acceleration += ACCELERATION_GAIN * innovation;
         let mut square = innovation * innovation;
-        if it.seen >= WARM_UP {
-            square = square.min(CLIP * it.variance);
+        if it.seen >= WARM_UP && square > CLIP * it.variance {
+            square = CLIP * it.variance;
         }
         it.seen += 1;
         let gain = if it.seen >= MEMORY {
@@ -343,8 +356,17 @@ impl Watch {
             it.seen = 3 * MEMORY;
             if it.variance < it.quiet {
                 it.quiet = it.variance;
-                it.stuck_after = stuck_after(it.quiet, self.threshold);
+                it.stale = true;
             }
+        }
+    }
+
+    /// What follows slowly from the noise.
+    #[inline]
+    pub(crate) fn refine(&self, it: &mut Watched) {
+        if it.stale {
+            it.stale = false;
+            it.stuck_after = stuck_after(it.quiet, self.threshold);
         }
     }
 }
@@ -373,12 +395,17 @@ impl Watched {
         let is_new = condition > self.condition;
         self.condition = self.condition.max(condition);
         self.latched |= is_new;
+        self.ready = self.is_ready();
         is_new
     }
 
-    /// Whether nothing is known against it, or it is known well enough to go on as it is.
+    fn is_ready(&self) -> bool {
+        self.is_own() && self.blind == 0 && self.seen >= WARM_UP
+    }
+
+    /// Whether a value as foreseen can be taken as it is.
     pub(crate) fn is_sound(&self) -> bool {
-        self.is_own() && self.blind == 0 && self.seen >= WARM_UP && self.repeats < self.stuck_after
+        self.ready && self.repeats < self.stuck_after
     }
 
     /// Whether its value is its own.

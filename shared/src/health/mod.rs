@@ -61,6 +61,8 @@ pub struct HealthState {
     floating: [Floating; PLANES],
     lying: [Lying; PLANES],
     wait: u16,
+    /// Whose turn it is, of the channels.
+    turn: u8,
     /// Channels that have drifted, once told.
     drifted: bool,
 }
@@ -112,30 +114,34 @@ impl Health {
     ) -> Reading {
         let floats = phases == [Phase::Levitated; PLANES];
         let mut reading = Reading::default();
-        let mut looks = [Look::Calm; CHANNELS];
+        let mut looks = [Look::Settled; CHANNELS];
         let mut loud = 0;
         let mut calm = true;
-        let fitted = |index: usize| self.fitted & (1 << index) != 0;
-        for (index, (it, look)) in state.channels.iter_mut().zip(&mut looks).enumerate() {
-            if fitted(index) {
-                let count = sample.counts.get(index).copied();
-                let count = count.filter(|_| sample.is_valid(index));
-                *look = self.watch.look(it, count, floats);
-                loud += u8::from(matches!(look, Look::Loud | Look::Off));
-                calm &= matches!(look, Look::Calm | Look::Loud) && it.is_sound();
-            }
-        }
         let mut counts = [None; CHANNELS];
-        if calm {
-            for (index, (it, slot)) in state.channels.iter_mut().zip(&mut counts).enumerate() {
-                if fitted(index) {
-                    *slot = Some(self.watch.settle(it));
-                }
+        let channels = state.channels.iter_mut().zip(&sample.counts);
+        let seen = channels.zip(looks.iter_mut().zip(&mut counts));
+        for (index, ((it, count), (look, slot))) in seen.enumerate() {
+            if self.fitted & (1 << index) == 0 {
+                continue;
             }
-        } else {
+            let count = Some(*count).filter(|_| sample.is_valid(index));
+            *look = self.watch.look(it, count, floats);
+            loud += u8::from(matches!(look, Look::Loud | Look::Off));
+            if matches!(look, Look::Calm | Look::Loud) && it.is_sound() {
+                *slot = Some(self.watch.settle(it));
+                *look = Look::Settled;
+            }
+            calm &= *look == Look::Settled;
+        }
+        if !calm {
             self.sort_out(state, looks, loud, floats, &mut counts, &mut reading);
         }
         reading.planes = sensing.place(counts);
+        // One channel a tick.
+        state.turn = state.turn.wrapping_add(1);
+        if let Some(it) = state.channels.get_mut(usize::from(state.turn) % CHANNELS) {
+            self.watch.refine(it);
+        }
         state.wait += 1;
         if state.wait >= self.look_every {
             state.wait = 0;
@@ -150,7 +156,7 @@ impl Health {
         reading
     }
 
-    /// Where a sample of some channel is not as foreseen: which values can be used.
+    /// Of channels whose sample is not as foreseen: which values can be used.
     fn sort_out(
         &self,
         state: &mut HealthState,
@@ -164,7 +170,7 @@ impl Health {
         let channels = state.channels.iter_mut().zip(looks);
         let slots = counts.iter_mut().zip(&mut reading.found);
         for (index, ((it, look), (slot, found))) in channels.zip(slots).enumerate() {
-            if self.fitted & (1 << index) == 0 {
+            if look == Look::Settled {
                 continue;
             }
             let moved = look == Look::Off && loud > 1;

@@ -26,7 +26,8 @@ use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::config_block::{self, Block, BlockError, Settings};
 use touchdown_core::controller::{Fault, Faults, Outputs};
 use touchdown_core::error::ConfigError;
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Notice, Notices};
+use touchdown_core::forecast::Lookout;
 use touchdown_core::link::Server;
 use touchdown_core::sample::Sample;
 
@@ -124,13 +125,28 @@ struct Tick {
     inputs: Inputs,
     board: Silicon,
     overruns: Overruns,
+    notices: Notices,
     /// Cycle counter at its last start.
     at: u32,
 }
 
-/// Starts sampling; logs, and serves the link.
+/// What works below the tick.
+struct Below {
+    serial: Serial,
+    remote: Remote,
+    inbox: Consumer<'static, Notice>,
+    lookout: Lookout,
+}
+
+/// Starts sampling; looks ahead, logs, and serves the link.
 pub fn main(memory: &'static mut Memory) -> ! {
-    let Some((mut serial, mut remote, mut inbox)) = start(memory) else {
+    let Some(Below {
+        mut serial,
+        mut remote,
+        mut inbox,
+        mut lookout,
+    }) = start(memory)
+    else {
         idle()
     };
     let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
@@ -139,6 +155,13 @@ pub fn main(memory: &'static mut Memory) -> ! {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
             server.notice(&notice).iter().for_each(|it| serial.send(it));
+        }
+        let sight = with_tick(|tick| tick.app.sight(lookout.asks()));
+        if let Some(outlook) = sight.and_then(|it| lookout.work(&it)) {
+            with_tick(|tick| {
+                tick.board.report(&outlook);
+                tick.recorder.hear(&outlook);
+            });
         }
         remote.work();
         if let Some(byte) = serial.poll() {
@@ -173,7 +196,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
 /// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'static, Notice>)> {
+fn start(memory: &'static mut Memory) -> Option<Below> {
     let (Some(core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -198,6 +221,9 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
     let (app, recorder) = filled.inspect_err(refused).ok()?;
+    let lookout = memory::lookout(&settings.monitor)
+        .inspect_err(refused)
+        .ok()?;
     let board = Silicon {
         pins,
         watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU),
@@ -211,6 +237,7 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
         inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
         board,
         overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),
+        notices: Notices::new(),
         at: DWT::cycle_count(),
         converter,
     });
@@ -218,7 +245,12 @@ fn start(memory: &'static mut Memory) -> Option<(Serial, Remote, Consumer<'stati
     critical_section::with(|cs| TICK.replace(cs, Some(tick)));
     // SAFETY: what the handler needs is in place, and no critical section is open.
     unsafe { NVIC::unmask(Interrupt::ADC) };
-    Some((serial, Remote::new(chip.FLASH, chip.RCC, log), inbox))
+    Some(Below {
+        serial,
+        remote: Remote::new(chip.FLASH, chip.RCC, log),
+        inbox,
+        lookout,
+    })
 }
 
 /// The log in the chip, where one answers: without it the monitor works all the same.
@@ -282,9 +314,10 @@ pub fn on_converted() {
             levitated: tick.inputs.levitated(),
             ..tick.converter.take()
         };
-        let notices = tick.app.tick(&mut tick.board, &sample, lost);
+        let notices = &mut tick.notices;
+        tick.app.tick(&mut tick.board, &sample, lost, notices);
         tick.recorder.set_severity(tick.app.state().severity());
-        tick.recorder.take(&sample, &notices);
+        tick.recorder.take(&sample, notices);
     });
 }
 

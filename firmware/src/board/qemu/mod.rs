@@ -9,7 +9,7 @@ mod remote;
 use defmt::{Debug2Format, Display2Format, error, info};
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
 use touchdown_core::controller::{Faults, Outputs};
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::Fingerprint;
 use touchdown_core::wire::Record;
 
@@ -20,7 +20,7 @@ use self::remote::Line;
 use super::Board;
 use crate::drop_log::DropLog;
 use crate::journal;
-use crate::memory::Memory;
+use crate::memory::{self, Memory};
 use crate::recorder::{Identity, Recorder};
 
 /// Why a run failed; the exit status.
@@ -117,14 +117,20 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
+    let mut lookout = memory::lookout(&config).map_err(|_| Failure::Config)?;
+    let mut notices = Notices::new();
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
     while let Some(samples) = replay.samples()? {
         for sample in samples {
-            let notices = app.tick(&mut board, &sample, 0);
+            app.tick(&mut board, &sample, 0, &mut notices);
             recorder.set_severity(app.state().severity());
             recorder.take(&sample, &notices);
-            fingerprint.take(app.state());
+            if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+                board.report(&outlook);
+                recorder.hear(&outlook);
+            }
+            fingerprint.take(app.state(), &lookout);
         }
         // Between blocks of samples: the link is no part of the tick.
         if let Some(log) = &mut log {

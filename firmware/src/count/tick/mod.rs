@@ -7,18 +7,21 @@
 mod scenes;
 
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
 use semihosting::fs::File;
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
 use touchdown_core::controller::{Faults, Outputs};
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Notice, Notices};
 
 use self::scenes::{SCENES, Scene};
 use super::{Counter, Table, Tally};
 use crate::app::App;
 use crate::board::Board;
-use crate::recorder::{Identity, Memory, Recorder};
+use crate::memory;
+use crate::recorder::{self, Identity, Recorder};
 
+/// All but the forecast, which is below the tick, are parts of it.
 const PARTS: [&str; 6] = [
     "sensing and health",
     "detector",
@@ -27,6 +30,20 @@ const PARTS: [&str; 6] = [
     "recorder",
     "outputs",
 ];
+
+/// Places of the samples and of the application, for a static: the stack has no room for them.
+pub struct Memory {
+    samples: recorder::Memory,
+    app: MaybeUninit<App>,
+}
+
+impl Memory {
+    /// Nothing in its place yet.
+    pub const EMPTY: Self = Self {
+        samples: recorder::Memory::EMPTY,
+        app: MaybeUninit::uninit(),
+    };
+}
 
 /// Counts everything and exits the emulator.
 pub fn main(memory: &'static mut Memory) -> ! {
@@ -51,21 +68,22 @@ pub fn main(memory: &'static mut Memory) -> ! {
     semihosting::process::exit(0)
 }
 
-// Frames of their own, here and below: there is room for one application on the stack and a half.
+// Frames of their own, here and below: the recorders of both do not fit the stack at once.
 #[inline(never)]
 fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
-    let mut app = application(scene);
-    let mut recorder = recorder(scene, memory);
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
+    let mut notices = Notices::new();
     let mut tally = Tally::default();
     let mut told = 0;
     scene.play(|sample| {
         let sample = black_box(sample);
-        let (notices, instructions) = counter.count(|| {
-            let notices = app.tick(&mut board, sample, 0);
+        let ((), instructions) = counter.count(|| {
+            app.tick(&mut board, sample, 0, &mut notices);
             recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
-            notices
         });
         told += notices.len() as u32;
         tally.add(instructions);
@@ -77,27 +95,29 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
 
 #[inline(never)]
 fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
-    let mut app = application(scene);
-    let mut recorder = recorder(scene, memory);
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
+    let mut lookout = memory::lookout(&scene.config()).expect("a valid configuration");
+    let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
         let sample = black_box(sample);
         let (monitor, state) = app.monitor();
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
-        let (mut notices, detector) = counter.count(|| monitor.detect(state, seen));
+        let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
         let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
-        let (monitor, state) = app.monitor();
-        let (outlook, forecast) = counter.count(|| monitor.look_ahead(state));
-        if let Some(outlook) = outlook {
-            let _ = notices.push(outlook);
-        }
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
             recorder.take(sample, &notices);
         });
+        let (outlook, forecast) = counter.count(|| lookout.work(&app.sight(lookout.asks())));
+        if let Some(outlook) = outlook {
+            recorder.hear(&outlook);
+        }
         let counts = [sensing, detector, forecast, severity, recording, outputs];
         tallies
             .iter_mut()
@@ -108,14 +128,13 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     tallies
 }
 
-#[inline(never)]
-fn application(scene: &Scene) -> App {
-    App::try_new(&scene.config(), Faults::NONE).expect("a valid configuration")
+fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut App {
+    memory::application(place, &scene.config(), Faults::NONE).expect("a valid configuration")
 }
 
 #[inline(never)]
-fn recorder<'m>(scene: &Scene, memory: &'m mut Memory) -> Recorder<'m> {
-    Recorder::new(memory, &scene.config(), Identity::new(&[], 0))
+fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m> {
+    Recorder::new(samples, &scene.config(), Identity::new(&[], 0))
 }
 
 #[inline(never)]

@@ -88,10 +88,8 @@ impl Orbiting {
             self.search.take(&mut state.searching, position);
             if state.count >= self.search_samples {
                 let rate = self.search.rate(&state.searching, noise);
-                *state = OrbitState {
-                    orbit: rate.map(|rate| self.follow.start(rate, mean)),
-                    ..OrbitState::default()
-                };
+                state.forget();
+                state.orbit = rate.map(|rate| self.follow.start(rate, mean));
             }
             return residual;
         };
@@ -104,7 +102,7 @@ impl Orbiting {
         }
         let fitted = state.count >= self.fit_samples;
         if fitted && state.variance > MOST_LEFT * variance + noise {
-            *state = OrbitState::default();
+            state.forget();
             residual.first = true;
         } else if fitted {
             residual = Residual {
@@ -122,8 +120,16 @@ impl OrbitState {
     pub(crate) fn shift(&mut self, way: [f32; 2]) {
         match &mut self.orbit {
             Some(orbit) => orbit.shift(way),
-            None => *self = Self::default(),
+            None => self.forget(),
         }
+    }
+
+    /// Forgets all.
+    pub(crate) fn forget(&mut self) {
+        self.count = 0;
+        self.searching.forget();
+        self.orbit = None;
+        self.variance = 0.0;
     }
 
     /// Whether there is no orbit to be fitted first.
@@ -133,7 +139,8 @@ impl OrbitState {
 
     /// What of the present position ends with the levitation, m.
     pub(crate) fn ending(&self) -> [f32; 2] {
-        let orbit = self.orbit.filter(|it| it.square() > RUNOUT * RUNOUT);
+        let orbit = self.orbit.as_ref();
+        let orbit = orbit.filter(|it| it.square() > RUNOUT * RUNOUT);
         orbit.map_or([0.0; 2], |orbit| orbit.fundamental())
     }
 }

@@ -102,6 +102,15 @@ impl Search {
 }
 
 impl Searching {
+    /// Begins again.
+    pub(super) fn forget(&mut self) {
+        self.origin = None;
+        self.sum = [0.0; 2];
+        self.samples = 0;
+        self.blocks = 0;
+        self.pairs = Default::default();
+    }
+
     fn push(&mut self, mean: [f32; 2]) {
         if let Some(slot) = self.line.get_mut(self.blocks % LINE) {
             *slot = mean;
