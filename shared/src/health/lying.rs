@@ -1,7 +1,7 @@
 //! Where one plane has been on average: whether a rotor can be there.
 //!
-//! Whatever a rotor does, it is not beyond the wall; and one that lies or swings on the wall does so, on average over
-//! some swings, at the bottom.
+//! Whatever a rotor does, its mean over some swings is not beyond the wall; and of one that lies or swings on the
+//! wall it is at the bottom.
 
 use crate::real::sqrt;
 
@@ -14,7 +14,7 @@ const ASIDE: f32 = 0.9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lie {
     clearance: f32,
-    /// Square of the radius that is beyond the wall, m^2.
+    /// Mean radius that is beyond the wall, m.
     beyond: f32,
     /// Whether there is a bottom, and friction cannot hold a rotor at a side.
     falls: bool,
@@ -29,7 +29,6 @@ pub(crate) struct Lying {
     touches: bool,
     first: [f32; 2],
     sum: [f32; 2],
-    square: f32,
 }
 
 /// Where a rotor cannot be.
@@ -46,10 +45,9 @@ pub(crate) enum Place {
 impl Lie {
     /// Judges after so many looks; lengths in m.
     pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
-        let beyond = clearance + BEYOND * tolerance;
         Self {
             clearance,
-            beyond: beyond * beyond,
+            beyond: clearance + BEYOND * tolerance,
             falls,
             looks,
         }
@@ -64,7 +62,6 @@ impl Lie {
         let [x, y] = [position[0] - it.first[0], position[1] - it.first[1]];
         it.sum[0] += x;
         it.sum[1] += y;
-        it.square += x * x + y * y;
         it.touches &= touches;
         it.looks += 1;
         if it.looks < self.looks {
@@ -72,19 +69,17 @@ impl Lie {
         }
         let count = f32::from(it.looks);
         let [x, y] = it.sum.map(|sum| sum / count);
-        let [u, v] = it.first;
-        let square = it.square / count + u * (2.0 * x + u) + v * (2.0 * y + v);
+        let mean = [x + it.first[0], y + it.first[1]];
         let touches = it.touches;
         *it = Lying::default();
-        self.judge([x + u, y + v], square, touches)
+        self.judge(mean, touches)
     }
 
-    /// By the mean place, m, and the mean square of the radius, m^2.
-    fn judge(&self, [x, y]: [f32; 2], square: f32, touches: bool) -> Option<Place> {
-        if square > self.beyond {
+    fn judge(&self, [x, y]: [f32; 2], touches: bool) -> Option<Place> {
+        let radius = sqrt(x * x + y * y);
+        if radius > self.beyond {
             return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
         }
-        let radius = sqrt(x * x + y * y);
         // Nearer to the centre is the mean of one that whirls or swings far.
         if !(touches && self.falls && radius > 0.5 * self.clearance) {
             return None;
