@@ -6,7 +6,7 @@ use crate::detect::ladder::sum;
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
-use crate::real::sqrt;
+use crate::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -160,13 +160,7 @@ impl FlightTest {
 
     /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
     /// (m) at which it lay: what is clearly inside of it is no contact, however near.
-    pub(crate) fn start(
-        &self,
-        flight: &mut Airborne,
-        fix: &Fix,
-        wall: Option<f32>,
-        loudness: f32,
-    ) {
+    pub(crate) fn start(&self, flight: &mut Airborne, fix: &Fix, wall: Option<f32>, loudness: f32) {
         let clear = CLEAR_OF_WALL * sqrt(fix.variance);
         flight.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
         flight.series = Series::default();
@@ -314,7 +308,7 @@ impl FlightTest {
             return 0.0;
         }
         let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
-        a * libm::powf(fifth, 0.2)
+        a * root::<5>(fifth)
     }
 
     fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
