@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! The tick and nothing else: linked to be looked at, never run. A panic handler or soft-float f64 among its
-//! symbols is reachable from the tick: `cargo xtask budget`.
+//! The tick, the forecast below it, and nothing else: linked to be looked at, never run. A panic handler or soft-float f64 among its
+//! symbols is reachable from them: `cargo xtask budget`.
 
 #[cfg(target_os = "none")]
 mod image {
@@ -8,6 +8,7 @@ mod image {
 
     use touchdown_core::controller::Outputs;
     use touchdown_core::event::{Notice, Notices};
+    use touchdown_core::forecast::Lookout;
     use touchdown_core::sample::Sample;
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
@@ -50,10 +51,14 @@ mod image {
         sample: &Sample,
         lost: u32,
         notices: &mut Notices,
+        lookout: &mut Lookout,
     ) {
         app.tick(&mut Bare(config), sample, lost, notices);
         recorder.set_severity(app.state().severity());
         recorder.take(sample, notices);
+        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+            recorder.hear(&outlook);
+        }
     }
 
     #[panic_handler]

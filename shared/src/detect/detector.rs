@@ -16,6 +16,7 @@ use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
 use crate::forecast::Estimate;
+use crate::real::ln;
 use crate::sensing::{PLANES, Reading};
 use crate::severity::Strain;
 
@@ -64,7 +65,7 @@ impl Detector {
         config.validate()?;
         let rate = config.sample_rate;
         let tuning = &config.tuning;
-        let threshold = -libm::logf(tuning.false_alarm);
+        let threshold = -ln(tuning.false_alarm);
         Ok(Self {
             config: *config,
             resolution,

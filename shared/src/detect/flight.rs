@@ -6,7 +6,7 @@ use crate::detect::ladder::sum;
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
-use crate::real::sqrt;
+use crate::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -345,7 +345,7 @@ impl FlightTest {
             return 0.0;
         }
         let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
-        a * libm::powf(fifth, 0.2)
+        a * root::<5>(fifth)
     }
 
     fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {

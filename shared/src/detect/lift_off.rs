@@ -1,6 +1,6 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
-use crate::real::sqrt;
+use crate::real::{root, sqrt};
 
 /// Samples that the wall's place is learnt from before it is trusted.
 const WARM_UP: u16 = 16;
@@ -67,7 +67,7 @@ impl LiftOff {
         }
         // The gap grows with the third power of time: where it crossed half the shift tells when it
         // began.
-        let crossed = libm::cbrtf((0.5 * SHIFT / inward).max(0.0)).min(LATEST_CROSSING);
+        let crossed = root::<3>((0.5 * SHIFT / inward).clamp(0.0, 1.0)).min(LATEST_CROSSING);
         Some(f32::from(self.age) / (1.0 - crossed))
     }
 }

@@ -1,5 +1,7 @@
 //! Stillness: whether the rotor keeps its place over a stretch of time.
 
+use crate::real::sqrt;
+
 /// Collects blocks of samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Still {
@@ -42,7 +44,8 @@ impl Still {
         let [mx, my] = self.sum.map(|sum| sum * scale);
         let mean = [self.origin[0] + mx, self.origin[1] + my];
         let moved = self.last.map_or(f32::INFINITY, |[x, y]| {
-            libm::hypotf(mean[0] - x, mean[1] - y)
+            let (dx, dy) = (mean[0] - x, mean[1] - y);
+            sqrt(dx * dx + dy * dy)
         });
         self.last = Some(mean);
         self.count = 0;

@@ -24,6 +24,7 @@ use crate::event::Moment;
 use crate::forecast::points::POINTS;
 use crate::forecast::run::{Fate, Run};
 use crate::model::{Rigid, RigidConfig};
+use crate::real::Poly32;
 use crate::scales::Scales;
 
 pub use estimate::{Estimate, Place};
@@ -43,7 +44,8 @@ const NEWS: f32 = 0.1;
 struct Forecast {
     tuning: Tuning,
     sample_rate: f32,
-    model: Rigid<f32>,
+    scales: Scales<f32>,
+    model: Rigid<Poly32>,
 }
 
 /// A forecast under way, and the last one made.
@@ -101,19 +103,20 @@ impl Forecast {
         let (clearance, gravity) = (machine.clearance, machine.gravity);
         let scales = Scales::try_new(clearance, gravity, radius, DRIFT)?;
         let rigid = RigidConfig {
-            mass: 1.0,
-            radius,
-            polar_inertia: machine.inertia_ratio * radius * radius,
-            clearance,
-            friction: machine.friction,
-            restitution: machine.restitution,
-            gravity,
-            speed: DRIFT,
-            step: scales.time,
+            mass: Poly32(1.0),
+            radius: Poly32(radius),
+            polar_inertia: Poly32(machine.inertia_ratio * radius * radius),
+            clearance: Poly32(clearance),
+            friction: Poly32(machine.friction),
+            restitution: Poly32(machine.restitution),
+            gravity: Poly32(gravity),
+            speed: Poly32(DRIFT),
+            step: Poly32(scales.time),
         };
         Ok(Self {
             tuning: config.tuning,
             sample_rate: config.sample_rate,
+            scales,
             model: Rigid::try_new(&rigid)?,
         })
     }
@@ -121,7 +124,7 @@ impl Forecast {
     /// Whether a velocity known to `error` (m/s) is worth a forecast: to a good part of what a fall
     /// through the clearance gives.
     fn is_known(&self, error: f32) -> bool {
-        error < WELL_KNOWN * self.model.scales().speed
+        error < WELL_KNOWN * self.scales.speed
     }
 
     /// Starts a forecast from `estimate`; one under way is dropped.
@@ -169,7 +172,7 @@ impl Forecast {
 
     fn outlook(&self, estimate: &Estimate, tally: &Tally, sample: u64) -> Outlook {
         let runs = f32::from(tally.forward + tally.backward);
-        let unit = self.model.scales().time;
+        let unit = self.scales.time;
         let late = Moment::of_sample(sample).since(estimate.at) / self.sample_rate;
         let part = |runs: u8| f32::from(runs) / POINTS as f32;
         Outlook {

@@ -4,7 +4,7 @@
 use crate::forecast::run::{Fate, Leg, Run};
 use crate::forecast::{Estimate, Forecast, Place};
 use crate::model::Start;
-use crate::real::sqrt;
+use crate::real::{Poly32, sqrt};
 
 /// Velocity along two axes, friction, restitution.
 const QUANTITIES: usize = 4;
@@ -32,9 +32,9 @@ impl Forecast {
         let restitution_error = self.tuning.restitution_error / sqrt(known);
         let restitution = estimate.restitution + offset(3) * restitution_error;
         let mut model = self.model;
-        model.law.friction *= (1.0 + offset(2) * self.tuning.friction_error).max(0.0);
-        model.law.restitution = restitution.clamp(0.0, MOST_RESTITUTION);
-        let scales = *self.model.scales();
+        model.law.friction *= Poly32((1.0 + offset(2) * self.tuning.friction_error).max(0.0));
+        model.law.restitution = Poly32(restitution.clamp(0.0, MOST_RESTITUTION));
+        let scales = &self.scales;
         let error = estimate.speed_error / scales.speed;
         let spin = estimate.spin / scales.spin;
         let (start, leg) = match estimate.place {
@@ -42,8 +42,11 @@ impl Forecast {
                 let position = position.map(|x| x / scales.length);
                 let [u, v] = velocity.map(|v| v / scales.speed);
                 let velocity = [u + offset(0) * error, v + offset(1) * error];
-                let position = inside(position);
-                (Start::Free { position, velocity }, Leg::default())
+                let start = Start::Free {
+                    position: inside(position).map(Poly32),
+                    velocity: velocity.map(Poly32),
+                };
+                (start, Leg::default())
             }
             Place::Wall {
                 outward: [sin, minus_cos],
@@ -52,9 +55,9 @@ impl Forecast {
                 turned,
             } => (
                 Start::Wall {
-                    sin,
-                    cos: -minus_cos,
-                    tangential: speed / scales.speed + offset(0) * error,
+                    sin: Poly32(sin),
+                    cos: Poly32(-minus_cos),
+                    tangential: Poly32(speed / scales.speed + offset(0) * error),
                 },
                 Leg {
                     begun: Some(-age / scales.time),

@@ -2,6 +2,7 @@
 
 use crate::forecast::threshold::{Course, course};
 use crate::model::{Change, Happening, Instant, Kinematics, Rigid, RigidState, Start, Touch};
+use crate::real::Poly32;
 
 /// Most changes of motion that a run follows.
 const CHANGES: u16 = 96;
@@ -43,8 +44,8 @@ pub(crate) struct Leg {
 /// A run under way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
-    model: Rigid<f32>,
-    state: RigidState<f32>,
+    model: Rigid<Poly32>,
+    state: RigidState<Poly32>,
     leg: Leg,
     /// Along the wall where the contact began, V.
     speed: f32,
@@ -54,15 +55,17 @@ pub(crate) struct Run {
 impl Run {
     /// From `start`; its fate, where that is plain at once.
     pub(crate) fn start(
-        model: Rigid<f32>,
-        start: &Start<f32>,
+        model: Rigid<Poly32>,
+        start: &Start<Poly32>,
         spin: f32,
         leg: Leg,
     ) -> Result<Self, Fate> {
         let mut first = None;
         let sink = |happening| first = Some(happening);
         // What is no number has no forecast.
-        let state = model.start(start, spin, sink).map_err(|_| Fate::Open)?;
+        let state = model
+            .start(start, Poly32(spin), sink)
+            .map_err(|_| Fate::Open)?;
         let mut run = Self {
             model,
             state,
@@ -101,24 +104,24 @@ impl Run {
         time(&self.state.now())
     }
 
-    fn judge(&mut self, &Happening { at, change, after }: &Happening<f32>) -> Option<Fate> {
+    fn judge(&mut self, &Happening { at, change, after }: &Happening<Poly32>) -> Option<Fate> {
         let now = time(&at);
         match change {
             Change::Impact(normal) => {
                 self.leg = Leg::default();
-                self.end_of_series(now, normal, &after)
+                self.end_of_series(now, normal.0, &after)
             }
             Change::ContactStarts => {
-                let [sin, minus_cos] = after.position;
+                let [sin, minus_cos] = after.position.map(|it| it.0);
                 let along = along(&after);
                 let begun = *self.leg.begun.get_or_insert(now);
                 self.speed = along;
                 match after.touch {
-                    Touch::Sliding => self.slides(begun, sin, -minus_cos, along, after.spin),
+                    Touch::Sliding => self.slides(begun, sin, -minus_cos, along, after.spin.0),
                     _ => self.rolls(-minus_cos, along),
                 }
             }
-            Change::RollingStarts => self.rolls(-after.position[1], along(&after)),
+            Change::RollingStarts => self.rolls(-after.position[1].0, along(&after)),
             Change::LiftsOff => {
                 self.leg = Leg::default();
                 None
@@ -129,33 +132,37 @@ impl Run {
 
     /// After an impact so weak that the rest of the series is as good as contact: its impulse is that of the
     /// pressing, less the launch speed.
-    fn end_of_series(&mut self, now: f32, normal: f32, after: &Kinematics<f32>) -> Option<Fate> {
+    fn end_of_series(&mut self, now: f32, normal: f32, after: &Kinematics<Poly32>) -> Option<Fate> {
         let law = &self.model.law;
-        let launch = law.restitution * normal;
-        let [sin, minus_cos] = after.position;
+        let launch = law.restitution.0 * normal;
+        let [sin, minus_cos] = after.position.map(|it| it.0);
         let along = along(after);
-        let pressing = along * along - law.gravity * minus_cos;
+        let pressing = along * along - law.gravity.0 * minus_cos;
         if launch > CUTOFF || pressing <= 0.0 {
             return None;
         }
-        let rest = 2.0 * launch / (pressing * (1.0 - law.restitution));
-        let against = if after.spin + along > 0.0 { -1.0 } else { 1.0 };
-        let mean = along - against * law.friction * launch;
+        let rest = 2.0 * launch / (pressing * (1.0 - law.restitution.0));
+        let against = if after.spin.0 + along > 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let mean = along - against * law.friction.0 * launch;
         self.speed = mean;
-        self.slides(now + rest, sin, -minus_cos, mean, after.spin)
+        self.slides(now + rest, sin, -minus_cos, mean, after.spin.0)
     }
 
     /// By the closed form, where the slip lasts.
     fn slides(&self, begun: f32, sin: f32, cos: f32, along: f32, spin: f32) -> Option<Fate> {
         let law = &self.model.law;
         let slip = spin + along;
-        let a_turn = law.friction * (1.0 + 1.0 / law.inertia_ratio) * (2.0 + along.abs());
+        let a_turn = law.friction.0 * (1.0 + 1.0 / law.inertia_ratio.0) * (2.0 + along.abs());
         if slip.abs() < TURNS_OF_SLIP * a_turn {
             return None;
         }
         let driven = if slip > 0.0 { -1.0 } else { 1.0 };
         let (sin, along) = (driven * sin, driven * along);
-        match course(sin, cos, along, law.friction, law.gravity) {
+        match course(sin, cos, along, law.friction.0, law.gravity.0) {
             Course::Whirls => Some(self.whirls(begun, driven)),
             Course::Swings => Some(Fate::Swings),
             Course::Open => None,
@@ -165,7 +172,7 @@ impl Run {
     /// Rolling, where the wall is never upright: a pendulum.
     fn rolls(&self, cos: f32, along: f32) -> Option<Fate> {
         let law = &self.model.law;
-        let height = 2.0 * law.gravity * cos / (1.0 + law.inertia_ratio);
+        let height = 2.0 * law.gravity.0 * cos / (1.0 + law.inertia_ratio.0);
         (along * along < height).then_some(Fate::Swings)
     }
 
@@ -173,25 +180,25 @@ impl Run {
     fn turned(&self) -> Option<Fate> {
         let begun = self.leg.begun?;
         let (whole, rest) = self.state.turned();
-        let turned = self.leg.turned + whole as f32 * core::f32::consts::TAU + rest;
+        let turned = self.leg.turned + whole as f32 * core::f32::consts::TAU + rest.0;
         let way = if turned > 0.0 { 1.0 } else { -1.0 };
         (turned.abs() >= core::f32::consts::TAU).then(|| self.whirls(begun, way))
     }
 
     fn whirls(&self, begins: f32, way: f32) -> Fate {
         Fate::Whirls {
-            with_spin: way * self.state.spin() >= 0.0,
+            with_spin: way * self.state.spin().0 >= 0.0,
             begins,
-            growth_rate: self.model.law.friction * self.speed.abs(),
+            growth_rate: self.model.law.friction.0 * self.speed.abs(),
         }
     }
 }
 
-fn along(state: &Kinematics<f32>) -> f32 {
+fn along(state: &Kinematics<Poly32>) -> f32 {
     let ([x, y], [u, v]) = (state.position, state.velocity);
-    v * x - u * y
+    (v * x - u * y).0
 }
 
-fn time(at: &Instant<f32>) -> f32 {
-    at.tick as f32 + at.fraction
+fn time(at: &Instant<Poly32>) -> f32 {
+    at.tick as f32 + at.fraction.0
 }

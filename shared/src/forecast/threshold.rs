@@ -7,7 +7,9 @@
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
-use libm::{atan2f, expf};
+use libm::expf;
+
+use crate::real::atan2;
 
 /// What becomes of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +35,7 @@ pub(crate) fn course(sin: f32, cos: f32, along: f32, friction: f32, gravity: f32
     let square = 1.0 + 4.0 * mu * mu;
     let a = 2.0 * (1.0 - 2.0 * mu * mu) / square;
     let b = 6.0 * mu / square;
-    let phi = atan2f(sin, cos);
+    let phi = atan2(sin, cos);
     let c = (along * along - a * cos - b * sin) * expf(-2.0 * mu * phi);
     let over_the_top = (1.0 + a) * expf(-2.0 * mu * PI);
     let upright = -b * expf(-2.0 * mu * FRAC_PI_2);

@@ -4,7 +4,7 @@
 //! on average, a value that is off is off by the detector's own measure of certainty.
 
 use super::fault::{Condition, FaultKind, Found};
-use crate::real::sqrt;
+use crate::real::{ln, sqrt};
 
 /// Part of an innovation that the filter keeps after a sample. Chosen: an orbit of 30 um at 500 Hz and
 /// 20 kHz leaves it 1.5 um behind.
@@ -121,7 +121,7 @@ pub(crate) enum Look {
     Loud,
     /// Far off.
     Off,
-    /// Not quite or as foreseen, of a channel that is sound: its value is taken.
+    /// Taken already, or of a channel that is not fitted.
     Settled,
     /// Far off, as others are: the rotor moves.
     Motion,
@@ -139,8 +139,39 @@ impl Watch {
         }
     }
 
-    /// Foresees the sample and looks at it; `floats` while the rotor does.
+    /// The value of a sample that is as foreseen, or nearly, of a channel that is sound, and whether it is not
+    /// quite: nothing has to be found out then. Else nothing is changed.
     #[inline]
+    pub(crate) fn glance(&self, it: &mut Watched, count: u16, floats: bool) -> Option<(f32, bool)> {
+        let repeats = if count == it.count {
+            it.repeats
+        } else {
+            u16::MAX
+        };
+        let repeats = repeats.wrapping_add(1);
+        let is_usable = it.ready && count > 0 && count < self.full_scale;
+        if !is_usable || repeats >= it.stuck_after {
+            return None;
+        }
+        let value = f32::from(count) - it.shift;
+        let position = it.position + (it.velocity + 0.5 * it.acceleration);
+        let innovation = value - position;
+        let square = innovation * innovation;
+        let bound = self.bound(it, floats);
+        if square > bound {
+            return None;
+        }
+        it.count = count;
+        it.repeats = repeats;
+        it.position = position;
+        it.velocity += it.acceleration;
+        self.follow(it, innovation);
+        let [a, b, _] = it.last;
+        it.last = [value, a, b];
+        Some((value, square > 0.25 * bound))
+    }
+
+    /// Foresees the sample and looks at it; `floats` while the rotor does.
     pub(crate) fn look(&self, it: &mut Watched, count: Option<u16>, floats: bool) -> Look {
         if it.condition != Condition::Lost {
             it.position += it.velocity + 0.5 * it.acceleration;
@@ -167,7 +198,7 @@ impl Watch {
         it.count = count;
         it.value = value - it.shift;
         it.innovation = it.value - it.position;
-        if !it.ready && (it.seen < WARM_UP || it.blind > 0) {
+        if it.seen < WARM_UP || it.blind > 0 {
             return Look::Calm;
         }
         let square = it.innovation * it.innovation;
@@ -189,15 +220,6 @@ impl Watch {
         } else {
             self.reach
         }
-    }
-
-    /// The value of a sample that is as foreseen, of a channel that is sound.
-    #[inline]
-    pub(crate) fn settle(&self, it: &mut Watched) -> f32 {
-        self.follow(it);
-        let [a, b, _] = it.last;
-        it.last = [it.value, a, b];
-        it.value
     }
 
     /// Takes the sample as it looks, other channels seen; the value to use, in counts, and what is new. `spare`
@@ -331,13 +353,12 @@ impl Watch {
         if it.seen == 0 {
             it.restart();
         }
-        self.follow(it);
+        self.follow(it, it.innovation);
         (Some(value), found)
     }
 
     #[inline]
-    fn follow(&self, it: &mut Watched) {
-        let innovation = it.innovation;
+    fn follow(&self, it: &mut Watched, innovation: f32) {
         it.position += POSITION_GAIN * innovation;
         it.velocity += VELOCITY_GAIN * innovation;
         it.acceleration += ACCELERATION_GAIN * innovation;
@@ -403,11 +424,6 @@ impl Watched {
         self.is_own() && self.blind == 0 && self.seen >= WARM_UP
     }
 
-    /// Whether a value as foreseen can be taken as it is.
-    pub(crate) fn is_sound(&self) -> bool {
-        self.ready && self.repeats < self.stuck_after
-    }
-
     /// Whether its value is its own.
     pub(crate) fn is_own(&self) -> bool {
         self.bad == 0 && self.condition != Condition::Lost
@@ -426,9 +442,17 @@ fn stuck_after(innovations: f32, threshold: f32) -> u16 {
     if noise < LEAST_NOISE * LEAST_NOISE {
         return u16::MAX;
     }
-    let likeliest = libm::erff(0.353_553_4 / sqrt(noise)).max(1e-3);
+    let likeliest = erf(0.353_553_4 / sqrt(noise)).max(1e-3);
     // A short run is also what slow motion in a coarse count gives.
-    (threshold / -libm::logf(likeliest)).max(6.0) as u16 + 1
+    (threshold / -ln(likeliest)).max(6.0) as u16 + 1
+}
+
+/// Error function up to 0.65, to 1e-6: the first terms of its series.
+fn erf(x: f32) -> f32 {
+    let q = x * x;
+    let series =
+        1.0 - q * (1.0 / 3.0 - q * (0.1 - q * (1.0 / 42.0 - q * (1.0 / 216.0 - q / 1_320.0))));
+    core::f32::consts::FRAC_2_SQRT_PI * x * series
 }
 
 #[cfg(test)]
@@ -446,6 +470,14 @@ mod tests {
             watch.take(&mut it, look, true, false);
         }
         assert!(it.variance < 10.0, "{}", it.variance);
+    }
+
+    #[test]
+    fn error_function_as_libm_has_it() {
+        for k in 1..=65 {
+            let x = 0.01 * k as f32;
+            assert!((erf(x) / libm::erff(x) - 1.0).abs() < 1e-6, "{x}");
+        }
     }
 
     /// 1 um at 12 bit over 2 mm: the likeliest count has the probability 0.19.

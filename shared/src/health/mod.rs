@@ -21,7 +21,7 @@ use self::floating::{Float, Floating};
 use self::lying::{Lie, Lying, Place};
 use self::pair::{Pair, Pairing};
 use crate::detect::{DetectorConfig, Phase};
-use crate::real::sqrt;
+use crate::real::{ln, sqrt};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 
@@ -71,7 +71,7 @@ impl Health {
     /// Both configurations must be valid.
     pub fn new(detector: &DetectorConfig, sensing: &SensingConfig, fitted: u8) -> Self {
         let (machine, tuning, rate) = (&detector.machine, &detector.tuning, detector.sample_rate);
-        let threshold = -libm::logf(tuning.false_alarm);
+        let threshold = -ln(tuning.false_alarm);
         let fall = sqrt(4.0 * machine.gravity * machine.clearance).max(LEAST_SPEED);
         let quarter = core::f32::consts::FRAC_PI_2 / machine.spin.abs().max(1e-3) * rate;
         let every = quarter.min(rate / LOOKS_PER_SECOND).clamp(1.0, 256.0);
@@ -125,13 +125,16 @@ impl Health {
                 continue;
             }
             let count = Some(*count).filter(|_| sample.is_valid(index));
-            *look = self.watch.look(it, count, floats);
-            loud += u8::from(matches!(look, Look::Loud | Look::Off));
-            if matches!(look, Look::Calm | Look::Loud) && it.is_sound() {
-                *slot = Some(self.watch.settle(it));
-                *look = Look::Settled;
+            if let Some((value, is_loud)) =
+                count.and_then(|count| self.watch.glance(it, count, floats))
+            {
+                *slot = Some(value);
+                loud += u8::from(is_loud);
+            } else {
+                *look = self.watch.look(it, count, floats);
+                loud += u8::from(matches!(look, Look::Loud | Look::Off));
+                calm = false;
             }
-            calm &= *look == Look::Settled;
         }
         if !calm {
             self.sort_out(state, looks, loud, floats, &mut counts, &mut reading);

@@ -15,13 +15,15 @@ mod libm;
 mod micromath;
 mod newtype;
 mod polynomial;
+mod root;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 pub use micromath::Micro32;
-pub(crate) use polynomial::sin_cos;
 pub use polynomial::{Poly32, Poly64};
+pub(crate) use polynomial::{atan2, ln, sin_cos};
+pub(crate) use root::root;
 pub use touchdown_fpu::sqrt;
 
 mod sealed {

@@ -95,7 +95,7 @@ pub(crate) fn sin_cos<R: Digits>(angle: R) -> (R, R) {
 }
 
 /// Angle of (x, y), rad, -pi to pi; 0 at the origin. For coordinates whose sum is finite.
-fn atan2<R: Digits>(y: R, x: R) -> R {
+pub(crate) fn atan2<R: Digits>(y: R, x: R) -> R {
     let table = R::COEFFICIENTS;
     let steep = y.abs() > x.abs();
     let (small, large) = if steep {
@@ -124,7 +124,7 @@ fn atan2<R: Digits>(y: R, x: R) -> R {
 
 /// Natural logarithm: -infinity at 0, NaN below. The polynomial is in s = (m - 1)/(m + 1) of the mantissa m,
 /// where ln m = 2 artanh s; what is large in it is added last.
-fn ln<R: Digits>(x: R) -> R {
+pub(crate) fn ln<R: Digits>(x: R) -> R {
     let table = R::COEFFICIENTS;
     if x == R::ZERO {
         return -R::INFINITY;

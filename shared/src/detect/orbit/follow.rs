@@ -5,6 +5,8 @@
 //! then all follow the residual by its gradient. A phase-locked loop keeps theta: what is left along the
 //! motion is an error of the angle.
 
+use crate::real::sin_cos;
+
 /// Highest multiple of the frequency.
 const HARMONICS: usize = 4;
 /// Time constant of the amplitudes, s, but for half a turn where that is longer.
@@ -66,7 +68,7 @@ impl Follow {
 
     /// An orbit at `rate` (rad a sample) about `centre` (m); all else has to be found.
     pub(super) fn start(&self, rate: f32, centre: [f32; 2]) -> Orbit {
-        let (sin, cos) = libm::sincosf(rate);
+        let (sin, cos) = sin_cos(rate);
         Orbit {
             angle: [1.0, 0.0],
             turn: [cos, sin],

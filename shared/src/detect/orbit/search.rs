@@ -5,6 +5,8 @@
 //! short D is unambiguous, a long one exact; four are used, each to choose among the next one's answers.
 //! Positions are means of short blocks, so that the memory does not depend on the sample rate.
 
+use crate::real::{atan2, sqrt};
+
 /// Length of a block, s: half a turn at 2 kHz.
 const BLOCK: f32 = 0.25e-3;
 /// D, in blocks.
@@ -94,7 +96,8 @@ impl Search {
                 break;
             }
             if let Some(cosine) = pairs.cosine(noise) {
-                found = Some(libm::acosf(cosine) / length);
+                let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+                found = Some(atan2(sine, cosine) / length);
             }
         }
         found.filter(|rate| *rate > 0.0)
