@@ -10,7 +10,7 @@ use super::row::Row;
 use super::watch::{Drop, refused};
 use super::{Findings, Named, Plan};
 use crate::failure::Failure;
-use crate::forecast_score::{self, Score, scenes, score};
+use crate::forecast_score::{self, Quantiles, Score, scenes, score};
 use crate::scene::{Scene, Start};
 
 /// Part by which friction and restitution may be told wrong.
@@ -95,8 +95,17 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 fn judged(name: &str, score: &Score) -> [Row; 5] {
     let whirls = score.whirls[0] + score.whirls[1];
     let others = score.drops - whirls;
-    let lead = score.lead.unwrap_or([f64::NAN; 5]);
-    let to_turn = score.lead_to_turn.unwrap_or([f64::NAN; 5]);
+    let quantiles = |of: Option<Quantiles>| of.map(|it| [it[0], it[2], it[4]]);
+    let said = |of: Option<Quantiles>, scale: f64| {
+        let [low, middle, high] = of.map_or([f64::NAN; 3], |it| [it[0], it[2], it[4]]);
+        format!(
+            "{:.2}, {:.2}, {:.2} (5, 50, 95 %)",
+            scale * low,
+            scale * middle,
+            scale * high
+        )
+    };
+    let [declared, false_whirls] = score.declared;
     [
         Row::at_least(name, "hit_rate", score.hit_rate, HITS)
             .and(whirls > 0)
@@ -118,22 +127,17 @@ fn judged(name: &str, score: &Score) -> [Row; 5] {
         .with("forecasts", score.answers),
         Row::at_most(name, "late_share", score.late, LATE)
             .and(whirls > 0)
-            .with("lead_p05_s", lead[0])
-            .with("lead_median_s", lead[2])
-            .with("lead_p95_s", lead[4])
-            .with("lead_to_turn_median_s", to_turn[2])
-            .noted(format!(
-                "lead {:.1}, {:.1}, {:.1} ms (5, 50, 95 %)",
-                1e3 * lead[0],
-                1e3 * lead[2],
-                1e3 * lead[4]
-            )),
-        Row::at_most(name, "false_whirls", score.declared[1] as f64, 0.0)
-            .with("declared", score.declared[0])
+            .with("lead_s", quantiles(score.lead))
+            .with("lead_to_turn_s", quantiles(score.lead_to_turn))
+            .with("begin_error_s", quantiles(score.onset_error))
+            .noted(format!("lead {} ms", said(score.lead, 1e3))),
+        Row::at_most(name, "false_whirls", false_whirls as f64, 0.0)
+            .with("declared", declared)
             .with("whirls", whirls)
+            .with("declared_after_of_turn", quantiles(score.declared_after))
             .noted(format!(
-                "declared: {} of {whirls}; not come or the wrong way: {}",
-                score.declared[0], score.declared[1]
+                "{declared} of {whirls} declared, after parts of the first turn: {}",
+                said(score.declared_after, 1.0)
             )),
     ]
 }
