@@ -26,6 +26,7 @@ pub mod output;
 pub mod paint;
 pub mod paper;
 pub mod progress;
+pub mod recording;
 pub mod reference;
 pub mod regions;
 pub mod replay;

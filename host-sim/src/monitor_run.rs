@@ -7,11 +7,16 @@ use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
 use touchdown_core::wire::Summary;
 
+/// Notices that are kept; a recording of any length has to fit.
+pub const MOST_NOTICES: usize = 100_000;
+
 /// What the monitor said over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// In the order of the ticks.
     pub notices: Vec<Notice>,
+    /// Later ones, counted.
+    pub left_out: u64,
     /// Of the last drop in it.
     pub severity: Severity,
     /// Last.
@@ -28,14 +33,22 @@ pub fn run(
     let monitor = Monitor::try_new(config)?;
     let mut state = monitor.start();
     let mut fingerprint = Fingerprint::default();
-    let mut notices = Vec::new();
+    let (mut notices, mut left_out) = (Vec::new(), 0);
     for sample in samples {
-        notices.extend(monitor.update(&mut state, &sample));
-        notices.extend(monitor.look_ahead(&mut state));
+        let said = monitor.update(&mut state, &sample);
+        let outlook = monitor.look_ahead(&mut state);
+        for notice in said.into_iter().chain(outlook) {
+            if notices.len() < MOST_NOTICES {
+                notices.push(notice);
+            } else {
+                left_out += 1;
+            }
+        }
         fingerprint.take(&state);
     }
     Ok(Answer {
         notices,
+        left_out,
         severity: *state.severity(),
         summary: fingerprint.summary(&state),
         log: Vec::new(),
