@@ -1,6 +1,7 @@
 //! Desktop simulator, replay and report of the touchdown monitor.
 
 pub mod cli;
+pub mod compare;
 pub mod detection;
 pub mod drop;
 pub mod drop_log;

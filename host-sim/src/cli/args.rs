@@ -23,6 +23,8 @@ Examples:
   touchdown drop my.toml --stream s.csv what the sensors would have recorded
   touchdown replay s.csv --scene my.toml
                                         a recording through the same detector
+  touchdown compare a.csv b.csv --scene my.toml
+                                        two recordings: what differs, and by how much
   touchdown trade my.toml               what each way of computing costs, and how wrong it is
   touchdown paper                       the source paper's numbers: printed, right, ours
   touchdown scene explain my.toml       what is modelled and what is left out
@@ -66,6 +68,19 @@ Instead of a time column: rate_hz = 20000. Before the tables: axes = \"sensors\"
 are those of sensors mounted at the scene's mounting_deg. docs/recordings.md has all of it.
 
 Exit status: 0 done, whatever the rotor did; 2 bad usage or input.";
+
+const COMPARE: &str = "\
+Both go through the same detector. B is laid over A by the first fall, or else the first
+impact, and then by the waveforms about it. Each event is held against the nearest of its
+kind; one that only one of them has is a difference. Impacts below 20 mm/s are shown but
+not judged.
+
+Examples:
+  touchdown compare before.csv after.csv --scene my.toml
+  touchdown compare rig.csv model.csv --scene my.toml --columns map.toml --columns-b stream.toml
+  touchdown compare a.cfg b.cfg --scene my.toml --within-ms 0.2 --within-percent 5
+
+Exit status: 0 all within the tolerance; 1 not; 2 bad usage or input.";
 
 const PAPER: &str = "\
 printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
@@ -148,6 +163,9 @@ pub(super) enum Command {
     /// Run the detector over a recording: CSV of any style, or COMTRADE
     #[command(after_help = REPLAY)]
     Replay(ReplayArgs),
+    /// Compare two recordings: events, speeds, regime, waveforms
+    #[command(after_help = COMPARE)]
+    Compare(CompareArgs),
     /// Measure accuracy against cost: every rung, scheme, precision, math and step
     Trade(TradeArgs),
     /// Check every number of the source paper: as printed, as right, as ours
@@ -255,6 +273,57 @@ impl ReadingArgs {
             resample: self.resample,
         })
     }
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct CompareArgs {
+    /// A recording, as for `replay`
+    #[arg(value_name = "A")]
+    pub first: String,
+    /// The recording to hold against it
+    #[arg(value_name = "B")]
+    pub second: String,
+    /// Scene with the rotor, retainer, gravity, sensors and detector
+    #[arg(long)]
+    pub scene: String,
+    /// Most that an onset may differ, ms
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = not_negative)]
+    pub within_ms: f64,
+    /// Most that the speed of an impact may differ, % of the faster
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = not_negative)]
+    pub within_percent: f64,
+    /// Events side by side as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Both as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// The same as --columns for B, where it is not written like A
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns_b: Option<PathBuf>,
+}
+
+impl CompareArgs {
+    /// How each is read.
+    pub fn readings(&self) -> Result<[Reading; 2], Failure> {
+        let first = self.reading.load()?;
+        let mut second = first.clone();
+        if let Some(path) = &self.columns_b {
+            second.mapping = Some(Mapping::load(path)?);
+        }
+        Ok([first, second])
+    }
+}
+
+/// A tolerance.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|it: &f64| it.is_finite() && *it >= 0.0);
+    number.ok_or_else(|| "a number, 0 or more".to_owned())
 }
 
 /// A sample rate.

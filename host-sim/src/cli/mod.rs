@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod compare;
 mod force;
 mod limits;
 mod log;
@@ -37,6 +38,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         }),
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Compare(args)) => compare::compare_recordings(&args),
         Some(Command::Trade(args)) => trade::table(&args),
         Some(Command::Paper(args)) => paper::check(&args),
         Some(Command::Force(args)) => force::measure(&args),
