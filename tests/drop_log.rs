@@ -154,6 +154,13 @@ fn what_was_recorded_comes_out() {
     let dat = fs::read_to_string(at.join("e.dat")).expect("data");
     assert_eq!(dat.lines().next(), Some("1,0,2048,2047,2048,2000"));
     assert_eq!(dat.lines().count(), SAMPLES);
+    // Which `replay` reads as well: time 0 is the trigger there too.
+    let events = |name: &str| {
+        let run = ["replay", name, "--scene", "rig", "--json", "-"];
+        let run = touchdown(at).args(run).assert().success();
+        serde_json::from_slice::<Value>(&run.get_output().stdout).expect("JSON")
+    };
+    assert_eq!(events("e.cfg"), events("s.csv"));
 }
 
 #[test]

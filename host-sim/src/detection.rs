@@ -84,6 +84,7 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     Detection {
         events,
         forecasts,
+        left_out: answer.left_out,
         severity: answer.severity.into(),
         samples: answer.summary.samples,
         faults: answer.summary.faults,
@@ -148,6 +149,7 @@ mod tests {
                     sample: 350,
                 },
             ],
+            left_out: 0,
             severity: Severity::default(),
             summary: Summary {
                 samples: 1000,

@@ -13,7 +13,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_core::wire::{self, Record};
 
-use crate::monitor_run::Answer;
+use crate::monitor_run::{Answer, MOST_NOTICES};
 
 const QEMU: &str = "qemu-system-arm";
 /// An STM32F405; what of it is emulated is in docs/firmware.md.
@@ -219,7 +219,8 @@ fn decode_answer(bytes: &[u8]) -> Option<Answer> {
     else {
         return None;
     };
-    let notices = records
+    let left_out = records.len().saturating_sub(MOST_NOTICES);
+    let notices = records[..records.len() - left_out]
         .iter()
         .map(|record| match wire::decode_record(record)? {
             Record::Notice(notice) => Some(notice),
@@ -228,6 +229,7 @@ fn decode_answer(bytes: &[u8]) -> Option<Answer> {
         .collect::<Option<_>>()?;
     Some(Answer {
         notices,
+        left_out: left_out as u64,
         severity,
         summary,
         log: Vec::new(),
@@ -295,6 +297,7 @@ mod tests {
         bytes.extend(wire::encode_record(&Record::Summary(summary)));
         let answer = Answer {
             notices: vec![notice],
+            left_out: 0,
             severity,
             summary,
             log: Vec::new(),

@@ -52,6 +52,18 @@ impl InputError {
         }
     }
 
+    /// The same, with more about the rule.
+    pub fn and(mut self, more: String) -> Self {
+        self.rule += &more;
+        self
+    }
+
+    /// The same, so many lines further on.
+    pub fn further(mut self, lines: u64) -> Self {
+        self.line = self.line.map(|line| line + lines);
+        self
+    }
+
     /// The whole text of a file.
     pub fn read(path: &Path) -> Result<String, Self> {
         let file = path.display().to_string();

@@ -120,6 +120,8 @@ struct EventsJson<'a> {
 struct ReplayJson<'a> {
     events: &'a [DetectedEvent],
     forecasts: &'a [Forecast],
+    #[serde(skip_serializing_if = "is_none")]
+    left_out: u64,
     severity: Severity,
     samples: u64,
     faults: u64,
@@ -163,11 +165,16 @@ pub fn replay(detection: &Detection) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: &detection.events,
         forecasts: &detection.forecasts,
+        left_out: detection.left_out,
         severity: detection.severity,
         samples: detection.samples,
         faults: detection.faults,
         health: detection.conditions,
     })
+}
+
+fn is_none(count: &u64) -> bool {
+    *count == 0
 }
 
 fn text(value: &impl Serialize) -> serde_json::Result<String> {

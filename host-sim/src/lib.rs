@@ -1,6 +1,7 @@
 //! Desktop simulator, replay and report of the touchdown monitor.
 
 pub mod cli;
+pub mod compare;
 pub mod detection;
 pub mod drop;
 pub mod drop_log;
@@ -26,6 +27,7 @@ pub mod output;
 pub mod paint;
 pub mod paper;
 pub mod progress;
+pub mod recording;
 pub mod reference;
 pub mod regions;
 pub mod replay;

@@ -245,6 +245,7 @@ mod tests {
         let detection = Detection {
             events,
             forecasts: Vec::new(),
+            left_out: 0,
             severity: crate::outcome::Severity::default(),
             samples: 0,
             faults: 0,

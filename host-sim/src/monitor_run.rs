@@ -8,11 +8,16 @@ use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
 use touchdown_core::wire::Summary;
 
+/// Notices that are kept; a recording of any length has to fit.
+pub const MOST_NOTICES: usize = 100_000;
+
 /// What the monitor said over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// In the order of the ticks.
     pub notices: Vec<Notice>,
+    /// Later ones, counted.
+    pub left_out: u64,
     /// Of the last drop in it.
     pub severity: Severity,
     /// Last.
@@ -30,14 +35,22 @@ pub fn run(
     let mut state = monitor.start();
     let mut lookout = Lookout::try_new(&config.detector)?;
     let mut fingerprint = Fingerprint::default();
-    let mut notices = Vec::new();
+    let (mut notices, mut left_out) = (Vec::new(), 0);
     for sample in samples {
-        notices.extend(monitor.update(&mut state, &sample));
-        notices.extend(lookout.look(&monitor, &state));
+        let said = monitor.update(&mut state, &sample);
+        let outlook = lookout.look(&monitor, &state);
+        for notice in said.into_iter().chain(outlook) {
+            if notices.len() < MOST_NOTICES {
+                notices.push(notice);
+            } else {
+                left_out += 1;
+            }
+        }
         fingerprint.take(&state, &lookout);
     }
     Ok(Answer {
         notices,
+        left_out,
         severity: *state.severity(),
         summary: fingerprint.summary(&state),
         log: Vec::new(),

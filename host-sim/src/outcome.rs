@@ -109,6 +109,8 @@ pub struct Detection {
     pub events: Vec<DetectedEvent>,
     /// In the order of time.
     pub forecasts: Vec<Forecast>,
+    /// Events and forecasts that came when there were too many to keep, with their confirmations.
+    pub left_out: u64,
     /// Of the last drop.
     pub severity: Severity,
     /// Samples seen.

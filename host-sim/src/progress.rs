@@ -21,7 +21,11 @@ pub struct Progress {
     start: Instant,
     bar: Option<ProgressBar>,
     terminal: bool,
+    style: &'static str,
 }
+
+const JOBS: &str = "{msg} {wide_bar} {percent} %, {eta} left";
+const BYTES: &str = "{msg} {wide_bar} {bytes} of {total_bytes}, {eta} left";
 
 impl Progress {
     /// Starts the clock.
@@ -34,7 +38,15 @@ impl Progress {
             start: Instant::now(),
             bar: None,
             terminal: std::io::stderr().is_terminal(),
+            style: JOBS,
         }
+    }
+
+    /// Of a file of `total` bytes; what is counted is its rows.
+    pub fn of_bytes(what: &'static str, total: u64) -> Self {
+        let mut progress = Self::new(what, total);
+        progress.style = BYTES;
+        progress
     }
 
     /// Of jobs that each take long enough for a look at the clock.
@@ -52,25 +64,34 @@ impl Progress {
     /// `done` are through.
     pub fn at(&mut self, done: u64) {
         self.done = done;
-        if !self.terminal || !done.is_multiple_of(self.look) {
+        self.passed(done, || done);
+    }
+
+    /// So many rows are through; `place` is where in the total that is.
+    pub fn passed(&mut self, rows: u64, place: impl FnOnce() -> u64) {
+        if !self.terminal || !rows.is_multiple_of(self.look) {
             return;
         }
         if self.bar.is_none() && self.start.elapsed() > QUIET {
-            self.bar = Some(bar(self.what, self.total));
+            self.bar = Some(styled(self.what, self.total, self.style));
         }
         if let Some(bar) = &self.bar {
-            bar.set_position(done);
+            bar.set_position(place());
         }
     }
 }
 
 /// A bar of `total` parts; draws on a terminal only.
 pub fn bar(what: &'static str, total: u64) -> ProgressBar {
+    styled(what, total, JOBS)
+}
+
+fn styled(what: &'static str, total: u64, style: &str) -> ProgressBar {
     if total == 0 {
         return ProgressBar::new_spinner().with_message(what);
     }
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style).with_message(what)
 }
 

@@ -13,6 +13,8 @@ use crate::scene::Scene;
 
 /// Phases and impacts that are listed before the rest is summed up.
 const LISTED: usize = 12;
+/// Events of a replay that are listed.
+const REPLAYED: usize = 1000;
 /// A phase begins with its event within this, s.
 const SAME: f64 = 1e-12;
 
@@ -280,7 +282,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             "event", "onset s", "declared s", "", "plane", "speed mm/s"
         );
     }
-    for event in &detection.events {
+    for event in detection.events.iter().take(REPLAYED) {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
         let fault = event
             .fault
@@ -300,6 +302,14 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             fault.unwrap_or_default(),
         );
         text += &format!("{}\n", line.trim_end());
+    }
+    let more = detection.events.len().saturating_sub(REPLAYED);
+    if more > 0 {
+        text += &format!("... {more} more events, with --json\n");
+    }
+    if detection.left_out > 0 {
+        let left_out = detection.left_out;
+        text += &format!("{left_out} further messages of the detector were counted, not kept\n");
     }
     text
 }

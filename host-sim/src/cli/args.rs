@@ -9,7 +9,9 @@ use touchdown_core::detect::Tuning;
 use crate::emulator::Emulator;
 use crate::failure::Failure;
 use crate::paper::DROPS;
+use crate::recording::{Mapping, Reading};
 use crate::score::{GROUPS, Plan};
+use crate::stream::is_rate;
 use crate::sweep::Part;
 use crate::target::Target;
 
@@ -21,6 +23,8 @@ Examples:
   touchdown drop my.toml --stream s.csv what the sensors would have recorded
   touchdown replay s.csv --scene my.toml
                                         a recording through the same detector
+  touchdown compare a.csv b.csv --scene my.toml
+                                        two recordings: what differs, and by how much
   touchdown trade my.toml               what each way of computing costs, and how wrong it is
   touchdown paper                       the source paper's numbers: printed, right, ours
   touchdown scene explain my.toml       what is modelled and what is left out
@@ -32,6 +36,51 @@ Examples:
                                         the contact force from measured accelerations
 
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
+
+const REPLAY: &str = "\
+Examples:
+  touchdown replay s.csv --scene my.toml              a stream, as `drop --stream` writes it
+  touchdown replay r.csv --scene my.toml --columns map.toml
+  touchdown replay r.cfg --scene my.toml              COMTRADE with channels ax, ay, bx, by
+  touchdown replay r.csv --scene my.toml --columns map.toml --resample 20000
+
+The file of --columns; delimiter, decimal commas, comments and the header's line are found:
+  [time]
+  column = \"t\"                  a name without its unit, or a number from 1
+  unit = \"ms\"                   s, ms, us, ns; not needed where the header says it
+  [ax]                           also [ay], [bx], [by]: x right, y up
+  column = \"X1\"
+  unit = \"um\"                   um, mm, m, nm, mil, in, V, mV
+  [ay]
+  column = 3
+  unit = \"V\"
+  sensitivity = \"-7.87 V/mm\"    or \"200 mV/mil\"
+  offset = -10.0                 with the rotor in the bearing's centre, in that unit
+  reversed = true                it counts the other way
+  [speed]
+  column = \"n\"
+  unit = \"rpm\"                  rpm, rad/s, Hz; reversed = true: clockwise
+  [levitated]
+  column = \"AMB on\"
+  above = 2.5                    on where it is above this; reversed = true: off there
+
+Instead of a time column: rate_hz = 20000. Before the tables: axes = \"sensors\" where x and y
+are those of sensors mounted at the scene's mounting_deg. docs/recordings.md has all of it.
+
+Exit status: 0 done, whatever the rotor did; 2 bad usage or input.";
+
+const COMPARE: &str = "\
+Both go through the same detector. B is laid over A by the first fall, or else the first
+impact, and then by the waveforms about it. Each event is held against the nearest of its
+kind; one that only one of them has is a difference. Impacts below 20 mm/s are shown but
+not judged.
+
+Examples:
+  touchdown compare before.csv after.csv --scene my.toml
+  touchdown compare rig.csv model.csv --scene my.toml --columns map.toml --columns-b stream.toml
+  touchdown compare a.cfg b.cfg --scene my.toml --within-ms 0.2 --within-percent 5
+
+Exit status: 0 all within the tolerance; 1 not; 2 bad usage or input.";
 
 const PAPER: &str = "\
 printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
@@ -111,8 +160,12 @@ pub struct Cli {
 pub(super) enum Command {
     /// Drop a rotor: simulate, sense, detect
     Drop(DropArgs),
-    /// Run the detector over a recorded stream
+    /// Run the detector over a recording: CSV of any style, or COMTRADE
+    #[command(after_help = REPLAY)]
     Replay(ReplayArgs),
+    /// Compare two recordings: events, speeds, regime, waveforms
+    #[command(after_help = COMPARE)]
+    Compare(CompareArgs),
     /// Measure accuracy against cost: every rung, scheme, precision, math and step
     Trade(TradeArgs),
     /// Check every number of the source paper: as printed, as right, as ours
@@ -179,9 +232,11 @@ pub(super) struct DropArgs {
 
 #[derive(Args, Clone, Debug)]
 pub(super) struct ReplayArgs {
-    /// Recorded stream: CSV with the header
+    /// Recording: a stream, that is CSV with the header
     /// time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], one row a sample, constant rate; for a
-    /// ball bearing also [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]
+    /// ball bearing also [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]. With
+    /// --columns any other text. Or COMTRADE: .cfg with .dat, or .cff
+    #[arg(value_name = "FILE")]
     pub stream: String,
     /// Scene with the rotor, retainer, gravity, sensors and detector
     #[arg(long)]
@@ -193,7 +248,88 @@ pub(super) struct ReplayArgs {
     #[arg(long, value_name = "FILE")]
     pub report: Option<String>,
     #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
     pub place: Place,
+}
+
+/// How a recording is read.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ReadingArgs {
+    /// Which column is what, and in which unit: a TOML file
+    #[arg(long, value_name = "FILE.toml")]
+    columns: Option<PathBuf>,
+    /// Make samples of another rate of it, Hz: linear between neighbours, none across gaps
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    resample: Option<f64>,
+}
+
+impl ReadingArgs {
+    /// With the mapping read.
+    pub fn load(&self) -> Result<Reading, Failure> {
+        let mapping = self.columns.as_deref().map(Mapping::load);
+        Ok(Reading {
+            mapping: mapping.transpose()?,
+            resample: self.resample,
+        })
+    }
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct CompareArgs {
+    /// A recording, as for `replay`
+    #[arg(value_name = "A")]
+    pub first: String,
+    /// The recording to hold against it
+    #[arg(value_name = "B")]
+    pub second: String,
+    /// Scene with the rotor, retainer, gravity, sensors and detector
+    #[arg(long)]
+    pub scene: String,
+    /// Most that an onset may differ, ms
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = not_negative)]
+    pub within_ms: f64,
+    /// Most that the speed of an impact may differ, % of the faster
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = not_negative)]
+    pub within_percent: f64,
+    /// Events side by side as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Both as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// The same as --columns for B, where it is not written like A
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns_b: Option<PathBuf>,
+}
+
+impl CompareArgs {
+    /// How each is read.
+    pub fn readings(&self) -> Result<[Reading; 2], Failure> {
+        let first = self.reading.load()?;
+        let mut second = first.clone();
+        if let Some(path) = &self.columns_b {
+            second.mapping = Some(Mapping::load(path)?);
+        }
+        Ok([first, second])
+    }
+}
+
+/// A tolerance.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|it: &f64| it.is_finite() && *it >= 0.0);
+    number.ok_or_else(|| "a number, 0 or more".to_owned())
+}
+
+/// A sample rate.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| is_rate(*rate));
+    rate.ok_or_else(|| "100 to 200000 Hz".to_owned())
 }
 
 #[derive(Args, Clone, Debug)]

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod compare;
 mod force;
 mod limits;
 mod log;
@@ -37,6 +38,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         }),
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Compare(args)) => compare::compare_recordings(&args),
         Some(Command::Trade(args)) => trade::table(&args),
         Some(Command::Paper(args)) => paper::check(&args),
         Some(Command::Force(args)) => force::measure(&args),
@@ -103,18 +105,29 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     let target = args.place.target()?;
     let [json_out, report_out] = names.map(open);
     let (mut json_out, mut report_out) = (json_out?, report_out?);
-    let detection = replay::run(Path::new(&args.stream), &scene, &target)?;
+    let path = Path::new(&args.stream);
+    let reading = args.reading.load()?;
+    let replay = replay::recording(path, &reading, &scene, &target)?;
+    warn(&replay.warnings);
+    let detection = &replay.detection;
     if let Some(out) = &mut json_out {
-        let text = json::replay(&detection).map_err(io::Error::from);
+        let text = json::replay(detection).map_err(io::Error::from);
         out.put(&text.map_err(Failure::output(out.name()))?)?;
     }
     if let Some(out) = &mut report_out {
-        out.put(&subject::replay_page(&args.stream, &scene, &detection))?;
+        let drop = replay::first_drop(path, &reading, &scene, &replay)?;
+        out.put(&replay::page(&args.stream, &scene, &replay, drop.as_ref()))?;
     }
     for out in [json_out, report_out].into_iter().flatten() {
         out.commit()?;
     }
-    say(&names, &timeline::replay(&args.stream, &detection));
+    let format = replay.format.map_or(String::new(), |it| {
+        format!("{}: {it}, {} Hz\n", args.stream, replay.rate)
+    });
+    say(
+        &names,
+        &(format + &timeline::replay(&args.stream, detection)),
+    );
     Ok(())
 }
 
@@ -132,10 +145,14 @@ fn commit(outputs: [Option<Output>; 3]) -> Result<String, Failure> {
 
 fn load(name: &str) -> Result<Scene, Failure> {
     let scene = Scene::load(name)?;
-    for warning in scene.warnings() {
+    warn(&scene.warnings());
+    Ok(scene)
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         eprintln!("warning: {warning}");
     }
-    Ok(scene)
 }
 
 fn open(name: &Option<String>) -> Result<Option<Output>, Failure> {

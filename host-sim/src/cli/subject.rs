@@ -1,14 +1,10 @@
 //! What the report is told of a scene.
 
-use maud::{DOCTYPE, html};
-
 use crate::fidelity::force::press;
 use crate::model_run::validity;
-use crate::outcome::Detection;
 use crate::report::{RingSubject, Subject};
 use crate::scene::parts::parts;
 use crate::scene::{Ring, Rung, Scene};
-use crate::timeline;
 
 pub(super) fn subject(scene: &Scene) -> Subject {
     let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
@@ -38,23 +34,4 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         press: known.then(|| press(scene)).flatten(),
         versions: vec![("touchdown".to_owned(), env!("CARGO_PKG_VERSION").to_owned())],
     }
-}
-
-/// A replay has no truth to draw: its page is the list of events.
-pub(super) fn replay_page(stream: &str, scene: &Scene, detection: &Detection) -> String {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                title { "Replay of " (stream) }
-            }
-            body {
-                h1 { "Replay of " (stream) }
-                p { "Scene: " (scene.heading()) }
-                pre { (timeline::replay(stream, detection)) }
-            }
-        }
-    }
-    .into_string()
 }

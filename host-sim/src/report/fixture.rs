@@ -142,6 +142,7 @@ fn detection(truth: &History) -> Detection {
     Detection {
         events,
         forecasts: Vec::new(),
+        left_out: 0,
         severity: Severity::default(),
         samples: 25_000,
         faults: 3,

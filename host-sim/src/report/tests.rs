@@ -50,6 +50,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         detection: Detection {
             events: Vec::new(),
             forecasts: Vec::new(),
+            left_out: 0,
             severity: Severity::default(),
             samples: 0,
             faults: 0,

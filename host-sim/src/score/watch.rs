@@ -152,6 +152,7 @@ impl Drop {
         }
         let answer = Answer {
             notices,
+            left_out: 0,
             severity: *state.severity(),
             summary: Fingerprint::default().summary(&state),
             log: Vec::new(),

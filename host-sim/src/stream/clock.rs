@@ -18,6 +18,9 @@ const DRIFT: f64 = 1e-9;
 /// Largest rounding that passes, part of a period: more would hide a missing row.
 const COARSEST: f64 = 0.45;
 
+/// Digits of a number that is not rounded to fewer.
+const MOST_DIGITS: i32 = 17;
+
 /// Follows the stamps of a stream.
 #[derive(Debug)]
 pub struct Clock {
@@ -68,6 +71,36 @@ impl Stamp {
             significant: i32::try_from(digits.trim_start_matches('0').len()).ok()?,
         };
         Some(Self { time, print })
+    }
+
+    /// A time (s) that is not rounded.
+    pub fn exact(time: f64) -> Self {
+        let print = Print {
+            decimals: MOST_DIGITS,
+            significant: MOST_DIGITS,
+        };
+        Self { time, print }
+    }
+
+    /// A time (s) that was counted in ticks of so many seconds.
+    pub fn counted(time: f64, tick: f64) -> Self {
+        let print = Print {
+            decimals: -(tick.log10().ceil() as i32),
+            significant: MOST_DIGITS,
+        };
+        Self { time, print }
+    }
+
+    /// The same in a unit of so many powers of ten.
+    pub fn times_ten_to(mut self, power: i32) -> Option<Self> {
+        // A division by an exact power keeps the digits.
+        self.time = if power < 0 {
+            self.time / 10_f64.powi(-power)
+        } else {
+            self.time * 10_f64.powi(power)
+        };
+        self.print.decimals = self.print.decimals.checked_sub(power)?;
+        self.time.is_finite().then_some(self)
     }
 }
 

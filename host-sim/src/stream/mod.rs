@@ -4,13 +4,20 @@
 //! ball bearing, `[,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]`: edges so
 //! far (which may wrap at 65536) and the time since the last one.
 
+mod bounded;
 mod clock;
+mod even;
 mod read;
+mod survey;
 mod write;
 
+pub(crate) use bounded::{Bounded, LONGEST, Meter};
 pub use clock::LOOK_AHEAD;
 pub(crate) use clock::{Clock, Stamp};
+pub(crate) use even::{Even, Stamped, is_rate};
 pub use read::{Pulses, Row, StreamReader};
+pub(crate) use read::{Records, csv_error};
+pub(crate) use survey::median_interval;
 pub use write::StreamWriter;
 
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};

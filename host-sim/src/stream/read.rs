@@ -1,16 +1,15 @@
 //! Reads a recorded stream, strictly: a row that breaks a rule ends it.
 
-use std::cell::Cell;
-use std::collections::VecDeque;
 use std::io::{BufReader, Read};
 use std::path::Path;
-use std::rc::Rc;
 
 use csv::StringRecord;
 use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 
 use super::Columns;
-use super::clock::{Clock, LOOK_AHEAD, Stamp};
+use super::bounded::{Bounded, Meter};
+use super::clock::Stamp;
+use super::even::{Even, Stamped};
 use crate::input_error::{InputError, reason};
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -42,17 +41,11 @@ pub struct Row {
     pub edges: [Option<Pulses>; TACHOMETERS],
 }
 
-/// A stream being read. The rate is that of the first [`LOOK_AHEAD`] rows; all later rows are held
+/// A stream being read. The rate is that of the first [`super::LOOK_AHEAD`] rows; all later rows are held
 /// to it.
 pub struct StreamReader<R> {
-    file: String,
-    records: csv::Reader<LastByte<R>>,
-    ends_in_newline: Rc<Cell<bool>>,
     columns: Columns,
-    clock: Clock,
-    ahead: VecDeque<Row>,
-    rate: f64,
-    finished: bool,
+    rows: Even<Records<R>>,
 }
 
 impl StreamReader<BufReader<std::fs::File>> {
@@ -71,52 +64,11 @@ impl StreamReader<BufReader<std::fs::File>> {
 impl<R: Read> StreamReader<R> {
     /// Reads the header and the first rows of `bytes`; errors name the stream `file`.
     pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
-        let ends_in_newline = Rc::new(Cell::new(true));
-        let mut records = csv::ReaderBuilder::new()
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(LastByte {
-                bytes,
-                is_newline: Rc::clone(&ends_in_newline),
-            });
-        let header = records.headers().map_err(|error| csv_error(file, &error))?;
-        let names: Vec<_> = header.iter().collect();
-        let Some(columns) = Columns::of_header(&names) else {
-            let rule = format!(
-                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]\
-                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us], is {:?}",
-                names.join(",")
-            );
-            return Err(InputError::at_line(file, 1, rule));
-        };
-        let Some((first, row, _)) = next(file, &mut records, columns)? else {
-            let rule = "there are no rows after the header";
-            return Err(InputError::at_line(file, 1, rule));
-        };
-        let mut reader = Self {
-            file: file.to_owned(),
-            records,
-            ends_in_newline,
-            columns,
-            clock: Clock::new(first),
-            ahead: VecDeque::from([row]),
-            rate: 0.0,
-            finished: false,
-        };
-        reader.look_ahead()?;
-        let Some(rate) = reader.clock.rate() else {
-            return Err(InputError::at_line(
-                file,
-                2,
-                "one row alone has no sample rate",
-            ));
-        };
-        if !(100.0 * (1.0 - 1e-6)..=200_000.0 * (1.0 + 1e-6)).contains(&rate) {
-            let rule = format!("the sample rate must be 100 to 200000 Hz, is {rate} Hz");
-            return Err(InputError::at_line(file, 3, rule));
-        }
-        reader.rate = rate;
-        Ok(reader)
+        let records = Records::new(file, bytes)?;
+        Ok(Self {
+            columns: records.columns(),
+            rows: Even::new(file, records, 1)?,
+        })
     }
 
     /// The columns.
@@ -126,60 +78,89 @@ impl<R: Read> StreamReader<R> {
 
     /// Samples per second, Hz.
     pub fn rate(&self) -> f64 {
-        self.rate
+        self.rows.rate()
     }
 
     /// Time of the first row, s.
     pub fn start(&self) -> f64 {
-        self.clock.start()
+        self.rows.start()
+    }
+}
+
+impl<R: Read> Iterator for StreamReader<R> {
+    type Item = Result<Row, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.rows.next()
+    }
+}
+
+/// The rows of a stream as they stand there, whatever their times.
+pub struct Records<R> {
+    file: String,
+    records: csv::Reader<Bounded<R>>,
+    meter: Meter,
+    columns: Columns,
+    header: Vec<&'static str>,
+    record: StringRecord,
+    finished: bool,
+}
+
+impl<R: Read> Records<R> {
+    /// Reads the header of `bytes`.
+    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
+        let bytes = Bounded::new(bytes);
+        let meter = bytes.meter();
+        let mut records = csv::ReaderBuilder::new()
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(bytes);
+        let header = records
+            .headers()
+            .map_err(|error| csv_error(file, &error, &meter))?;
+        let names: Vec<_> = header.iter().collect();
+        let Some(columns) = Columns::of_header(&names) else {
+            let rule = format!(
+                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]\
+                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us], is {:?}",
+                names.join(",")
+            );
+            return Err(InputError::at_line(file, 1, rule));
+        };
+        Ok(Self {
+            file: file.to_owned(),
+            records,
+            meter,
+            columns,
+            header: columns.header(),
+            record: StringRecord::new(),
+            finished: false,
+        })
     }
 
-    /// Reads the first rows. Their stamps together show how they are rounded.
-    fn look_ahead(&mut self) -> Result<(), InputError> {
-        let mut stamps = Vec::new();
-        while stamps.len() + 1 < LOOK_AHEAD {
-            let Some((stamp, row, line)) = next(&self.file, &mut self.records, self.columns)?
-            else {
-                self.finished = true;
-                break;
-            };
-            self.clock.learn(stamp);
-            self.ahead.push_back(row);
-            stamps.push((stamp, line));
-        }
-        for (stamp, line) in stamps {
-            self.take(stamp, line)?;
-        }
-        if self.finished {
-            self.check_end()
-        } else {
-            Ok(())
-        }
+    /// The columns.
+    pub fn columns(&self) -> Columns {
+        self.columns
     }
 
-    fn take(&mut self, stamp: Stamp, line: u64) -> Result<(), InputError> {
-        self.clock
-            .take(stamp)
-            .map_err(|rule| InputError::at_line(&self.file, line, rule))
+    /// How far it is read.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
     }
 
-    fn read_row(&mut self) -> Result<Option<Row>, InputError> {
-        if self.finished {
-            return Ok(None);
-        }
-        let Some((stamp, row, line)) = next(&self.file, &mut self.records, self.columns)? else {
-            self.finished = true;
+    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+        let read = self.records.read_record(&mut self.record);
+        if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
             self.check_end()?;
             return Ok(None);
-        };
-        self.take(stamp, line)?;
-        Ok(Some(row))
+        }
+        parse(&self.file, &self.record, self.columns, &self.header).map(Some)
     }
 
     /// A number that lost its last digits is still a number: only the newline shows that the last
     /// row is whole.
     fn check_end(&self) -> Result<(), InputError> {
-        if self.ends_in_newline.get() {
+        if self.meter.ends_in(b"\n") {
             return Ok(());
         }
         let last = self.records.position().line();
@@ -188,18 +169,16 @@ impl<R: Read> StreamReader<R> {
     }
 }
 
-impl<R: Read> Iterator for StreamReader<R> {
-    type Item = Result<Row, InputError>;
+impl<R: Read> Iterator for Records<R> {
+    type Item = Result<Stamped, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        match self.ahead.pop_front() {
-            Some(row) => Some(Ok(row)),
-            None => {
-                let row = self.read_row();
-                self.finished |= row.is_err();
-                row.transpose()
-            }
+        if self.finished {
+            return None;
         }
+        let row = self.read();
+        self.finished = !matches!(row, Ok(Some(_)));
+        row.transpose()
     }
 }
 
@@ -207,11 +186,15 @@ fn line(record: &StringRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
 
-fn csv_error(file: &str, error: &csv::Error) -> InputError {
+/// What the csv library has to say of `file`, read through `meter`.
+pub fn csv_error(file: &str, error: &csv::Error, meter: &Meter) -> InputError {
     let line = error.position().map(csv::Position::line);
     match (error.kind(), line) {
         (csv::ErrorKind::Utf8 { .. }, Some(line)) => {
             InputError::at_line(file, line, "the text is not UTF-8")
+        }
+        (csv::ErrorKind::Io(error), _) if meter.is_too_long() => {
+            InputError::at_line(file, meter.line(), error.to_string())
         }
         (csv::ErrorKind::Io(error), _) => InputError::of_file(file, reason(error)),
         (_, Some(line)) => InputError::at_line(file, line, error.to_string()),
@@ -219,24 +202,13 @@ fn csv_error(file: &str, error: &csv::Error) -> InputError {
     }
 }
 
-/// The next row with its stamp and line; `None` at the end.
-fn next<R: Read>(
+fn parse(
     file: &str,
-    records: &mut csv::Reader<R>,
+    record: &StringRecord,
     columns: Columns,
-) -> Result<Option<(Stamp, Row, u64)>, InputError> {
-    let mut record = StringRecord::new();
-    let read = records.read_record(&mut record);
-    if !read.map_err(|error| csv_error(file, &error))? {
-        return Ok(None);
-    }
-    let (stamp, row) = parse(file, &record, columns)?;
-    Ok(Some((stamp, row, line(&record))))
-}
-
-fn parse(file: &str, record: &StringRecord, columns: Columns) -> Result<(Stamp, Row), InputError> {
+    header: &[&str],
+) -> Result<Stamped, InputError> {
     let fail = |rule: String| InputError::at_line(file, line(record), rule);
-    let header = columns.header();
     if record.len() != header.len() {
         return Err(fail(format!(
             "a row needs {} fields, this one has {}",
@@ -306,21 +278,6 @@ fn parse(file: &str, record: &StringRecord, columns: Columns) -> Result<(Stamp, 
         levitated,
         edges,
     };
-    Ok((stamp, row))
-}
-
-/// Remembers whether the last byte that passed was a newline.
-struct LastByte<R> {
-    bytes: R,
-    is_newline: Rc<Cell<bool>>,
-}
-
-impl<R: Read> Read for LastByte<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let read = self.bytes.read(buffer)?;
-        if let Some(last) = buffer[..read].last() {
-            self.is_newline.set(*last == b'\n');
-        }
-        Ok(read)
-    }
+    let line = line(record);
+    Ok(Stamped { stamp, row, line })
 }

@@ -1,0 +1,134 @@
+//! Two recordings as one HTML page.
+
+use maud::{Markup, html};
+
+use super::table::verdict;
+use super::{Comparison, Pair};
+use crate::names::event_name;
+use crate::replay::Excerpt;
+use crate::report::chart::{Axis, Chart};
+use crate::report::page as in_style;
+use crate::report::tables::table;
+use crate::report::text::significant;
+use crate::scene::Scene;
+
+const HEIGHT: f64 = 170.0;
+const MICRO: f64 = 1e6;
+const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
+
+/// Writes the page.
+pub fn page(scene: &Scene, comparison: &Comparison) -> String {
+    let [a, b] = &comparison.files;
+    let body = html! {
+        p.kind { "Two recordings" }
+        h1 { (a) " and " (b) }
+        p { "Scene: " (scene.heading()) }
+        p class=(if comparison.beyond > 0 { "verdict alarm" } else { "verdict" }) {
+            (verdict(comparison)) ". Regime: " (regime(comparison, 0)) ", " (regime(comparison, 1)) "."
+        }
+        @for warning in &comparison.warnings { p.alarm { (warning) } }
+        @if let Some(excerpts) = &comparison.excerpts {
+            section {
+                h2 { "First drop" }
+                @for channel in 0..comparison.aligned.waveform_rms_m.len() { (panel(channel, excerpts, scene, comparison)) }
+                ul.legend {
+                    li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } (a) }
+                    li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M1 6H33" {} } (b) ", shifted by " (format!("{:.6}", -comparison.aligned.shift_s)) "\u{a0}s" }
+                }
+            }
+        }
+        section {
+            h2 { "Events" }
+            (events(comparison))
+            p.note { "Onsets, each on its own clock; differences after alignment. Impacts below 20 mm/s are not judged." }
+        }
+    };
+    in_style(&format!("{a} and {b}"), &body).into_string()
+}
+
+fn regime(comparison: &Comparison, index: usize) -> &'static str {
+    comparison.regimes[index].map_or("none", event_name)
+}
+
+fn panel(
+    channel: usize,
+    excerpts: &[Excerpt; 2],
+    scene: &Scene,
+    comparison: &Comparison,
+) -> Markup {
+    let [a, b] = excerpts;
+    let clearance = scene.retainer.clearance;
+    let all = a
+        .positions
+        .iter()
+        .chain(&b.positions)
+        .map(|it| it[channel].abs());
+    let farthest = all.filter(|it| it.is_finite()).fold(clearance, f64::max);
+    let x = Axis::new(
+        a.start,
+        a.time(a.positions.len()),
+        "time of the first, s",
+        6.0,
+    );
+    let reach = 1.12 * farthest * MICRO;
+    let y = Axis::new(
+        -reach,
+        reach,
+        &format!("{}, \u{b5}m", CHANNELS[channel]),
+        5.0,
+    );
+    let chart = Chart {
+        title: CHANNELS[channel],
+        description: "Displacement of both recordings against time, the second shifted onto the first.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let (mut first, mut second) = (chart.pen(), chart.pen());
+    for (index, positions) in a.positions.iter().enumerate() {
+        first.line_to(a.time(index), positions[channel] * MICRO);
+    }
+    for (index, positions) in b.positions.iter().enumerate() {
+        let time = b.time(index) - comparison.aligned.shift_s;
+        second.line_to(time, positions[channel] * MICRO);
+    }
+    let curves = html! { (second.finish("sensed")) (first.finish("motion")) };
+    chart.draw(&html! {}, &curves, &html! {})
+}
+
+fn events(comparison: &Comparison) -> Markup {
+    let head = html! {
+        th { "Event" }
+        th.number { "First" br; "s" }
+        th.number { "Second" br; "s" }
+        th.number { "Difference" br; "ms" }
+        th.number { "First" br; "mm/s" }
+        th.number { "Second" br; "mm/s" }
+        th.number { "Difference" br; "%" }
+        th { "Within" }
+    };
+    let number = |value: Option<f64>, scale: f64, digits: i32| {
+        value.map_or("\u{2013}".to_owned(), |it| significant(it * scale, digits))
+    };
+    let row = |pair: &Pair| {
+        let (class, word) = match pair.within {
+            Some(true) => ("", "yes"),
+            Some(false) => ("missed", "no"),
+            None => ("", "not judged"),
+        };
+        html! {
+            td { (event_name(pair.event)) }
+            td.number { (number(pair.a_s, 1.0, 7)) }
+            td.number { (number(pair.b_s, 1.0, 7)) }
+            td.number { (number(pair.difference_s, 1e3, 4)) }
+            td.number { (number(pair.a_speed_m_s, 1e3, 4)) }
+            td.number { (number(pair.b_speed_m_s, 1e3, 4)) }
+            td.number { (number(pair.speed_difference, 100.0, 3)) }
+            td class=(class) { (word) }
+        }
+    };
+    if comparison.events.is_empty() {
+        return html! { p { "None." } };
+    }
+    table("Events", &head, comparison.events.iter().map(row))
+}

@@ -1,0 +1,355 @@
+//! The configuration of a COMTRADE recording (IEEE C37.111-1991, -1999, -2013): channels, rates, times.
+
+use std::str::FromStr;
+
+/// Most channels of a kind that are believed.
+const MOST_CHANNELS: usize = 10_000;
+/// Most rates that are believed.
+const MOST_RATES: usize = 1000;
+
+/// The configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cfg {
+    /// Of the standard.
+    pub year: u16,
+    /// In the order of the data.
+    pub analog: Vec<Analog>,
+    /// Names, in the order of the data.
+    pub digital: Vec<String>,
+    /// Each rate (Hz) and the number of its last sample; none where the stamps alone tell.
+    pub rates: Vec<(f64, u64)>,
+    /// Samples in all.
+    pub samples: u64,
+    /// First sample before the trigger, s; `None` where the dates cannot be read.
+    pub start: Option<f64>,
+    /// How the data are written.
+    pub data: Data,
+    /// Of one unit of a stamp, s.
+    pub tick: f64,
+}
+
+/// An analog channel: value = scale count + shift.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analog {
+    /// Its name.
+    pub name: String,
+    /// As it is written.
+    pub unit: String,
+    /// `a`.
+    pub scale: f64,
+    /// `b`.
+    pub shift: f64,
+    /// Time by which it is sampled later, us.
+    pub skew: f64,
+    /// Largest count.
+    pub most: f64,
+}
+
+/// How the data are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Data {
+    /// Numbers with commas.
+    Ascii,
+    /// 16 bit.
+    Binary,
+    /// 32 bit.
+    Binary32,
+    /// IEEE 754, 32 bit.
+    Float32,
+}
+
+impl Data {
+    /// As the file has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ascii => "ASCII",
+            Self::Binary => "BINARY",
+            Self::Binary32 => "BINARY32",
+            Self::Float32 => "FLOAT32",
+        }
+    }
+}
+
+impl FromStr for Data {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let all = [Self::Ascii, Self::Binary, Self::Binary32, Self::Float32];
+        let is = |it: &Self| text.trim().eq_ignore_ascii_case(it.name());
+        all.into_iter().find(is).ok_or(())
+    }
+}
+
+/// The lines of the text, one after the other, with their numbers.
+struct Lines<'a> {
+    lines: std::str::Lines<'a>,
+    number: u64,
+}
+
+type Flaw = (u64, String);
+
+impl<'a> Lines<'a> {
+    fn next(&mut self, what: &str) -> Result<&'a str, Flaw> {
+        self.number += 1;
+        let line = self.lines.next();
+        line.ok_or_else(|| {
+            (
+                self.number,
+                format!("the file ends before the line of {what}"),
+            )
+        })
+    }
+
+    fn fields(&mut self, what: &str) -> Result<Vec<&'a str>, Flaw> {
+        Ok(self.next(what)?.split(',').map(str::trim).collect())
+    }
+
+    fn fail<T>(&self, rule: String) -> Result<T, Flaw> {
+        Err((self.number, rule))
+    }
+
+    fn number<T: FromStr>(&self, fields: &[&str], at: usize, what: &str) -> Result<T, Flaw> {
+        let text = fields.get(at).copied().unwrap_or("");
+        let number = text.parse();
+        number.or_else(|_| self.fail(format!("{what} must be a number, is {text:?}")))
+    }
+
+    fn finite(&self, fields: &[&str], at: usize, what: &str) -> Result<f64, Flaw> {
+        let number: f64 = self.number(fields, at, what)?;
+        if number.is_finite() {
+            return Ok(number);
+        }
+        self.fail(format!("{what} must be finite, is {number}"))
+    }
+}
+
+impl Cfg {
+    /// Reads the text; else the line and the rule.
+    pub fn parse(text: &str) -> Result<Self, Flaw> {
+        let mut lines = Lines {
+            lines: text.lines(),
+            number: 0,
+        };
+        let first = lines.fields("station and device")?;
+        let year = match first.get(2).copied().unwrap_or("") {
+            "" => 1991,
+            _ => lines.number(&first, 2, "the year of the standard")?,
+        };
+        let (analogs, digitals) = counts(&mut lines)?;
+        let analog = (0..analogs)
+            .map(|_| analog(&mut lines))
+            .collect::<Result<_, _>>()?;
+        let digital = (0..digitals).map(|_| {
+            let fields = lines.fields("a digital channel")?;
+            Ok(fields.get(1).copied().unwrap_or("").to_owned())
+        });
+        let digital = digital.collect::<Result<_, Flaw>>()?;
+        lines.next("the line frequency")?;
+        let (rates, samples) = rates(&mut lines)?;
+        let mut instant = |what| -> Result<Instant, Flaw> {
+            let fields = lines.fields(what)?;
+            Ok(Instant::of(&fields, year))
+        };
+        let (begin, trigger) = (
+            instant("the first sample's time")?,
+            instant("the trigger's time")?,
+        );
+        let kind = lines.next("the kind of the data file")?;
+        let Ok(data) = kind.parse() else {
+            let rule = "must be ASCII, BINARY, BINARY32 or FLOAT32";
+            return lines.fail(format!("the kind of the data file {rule}, is {kind:?}"));
+        };
+        let multiple = match lines.fields("the factor of the stamps") {
+            Ok(fields) if year > 1991 => match fields[0] {
+                "" => 1.0,
+                _ => lines.finite(&fields, 0, "the factor of the stamps")?,
+            },
+            _ => 1.0,
+        };
+        if multiple <= 0.0 {
+            return lines.fail("the factor of the stamps must be above 0".to_owned());
+        }
+        // Since 2013 stamps count nanoseconds where the dates do.
+        let nano = year >= 2013 && begin.decimals > 6;
+        let start = (begin.seconds.zip(trigger.seconds)).map(|(begin, trigger)| {
+            let days = (begin.0 - trigger.0) as f64;
+            86_400.0 * days + (begin.1 - trigger.1)
+        });
+        Ok(Self {
+            year,
+            analog,
+            digital,
+            rates,
+            samples,
+            start,
+            data,
+            tick: multiple * if nano { 1e-9 } else { 1e-6 },
+        })
+    }
+
+    /// Bytes of a sample in a binary file.
+    pub fn bytes(&self) -> usize {
+        let analog = match self.data {
+            Data::Binary => 2,
+            _ => 4,
+        };
+        8 + analog * self.analog.len() + 2 * self.digital.len().div_ceil(16)
+    }
+
+    /// The one rate of the recording, Hz; `None` where it has several or none.
+    pub fn rate(&self) -> Option<f64> {
+        let (first, _) = *self.rates.first()?;
+        let same = self.rates.iter().all(|(rate, _)| *rate == first);
+        (same && first > 0.0).then_some(first)
+    }
+
+    /// Time of sample `number` (from 0) after the first, by the rates, s.
+    pub fn time(&self, number: u64) -> f64 {
+        let (mut time, mut from) = (0.0, 0);
+        for &(rate, last) in &self.rates {
+            if number <= last {
+                return time + (number - from) as f64 / rate;
+            }
+            time += (last - from) as f64 / rate;
+            from = last;
+        }
+        time
+    }
+}
+
+/// Numbers of analog and of digital channels.
+fn counts(lines: &mut Lines) -> Result<(usize, usize), Flaw> {
+    let fields = lines.fields("the numbers of channels")?;
+    let count = |at: usize, letter: char| -> Option<usize> {
+        let text = fields.get(at)?.to_ascii_uppercase();
+        text.strip_suffix(letter)?.parse().ok()
+    };
+    let (Some(analogs), Some(digitals)) = (count(1, 'A'), count(2, 'D')) else {
+        return lines.fail(format!(
+            "the numbers of channels must be as 4,3A,1D, are {:?}",
+            fields.join(",")
+        ));
+    };
+    if analogs > MOST_CHANNELS || digitals > MOST_CHANNELS {
+        return lines.fail(format!("there are more than {MOST_CHANNELS} channels"));
+    }
+    let total: usize = lines.number(&fields, 0, "the number of channels")?;
+    if total != analogs + digitals {
+        return lines.fail(format!("{total} channels are not {analogs} and {digitals}"));
+    }
+    Ok((analogs, digitals))
+}
+
+fn analog(lines: &mut Lines) -> Result<Analog, Flaw> {
+    let fields = lines.fields("an analog channel")?;
+    let or_zero = |at: usize, what: &str| match fields.get(at).copied().unwrap_or("") {
+        "" => Ok(0.0),
+        _ => lines.finite(&fields, at, what),
+    };
+    Ok(Analog {
+        name: fields.get(1).copied().unwrap_or("").to_owned(),
+        unit: fields.get(4).copied().unwrap_or("").to_owned(),
+        scale: lines.finite(&fields, 5, "the factor a of a channel")?,
+        shift: lines.finite(&fields, 6, "the offset b of a channel")?,
+        skew: or_zero(7, "the skew of a channel")?,
+        most: or_zero(9, "the largest count of a channel")?,
+    })
+}
+
+/// Rates with their last samples, and samples in all.
+fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Flaw> {
+    let fields = lines.fields("the number of rates")?;
+    let count: usize = lines.number(&fields, 0, "the number of rates")?;
+    if count > MOST_RATES {
+        return lines.fail(format!("there are more than {MOST_RATES} rates"));
+    }
+    let (mut rates, mut samples) = (Vec::new(), 0);
+    for _ in 0..count.max(1) {
+        let fields = lines.fields("a rate")?;
+        let rate = lines.finite(&fields, 0, "a rate")?;
+        let last: u64 = lines.number(&fields, 1, "the last sample of a rate")?;
+        if rate < 0.0 || last <= samples {
+            return lines.fail("a rate must be 0 or more, and the samples must go up".to_owned());
+        }
+        samples = last;
+        rates.push((rate, last));
+    }
+    if count == 0 || rates.iter().any(|(rate, _)| *rate == 0.0) {
+        rates.clear();
+    }
+    Ok((rates, samples))
+}
+
+/// A date and a time of day.
+struct Instant {
+    /// Days since 1970 and seconds of the day; `None` where it cannot be read.
+    seconds: Option<(i64, f64)>,
+    /// Of the second.
+    decimals: usize,
+}
+
+impl Instant {
+    /// `dd/mm/yyyy` and `hh:mm:ss.ssssss`; in 1991 the month came first.
+    fn of(fields: &[&str], year: u16) -> Self {
+        let (date, time) = (fields.first().unwrap_or(&""), fields.get(1).unwrap_or(&""));
+        let decimals = time.split_once('.').map_or(0, |(_, digits)| digits.len());
+        let seconds = days(date, year).zip(of_day(time));
+        Self { seconds, decimals }
+    }
+}
+
+fn of_day(text: &str) -> Option<f64> {
+    let mut parts = text.split(':');
+    let mut part = || {
+        parts
+            .next()?
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|it| (0.0..100.0).contains(it))
+    };
+    Some(3600.0 * part()? + 60.0 * part()? + part()?)
+}
+
+/// Days since 1970 began, by Howard Hinnant's civil date to days.
+fn days(text: &str, standard: u16) -> Option<i64> {
+    let mut parts = text.split('/').map(|it| it.trim().parse::<i64>().ok());
+    let mut part = || parts.next().flatten().filter(|it| (0..10_000).contains(it));
+    let (one, other, year) = (part()?, part()?, part()?);
+    let (day, month) = if standard > 1991 {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    let year = if year < 100 { year + 1900 } else { year };
+    if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    let year = if month <= 2 { year - 1 } else { year };
+    let of_era = year.rem_euclid(400);
+    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
+    let of_era = 365 * of_era + of_era / 4 - of_era / 100 + of_year;
+    Some(146_097 * year.div_euclid(400) + of_era - 719_468)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_count_from_1970() {
+        assert_eq!(days("01/01/1970", 1999), Some(0));
+        assert_eq!(days("29/02/2000", 1999), Some(11_016));
+        assert_eq!(days("02/29/2000", 1991), Some(11_016));
+        assert_eq!(days("2/29/72", 1991), Some(789));
+        assert_eq!(days("00/00/2000", 1999), None);
+    }
+
+    #[test]
+    fn times_go_on_from_rate_to_rate() {
+        let text = "s,d,1999\n0,0A,0D\n50\n2\n1000,10\n2000,30\n01/01/2024,00:00:00\n01/01/2024,00:00:01\nASCII\n1\n";
+        let cfg = Cfg::parse(text).unwrap();
+        assert_eq!((cfg.rate(), cfg.samples, cfg.start), (None, 30, Some(-1.0)));
+        assert_eq!([0, 10, 12].map(|k| cfg.time(k)), [0.0, 0.01, 0.011]);
+    }
+}
