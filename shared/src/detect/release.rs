@@ -7,10 +7,7 @@
 //! What a healthy machine does is no white noise: an unbalance orbit, runout or hum raise the statistic
 //! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
 
-use crate::detect::config::Tuning;
-
-/// Instants in the bank.
-const CANDIDATES: usize = 32;
+use crate::detect::config::{MOST_INSTANTS, Tuning};
 
 /// Mean of the largest statistic of the bank in white noise, as the test below measures it.
 const WHITE_LEVEL: f32 = 1.8;
@@ -21,6 +18,8 @@ const LEVEL_TIME: f32 = 0.2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Release {
     period: f32,
+    instants: usize,
+    /// Samples from one to the next.
     stride: u16,
     threshold: f32,
     gravity: f32,
@@ -38,7 +37,7 @@ struct Candidate {
 /// The bank.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ReleaseBank {
-    candidates: [Candidate; CANDIDATES],
+    candidates: [Candidate; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
     next: usize,
@@ -71,7 +70,8 @@ impl Release {
         let horizon = tuning.release_horizon * sample_rate;
         Self {
             period: 1.0 / sample_rate,
-            stride: (horizon / CANDIDATES as f32).max(1.0) as u16,
+            instants: usize::from(tuning.release_instants),
+            stride: (horizon / f32::from(tuning.release_instants)).max(1.0) as u16,
             threshold,
             gravity,
             memory: LEVEL_TIME * sample_rate,
@@ -92,7 +92,11 @@ impl Release {
                 *slot = Candidate::default();
             }
             bank.live = bank.live.max(bank.next + 1);
-            bank.next = (bank.next + 1) % CANDIDATES;
+            bank.next = if bank.next + 1 < self.instants {
+                bank.next + 1
+            } else {
+                0
+            };
         }
         bank.wait -= 1;
         let scale = 0.5 / variance;
