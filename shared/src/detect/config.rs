@@ -81,7 +81,7 @@ impl Default for Tuning {
             arming_time: 0.14,
             release_horizon: 4e-3,
             release_instants: 16,
-            impact_horizon: 1.5e-3,
+            impact_horizon: 0.8e-3,
             impact_instants: 16,
             confirm_travel: 0.17,
             catch_time: 5e-3,
