@@ -219,3 +219,63 @@ fn lift_offs_are_found() {
         assert!(outcome.truth.lift_offs.len() >= 2);
     }
 }
+
+/// What the instants of the banks buy, over drops of the rig.
+#[derive(Debug)]
+struct Bought {
+    /// s.
+    fall: f64,
+    impact: f64,
+    /// Samples.
+    onset: f64,
+    missed: usize,
+}
+
+fn bought(rate: f64, instants: u8, seeds: std::ops::Range<u64>) -> Bought {
+    let (mut falls, mut impacts, mut onsets, mut missed) = (vec![], vec![], vec![], 0);
+    for seed in seeds {
+        let mut scene = Scene::load("rig").expect("built-in scene");
+        scene.run.sample_rate = rate;
+        scene.run.seed = seed;
+        scene.detector.release_instants = instants;
+        scene.detector.impact_instants = instants;
+        let (outcome, matches) = watched(&scene);
+        let fall = matches.of_kind(EventKind::FreeFall).next();
+        falls.push(fall.and_then(|it| it.latency_s).unwrap_or(f64::INFINITY));
+        let clear = |speed: f64| 1.8 * speed >= 0.018;
+        for (impact, event) in (outcome.truth.impacts.iter())
+            .zip(matches.of_kind(EventKind::Impact))
+            .filter(|(impact, _)| clear(impact.normal_speed))
+        {
+            missed += usize::from(event.detected.is_none());
+            impacts.push(event.latency_s.unwrap_or(f64::INFINITY));
+            onsets.extend(event.onset_error_s.map(|error| error.abs() * rate));
+        }
+    }
+    Bought {
+        fall: median(falls),
+        impact: median(impacts),
+        onset: median(onsets),
+        missed,
+    }
+}
+
+#[test]
+fn twice_the_instants_find_nothing_sooner() {
+    let [half, all] = [16, 32].map(|instants| bought(20_000.0, instants, 0..20));
+    println!("{half:?} {all:?}");
+    // A quarter of a sample: the median over 20 seeds of falls that are declared on whole samples.
+    assert!(half.fall <= all.fall + 0.25 / 20_000.0, "{half:?} {all:?}");
+    assert!(half.impact <= 1.05 * all.impact, "{half:?} {all:?}");
+    assert!(half.missed <= all.missed, "{half:?} {all:?}");
+}
+
+#[test]
+#[ignore = "hundreds of drops: the figures of docs/timing.md"]
+fn instants_against_latency() {
+    for rate in RATES {
+        for instants in [32, 24, 16, 12, 8, 6, 4] {
+            println!("{rate} {instants} {:?}", bought(rate, instants, 0..100));
+        }
+    }
+}

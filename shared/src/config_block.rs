@@ -13,7 +13,7 @@ use crate::error::ConfigError;
 use crate::monitor::{Monitor, MonitorConfig};
 
 /// First bytes of a block; the last is the version.
-pub const MAGIC: [u8; 4] = *b"TDC\x01";
+pub const MAGIC: [u8; 4] = *b"TDC\x02";
 /// Most bytes of a block.
 pub const BLOCK_BYTES: usize = 384;
 const HEAD: usize = MAGIC.len() + 2;

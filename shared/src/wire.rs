@@ -12,9 +12,9 @@ use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use crate::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x03";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x04";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x03";
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x04";
 /// Bytes of a sample record.
 pub const SAMPLE_BYTES: usize = 20;
 /// Bytes of a notice record.

@@ -3,6 +3,9 @@
 use crate::error::ConfigError;
 use crate::scales::{not_negative, positive};
 
+/// Most instants that a test's bank has room for.
+pub(crate) const MOST_INSTANTS: usize = 32;
+
 /// The machine, as far as the detector needs it; SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -40,8 +43,12 @@ pub struct Tuning {
     /// Longest fall that is searched for, s. A fall is found after about
     /// (20 d^2 sigma^2/(g^2 rate))^(1/5), 1.5 ms at 3 um and 10 kHz.
     pub release_horizon: f32,
+    /// Instants in that time at which it may have begun, 4 to 32.
+    pub release_instants: u8,
     /// Longest time since a velocity jump that is searched for, s.
     pub impact_horizon: f32,
+    /// Instants in that time at which it may have been, 4 to 32.
+    pub impact_instants: u8,
     /// Way from the levitated position beyond which no caught disturbance goes, as a part of the
     /// clearance: confirms a fall.
     pub confirm_travel: f32,
@@ -73,7 +80,9 @@ impl Default for Tuning {
             false_alarm: 1e-11,
             arming_time: 0.14,
             release_horizon: 4e-3,
-            impact_horizon: 1.5e-3,
+            release_instants: 16,
+            impact_horizon: 0.8e-3,
+            impact_instants: 16,
             confirm_travel: 0.17,
             catch_time: 5e-3,
             wall_tolerance: 0.07,
@@ -151,6 +160,14 @@ impl Tuning {
             ("still_time", self.still_time),
         ] {
             positive(name, value)?;
+        }
+        for (name, instants) in [
+            ("release_instants", self.release_instants),
+            ("impact_instants", self.impact_instants),
+        ] {
+            if !(4..=MOST_INSTANTS as u8).contains(&instants) {
+                return Err(ConfigError::OutOfRange(name, "4 to 32"));
+            }
         }
         not_negative("friction_error", self.friction_error)?;
         not_negative("restitution_error", self.restitution_error)?;

@@ -4,18 +4,18 @@
 //! For each instant the bank follows what a unit jump there would have done to the filter's error,
 //! so the test knows that the filter has begun to follow the jump.
 
-use crate::detect::config::Tuning;
+use crate::detect::config::{MOST_INSTANTS, Tuning};
 use crate::detect::track::Innovation;
 
 /// Standard deviation of a value that lies anywhere in a span of 1.
 const UNIFORM: f32 = 0.288_675_13;
-/// Instants in the bank.
-const CANDIDATES: usize = 32;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JumpTest {
     period: f32,
+    instants: usize,
+    /// Samples from one to the next.
     stride: u16,
     threshold: f32,
 }
@@ -33,7 +33,7 @@ struct Candidate {
 /// The bank.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct JumpBank {
-    candidates: [Candidate; CANDIDATES],
+    candidates: [Candidate; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
     next: usize,
@@ -108,7 +108,8 @@ impl JumpTest {
         let horizon = tuning.impact_horizon * sample_rate;
         Self {
             period: 1.0 / sample_rate,
-            stride: (horizon / CANDIDATES as f32).max(1.0) as u16,
+            instants: usize::from(tuning.impact_instants),
+            stride: (horizon / f32::from(tuning.impact_instants)).max(1.0) as u16,
             threshold,
         }
     }
@@ -149,7 +150,11 @@ impl JumpTest {
                 };
             }
             bank.live = bank.live.max(bank.next + 1);
-            bank.next = (bank.next + 1) % CANDIDATES;
+            bank.next = if bank.next + 1 < self.instants {
+                bank.next + 1
+            } else {
+                0
+            };
         }
         bank.wait -= 1;
     }
@@ -209,12 +214,12 @@ impl JumpTest {
         let found = bank.candidates().get(index).copied().unwrap_or_default();
         // The peak between neighbouring instants, by a parabola through the three.
         let neighbour = |step: usize| {
-            let at = (index + step) % CANDIDATES;
+            let at = (index + step) % self.instants;
             let near = bank.candidates().get(at)?;
             let apart = (near.age - found.age).abs();
             (apart == f32::from(self.stride)).then(|| near.statistic(inward))
         };
-        let shift = match (neighbour(CANDIDATES - 1), neighbour(1)) {
+        let shift = match (neighbour(self.instants - 1), neighbour(1)) {
             (Some(older), Some(younger)) => {
                 let bend = older - 2.0 * found.statistic(inward) + younger;
                 if bend < 0.0 {

@@ -7,11 +7,8 @@
 //! What a healthy machine does is no white noise: an unbalance orbit, runout or hum raise the statistic
 //! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
 
-use crate::detect::config::Tuning;
+use crate::detect::config::{MOST_INSTANTS, Tuning};
 use crate::real::sqrt;
-
-/// Instants in the bank.
-const CANDIDATES: usize = 32;
 
 /// Mean of the largest statistic of the bank in white noise, as the test below measures it.
 const WHITE_LEVEL: f32 = 1.8;
@@ -25,6 +22,8 @@ const LEVEL_TIME: f32 = 0.2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Release {
     period: f32,
+    instants: usize,
+    /// Samples from one to the next.
     stride: u16,
     threshold: f32,
     gravity: f32,
@@ -42,7 +41,7 @@ struct Candidate {
 /// The bank.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ReleaseBank {
-    candidates: [Candidate; CANDIDATES],
+    candidates: [Candidate; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
     next: usize,
@@ -75,7 +74,8 @@ impl Release {
         let horizon = tuning.release_horizon * sample_rate;
         Self {
             period: 1.0 / sample_rate,
-            stride: (horizon / CANDIDATES as f32).max(1.0) as u16,
+            instants: usize::from(tuning.release_instants),
+            stride: (horizon / f32::from(tuning.release_instants)).max(1.0) as u16,
             threshold,
             gravity,
             memory: LEVEL_TIME * sample_rate,
@@ -96,7 +96,11 @@ impl Release {
                 *slot = Candidate::default();
             }
             bank.live = bank.live.max(bank.next + 1);
-            bank.next = (bank.next + 1) % CANDIDATES;
+            bank.next = if bank.next + 1 < self.instants {
+                bank.next + 1
+            } else {
+                0
+            };
         }
         bank.wait -= 1;
         let loudness = (bank.level / WHITE_LEVEL).max(1.0);

@@ -32,6 +32,8 @@ pub(super) struct Scene {
     friction: f64,
     /// An inner ring that is watched.
     ring: bool,
+    /// Instants of each bank, where not the default.
+    instants: Option<u8>,
     /// Sensors that fail.
     fail: fn(u32, &mut Sample),
 }
@@ -47,6 +49,7 @@ const FLOATING: Scene = Scene {
     kick: [0.0; PLANES],
     friction: 0.1,
     ring: false,
+    instants: None,
     fail: |_, _| {},
 };
 const TURNING: Scene = Scene {
@@ -64,7 +67,7 @@ const DROP: Scene = Scene {
 };
 
 /// The streams, those that typical ticks are taken from first.
-pub(super) const SCENES: [Scene; 13] = [
+pub(super) const SCENES: [Scene; 14] = [
     FLOATING,
     TURNING,
     Scene {
@@ -77,6 +80,11 @@ pub(super) const SCENES: [Scene; 13] = [
         name: "drop without orbit, speed unknown",
         speed_known: false,
         orbit: 0.0,
+        ..DROP
+    },
+    Scene {
+        name: "drop, 8 instants",
+        instants: Some(8),
         ..DROP
     },
     Scene {
@@ -149,8 +157,17 @@ impl Scene {
                 edge_error: 0.01,
                 window: 0.005,
             }),
-            ..default_config()
+            ..self.of_instants()
         }
+    }
+
+    fn of_instants(&self) -> MonitorConfig {
+        let mut config = default_config();
+        if let Some(instants) = self.instants {
+            config.detector.tuning.release_instants = instants;
+            config.detector.tuning.impact_instants = instants;
+        }
+        config
     }
 
     /// Calls `take` with every sample.
