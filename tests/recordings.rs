@@ -265,15 +265,11 @@ fn channels_of_comtrade_are_mapped_and_missing_values_are_none() {
     let names = cfg("ASCII", "1999", "1\r\n20000,2000\r\n")
         .replace(",ax,", ",X1,")
         .replace(",ay,", ",Y1,");
-    let data: String = (1..=2000)
-        .map(|k| {
-            format!(
-                "{k},{},{},0,0,0,1\r\n",
-                50 * (k - 1),
-                if k == 700 { "99999" } else { "1" }
-            )
-        })
-        .collect();
+    let mut data = String::new();
+    for (number, stamp, [a, b, ..]) in counts().take(2000) {
+        let a = if number == 700 { 99_999 } else { i32::from(a) };
+        data += &format!("{number},{stamp},{a},{b},0,0,1\r\n");
+    }
     let mapping = "[ax]\ncolumn = 'X1'\n[ay]\ncolumn = 'Y1'\n[levitated]\ncolumn = 'on'\n";
     let folder = folder(&[
         ("r.cfg", names.as_bytes()),
@@ -307,10 +303,13 @@ fn retimed(time: impl Fn(usize, f64) -> Option<f64>) -> String {
 
 #[test]
 fn uneven_rows_are_told_and_resampled_only_when_asked() {
-    // 7 us of jitter at most, and 60 rows missing at 0.05 s before the release.
-    let jitter = |index: usize| ((index as f64 * 12.9898).sin() * 43_758.545).fract() * 7e-6;
+    // Up to 7 us late in every second row, and 60 rows missing at 0.05 s before the release.
+    let late = |index: usize| {
+        let random = (index as f64 * 12.9898).sin() * 43_758.545;
+        7e-6 * random.fract().abs() * (index % 2) as f64
+    };
     let uneven =
-        retimed(|index, time| (!(3000..3060).contains(&index)).then_some(time + jitter(index)));
+        retimed(|index, time| (!(3000..3060).contains(&index)).then_some(time + late(index)));
     let folder = folder(&[("u.csv", uneven.as_bytes())]);
     let error = touchdown(folder.path())
         .args(["replay", "u.csv", "--scene", "rig"])

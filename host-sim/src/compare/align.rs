@@ -95,6 +95,9 @@ fn fit(excerpts: &[Excerpt; 2], onset: f64, shift: f64, channels: usize) -> f64 
     let Some((least, at)) = tried.min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return shift;
     };
+    if least == 0.0 {
+        return at;
+    }
     // Between samples: the lowest point of the parabola through it and its neighbours.
     let (Some(before), Some(after)) = (error(at - period), error(at + period)) else {
         return at;

@@ -9,8 +9,10 @@ const LOOK_AHEAD: usize = 4096;
 /// An interval longer than so many usual ones is a gap: what was between is not known.
 const GAP: f64 = 3.5;
 
+/// Most samples that are made of one row.
+const FINEST: f64 = 10.0;
 /// A longer gap is between two recordings, s.
-const LONGEST_GAP: f64 = 3600.0;
+const LONGEST_GAP: f64 = 60.0;
 
 /// Rows at a rate of choice.
 pub struct Resampled<I> {
@@ -62,6 +64,13 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
             let rule = "one row alone has no sample rate";
             return Err(InputError::at_line(file, from.line, rule));
         }
+        if rate * resampled.usual > FINEST {
+            let rule = format!(
+                "most rows are {:.3e} s apart: at {rate} Hz that is more than {FINEST} samples a row, most of them made up",
+                resampled.usual
+            );
+            return Err(InputError::of_file(file, rule));
+        }
         Ok(resampled)
     }
 
@@ -89,7 +98,7 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
         }
         if time - last > LONGEST_GAP {
             let rule = format!(
-                "{last} s is followed by {time} s: a gap of more than an hour is between two recordings"
+                "{last} s is followed by {time} s: a gap of more than a minute is between two recordings"
             );
             return Err(InputError::at_line(&self.file, next.line, rule));
         }
