@@ -14,6 +14,7 @@ use crate::progress::Progress;
 use crate::rings::Histories;
 use crate::scene::Scene;
 use crate::sensors::{Faults, Motion, Sensors, SensorsState};
+use crate::spectrogram::{Analyser, Spectrogram};
 use crate::stream::{Columns, StreamWriter, to_row};
 use crate::target::Target;
 use crate::trace::Trace;
@@ -35,7 +36,7 @@ pub fn run<W: Write>(
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
     let answer = target.run(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
-    let (truth, trace, stream) = feed.finish();
+    let (truth, trace, spectrogram, stream) = feed.finish();
     let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
         model: histories.whole,
@@ -44,6 +45,7 @@ pub fn run<W: Write>(
         ring,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
+        spectrogram,
         detection: detection(&answer, timebase),
     };
     Ok((outcome, stream))
@@ -58,6 +60,7 @@ struct Feed<'a, W> {
     faults: Faults,
     sensing: Sensing,
     trace: Trace,
+    analyser: Analyser,
     stream: Option<io::Result<StreamWriter<W>>>,
     progress: Progress,
     /// Samples before the release.
@@ -89,6 +92,7 @@ impl<'a, W: Write> Feed<'a, W> {
             faults: Faults::new(&scene.faults, &scene.sensors),
             sensing: Sensing::try_new(&scene.sensors.sensing())?,
             trace: Trace::default(),
+            analyser: Analyser::new(scene.run.sample_rate),
             stream: stream.map(|out| StreamWriter::new(out, columns)),
             progress: Progress::new("drop", samples),
             levitated,
@@ -97,12 +101,25 @@ impl<'a, W: Write> Feed<'a, W> {
         })
     }
 
-    fn finish(self) -> (Histories, Vec<TracePoint>, io::Result<Option<W>>) {
+    fn finish(
+        self,
+    ) -> (
+        Histories,
+        Vec<TracePoint>,
+        Spectrogram,
+        io::Result<Option<W>>,
+    ) {
         let stream = match self.stream {
             Some(stream) => stream.and_then(StreamWriter::finish).map(Some),
             None => Ok(None),
         };
-        (self.truth.finish(), self.trace.finish(), stream)
+        let spectrogram = self.analyser.finish();
+        (
+            self.truth.finish(),
+            self.trace.finish(),
+            spectrogram,
+            stream,
+        )
     }
 }
 
@@ -129,11 +146,13 @@ impl<W: Write> Iterator for Feed<'_, W> {
             .sensing
             .convert(&sample, self.scene.sensors.fitted())
             .planes;
+        let sensed = sensed.map(|plane| plane.map(f64::from));
+        self.analyser.take(time, sensed);
         self.trace.push(TracePoint {
             state: state.rotor,
             phase: state.phase,
             moving: state.moving,
-            sensed: sensed.map(|plane| plane.map(f64::from)),
+            sensed,
         });
         if let Some(Ok(stream)) = &mut self.stream {
             let row = to_row(

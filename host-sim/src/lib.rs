@@ -37,6 +37,7 @@ pub mod scene;
 pub mod score;
 pub mod sensors;
 pub mod severity_score;
+pub mod spectrogram;
 pub mod statistics;
 pub mod stream;
 pub mod sweep;

@@ -4,6 +4,7 @@
 use crate::history::{History, PhaseKind, RotorState};
 use crate::ledger::Ledger;
 use crate::model_run::RingEnd;
+use crate::spectrogram::Spectrogram;
 use crate::truth::Moving;
 use serde::Serialize;
 use touchdown_core::event::EventKind;
@@ -151,6 +152,8 @@ pub struct Outcome {
     pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.
     pub trace: Vec<TracePoint>,
+    /// Of what the sensors of plane a gave.
+    pub spectrogram: Spectrogram,
     /// The detector.
     pub detection: Detection,
 }

@@ -57,6 +57,12 @@ impl Axis {
         }
     }
 
+    /// Ends, whether it is logarithmic, and label, for the page's script.
+    pub fn range(&self) -> String {
+        let log = u8::from(self.log);
+        format!("{} {} {log} {}", self.lo, self.hi, self.label)
+    }
+
     /// 0 at the left or lower end, 1 at the other.
     pub fn fraction(&self, value: f64) -> f64 {
         let value = if self.log { value.log10() } else { value };
@@ -175,6 +181,22 @@ impl<'a> Pen<'a> {
         }
     }
 
+    /// A filled rectangle between these ends.
+    pub fn rectangle(&mut self, x: [f64; 2], y: [f64; 2]) {
+        let corners = (self.place(x[0], y[0]), self.place(x[1], y[1]));
+        if let (Some((left, low)), Some((right, high))) = corners {
+            self.path.push('M');
+            self.push((left, low));
+            let _ = write!(
+                self.path,
+                "H{}V{}H{}",
+                coordinate(right),
+                coordinate(high),
+                coordinate(left)
+            );
+        }
+    }
+
     /// Breaks the curve.
     pub fn lift(&mut self) {
         self.last = None;
@@ -223,8 +245,8 @@ impl Chart<'_> {
     /// Draws it: `behind` under the grid and `front` over the curves, both with x as percentages.
     pub fn draw(&self, behind: &Markup, curves: &Markup, front: &Markup) -> Markup {
         html! {
-            div.chart {
-                p.unit { (self.y.label) }
+            p.unit { (self.y.label) }
+            div.chart data-x=(self.x.range()) data-y=(self.y.range()) data-height=(self.height) {
                 svg role="img" width="100%" height=(self.height + 40.0) {
                     title { (self.title) }
                     desc { (self.description) }

@@ -5,6 +5,7 @@ use crate::history::{History, PhaseKind, Recorder, RotorState};
 use crate::matching::regime_event;
 use crate::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use crate::reference::{Machine, Reference, Start};
+use crate::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
 
 const RATE: f64 = 50e3;
@@ -58,7 +59,9 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     let mut recorder = Recorder::new(lead);
     let points = ((lead + subject.duration) * RATE) as usize;
     let mut trace = Vec::new();
-    for number in (0..points).step_by(points.div_ceil(6000)) {
+    let step = points.div_ceil(6000);
+    let mut analyser = Analyser::new(RATE / step as f64);
+    for number in (0..points).step_by(step) {
         let time = number as f64 / RATE - lead;
         let (state, phase) = if time < 0.0 {
             let position = held;
@@ -77,6 +80,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         let jitter = |step: f64| 1.5 * subject.noise * (number as f64 * step).sin();
         let [x, y] = state.position;
         let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
+        analyser.take(time, sensed);
         trace.push(TracePoint {
             moving: crate::truth::Moving::Nothing,
             state,
@@ -94,6 +98,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         detection: detection(&truth),
         truth,
         trace,
+        spectrogram: analyser.finish(),
     }
 }
 

@@ -1,4 +1,5 @@
-//! One self-contained HTML page for a drop: no script, nothing loaded from outside.
+//! One self-contained HTML page for a drop: nothing loaded from outside, complete without its script, which adds a
+//! cursor and a zoom to the charts.
 
 mod accuracy;
 pub(crate) mod chart;
@@ -6,12 +7,14 @@ mod displacement;
 mod energy;
 pub mod force;
 mod foresight;
+mod health;
 mod moving;
 pub(crate) mod orbit;
 mod parameters;
 mod phase_plane;
 pub(crate) mod regions;
 mod severity;
+mod spectrum;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod text;
@@ -140,10 +143,18 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
                 }
             }
         }
+        section {
+            h2 { "Full spectrum" }
+            (spectrum::full(whole, subject, outcome))
+            h3 { "Waterfall" }
+            (spectrum::waterfall(subject, outcome))
+            p.note { "Of what the sensors of plane a give, x + j y, without its mean; Hann windows. Each shade of the waterfall is 6 dB." }
+        }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
         section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
         section { h2 { "Severity" } (severity::severity(outcome)) }
+        section { h2 { "Sensors" } (health::health(outcome)) }
         section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
         @if let Some(ledger) = &outcome.ledger {
             section { h2 { "Energy" } (energy::energy(ledger)) }
@@ -188,7 +199,10 @@ pub(crate) fn page(title: &str, body: &Markup) -> Markup {
                 title { (title) }
                 style { (PreEscaped(include_str!("style.css"))) }
             }
-            body { main { (body) } }
+            body {
+                main { (body) }
+                script { (PreEscaped(include_str!("cursor.js"))) }
+            }
         }
     }
 }

@@ -55,7 +55,7 @@ pub fn timeline(title: &str, window: Window, subject: &Subject, outcome: &Outcom
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;
     html! {
-        div.chart {
+        div.chart data-x=(x.range()) data-height=(height) {
             svg role="img" width="100%" height=(height + 40.0) {
                 title { (title) }
                 desc {
