@@ -83,7 +83,7 @@ impl Doubt {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let ratio = self.farthest / self.clearance;
-        if self.samples > 0 && (ratio > FARTHEST || ratio < NEAREST) {
+        if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
             let would = |it: &&(&str, f64)| (0.2..=1.5).contains(&(ratio / it.1));
             let units = UNITS.iter().find(would);
             let units = units.map_or(String::new(), |(name, _)| format!(" ({name}?)"));

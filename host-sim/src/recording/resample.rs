@@ -14,6 +14,9 @@ const FINEST: f64 = 10.0;
 /// A longer gap is between two recordings, s.
 const LONGEST_GAP: f64 = 60.0;
 
+/// A time within this part of the usual interval of a row is that row's.
+const SAME: f64 = 1e-6;
+
 /// Rows at a rate of choice.
 pub struct Resampled<I> {
     file: String,
@@ -114,15 +117,14 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
             let Some(to) = self.to else {
                 return Ok(None);
             };
-            // The last row counts although its time may be rounded.
-            if time <= to.stamp.time + 1e-9 * self.usual {
+            if time <= to.stamp.time + SAME * self.usual {
                 break to;
             }
             let next = self.read()?;
             (self.from, self.to) = (to, next);
         };
         self.made += 1;
-        let row = between(&self.from, &to, time, GAP * self.usual);
+        let row = between(&self.from, &to, time, self.usual);
         self.empty += u64::from(row.positions[0].is_nan());
         Ok(Some(row))
     }
@@ -146,16 +148,18 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
     }
 }
 
-/// The row at `time` (s) between two rows, which are no neighbours if more than `gap` (s) apart.
-fn between(from: &Stamped, to: &Stamped, time: f64, gap: f64) -> Row {
+/// The row at `time` (s) between two rows that are `usual` (s) apart if none is missing.
+fn between(from: &Stamped, to: &Stamped, time: f64, usual: f64) -> Row {
     let length = to.stamp.time - from.stamp.time;
-    let part = ((time - from.stamp.time) / length).clamp(0.0, 1.0);
+    let at_from = time - from.stamp.time <= SAME * usual;
+    let at_to = to.stamp.time - time <= SAME * usual;
+    let part = (time - from.stamp.time) / length;
     let mix = |a: f64, b: f64| {
-        if part == 0.0 {
+        if at_from {
             a
-        } else if part == 1.0 {
+        } else if at_to {
             b
-        } else if length > gap {
+        } else if length > GAP * usual {
             f64::NAN
         } else {
             a + part * (b - a)
@@ -170,7 +174,7 @@ fn between(from: &Stamped, to: &Stamped, time: f64, gap: f64) -> Row {
     }
     let spins = from.row.spin.zip(to.row.spin);
     row.spin = spins.map(|(a, b)| mix(a, b)).filter(|it| !it.is_nan());
-    row.levitated = if part == 1.0 {
+    row.levitated = if at_to {
         to.row.levitated
     } else {
         from.row.levitated

@@ -192,7 +192,7 @@ mod tests {
     fn sensitivities_of_proximity_probes() {
         let of = |text: &str| text.parse::<Sensitivity>().map(|it| it.0);
         // 200 mV/mil is 7.874 V/mm.
-        assert!((of("200 mV/mil").unwrap() - 7874.015_748).abs() < 1e-3);
+        assert!((of("200 mV/mil").unwrap() - 7_874.015_748).abs() < 1e-3);
         assert!((of("-7.87 V/mm").unwrap() + 7870.0).abs() < 1e-9);
         for wrong in [
             "200",
