@@ -213,13 +213,15 @@ impl JumpTest {
     fn jump(&self, bank: &JumpBank, index: usize, inward: [f32; 2]) -> Jump {
         let found = bank.candidates().get(index).copied().unwrap_or_default();
         // The peak between neighbouring instants, by a parabola through the three.
-        let neighbour = |step: usize| {
-            let at = (index + step) % self.instants;
+        let last = self.instants - 1;
+        let older = if index == 0 { last } else { index - 1 };
+        let younger = if index == last { 0 } else { index + 1 };
+        let neighbour = |at: usize| {
             let near = bank.candidates().get(at)?;
             let apart = (near.age - found.age).abs();
             (apart == f32::from(self.stride)).then(|| near.statistic(inward))
         };
-        let shift = match (neighbour(self.instants - 1), neighbour(1)) {
+        let shift = match (neighbour(older), neighbour(younger)) {
             (Some(older), Some(younger)) => {
                 let bend = older - 2.0 * found.statistic(inward) + younger;
                 if bend < 0.0 {

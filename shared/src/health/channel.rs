@@ -121,8 +121,6 @@ pub(crate) enum Look {
     Loud,
     /// Far off.
     Off,
-    /// Taken already, or of a channel that is not fitted.
-    Settled,
     /// Far off, as others are: the rotor moves.
     Motion,
     /// There is none.
@@ -255,7 +253,7 @@ impl Watch {
                 it.restart();
                 return (Some(it.value), None);
             }
-            Look::Calm | Look::Loud | Look::Motion | Look::Settled => return self.sound(it),
+            Look::Calm | Look::Loud | Look::Motion => return self.sound(it),
         };
         it.sound = 0;
         let value = it.value;

@@ -114,30 +114,31 @@ impl Health {
     ) -> Reading {
         let floats = phases == [Phase::Levitated; PLANES];
         let mut reading = Reading::default();
-        let mut looks = [Look::Settled; CHANNELS];
-        let mut loud = 0;
-        let mut calm = true;
+        let usable = self.fitted & sample.valid;
         let mut counts = [None; CHANNELS];
+        let (mut bit, mut others, mut loud) = (1, 0, 0);
         let channels = state.channels.iter_mut().zip(&sample.counts);
-        let seen = channels.zip(looks.iter_mut().zip(&mut counts));
-        for (index, ((it, count), (look, slot))) in seen.enumerate() {
-            if self.fitted & (1 << index) == 0 {
-                continue;
-            }
-            let count = Some(*count).filter(|_| sample.is_valid(index));
-            if let Some((value, is_loud)) =
-                count.and_then(|count| self.watch.glance(it, count, floats))
+        for ((it, count), slot) in channels.zip(&mut counts) {
+            if usable & bit != 0
+                && let Some((value, is_loud)) = self.watch.glance(it, *count, floats)
             {
                 *slot = Some(value);
                 loud += u8::from(is_loud);
             } else {
-                *look = self.watch.look(it, count, floats);
-                loud += u8::from(matches!(look, Look::Loud | Look::Off));
-                calm = false;
+                others |= bit;
             }
+            bit <<= 1;
         }
-        if !calm {
-            self.sort_out(state, looks, loud, floats, &mut counts, &mut reading);
+        others &= self.fitted;
+        if others != 0 {
+            self.sort_out(
+                state,
+                sample,
+                (others, loud),
+                floats,
+                &mut counts,
+                &mut reading,
+            );
         }
         reading.planes = sensing.place(counts);
         // One channel a tick.
@@ -159,26 +160,38 @@ impl Health {
         reading
     }
 
-    /// Of channels whose sample is not as foreseen: which values can be used.
+    /// Of the channels (one bit each) whose sample is not as foreseen: which values can be used. So many of the
+    /// others are loud.
+    #[inline(never)]
     fn sort_out(
         &self,
         state: &mut HealthState,
-        looks: [Look; CHANNELS],
-        loud: u8,
+        sample: &Sample,
+        (others, mut loud): (u8, u8),
         floats: bool,
         counts: &mut [Option<f32>; CHANNELS],
         reading: &mut Reading,
     ) {
-        let spare = state.spare();
+        let mut looks = [None; CHANNELS];
+        let channels = state.channels.iter_mut().zip(&sample.counts);
+        for (index, ((it, count), slot)) in channels.zip(&mut looks).enumerate() {
+            if others & (1 << index) != 0 {
+                let count = Some(*count).filter(|_| sample.is_valid(index));
+                let look = self.watch.look(it, count, floats);
+                loud += u8::from(matches!(look, Look::Loud | Look::Off));
+                *slot = Some(look);
+            }
+        }
+        let [of_a, of_b] = state.spare();
         let channels = state.channels.iter_mut().zip(looks);
         let slots = counts.iter_mut().zip(&mut reading.found);
         for (index, ((it, look), (slot, found))) in channels.zip(slots).enumerate() {
-            if look == Look::Settled {
+            let Some(look) = look else {
                 continue;
-            }
+            };
             let moved = look == Look::Off && loud > 1;
             let look = if moved { Look::Motion } else { look };
-            let spare = self.fitted == 0b1111 && spare[1 - index / 2];
+            let spare = self.fitted == 0b1111 && if index < 2 { of_b } else { of_a };
             (*slot, *found) = self.watch.take(it, look, floats, spare);
             if !it.is_own() {
                 reading.unusable |= 1 << index;
@@ -214,7 +227,8 @@ impl Health {
                 }
                 Place::Beyond(axis) => (usize::from(axis), FaultKind::Gain),
             };
-            let spare = self.fitted == 0b1111 && state.spare()[1 - index];
+            let [of_a, of_b] = state.spare();
+            let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
         }
         if phases != [Phase::Levitated; PLANES] {

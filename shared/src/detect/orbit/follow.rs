@@ -188,10 +188,12 @@ impl Orbit {
 
     fn waves(&self) -> Waves {
         let mut next = [1.0, 0.0];
-        [(); HARMONICS].map(|()| {
+        let mut waves = [next; HARMONICS];
+        for wave in &mut waves {
             next = product(next, self.angle);
-            next
-        })
+            *wave = next;
+        }
+        waves
     }
 
     fn hasten(&mut self, change: f32) {
