@@ -33,8 +33,8 @@ pub fn run<W: Write>(
         ring,
     } = model_run::run(scene).map_err(refused)?;
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
-    let answer = target.run(&scene.monitor_config(), &mut feed)?;
-    let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
+    let (answer, conduct) = target.control(&scene.monitor_config(), &mut feed)?;
+    let timebase = Timebase::of(scene);
     let (truth, trace, stream) = feed.finish();
     let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
@@ -45,6 +45,7 @@ pub fn run<W: Write>(
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         detection: detection(&answer, timebase),
+        conduct,
     };
     Ok((outcome, stream))
 }

@@ -1,6 +1,8 @@
 //! Desktop simulator, replay and report of the touchdown monitor.
 
 pub mod cli;
+pub mod conduct;
+pub mod controller_run;
 pub mod detection;
 pub mod drop;
 pub mod drop_log;

@@ -6,20 +6,28 @@ use touchdown_core::event::Notice;
 use touchdown_core::link::{Device, Log, Refusal, Server, State};
 
 use super::FileLog;
+use super::settings::SettingsFile;
 use crate::app::App;
 use crate::board::STATE_SAMPLES;
 use crate::board::serial::Serial;
+
+/// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
+/// has been taken.
+const IDLE_POLLS: u32 = 500;
 
 /// The line and who serves it.
 pub struct Line {
     serial: Serial,
     server: Server,
     told: u64,
+    rate: f32,
+    settings: Option<SettingsFile>,
+    wants_restart: bool,
 }
 
 impl Line {
-    /// Says `sample_rate` (Hz) to who asks.
-    pub fn new(sample_rate: f32) -> Self {
+    /// Says `sample_rate` (Hz) to who asks, and keeps the configuration in `settings`.
+    pub fn new(sample_rate: f32, settings: Option<SettingsFile>) -> Self {
         // SAFETY: called once, and nobody else takes them.
         let chip = unsafe { Peripherals::steal() };
         Self {
@@ -27,7 +35,20 @@ impl Line {
             serial: Serial::new(chip.USART1, 16),
             server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate),
             told: 0,
+            rate: sample_rate,
+            settings,
+            wants_restart: false,
         }
+    }
+
+    /// Whether it is served even when no sample is left.
+    pub fn stays(&self) -> bool {
+        self.settings.is_some()
+    }
+
+    /// Whether a configuration was stored and waits for a start.
+    pub fn wants_restart(&self) -> bool {
+        self.wants_restart
     }
 
     /// Queues a notice.
@@ -38,19 +59,28 @@ impl Line {
 
     /// Takes what has come, and sends until nothing is left.
     pub fn serve(&mut self, app: &mut App, block: &Block, log: &mut Option<FileLog>) {
-        let mut remote = Remote { app, block, log };
+        let mut remote = Remote {
+            app,
+            block,
+            log,
+            rate: self.rate,
+            settings: self.settings.as_ref(),
+            wants_restart: &mut self.wants_restart,
+        };
         if remote.app.state().samples() >= self.told + STATE_SAMPLES {
             self.told = remote.app.state().samples();
             let frame = self.server.state(&mut remote);
             frame.iter().for_each(|it| self.serial.send(it));
         }
-        loop {
-            let came = self.serial.poll();
-            let answer = came.and_then(|byte| self.server.take(byte, &mut remote));
+        let mut idle = 0;
+        while idle < IDLE_POLLS || !self.serial.is_done() {
+            idle += 1;
+            let Some(byte) = self.serial.poll() else {
+                continue;
+            };
+            idle = 0;
+            let answer = self.server.take(byte, &mut remote);
             answer.iter().for_each(|it| self.serial.send(it));
-            if came.is_none() && self.serial.is_done() {
-                return;
-            }
         }
     }
 }
@@ -59,6 +89,9 @@ struct Remote<'a> {
     app: &'a mut App,
     block: &'a Block,
     log: &'a mut Option<FileLog>,
+    rate: f32,
+    settings: Option<&'a SettingsFile>,
+    wants_restart: &'a mut bool,
 }
 
 impl Device for Remote<'_> {
@@ -71,9 +104,16 @@ impl Device for Remote<'_> {
         self.block.clone()
     }
 
-    fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
+    fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
+        // The samples come at one rate.
+        let [now, asked] = [self.rate, settings.monitor.detector.sample_rate];
+        if now != asked {
+            return Err(Refusal::parameter("sample_rate"));
+        }
         self.app.may_restart()?;
-        Err(Refusal::NoStore)
+        self.settings.ok_or(Refusal::NoStore)?.store(block)?;
+        *self.wants_restart = true;
+        Ok(())
     }
 
     fn clear(&mut self) -> Result<(), Refusal> {
