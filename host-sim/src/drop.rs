@@ -152,7 +152,7 @@ impl<W: Write> Iterator for Feed<'_, W> {
 }
 
 /// Angles of inner ring and cage since the release, rad.
-fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
+pub(crate) fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
     let Moving::Ring { race_angle, .. } = moving else {
         return None;
     };

@@ -32,6 +32,8 @@ pub mod reference;
 pub mod regions;
 pub mod replay;
 pub mod report;
+#[cfg(unix)]
+pub mod rig;
 pub mod rings;
 pub mod scene;
 pub mod score;

@@ -8,8 +8,8 @@ use touchdown_core::link::{Decoder, Hello, Received, Refusal, Reply, Request, St
 
 /// How long an answer may take before the request is sent again.
 const PATIENCE: Duration = Duration::from_millis(200);
-/// Requests before it is given up: 5 s.
-const TRIES: u32 = 25;
+/// Requests before it is given up: 30 s, for an emulator on a busy desktop.
+const TRIES: u32 = 150;
 
 /// Why there is no answer.
 #[derive(Debug, thiserror::Error)]

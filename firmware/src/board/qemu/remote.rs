@@ -1,5 +1,8 @@
 //! The link of the emulator: USART1, which QEMU connects to what `-serial` names.
 
+use core::time::Duration;
+
+use semihosting::experimental::time::Instant;
 use stm32f4::stm32f405::Peripherals;
 use touchdown_core::config_block::{Block, Settings};
 use touchdown_core::event::Notice;
@@ -13,7 +16,11 @@ use crate::board::serial::Serial;
 
 /// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
 /// has been taken.
-const IDLE_POLLS: u32 = 500;
+const IDLE_POLLS: u32 = 50;
+/// Instructions between two looks: QEMU moves bytes while the core does not ask for them.
+const PAUSE: u32 = 5_000;
+/// Without a byte for so long, and without samples, nobody is there any more.
+const DESERTED: Duration = Duration::from_secs(10);
 
 /// The line and who serves it.
 pub struct Line {
@@ -23,6 +30,8 @@ pub struct Line {
     rate: f32,
     settings: Option<SettingsFile>,
     wants_restart: bool,
+    heard: bool,
+    since: Option<Instant>,
 }
 
 impl Line {
@@ -38,12 +47,18 @@ impl Line {
             rate: sample_rate,
             settings,
             wants_restart: false,
+            heard: false,
+            since: None,
         }
     }
 
-    /// Whether it is served even when no sample is left.
-    pub fn stays(&self) -> bool {
-        self.settings.is_some()
+    /// Whether it is served even when no sample is left: where a configuration is kept, until nobody has
+    /// said anything for [`DESERTED`]. A desktop that was killed leaves nothing behind.
+    pub fn stays(&mut self) -> bool {
+        if core::mem::take(&mut self.heard) || self.since.is_none() {
+            self.since = Some(Instant::now());
+        }
+        self.settings.is_some() && self.since.is_none_or(|it| it.elapsed() < DESERTED)
     }
 
     /// Whether a configuration was stored and waits for a start.
@@ -74,11 +89,18 @@ impl Line {
         }
         let mut idle = 0;
         while idle < IDLE_POLLS || !self.serial.is_done() {
-            idle += 1;
             let Some(byte) = self.serial.poll() else {
+                // Where nothing is kept, nobody is on the line: not worth a wait.
+                idle += if self.settings.is_some() {
+                    cortex_m::asm::delay(PAUSE);
+                    1
+                } else {
+                    IDLE_POLLS
+                };
                 continue;
             };
             idle = 0;
+            self.heard = true;
             let answer = self.server.take(byte, &mut remote);
             answer.iter().for_each(|it| self.serial.send(it));
         }
