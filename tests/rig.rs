@@ -28,7 +28,7 @@ use touchdown_sim::target::Target;
 /// One rig at a time: each takes a whole core.
 static BENCH: Mutex<()> = Mutex::new(());
 /// Far more than anything here takes.
-const LONG: Duration = Duration::from_secs(60);
+const LONG: Duration = Duration::from_secs(120);
 
 fn started(scene: &str, folder: &Path, noise: f64) -> Rig {
     let scene = Scene::load(scene).expect("built-in scene");

@@ -56,9 +56,10 @@ impl Talk {
 
     /// Asks until there is an answer.
     pub fn ask(&mut self, request: &Request) -> Result<Reply, TalkError> {
+        // Of all tries: the answer to an earlier one is as good.
+        self.sequence = self.sequence.wrapping_add(1);
         for attempt in 0..TRIES {
             self.repeated += u32::from(attempt > 0);
-            self.sequence = self.sequence.wrapping_add(1);
             let frame = encode(self.sequence, request).expect("a request fits a frame");
             // The zero before it ends what noise began.
             self.line.write_all(&[0])?;

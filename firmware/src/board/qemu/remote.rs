@@ -88,15 +88,17 @@ impl Line {
             frame.iter().for_each(|it| self.serial.send(it));
         }
         let mut idle = 0;
-        while idle < IDLE_POLLS || !self.serial.is_done() {
+        while idle < IDLE_POLLS {
             let Some(byte) = self.serial.poll() else {
-                // Where nothing is kept, nobody is on the line: not worth a wait.
-                idle += if self.settings.is_some() {
-                    cortex_m::asm::delay(PAUSE);
-                    1
-                } else {
-                    IDLE_POLLS
-                };
+                if self.serial.is_done() {
+                    // Where nothing is kept, nobody is on the line: not worth a wait.
+                    idle += if self.settings.is_some() {
+                        cortex_m::asm::delay(PAUSE);
+                        1
+                    } else {
+                        IDLE_POLLS
+                    };
+                }
                 continue;
             };
             idle = 0;
