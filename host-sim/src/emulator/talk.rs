@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 
 use touchdown_core::link::{Decoder, Hello, Received, Refusal, Reply, Request, State, encode};
 
-/// How long an answer may take before the request is sent again.
+/// How long an answer may take before the request is sent again; then twice as long, up to the longest.
 const PATIENCE: Duration = Duration::from_millis(200);
-/// Requests before it is given up: 30 s, for an emulator on a busy desktop.
-const TRIES: u32 = 150;
+const LONGEST: Duration = Duration::from_secs(2);
+/// Requests before it is given up: 35 s, for an emulator on a busy desktop.
+const TRIES: u32 = 20;
 
 /// Why there is no answer.
 #[derive(Debug, thiserror::Error)]
@@ -58,6 +59,7 @@ impl Talk {
     pub fn ask(&mut self, request: &Request) -> Result<Reply, TalkError> {
         // Of all tries: the answer to an earlier one is as good.
         self.sequence = self.sequence.wrapping_add(1);
+        let mut patience = PATIENCE;
         for attempt in 0..TRIES {
             self.repeated += u32::from(attempt > 0);
             let frame = encode(self.sequence, request).expect("a request fits a frame");
@@ -65,14 +67,20 @@ impl Talk {
             self.line.write_all(&[0])?;
             self.line.write_all(&frame)?;
             let sent = Instant::now();
-            while sent.elapsed() < PATIENCE {
+            while sent.elapsed() < patience {
+                let mut answer = None;
                 for Received { sequence, message } in self.listen()? {
                     if sequence == self.sequence && answers(&message, request) {
-                        return Ok(message);
+                        answer = Some(message);
+                    } else {
+                        self.heard.push(message);
                     }
-                    self.heard.push(message);
+                }
+                if let Some(answer) = answer {
+                    return Ok(answer);
                 }
             }
+            patience = LONGEST.min(2 * patience);
         }
         Err(TalkError::Silent)
     }

@@ -17,6 +17,8 @@ use crate::board::serial::Serial;
 /// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
 /// has been taken.
 const IDLE_POLLS: u32 = 50;
+/// The same in the middle of a frame: on a busy desktop a byte takes long.
+const FRAME_POLLS: u32 = 5_000;
 /// Instructions between two looks: QEMU moves bytes while the core does not ask for them.
 const PAUSE: u32 = 5_000;
 /// Without a byte for so long, and without samples, nobody is there any more.
@@ -87,8 +89,8 @@ impl Line {
             let frame = self.server.state(&mut remote);
             frame.iter().for_each(|it| self.serial.send(it));
         }
-        let mut idle = 0;
-        while idle < IDLE_POLLS {
+        let (mut idle, mut polls) = (0, IDLE_POLLS);
+        while idle < polls {
             let Some(byte) = self.serial.poll() else {
                 if self.serial.is_done() {
                     // Where nothing is kept, nobody is on the line: not worth a wait.
@@ -96,13 +98,14 @@ impl Line {
                         cortex_m::asm::delay(PAUSE);
                         1
                     } else {
-                        IDLE_POLLS
+                        polls
                     };
                 }
                 continue;
             };
             idle = 0;
             self.heard = true;
+            polls = if byte == 0 { IDLE_POLLS } else { FRAME_POLLS };
             let answer = self.server.take(byte, &mut remote);
             answer.iter().for_each(|it| self.serial.send(it));
         }
