@@ -42,7 +42,7 @@ impl Memory {
 }
 
 #[inline(never)]
-fn application<'a>(
+pub(crate) fn application<'a>(
     place: &'a mut MaybeUninit<App>,
     config: &MonitorConfig,
     found: Faults,

@@ -7,7 +7,7 @@ mod image {
     use defmt_semihosting as _;
     use panic_probe as _;
     use stm32f4 as _;
-    use touchdown_firmware::{board::qemu, count, recorder::Memory};
+    use touchdown_firmware::{board::qemu, count, count::tick::Memory};
 
     #[entry]
     fn main() -> ! {

@@ -7,6 +7,7 @@
 mod scenes;
 
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
 use semihosting::fs::File;
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
@@ -17,7 +18,8 @@ use self::scenes::{SCENES, Scene};
 use super::{Counter, Table, Tally};
 use crate::app::App;
 use crate::board::Board;
-use crate::recorder::{Identity, Memory, Recorder};
+use crate::memory;
+use crate::recorder::{self, Identity, Recorder};
 
 const PARTS: [&str; 6] = [
     "sensing and health",
@@ -27,6 +29,20 @@ const PARTS: [&str; 6] = [
     "recorder",
     "outputs",
 ];
+
+/// Places of the samples and of the application, for a static: the stack has no room for them.
+pub struct Memory {
+    samples: recorder::Memory,
+    app: MaybeUninit<App>,
+}
+
+impl Memory {
+    /// Nothing in its place yet.
+    pub const EMPTY: Self = Self {
+        samples: recorder::Memory::EMPTY,
+        app: MaybeUninit::uninit(),
+    };
+}
 
 /// Counts everything and exits the emulator.
 pub fn main(memory: &'static mut Memory) -> ! {
@@ -51,11 +67,12 @@ pub fn main(memory: &'static mut Memory) -> ! {
     semihosting::process::exit(0)
 }
 
-// Frames of their own, here and below: there is room for one application on the stack and a half.
+// Frames of their own, here and below: the recorders of both do not fit the stack at once.
 #[inline(never)]
 fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
-    let mut app = application(scene);
-    let mut recorder = recorder(scene, memory);
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
     let mut tally = Tally::default();
     let mut told = 0;
@@ -77,8 +94,9 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
 
 #[inline(never)]
 fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
-    let mut app = application(scene);
-    let mut recorder = recorder(scene, memory);
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
@@ -108,14 +126,13 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     tallies
 }
 
-#[inline(never)]
-fn application(scene: &Scene) -> App {
-    App::try_new(&scene.config(), Faults::NONE).expect("a valid configuration")
+fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut App {
+    memory::application(place, &scene.config(), Faults::NONE).expect("a valid configuration")
 }
 
 #[inline(never)]
-fn recorder<'m>(scene: &Scene, memory: &'m mut Memory) -> Recorder<'m> {
-    Recorder::new(memory, &scene.config(), Identity::new(&[], 0))
+fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m> {
+    Recorder::new(samples, &scene.config(), Identity::new(&[], 0))
 }
 
 #[inline(never)]
