@@ -14,14 +14,14 @@ use super::{Budget, Instructions};
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    pub(super) tick: Instructions,
+    tick: Instructions,
     flash_bytes: u64,
     ram_bytes: u64,
     stack_bytes: u64,
     panic_free: bool,
     pub(super) soft_float_symbols: u64,
     /// Worst of each part.
-    pub(super) parts: BTreeMap<String, u32>,
+    parts: BTreeMap<String, u32>,
     #[serde(default)]
     goals: BTreeMap<String, u64>,
 }

@@ -24,7 +24,7 @@ pub fn check(elf: &[u8], chip: &Chip) -> anyhow::Result<Layout> {
     let endian = header.endian().context("not of a little-endian machine")?;
     ensure!(header.e_machine(endian) == EM_ARM, "not a program for Arm");
     let mut programmed: Vec<Range<u64>> = vec![];
-    let mut code = vec![];
+    let (mut code, mut in_ram) = (vec![], vec![]);
     let mut vectors = None;
     for segment in header.program_headers(endian, elf)? {
         let (size, held) = (segment.p_memsz(endian), segment.p_filesz(endian));
@@ -37,6 +37,9 @@ pub fn check(elf: &[u8], chip: &Chip) -> anyhow::Result<Layout> {
             "a segment at {} is neither in the program's flash nor in RAM",
             shown(&run)
         );
+        if within(&run, &chip.ram) {
+            in_ram.push(run);
+        }
         if held == 0 {
             continue;
         }
@@ -75,6 +78,13 @@ pub fn check(elf: &[u8], chip: &Chip) -> anyhow::Result<Layout> {
         stack % 8 == 0 && chip.ram.start < stack && stack <= chip.ram.end,
         "the stack begins at {stack:#010x}, which is not in RAM"
     );
+    let below = in_ram.iter().find(|it| it.start < stack);
+    if let Some(data) = below {
+        bail!(
+            "data lie at {}, below the stack, which could overflow into them unseen",
+            shown(data)
+        );
+    }
     let starts = [
         ("entry", u64::from(header.e_entry(endian))),
         ("reset vector", reset),
@@ -208,6 +218,16 @@ mod tests {
         // At the very end of the 32 bit, which must not wrap round.
         let why = refused((0xffff_fff0, 0xffff_fff0, bytes, 32, DATA));
         assert!(why.contains("nor in RAM"), "{why}");
+    }
+
+    #[test]
+    fn data_below_the_stack_are_refused() {
+        let zero: Segment<'_> = (0x2000_0000, 0x2000_0000, &[], 4096, DATA);
+        let why = reason(with(STACK, RESET, RESET, &[zero]));
+        assert!(why.contains("below the stack"), "{why}");
+        // As without memory.x's own order: data at the bottom, the stack at the top.
+        let why = reason(with(0x2002_0000, RESET, RESET, &[zero]));
+        assert!(why.contains("below the stack"), "{why}");
     }
 
     #[test]
