@@ -7,12 +7,13 @@ use std::path::Path;
 use std::process::Command;
 
 /// What starts on the chip; `touchdown-tick` never does.
-const IMAGES: [&str; 5] = [
+const IMAGES: [&str; 6] = [
     "touchdown-firmware",
     "touchdown-qemu",
     "touchdown-count",
     "touchdown-count-rigid",
     "touchdown-count-tick",
+    "touchdown-crash",
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {

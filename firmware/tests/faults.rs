@@ -209,6 +209,23 @@ fn confirmed_fall_trips_within_its_tick_and_for_good() {
     ticks_until(ARMED, || bench.float() == WATCHING);
 }
 
+/// Put down so slowly that nothing falls.
+#[test]
+fn permanent_contact_while_watching_trips_in_the_tick_that_tells_it() {
+    let mut bench = Bench::watching();
+    let stays = |bench: &Bench| bench.told(EventKind::Sliding) || bench.told(EventKind::Rolling);
+    let mut ticks = 0;
+    while !stays(&bench) {
+        assert!(ticks < 20_000, "no contact was told");
+        assert_eq!(bench.outputs() & 0b0011, 0b0011, "tick {ticks}");
+        bench.place([0.0, -(3e-3 * seconds(ticks)).min(CLEARANCE)]);
+        ticks += 1;
+    }
+    let is_confirmed = |it: &Notice| matches!(it, Notice::Confirmed { .. });
+    assert!(!bench.board.notices.iter().any(is_confirmed));
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0));
+}
+
 #[test]
 fn rotor_that_lies_still_may_be_lifted_and_one_that_swings_wide_may_not() {
     let mut bench = Bench::watching();

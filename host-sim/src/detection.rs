@@ -6,6 +6,7 @@ use touchdown_core::forecast::Outlook;
 use crate::monitor_run::Answer;
 use crate::names::channel_name;
 use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast};
+use crate::scene::Scene;
 
 /// Places samples in time.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,11 @@ impl Timebase {
             first: if near { whole } else { first },
             rate,
         }
+    }
+
+    /// Of the samples of a drop.
+    pub fn of(scene: &Scene) -> Self {
+        Self::new(scene.first_sample_time(), scene.run.sample_rate)
     }
 
     /// Time of sample `sample` (may have a fraction), s.

@@ -34,8 +34,8 @@ pub fn run<W: Write>(
         ring,
     } = model_run::run(scene).map_err(refused)?;
     let mut feed = Feed::new(scene, stream).map_err(refused)?;
-    let answer = target.run(&scene.monitor_config(), &mut feed)?;
-    let timebase = Timebase::new(scene.first_sample_time(), scene.run.sample_rate);
+    let (answer, conduct) = target.control(&scene.monitor_config(), &mut feed)?;
+    let timebase = Timebase::of(scene);
     let (truth, trace, spectrogram, stream) = feed.finish();
     let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
@@ -47,6 +47,7 @@ pub fn run<W: Write>(
         trace,
         spectrogram,
         detection: detection(&answer, timebase),
+        conduct,
     };
     Ok((outcome, stream))
 }
@@ -170,7 +171,7 @@ impl<W: Write> Iterator for Feed<'_, W> {
 }
 
 /// Angles of inner ring and cage since the release, rad.
-fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
+pub(crate) fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
     let Moving::Ring { race_angle, .. } = moving else {
         return None;
     };

@@ -4,6 +4,8 @@ use serde::Serialize;
 use touchdown_core::health::Condition;
 use touchdown_core::sample::CHANNELS;
 
+use crate::conduct::Controller;
+use crate::detection::Timebase;
 use crate::elastic::Validity;
 use crate::history::{Impact, Phase, Regime};
 use crate::ledger::Ledger;
@@ -34,6 +36,7 @@ struct DropJson<'a> {
     detector: EventsJson<'a>,
     forecasts: &'a [Forecast],
     severity: Severity,
+    controller: Controller,
 }
 
 #[derive(Serialize)]
@@ -157,6 +160,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         },
         forecasts: &outcome.detection.forecasts,
         severity: outcome.detection.severity,
+        controller: outcome.conduct.told(Timebase::of(scene)),
     })
 }
 

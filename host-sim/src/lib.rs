@@ -2,6 +2,8 @@
 
 pub mod cli;
 pub mod compare;
+pub mod conduct;
+pub mod controller_run;
 pub mod detection;
 pub mod drop;
 pub mod drop_log;
@@ -32,6 +34,8 @@ pub mod reference;
 pub mod regions;
 pub mod replay;
 pub mod report;
+#[cfg(unix)]
+pub mod rig;
 pub mod rings;
 pub mod scene;
 pub mod score;

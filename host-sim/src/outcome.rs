@@ -1,6 +1,7 @@
 //! What a drop gives: the model's history, the reference's, what the sensors saw and what the
 //! detector said.
 
+use crate::conduct::Conduct;
 use crate::history::{History, PhaseKind, RotorState};
 use crate::ledger::Ledger;
 use crate::model_run::RingEnd;
@@ -156,4 +157,6 @@ pub struct Outcome {
     pub spectrogram: Spectrogram,
     /// The detector.
     pub detection: Detection,
+    /// The controller.
+    pub conduct: Conduct,
 }

@@ -3,6 +3,8 @@
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 
+use crate::conduct::Conduct;
+use crate::controller_run;
 use crate::emulator::{Emulator, EmulatorError};
 use crate::failure::Failure;
 use crate::monitor_run::{self, Answer};
@@ -27,6 +29,19 @@ impl Target {
             Self::Host => monitor_run::run(config, samples)
                 .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
             Self::Qemu(emulator) => Ok(emulator.run(config, samples)?),
+        }
+    }
+
+    /// Runs the whole controller over `samples`.
+    pub fn control(
+        &self,
+        config: &MonitorConfig,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<(Answer, Conduct), Failure> {
+        match self {
+            Self::Host => controller_run::run(config, samples)
+                .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
+            Self::Qemu(emulator) => Ok(emulator.control(config, samples)?),
         }
     }
 }

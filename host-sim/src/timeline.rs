@@ -3,6 +3,7 @@
 use touchdown_core::event::EventKind;
 use touchdown_core::health::Condition;
 
+use crate::detection::Timebase;
 use crate::history::{History, Phase, PhaseKind};
 use crate::matching::{Match, Matches, match_events, regime_event};
 use crate::model_run::validity;
@@ -27,6 +28,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &regime(outcome, &matches, paint);
     text += &forecasts(&outcome.detection, paint);
     text += &severity(&outcome.detection);
+    text += &outcome.conduct.told(Timebase::of(scene)).text(paint);
     text += &extras(outcome, &matches, paint);
     if let Some(validity) = validity(scene) {
         text += &format!("{validity}\n");

@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Mode {
     /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
     #[default]
@@ -60,11 +61,26 @@ impl Outputs {
             | (self.permit as u8) << 2
             | (self.ready as u8) << 3
     }
+
+    /// From [`Self::bits`]; `None` where a bit beyond them is set.
+    pub const fn from_bits(bits: u8) -> Option<Self> {
+        if bits >> 4 != 0 {
+            return None;
+        }
+        Some(Self {
+            run: bits & 1 != 0,
+            no_brake: bits & 2 != 0,
+            permit: bits & 4 != 0,
+            ready: bits & 8 != 0,
+        })
+    }
 }
 
 /// What can be wrong with the controller; latched until cleared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Fault {
     /// A tick came too late and lost a sample.
     Overrun = 0,
@@ -150,6 +166,14 @@ pub enum Busy {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn outputs_are_their_bits() {
+        for bits in 0..16 {
+            assert_eq!(Outputs::from_bits(bits).map(Outputs::bits), Some(bits));
+        }
+        assert_eq!(Outputs::from_bits(16), None);
+    }
 
     #[test]
     fn codes_are_the_order() {

@@ -2,9 +2,10 @@
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
 //! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
-//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, then that of the [`Severity`], and last the
-//! one of [`Summary`].
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices and changes of the outputs, then that of the
+//! [`Severity`], and last the one of [`Summary`].
 
+use crate::controller::Outputs;
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use crate::forecast::{Onset, Outlook};
 use crate::health::{Condition, Fault, FaultKind};
@@ -86,11 +87,22 @@ pub struct Summary {
     pub state_hash: u32,
 }
 
+/// A change of the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Switching {
+    /// Number of the sample whose tick made it, from 0.
+    pub sample: u64,
+    /// From then on.
+    pub outputs: Outputs,
+}
+
 /// A record of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Record {
     /// A notice, as it was given.
     Notice(Notice),
+    /// After the notices of its tick.
+    Switching(Switching),
     /// The last record but one: of the last drop.
     Severity(Severity),
     /// The last record.
@@ -103,11 +115,13 @@ const WITHDRAWN: u8 = 3;
 const SUMMARY: u8 = 4;
 const OUTLOOK: u8 = 5;
 const SEVERITY: u8 = 6;
+const SWITCHING: u8 = 7;
 
 /// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
 /// three 8-byte fields. The summary has the conditions of the channels at 4. Of an
 /// outlook: tag, whether it has an onset, two zero bytes, then numbers of four bytes around the sample. Of
-/// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32).
+/// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32). Of a
+/// change of the outputs: tag, their bits, and its sample at 16.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
@@ -146,6 +160,10 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(16, &outlook.made_at.to_le_bytes());
             put(24, &onset[0].to_le_bytes());
             put(28, &onset[1].to_le_bytes());
+        }
+        Record::Switching(Switching { sample, outputs }) => {
+            put(0, &[SWITCHING, outputs.bits()]);
+            put(16, &sample.to_le_bytes());
         }
         Record::Severity(it) => {
             put(0, &[SEVERITY]);
@@ -208,6 +226,10 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
                 growth_time: real(28),
             }),
         })),
+        SWITCHING => Record::Switching(Switching {
+            sample,
+            outputs: Outputs::from_bits(bytes[1])?,
+        }),
         SEVERITY => Record::Severity(Severity {
             impacts: u16::from_le_bytes([bytes[2], bytes[3]]),
             impact_speed: real(4),

@@ -11,12 +11,13 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-const IMAGES: [&str; 5] = [
+const IMAGES: [&str; 6] = [
     "touchdown-firmware",
     "touchdown-qemu",
     "touchdown-count-rigid",
     "touchdown-count-tick",
     "touchdown-count",
+    "touchdown-crash",
 ];
 /// Those that use no rung but the rigid one.
 const RIGID: usize = 3;
@@ -43,6 +44,22 @@ pub fn build() -> anyhow::Result<()> {
             "  {}: {flash} bytes of flash, {ram} bytes of RAM and the stack",
             image.display()
         );
+    }
+    Ok(())
+}
+
+/// Folder of images with faults planted, which the checks of the budget must find.
+pub const PLANTED: &str = "planted";
+
+/// Builds the images that the budget looks at with a panic, an f64 and a slow path planted.
+pub fn build_planted() -> anyhow::Result<()> {
+    let names = ["touchdown-tick", "touchdown-count-tick"];
+    let bins = names.iter().flat_map(|name| ["--bin", *name]);
+    cargo(&[&["--features", "plants"], &bins.collect::<Vec<_>>()[..]].concat())?;
+    let planted = images().join(PLANTED);
+    fs::create_dir_all(&planted).context("cannot make a folder for images")?;
+    for name in names {
+        fs::copy(images().join(name), planted.join(name)).context("cannot copy an image")?;
     }
     Ok(())
 }

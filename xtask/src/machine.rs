@@ -57,7 +57,8 @@ fn has_package(name: &str) -> bool {
     }
 }
 
-fn finds(program: &str) -> bool {
+/// Whether a program is there.
+pub fn finds(program: &str) -> bool {
     let path = env::var_os("PATH").unwrap_or_default();
     env::split_paths(&path).any(|folder| folder.join(program).is_file())
 }

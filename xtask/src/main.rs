@@ -2,6 +2,7 @@
 
 mod budget;
 mod firmware;
+mod flash;
 mod instructions;
 mod machine;
 mod setup;
@@ -40,6 +41,18 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Check that the image fits the chip, then program and start it by probe-rs
+    Flash {
+        /// Image, in place of the one for silicon that `cargo xtask firmware` builds
+        #[arg(long, value_name = "FILE")]
+        image: Option<PathBuf>,
+        /// Name of the chip, as probe-rs has it
+        #[arg(long, default_value = "STM32F405RGTx")]
+        chip: String,
+        /// Check only: no probe is needed
+        #[arg(long)]
+        dry_run: bool,
+    },
     /// Set up what is missing, build the images, and run every test
     Test {
         /// Do not ask
@@ -54,7 +67,14 @@ fn main() -> ExitCode {
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
         Task::Budget { json } => budget::run(json.as_deref()),
+        Task::Flash {
+            image,
+            chip,
+            dry_run,
+        } => flash::run(image, &chip, dry_run),
         Task::Test { yes } => setup::run(yes)
+            // These first: the others take their names.
+            .and_then(|()| firmware::build_planted())
             .and_then(|()| firmware::build())
             .and_then(|()| test::run()),
     };

@@ -43,7 +43,6 @@ fn main() {
     println!(
         "touchdown-firmware is an image for the STM32F405.\n\
          Build it:  cargo xtask firmware\n\
-         Flash it:  probe-rs run --chip STM32F405RGTx \
-         target/thumbv7em-none-eabihf/release/touchdown-firmware"
+         Flash it:  cargo xtask flash"
     );
 }

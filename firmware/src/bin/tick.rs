@@ -30,6 +30,8 @@ mod image {
         }
 
         fn drive(&mut self, outputs: Outputs) {
+            #[cfg(feature = "plants")]
+            plant(self.0, outputs.bits());
             write(outputs.bits());
         }
 
@@ -40,6 +42,14 @@ mod image {
         fn feed(&mut self) {
             write(0);
         }
+    }
+
+    /// A panic where the index is too large, and f64 in software.
+    #[cfg(feature = "plants")]
+    fn plant(bytes: &[u8], index: u8) {
+        let byte = bytes[usize::from(index)];
+        let quotient = f64::from(byte) / f64::from(index) + f64::from(byte) * 1e-3;
+        write((quotient as u64 ^ quotient.to_bits()) as u8);
     }
 
     /// All the linker keeps hangs on this.

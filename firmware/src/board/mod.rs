@@ -29,6 +29,11 @@ pub trait Board {
     fn feed(&mut self);
 }
 
+/// Samples that a controller without a chip takes between two turns of log and link.
+pub const BLOCK_SAMPLES: usize = 256;
+/// Episodes of its drop log.
+pub const EMULATED_SLOTS: usize = 8;
+
 /// Samples per second of the silicon image, Hz.
 pub const SAMPLE_RATE_HZ: u32 = 20_000;
 

@@ -31,6 +31,7 @@ Examples:
   touchdown limits                      how the model holds at its extremes
   touchdown score --quick               how late, how blind and how nervous the detector is
   touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
+  touchdown rig --keep rig              the firmware in an emulator, with its link on a socket
   touchdown log list flash.bin          the drops that the firmware recorded
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
@@ -144,6 +145,24 @@ plan gives the same bytes on any number of cores and in any number of parts:
 
 Exit status: 0 done; 2 bad usage or input.";
 
+#[cfg(unix)]
+const RIG: &str = "\
+It prints the socket and takes orders, a line each. The rotor lies at first:
+
+  lift                  lift the rotor, from wherever it is
+  drop                  let it go: the scene's drop, then it lies again
+  fault CHANNEL KIND    ax, ay, bx or by: open, short, dropped, stuck, reversed, swapped
+  repair                all channels
+  noise PART            of the link's bytes: 0.01 spoils one in a hundred
+  cut                   the controller's power, and give it back at once
+  quit
+
+In another terminal:
+  touchdown live tcp:127.0.0.1:PORT
+  touchdown log list FOLDER/log
+
+Exit status: 0 quit; 2 bad usage or input, or the image failed.";
+
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.
 ///
@@ -174,6 +193,10 @@ pub(super) enum Command {
     /// Drop a rotor thousands of times over parameters: how probable whirl is, when, and how hard
     #[command(after_help = SWEEP)]
     Sweep(SweepArgs),
+    /// Run the firmware's image over a machine that falls when told, with its link on a socket
+    #[cfg(unix)]
+    #[command(after_help = RIG)]
+    Rig(RigArgs),
     /// List, show, export or verify the drops that the firmware recorded
     Log {
         #[command(subcommand)]
@@ -228,6 +251,29 @@ pub(super) struct DropArgs {
     pub stream: Option<String>,
     #[command(flatten)]
     pub place: Place,
+}
+
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+pub(super) struct RigArgs {
+    /// Scene file, or name of a built-in scene: the machine and its drop
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// Port of the link's socket; any that is free for 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub port: u16,
+    /// Folder where the drop log's flash, `log`, and the stored configuration, `settings`, stay
+    #[arg(long, value_name = "FOLDER")]
+    pub keep: Option<String>,
+    /// Part of the link's bytes that are flipped, lost or invented
+    #[arg(long, value_name = "PART", default_value_t = 0.0, value_parser = share)]
+    pub noise: f64,
+    /// As fast as the emulator can, not at the pace of the samples
+    #[arg(long)]
+    pub fast: bool,
+    /// Firmware image, in place of the one that `cargo xtask firmware` builds
+    #[arg(long, value_name = "FILE")]
+    pub image: Option<PathBuf>,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -511,6 +557,14 @@ pub(super) enum ExportFormat {
     Comtrade,
     /// Header, events, severity, ending
     Json,
+}
+
+/// A number from 0 to 1.
+#[cfg(unix)]
+fn share(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|it| (0.0..=1.0).contains(it));
+    number.ok_or_else(|| "a number from 0 to 1".to_owned())
 }
 
 /// `K/N`.

@@ -6,6 +6,8 @@ mod force;
 mod limits;
 mod log;
 mod paper;
+#[cfg(unix)]
+mod rig;
 mod score;
 mod subject;
 mod sweep;
@@ -45,6 +47,8 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Score(args)) => score::measure(&args),
         Some(Command::Sweep(args)) => sweep::sweep(&args),
+        #[cfg(unix)]
+        Some(Command::Rig(args)) => rig::rig(&args),
         Some(Command::Log { what }) => log::log(&what),
         Some(Command::Scene { what }) => {
             match what {

@@ -1,12 +1,14 @@
 //! Drops of the reference, with a detector that knows the truth but for small errors.
 
 use super::Subject;
+use crate::conduct::Conduct;
 use crate::history::{History, PhaseKind, Recorder, RotorState};
 use crate::matching::regime_event;
 use crate::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use crate::reference::{Machine, Reference, Start};
 use crate::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
+use touchdown_core::link::{Hello, State, Text};
 
 const RATE: f64 = 50e3;
 const LEAD: f64 = 0.2;
@@ -96,9 +98,23 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         ring: None,
         model: truth.clone(),
         detection: detection(&truth),
+        conduct: conduct(),
         truth,
         trace,
         spectrogram: analyser.finish(),
+    }
+}
+
+/// A controller that was never asked anything.
+pub fn conduct() -> Conduct {
+    Conduct {
+        outputs: Vec::new(),
+        flash: Vec::new(),
+        hello: Hello {
+            firmware: Text::new(),
+            sample_rate: RATE as f32,
+        },
+        state: State::NONE,
     }
 }
 

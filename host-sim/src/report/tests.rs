@@ -60,6 +60,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
             conditions: Default::default(),
             state_hash: 0,
         },
+        conduct: fixture::conduct(),
     }
 }
 

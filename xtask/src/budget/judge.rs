@@ -19,7 +19,7 @@ pub struct Limits {
     ram_bytes: u64,
     stack_bytes: u64,
     panic_free: bool,
-    soft_float_symbols: u64,
+    pub(super) soft_float_symbols: u64,
     /// Worst of each part.
     parts: BTreeMap<String, u32>,
     #[serde(default)]

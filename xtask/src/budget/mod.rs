@@ -3,6 +3,8 @@
 mod calls;
 mod image;
 mod judge;
+#[cfg(test)]
+mod planted;
 mod ticks;
 
 use std::fs;

@@ -321,6 +321,23 @@ pub fn on_converted() {
     });
 }
 
+/// The outputs' pins and the watchdog alone, as [`main`] sets them up: for the image that stops on purpose.
+/// What the program before this one left, if it crashed; it is cleared.
+pub fn rehearse() -> Option<Crash> {
+    let left = record::read();
+    record::clear();
+    if let Some(chip) = Peripherals::take() {
+        OutputPins::new(chip.GPIOC, &chip.RCC).drive(Outputs {
+            run: true,
+            no_brake: true,
+            permit: false,
+            ready: true,
+        });
+        Watchdog::start(chip.IWDG, &chip.DBGMCU);
+    }
+    left
+}
+
 /// The end of a program that panics: outputs dropped, a record left, reset.
 pub fn on_panic(info: &PanicInfo) -> ! {
     record::stop(|| Crash::of_panic(info))

@@ -1,4 +1,4 @@
-//! The replay file and the answer file.
+//! The files of the desktop that the command line names, and those of replay and answer.
 
 use core::ffi::CStr;
 
@@ -11,52 +11,75 @@ use touchdown_core::wire::{self, Record};
 
 use super::Failure;
 use super::nor::NorFile;
+use super::settings::SettingsFile;
+use crate::board::BLOCK_SAMPLES;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
-/// Samples read at once; a semihosting call costs far more than a sample.
-const BLOCK: usize = 256;
+const NAME_BYTES: usize = 256;
 
-/// Opens the replay and the answer file, and that of the log if there is one, in the order of the command line.
-pub fn open() -> Result<(Replay, Answer, Option<NorFile>), Failure> {
-    let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
-    let mut names = &arguments;
-    let mut next = || names.next()?.ok();
-    let (Some(replay), Some(answer), log, None) = (next(), next(), next(), next()) else {
-        return Err(Failure::CommandLine);
-    };
-    let log = log.map(|name| NorFile::open(terminated(name, &mut [0; COMMAND_LINE_BYTES])?));
-    Ok((
-        Replay::open(replay)?,
-        Answer::create(answer)?,
-        log.transpose()?,
-    ))
+/// What the command line names.
+pub struct Files {
+    /// First.
+    pub replay: Replay,
+    /// Second.
+    pub answer: Answer,
+    /// Third, of the log.
+    pub log: Option<NorFile>,
+    /// Fourth, of the stored configuration.
+    pub settings: Option<SettingsFile>,
 }
 
-fn terminated<'a>(
-    name: &str,
-    buffer: &'a mut [u8; COMMAND_LINE_BYTES],
-) -> Result<&'a CStr, Failure> {
-    buffer
-        .get_mut(..name.len())
-        .ok_or(Failure::CommandLine)?
-        .copy_from_slice(name.as_bytes());
-    CStr::from_bytes_until_nul(buffer).map_err(|_| Failure::CommandLine)
+impl Files {
+    /// Opens them.
+    pub fn open() -> Result<Self, Failure> {
+        let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
+        let mut names = &arguments;
+        let mut next = || Name::new(names.next()?.ok()?);
+        let (Some(replay), Some(answer), log, settings, None) =
+            (next(), next(), next(), next(), next())
+        else {
+            return Err(Failure::CommandLine);
+        };
+        Ok(Self {
+            replay: Replay::open(&replay)?,
+            answer: Answer::create(&answer)?,
+            log: log.map(|name| NorFile::open(name.get())).transpose()?,
+            settings: settings.map(SettingsFile),
+        })
+    }
+}
+
+/// A file's name, with the zero that ends it.
+pub struct Name([u8; NAME_BYTES]);
+
+impl Name {
+    fn new(name: &str) -> Option<Self> {
+        let mut bytes = [0; NAME_BYTES];
+        let (bytes_of_name, [_, ..]) = bytes.split_at_mut_checked(name.len())? else {
+            return None;
+        };
+        bytes_of_name.copy_from_slice(name.as_bytes());
+        Some(Self(bytes))
+    }
+
+    /// The name.
+    pub fn get(&self) -> &CStr {
+        CStr::from_bytes_until_nul(&self.0).unwrap_or_default()
+    }
 }
 
 /// A replay file.
 pub struct Replay {
     file: File,
-    block: [[u8; wire::SAMPLE_BYTES]; BLOCK],
+    block: [[u8; wire::SAMPLE_BYTES]; BLOCK_SAMPLES],
 }
 
 impl Replay {
-    fn open(name: &str) -> Result<Self, Failure> {
-        let mut buffer = [0; COMMAND_LINE_BYTES];
-        let file = File::open(terminated(name, &mut buffer)?).map_err(|_| Failure::Replay)?;
+    fn open(name: &Name) -> Result<Self, Failure> {
         Ok(Self {
-            file,
-            block: [[0; wire::SAMPLE_BYTES]; BLOCK],
+            file: File::open(name.get()).map_err(|_| Failure::Replay)?,
+            block: [[0; wire::SAMPLE_BYTES]; BLOCK_SAMPLES],
         })
     }
 
@@ -100,9 +123,8 @@ impl Replay {
 pub struct Answer(File);
 
 impl Answer {
-    fn create(name: &str) -> Result<Self, Failure> {
-        let mut buffer = [0; COMMAND_LINE_BYTES];
-        let mut file = File::create(terminated(name, &mut buffer)?).map_err(|_| Failure::Answer)?;
+    fn create(name: &Name) -> Result<Self, Failure> {
+        let mut file = File::create(name.get()).map_err(|_| Failure::Answer)?;
         file.write_all(&wire::ANSWER_MAGIC)
             .map_err(|_| Failure::Answer)?;
         Ok(Self(file))

@@ -5,19 +5,21 @@ mod counter;
 mod files;
 mod nor;
 mod remote;
+mod settings;
 
 use defmt::{Debug2Format, Display2Format, error, info};
-use touchdown_core::config_block::{self, Block, Settings, Wiring};
-use touchdown_core::controller::{Faults, Outputs};
+use touchdown_core::config_block::{self, Block, BlockError, Settings, Wiring};
+use touchdown_core::controller::{Fault, Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
-use touchdown_core::monitor::Fingerprint;
-use touchdown_core::wire::Record;
+use touchdown_core::monitor::{Fingerprint, MonitorConfig};
+use touchdown_core::wire::{Record, Switching};
 
 pub use self::counter::Counter;
-use self::files::Answer;
+use self::files::{Answer, Files};
 use self::nor::NorFile;
 use self::remote::Line;
-use super::Board;
+use self::settings::SettingsFile;
+use super::{Board, EMULATED_SLOTS};
 use crate::drop_log::DropLog;
 use crate::journal;
 use crate::memory::{self, Memory};
@@ -39,15 +41,23 @@ pub enum Failure {
     Log = 6,
 }
 
-/// The drop log in a file.
-pub(crate) type FileLog = DropLog<NorFile, LOG_SLOTS>;
+/// How a run ended well; the exit status.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+enum End {
+    /// No sample is left.
+    Done = 0,
+    /// A configuration was stored and waits for a start: silicon would reset.
+    Restart = 7,
+}
 
-/// Episodes of the log's file.
-const LOG_SLOTS: usize = 8;
+/// The drop log in a file.
+pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
 struct Emulated {
     answer: Answer,
     outputs: Outputs,
+    ticks: u64,
     block: Block,
     line: Line,
     failed: bool,
@@ -64,7 +74,13 @@ impl Board for Emulated {
         if outputs != self.outputs {
             journal::outputs(outputs);
             self.outputs = outputs;
+            let switching = Switching {
+                sample: self.ticks,
+                outputs,
+            };
+            self.failed |= self.answer.write(&Record::Switching(switching)).is_err();
         }
+        self.ticks += 1;
     }
 
     fn config(&self) -> &[u8] {
@@ -79,7 +95,7 @@ impl Board for Emulated {
 pub fn main(memory: &'static mut Memory) -> ! {
     info!("touchdown {=str} on qemu", env!("CARGO_PKG_VERSION"));
     let status = match run(memory) {
-        Ok(()) => 0,
+        Ok(end) => end as i32,
         Err(failure) => {
             error!("failed: {}", Debug2Format(&failure));
             failure as i32
@@ -93,26 +109,29 @@ pub fn abort() -> ! {
     semihosting::process::abort()
 }
 
-fn run(memory: &'static mut Memory) -> Result<(), Failure> {
-    let (mut replay, answer, log) = files::open()?;
+fn run(memory: &'static mut Memory) -> Result<End, Failure> {
+    let Files {
+        mut replay,
+        answer,
+        log,
+        settings,
+    } = Files::open()?;
     let mut log = log
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
-    let config = replay.config()?;
+    let (block, config, found) = found_at_power_on(replay.config()?, settings.as_ref());
     journal::config(&config);
     let mut board = Emulated {
         answer,
         outputs: Outputs::SAFE,
-        block: config_block::encode(&Settings {
-            monitor: config,
-            wiring: Wiring::default(),
-        }),
-        line: Line::new(config.detector.sample_rate),
+        ticks: 0,
+        block,
+        line: Line::new(config.detector.sample_rate, settings),
         failed: false,
     };
     let boot = log.as_ref().map_or(0, DropLog::boot);
     let identity = Identity::new(&board.block, boot);
-    let filled = memory.fill(&config, Faults::NONE, identity);
+    let filled = memory.fill(&config, found, identity);
     let (app, recorder) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -121,38 +140,71 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
     let mut notices = Notices::new();
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
-    while let Some(samples) = replay.samples()? {
-        for sample in samples {
-            app.tick(&mut board, &sample, 0, &mut notices);
-            recorder.set_severity(app.state().severity());
-            recorder.take(&sample, &notices);
-            if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
-                board.report(&outlook);
-                recorder.hear(&outlook);
+    let mut is_over = false;
+    loop {
+        if let Some(samples) = replay.samples()? {
+            for sample in samples {
+                app.tick(&mut board, &sample, 0, &mut notices);
+                recorder.set_severity(app.state().severity());
+                recorder.take(&sample, &notices);
+                if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+                    board.report(&outlook);
+                    recorder.hear(&outlook);
+                }
+                fingerprint.take(app.state(), &lookout);
             }
-            fingerprint.take(app.state(), &lookout);
+        } else if !is_over {
+            is_over = true;
+            let summary = fingerprint.clone().summary(app.state());
+            let severity = *app.state().severity();
+            board.answer.write(&Record::Severity(severity))?;
+            board.answer.write(&Record::Summary(summary))?;
+            info!(
+                "end: {=u64} samples, {=u64} faults",
+                summary.samples, summary.faults
+            );
         }
         // Between blocks of samples: the link is no part of the tick.
         if let Some(log) = &mut log {
             store(log, recorder);
         }
         board.line.serve(app, &board.block, &mut log);
+        if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
+            return Err(Failure::Log);
+        }
+        if board.failed {
+            return Err(Failure::Answer);
+        }
+        if board.line.wants_restart() {
+            return Ok(End::Restart);
+        }
+        if is_over && !board.line.stays() {
+            return Ok(End::Done);
+        }
     }
-    let summary = fingerprint.summary(app.state());
-    let severity = *app.state().severity();
-    board.answer.write(&Record::Severity(severity))?;
-    board.answer.write(&Record::Summary(summary))?;
-    info!(
-        "end: {=u64} samples, {=u64} faults",
-        summary.samples, summary.faults
-    );
-    if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
-        return Err(Failure::Log);
-    }
-    if board.failed {
-        return Err(Failure::Answer);
-    }
-    Ok(())
+}
+
+/// The configuration in force, and what was wrong: that of the replay file, where none is stored.
+fn found_at_power_on(
+    replayed: MonitorConfig,
+    settings: Option<&SettingsFile>,
+) -> (Block, MonitorConfig, Faults) {
+    let stored = settings.map_or(Err(BlockError::Blank), SettingsFile::load);
+    let found = match stored {
+        Ok((block, it)) if it.monitor.detector.sample_rate == replayed.detector.sample_rate => {
+            return (block, it.monitor, Faults::NONE);
+        }
+        Err(BlockError::Blank) => Faults::NONE,
+        _ => {
+            error!("config: damaged or of another rate, that of the replay is in force");
+            Faults::NONE.with(Fault::ConfigDamaged)
+        }
+    };
+    let block = config_block::encode(&Settings {
+        monitor: replayed,
+        wiring: Wiring::default(),
+    });
+    (block, replayed, found)
 }
 
 /// All that is ready.

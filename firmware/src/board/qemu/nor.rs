@@ -9,12 +9,12 @@ use embedded_storage::nor_flash::{
 use semihosting::fs::File;
 use semihosting::io::{Read, Seek, SeekFrom, Write};
 
-use super::{Failure, LOG_SLOTS};
+use super::{EMULATED_SLOTS, Failure};
 use crate::store::bytes_of;
 
 const SECTOR_BYTES: usize = 4096;
 const PAGE_BYTES: usize = 256;
-const BYTES: usize = bytes_of(LOG_SLOTS);
+const BYTES: usize = bytes_of(EMULATED_SLOTS);
 
 /// The file.
 pub struct NorFile {

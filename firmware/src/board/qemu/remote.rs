@@ -1,25 +1,44 @@
 //! The link of the emulator: USART1, which QEMU connects to what `-serial` names.
 
+use core::time::Duration;
+
+use semihosting::experimental::time::Instant;
 use stm32f4::stm32f405::Peripherals;
 use touchdown_core::config_block::{Block, Settings};
 use touchdown_core::event::Notice;
 use touchdown_core::link::{Device, Log, Refusal, Server, State};
 
 use super::FileLog;
+use super::settings::SettingsFile;
 use crate::app::App;
 use crate::board::STATE_SAMPLES;
 use crate::board::serial::Serial;
+
+/// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
+/// has been taken.
+const IDLE_POLLS: u32 = 50;
+/// The same in the middle of a frame: on a busy desktop a byte takes long.
+const FRAME_POLLS: u32 = 5_000;
+/// Instructions between two looks: QEMU moves bytes while the core does not ask for them.
+const PAUSE: u32 = 5_000;
+/// Without a byte for so long, and without samples, nobody is there any more.
+const DESERTED: Duration = Duration::from_secs(10);
 
 /// The line and who serves it.
 pub struct Line {
     serial: Serial,
     server: Server,
     told: u64,
+    rate: f32,
+    settings: Option<SettingsFile>,
+    wants_restart: bool,
+    heard: bool,
+    since: Option<Instant>,
 }
 
 impl Line {
-    /// Says `sample_rate` (Hz) to who asks.
-    pub fn new(sample_rate: f32) -> Self {
+    /// Says `sample_rate` (Hz) to who asks, and keeps the configuration in `settings`.
+    pub fn new(sample_rate: f32, settings: Option<SettingsFile>) -> Self {
         // SAFETY: called once, and nobody else takes them.
         let chip = unsafe { Peripherals::steal() };
         Self {
@@ -27,7 +46,26 @@ impl Line {
             serial: Serial::new(chip.USART1, 16),
             server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate),
             told: 0,
+            rate: sample_rate,
+            settings,
+            wants_restart: false,
+            heard: false,
+            since: None,
         }
+    }
+
+    /// Whether it is served even when no sample is left: where a configuration is kept, until nobody has
+    /// said anything for [`DESERTED`]. A desktop that was killed leaves nothing behind.
+    pub fn stays(&mut self) -> bool {
+        if core::mem::take(&mut self.heard) || self.since.is_none() {
+            self.since = Some(Instant::now());
+        }
+        self.settings.is_some() && self.since.is_none_or(|it| it.elapsed() < DESERTED)
+    }
+
+    /// Whether a configuration was stored and waits for a start.
+    pub fn wants_restart(&self) -> bool {
+        self.wants_restart
     }
 
     /// Queues a notice.
@@ -38,19 +76,38 @@ impl Line {
 
     /// Takes what has come, and sends until nothing is left.
     pub fn serve(&mut self, app: &mut App, block: &Block, log: &mut Option<FileLog>) {
-        let mut remote = Remote { app, block, log };
+        let mut remote = Remote {
+            app,
+            block,
+            log,
+            rate: self.rate,
+            settings: self.settings.as_ref(),
+            wants_restart: &mut self.wants_restart,
+        };
         if remote.app.state().samples() >= self.told + STATE_SAMPLES {
             self.told = remote.app.state().samples();
             let frame = self.server.state(&mut remote);
             frame.iter().for_each(|it| self.serial.send(it));
         }
-        loop {
-            let came = self.serial.poll();
-            let answer = came.and_then(|byte| self.server.take(byte, &mut remote));
+        let (mut idle, mut polls) = (0, IDLE_POLLS);
+        while idle < polls {
+            let Some(byte) = self.serial.poll() else {
+                if self.serial.is_done() {
+                    // Where nothing is kept, nobody is on the line: not worth a wait.
+                    idle += if self.settings.is_some() {
+                        cortex_m::asm::delay(PAUSE);
+                        1
+                    } else {
+                        polls
+                    };
+                }
+                continue;
+            };
+            idle = 0;
+            self.heard = true;
+            polls = if byte == 0 { IDLE_POLLS } else { FRAME_POLLS };
+            let answer = self.server.take(byte, &mut remote);
             answer.iter().for_each(|it| self.serial.send(it));
-            if came.is_none() && self.serial.is_done() {
-                return;
-            }
         }
     }
 }
@@ -59,6 +116,9 @@ struct Remote<'a> {
     app: &'a mut App,
     block: &'a Block,
     log: &'a mut Option<FileLog>,
+    rate: f32,
+    settings: Option<&'a SettingsFile>,
+    wants_restart: &'a mut bool,
 }
 
 impl Device for Remote<'_> {
@@ -71,9 +131,16 @@ impl Device for Remote<'_> {
         self.block.clone()
     }
 
-    fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
+    fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
+        // The samples come at one rate.
+        let [now, asked] = [self.rate, settings.monitor.detector.sample_rate];
+        if now != asked {
+            return Err(Refusal::parameter("sample_rate"));
+        }
         self.app.may_restart()?;
-        Err(Refusal::NoStore)
+        self.settings.ok_or(Refusal::NoStore)?.store(block)?;
+        *self.wants_restart = true;
+        Ok(())
     }
 
     fn clear(&mut self) -> Result<(), Refusal> {

@@ -1,19 +1,27 @@
-//! The firmware's image in QEMU: the same monitor, compiled for the microcontroller, over the same
-//! samples.
+//! The firmware's image in QEMU: the same monitor and controller, compiled for the microcontroller, over
+//! the same samples.
+
+mod files;
+mod session;
+mod talk;
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::conduct::Conduct;
+use crate::monitor_run::Answer;
 use defmt_decoder::{DecodeError, Table};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_core::wire::{self, Record};
 
-use crate::monitor_run::{Answer, MOST_NOTICES};
+pub use self::files::replay_head;
+use self::files::{decode_answer, write_replay};
+pub use self::session::{RESTART, Session};
+pub use self::talk::{Talk, TalkError};
 
 const QEMU: &str = "qemu-system-arm";
 /// An STM32F405; what of it is emulated is in docs/firmware.md.
@@ -61,6 +69,9 @@ pub enum EmulatorError {
     /// Its answer is not what [`wire`] describes.
     #[error("the image's answer is damaged")]
     Damaged,
+    /// It does not talk.
+    #[error("the image: {0}")]
+    Talk(#[from] TalkError),
 }
 
 /// An image and the means to run it.
@@ -106,8 +117,31 @@ impl Emulator {
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;
-        let answer = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
+        let (answer, _) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
         Ok(Answer { log, ..answer })
+    }
+
+    /// Runs the image over `samples` with a new drop log, and talks to it.
+    pub fn control(
+        &self,
+        config: &MonitorConfig,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<(Answer, Conduct), EmulatorError> {
+        let folder = tempfile::tempdir().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let count = write_replay(&folder.path().join("replay"), config, samples)
+            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+        let mut session = self.open(folder.path())?;
+        let (answer, outputs) = session.answer(limit)?;
+        let mut talk = session.talk()?;
+        let conduct = Conduct {
+            outputs,
+            hello: talk.hello()?,
+            state: talk.state()?,
+            flash: read(&folder.path().join("log"))?,
+        };
+        let log = session.cut()?;
+        Ok((Answer { log, ..answer }, conduct))
     }
 
     /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after
@@ -121,7 +155,7 @@ impl Emulator {
         let elf = read(&self.image)?;
         let (out, err) = (folder.join("out"), folder.join("err"));
         let child = self
-            .start(folder, arguments, &out, &err)
+            .start(folder, "none", arguments, &out, &err)
             .map_err(|e| EmulatorError::Io("start QEMU", e))?;
         let status = wait(child, limit)?;
         let log = self.decode_log(&elf, &read(&out)?)?;
@@ -135,13 +169,14 @@ impl Emulator {
     fn start(
         &self,
         folder: &Path,
+        serial: &str,
         arguments: &[&str],
         out: &Path,
         err: &Path,
     ) -> io::Result<Child> {
         Command::new(QEMU)
             .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
-            .args(["-serial", "none", "-semihosting-config"])
+            .args(["-serial", serial, "-semihosting-config"])
             .args(arguments)
             .arg("-kernel")
             .arg(&self.image)
@@ -186,56 +221,6 @@ pub fn built(name: &str) -> PathBuf {
     target.join("thumbv7em-none-eabihf/release").join(name)
 }
 
-fn write_replay(
-    path: &Path,
-    config: &MonitorConfig,
-    samples: impl Iterator<Item = Sample>,
-) -> io::Result<u64> {
-    let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
-    let mut file = BufWriter::new(File::create(path)?);
-    file.write_all(&wire::REPLAY_MAGIC)?;
-    file.write_all(&(config.len() as u32).to_le_bytes())?;
-    file.write_all(&config)?;
-    let mut count = 0;
-    for sample in samples {
-        file.write_all(&wire::encode_sample(&sample))?;
-        count += 1;
-    }
-    file.flush()?;
-    Ok(count)
-}
-
-/// The log stays empty.
-fn decode_answer(bytes: &[u8]) -> Option<Answer> {
-    let (records, []) = bytes
-        .strip_prefix(&wire::ANSWER_MAGIC)?
-        .as_chunks::<{ wire::NOTICE_BYTES }>()
-    else {
-        return None;
-    };
-    let (records, [severity, summary]) = records.split_last_chunk()?;
-    let (Some(Record::Severity(severity)), Some(Record::Summary(summary))) =
-        (wire::decode_record(severity), wire::decode_record(summary))
-    else {
-        return None;
-    };
-    let left_out = records.len().saturating_sub(MOST_NOTICES);
-    let notices = records[..records.len() - left_out]
-        .iter()
-        .map(|record| match wire::decode_record(record)? {
-            Record::Notice(notice) => Some(notice),
-            Record::Severity(_) | Record::Summary(_) => None,
-        })
-        .collect::<Option<_>>()?;
-    Some(Answer {
-        notices,
-        left_out: left_out as u64,
-        severity,
-        summary,
-        log: Vec::new(),
-    })
-}
-
 fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {
     let failed = |e| EmulatorError::Io("wait for QEMU", e);
     let start = Instant::now();
@@ -255,8 +240,6 @@ fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_core::event::Notice;
-    use touchdown_core::severity::Severity;
 
     #[test]
     fn missing_image_names_the_command_that_builds_it() {
@@ -269,41 +252,5 @@ mod tests {
         let child = Command::new("sleep").arg("60").spawn().unwrap();
         let error = wait(child, Duration::from_millis(20)).unwrap_err();
         assert!(matches!(error, EmulatorError::Timeout(_)));
-    }
-
-    #[test]
-    fn answer_without_a_summary_is_damaged() {
-        let mut bytes = wire::ANSWER_MAGIC.to_vec();
-        assert_eq!(decode_answer(&bytes), None);
-        let notice = Notice::Withdrawn {
-            number: 3,
-            sample: 7,
-        };
-        bytes.extend(wire::encode_record(&Record::Notice(notice)));
-        assert_eq!(decode_answer(&bytes), None);
-        let severity = Severity {
-            impacts: 2,
-            whirl_load: 40.5,
-            ..Severity::default()
-        };
-        bytes.extend(wire::encode_record(&Record::Severity(severity)));
-        assert_eq!(decode_answer(&bytes), None);
-        let summary = wire::Summary {
-            samples: 9,
-            faults: 0,
-            conditions: Default::default(),
-            state_hash: 5,
-        };
-        bytes.extend(wire::encode_record(&Record::Summary(summary)));
-        let answer = Answer {
-            notices: vec![notice],
-            left_out: 0,
-            severity,
-            summary,
-            log: Vec::new(),
-        };
-        assert_eq!(decode_answer(&bytes), Some(answer));
-        bytes.pop();
-        assert_eq!(decode_answer(&bytes), None);
     }
 }

@@ -1,0 +1,118 @@
+//! The files that desktop and image exchange: [`wire`].
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::Sample;
+use touchdown_core::wire::{self, Record, Switching};
+
+use crate::monitor_run::{Answer, MOST_NOTICES};
+
+/// Writes a replay file; how many samples it has.
+pub(super) fn write_replay(
+    path: &Path,
+    config: &MonitorConfig,
+    samples: impl Iterator<Item = Sample>,
+) -> io::Result<u64> {
+    let mut file = BufWriter::new(File::create(path)?);
+    file.write_all(&replay_head(config)?)?;
+    let mut count = 0;
+    for sample in samples {
+        file.write_all(&wire::encode_sample(&sample))?;
+        count += 1;
+    }
+    file.flush()?;
+    Ok(count)
+}
+
+/// What comes before the samples.
+pub fn replay_head(config: &MonitorConfig) -> io::Result<Vec<u8>> {
+    let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
+    let length = (config.len() as u32).to_le_bytes();
+    Ok([&wire::REPLAY_MAGIC[..], &length, &config].concat())
+}
+
+/// A whole answer, its log still empty, and the changes of the outputs; `None` for one that is damaged or
+/// not at its end.
+pub(super) fn decode_answer(bytes: &[u8]) -> Option<(Answer, Vec<Switching>)> {
+    let (records, []) = bytes
+        .strip_prefix(&wire::ANSWER_MAGIC)?
+        .as_chunks::<{ wire::NOTICE_BYTES }>()
+    else {
+        return None;
+    };
+    let (records, [severity, summary]) = records.split_last_chunk()?;
+    let (Some(Record::Severity(severity)), Some(Record::Summary(summary))) =
+        (wire::decode_record(severity), wire::decode_record(summary))
+    else {
+        return None;
+    };
+    let (mut notices, mut left_out, mut outputs) = (Vec::new(), 0, Vec::new());
+    for record in records {
+        match wire::decode_record(record)? {
+            Record::Notice(notice) if notices.len() < MOST_NOTICES => notices.push(notice),
+            Record::Notice(_) => left_out += 1,
+            Record::Switching(switching) => outputs.push(switching),
+            Record::Severity(_) | Record::Summary(_) => return None,
+        }
+    }
+    let answer = Answer {
+        notices,
+        left_out,
+        severity,
+        summary,
+        log: Vec::new(),
+    };
+    Some((answer, outputs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_core::controller::Outputs;
+    use touchdown_core::event::Notice;
+    use touchdown_core::severity::Severity;
+
+    #[test]
+    fn answer_without_a_summary_is_damaged() {
+        let mut bytes = wire::ANSWER_MAGIC.to_vec();
+        assert_eq!(decode_answer(&bytes), None);
+        let notice = Notice::Withdrawn {
+            number: 3,
+            sample: 7,
+        };
+        bytes.extend(wire::encode_record(&Record::Notice(notice)));
+        let switching = Switching {
+            sample: 8,
+            outputs: Outputs::SAFE,
+        };
+        bytes.extend(wire::encode_record(&Record::Switching(switching)));
+        assert_eq!(decode_answer(&bytes), None);
+        let severity = Severity {
+            impacts: 2,
+            whirl_load: 40.5,
+            ..Severity::default()
+        };
+        bytes.extend(wire::encode_record(&Record::Severity(severity)));
+        assert_eq!(decode_answer(&bytes), None);
+        let summary = wire::Summary {
+            samples: 9,
+            faults: 0,
+            conditions: Default::default(),
+            state_hash: 5,
+        };
+        bytes.extend(wire::encode_record(&Record::Summary(summary)));
+        let answer = Answer {
+            notices: vec![notice],
+            left_out: 0,
+            severity,
+            summary,
+            log: Vec::new(),
+        };
+        assert_eq!(decode_answer(&bytes), Some((answer, vec![switching])));
+        bytes.pop();
+        assert_eq!(decode_answer(&bytes), None);
+    }
+}
