@@ -1,7 +1,6 @@
 //! Reads a recorded stream, strictly: a row that breaks a rule ends it.
 
-use std::io::{BufReader, Read};
-use std::path::Path;
+use std::io::Read;
 
 use csv::StringRecord;
 use touchdown_core::sample::{CHANNELS, TACHOMETERS};
@@ -46,19 +45,6 @@ pub struct Row {
 pub struct StreamReader<R> {
     columns: Columns,
     rows: Even<Records<R>>,
-}
-
-impl StreamReader<BufReader<std::fs::File>> {
-    /// Opens the stream at `path`.
-    pub fn open(path: &Path) -> Result<Self, InputError> {
-        let file = path.display().to_string();
-        if path.is_dir() {
-            return Err(InputError::of_file(&file, "is a folder, not a file"));
-        }
-        let bytes = std::fs::File::open(path)
-            .map_err(|error| InputError::of_file(&file, reason(&error)))?;
-        Self::new(&file, BufReader::new(bytes))
-    }
 }
 
 impl<R: Read> StreamReader<R> {
