@@ -237,8 +237,8 @@ fn bought(rate: f64, instants: u8, seeds: std::ops::Range<u64>) -> Bought {
         let mut scene = Scene::load("rig").expect("built-in scene");
         scene.run.sample_rate = rate;
         scene.run.seed = seed;
-        scene.detector.release_instants = instants;
-        scene.detector.impact_instants = instants;
+        scene.tuning.release_instants = instants;
+        scene.tuning.impact_instants = instants;
         let (outcome, matches) = watched(&scene);
         let fall = matches.of_kind(EventKind::FreeFall).next();
         falls.push(fall.and_then(|it| it.latency_s).unwrap_or(f64::INFINITY));
