@@ -4,97 +4,11 @@ use std::fs;
 
 use proptest::prelude::*;
 use serde_json::Value;
-use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::header::Header;
+use touchdown_core::log::block::BLOCK_BYTES;
 use touchdown_core::log::reader::Verdict;
-use touchdown_core::log::waveform::Waveform;
-use touchdown_core::wire::{Record, encode_record};
 use touchdown_sim::drop_log::{Dump, is_sound};
 use touchdown_tests::binary::touchdown;
-
-const SLOT: usize = 49_152;
-const SAMPLES: usize = 300;
-const TRIGGER: u64 = 100_000;
-
-fn header() -> Header {
-    Header {
-        firmware: *b"touchdown 0.1.0\0",
-        config_hash: 0xdead_beef,
-        boot: 7,
-        sample_rate: 20_000.0,
-        decimation: 1,
-        fitted: 0x0f,
-        trigger_kind: EventKind::FreeFall,
-        trigger: TRIGGER,
-        first: TRIGGER - 100,
-        planned: SAMPLES as u32,
-        resolution: 0.5e-6,
-        zero_count: 2047.5,
-        full_scale: 4095,
-    }
-}
-
-/// A fall declared 0.75 ms after it began; counts that go up by one a sample.
-fn episode(sequence: u32) -> Vec<[u8; BLOCK_BYTES]> {
-    let mut blocks = vec![Block::of(Kind::Header, &header().encode()); 2];
-    let mut done = 0;
-    while done < SAMPLES {
-        let left = (done..SAMPLES).map(|k| [2048 + k as u16, 2047, 2048, 2000]);
-        let (block, taken) = Waveform::block(done as u32, left);
-        blocks.push(block);
-        done += taken;
-    }
-    let notice = Notice::Declared(Event {
-        number: 0,
-        kind: EventKind::FreeFall,
-        onset: Moment::of_sample(TRIGGER).later(-15.0),
-        declared: TRIGGER,
-        plane: Plane::Both,
-        normal_speed: 0.0,
-        motion: Motion::Cylindrical,
-        fault: None,
-    });
-    blocks.push(Block::of(
-        Kind::Events,
-        &encode_record(&Record::Notice(notice)),
-    ));
-    let ending = Ending {
-        closing: Closing::Quiet,
-        landing: true,
-        blocks: blocks.len() as u16 + 2,
-        samples: SAMPLES as u32,
-        notices: 1,
-        notices_lost: 0,
-        index: 0.99,
-        last: TRIGGER + 20_000,
-    };
-    blocks.extend([Block::of(Kind::Ending, &ending.encode()); 2]);
-    let sealed = blocks.iter().enumerate();
-    sealed
-        .map(|(index, block)| block.seal(sequence, index as u16))
-        .collect()
-}
-
-/// Counters, then a slot for each of the episodes.
-fn dump(episodes: &[Vec<[u8; BLOCK_BYTES]>]) -> Vec<u8> {
-    let mut bytes = vec![0xff; 8192 + SLOT * episodes.len()];
-    let counters = Counters {
-        generation: 3,
-        boots: 7,
-        episodes: episodes.len() as u32,
-        landings: 2,
-        ..Counters::default()
-    };
-    bytes[128..192].copy_from_slice(&counters.encode());
-    for (slot, pages) in episodes.iter().enumerate() {
-        let at = 8192 + SLOT * slot;
-        bytes[at..at + BLOCK_BYTES * pages.len()].copy_from_slice(pages.as_flattened());
-    }
-    bytes
-}
+use touchdown_tests::episode::{SAMPLES, dump, episode};
 
 fn json(folder: &std::path::Path, arguments: &[&str]) -> Value {
     let run = touchdown(folder).arg("log").args(arguments).assert();

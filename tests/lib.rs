@@ -2,8 +2,11 @@
 
 pub mod binary;
 pub mod cases;
+#[cfg(unix)]
+pub mod controller;
 pub mod counting;
 pub mod drops;
+pub mod episode;
 pub mod growth;
 pub mod moment;
 pub mod rotors;

@@ -245,6 +245,37 @@ fn what_is_no_contact_begins_nothing() {
 }
 
 #[test]
+fn newest_samples_can_be_looked_at_any_time() {
+    for (rate, decimation) in [(20_000.0, 1), (50_000.0, 3)] {
+        let mut rig = Rig::new(rate, 5);
+        assert_eq!(rig.recorder.recent(1).counts().count(), 0);
+        for tick in 0..15_000 {
+            // A drop, so that the buffers change and go round.
+            if tick < 4_000 {
+                rig.tick(&[]);
+            } else {
+                rig.drop_tick(tick - 4_000, 6_000);
+            }
+            if tick % 97 == 0 {
+                fetch(&mut rig);
+            }
+            if tick % 53 != 0 {
+                continue;
+            }
+            let recent = rig.recorder.recent(5);
+            let (newest, step) = (recent.sample as usize, recent.step as usize);
+            assert_eq!(step, 5 * decimation);
+            assert!(tick - newest < decimation, "{tick}");
+            let counts: Vec<_> = recent.counts().collect();
+            for (back, counts) in counts.iter().rev().enumerate() {
+                assert_eq!(*counts, rig.fed[newest - back * step]);
+            }
+        }
+        assert_eq!(rig.recorder.recent(5).counts().count(), 32);
+    }
+}
+
+#[test]
 fn ticks_are_numbered_as_the_monitor_does() {
     let config = config(20_000.0);
     let monitor = Monitor::try_new(&config).unwrap();

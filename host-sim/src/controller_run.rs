@@ -9,7 +9,9 @@ use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::Lookout;
-use touchdown_core::link::{Decoder, Device, Log, Refusal, Reply, Request, Server, State, encode};
+use touchdown_core::link::{
+    Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
+};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_core::wire::Switching;
@@ -61,6 +63,7 @@ pub fn run(
     };
     let mut remote = Remote {
         app: &mut app,
+        recorder: &recorder,
         block: &desk.block,
         log: &mut log,
     };
@@ -145,6 +148,7 @@ impl Board for Desk {
 /// The controller, as the link sees it.
 struct Remote<'a> {
     app: &'a mut App,
+    recorder: &'a Recorder<'a>,
     block: &'a Block,
     log: &'a mut RamLog,
 }
@@ -164,6 +168,10 @@ impl Device for Remote<'_> {
 
     fn clear(&mut self) -> Result<(), Refusal> {
         Ok(self.app.clear()?)
+    }
+
+    fn recent(&mut self, step: u16) -> Recent {
+        self.recorder.recent(step)
     }
 
     fn log(&mut self) -> &mut impl Log {

@@ -1,6 +1,6 @@
 //! From the monitor's notices, on the sample clock, to events in seconds.
 
-use touchdown_core::event::{EventKind, Motion, Notice, Plane};
+use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
 use touchdown_core::forecast::Outlook;
 
 use crate::monitor_run::Answer;
@@ -40,6 +40,33 @@ impl Timebase {
     }
 }
 
+/// An event, as far as its declaration tells.
+pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
+    DetectedEvent {
+        event: event.kind,
+        onset_s: timebase.time(event.onset.samples()),
+        declared_s: timebase.time(event.declared as f64),
+        confirmed_s: None,
+        withdrawn_s: None,
+        sample: event.declared,
+        plane: match event.plane {
+            Plane::A => "a",
+            Plane::B => "b",
+            Plane::Both => "both",
+        },
+        normal_speed_m_s: (event.kind == EventKind::Impact)
+            .then_some(f64::from(event.normal_speed)),
+        motion: match event.motion {
+            Motion::Cylindrical => "cylindrical",
+            Motion::Conical => "conical",
+        },
+        fault: event.fault.map(|fault| ChannelFault {
+            channel: channel_name(fault.channel),
+            kind: fault.kind,
+        }),
+    }
+}
+
 /// The events of `answer`; a free fall has its confirmation or withdrawal with it.
 pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     let mut events: Vec<DetectedEvent> = Vec::new();
@@ -49,29 +76,7 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
         match *notice {
             Notice::Declared(event) => {
                 numbers.push(event.number);
-                events.push(DetectedEvent {
-                    event: event.kind,
-                    onset_s: timebase.time(event.onset.samples()),
-                    declared_s: timebase.time(event.declared as f64),
-                    confirmed_s: None,
-                    withdrawn_s: None,
-                    sample: event.declared,
-                    plane: match event.plane {
-                        Plane::A => "a",
-                        Plane::B => "b",
-                        Plane::Both => "both",
-                    },
-                    normal_speed_m_s: (event.kind == EventKind::Impact)
-                        .then_some(f64::from(event.normal_speed)),
-                    motion: match event.motion {
-                        Motion::Cylindrical => "cylindrical",
-                        Motion::Conical => "conical",
-                    },
-                    fault: event.fault.map(|fault| ChannelFault {
-                        channel: channel_name(fault.channel),
-                        kind: fault.kind,
-                    }),
-                });
+                events.push(declared(&event, timebase));
             }
             Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
             Notice::Confirmed { number, sample } => {
@@ -99,7 +104,8 @@ pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
     }
 }
 
-fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
+/// What an outlook foretells.
+pub fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
     let made_s = timebase.time(outlook.made_at as f64);
     let time_left = outlook.onset.map(|onset| f64::from(onset.time_left));
     Forecast {

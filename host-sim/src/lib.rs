@@ -20,6 +20,8 @@ pub mod instructions;
 pub mod json;
 pub mod ledger;
 pub mod limits;
+pub mod link;
+pub mod live;
 pub mod matching;
 pub mod model_run;
 pub mod monitor_run;

@@ -1,5 +1,7 @@
 //! What phases, events and regimes are called in text.
 
+use touchdown_core::controller::{Fault, Mode};
+use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 use touchdown_core::sample::CHANNELS;
 
@@ -30,6 +32,42 @@ pub fn event_name(event: EventKind) -> &'static str {
         EventKind::Rest => "rest",
         EventKind::Levitated => "levitated",
         EventKind::SensorFault => "sensor fault",
+    }
+}
+
+/// Name of a phase that the detector tells.
+pub fn told_phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Starting => "starting",
+        Phase::Levitated => "levitated",
+        Phase::FreeFall => "free fall",
+        Phase::Impact => "impacts",
+        Phase::Sliding => "sliding",
+        Phase::Rolling => "rolling",
+    }
+}
+
+/// Name of a mode of the controller.
+pub fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::SelfTest => "self-test",
+        Mode::Arming => "arming",
+        Mode::Watching => "watching",
+        Mode::Dropped => "dropped",
+        Mode::Faulted => "faulted",
+    }
+}
+
+/// Name of a fault of the controller.
+pub fn fault_name(fault: Fault) -> &'static str {
+    match fault {
+        Fault::Overrun => "overrun",
+        Fault::Overload => "overload",
+        Fault::SensorsLost => "sensors lost",
+        Fault::ConfigChanged => "configuration changed",
+        Fault::ConfigDamaged => "configuration damaged",
+        Fault::WatchdogReset => "watchdog reset",
+        Fault::Crash => "crash",
     }
 }
 

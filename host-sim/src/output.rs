@@ -9,6 +9,26 @@ use crate::failure::Failure;
 /// What an option's FILE means for standard output.
 pub const STDOUT: &str = "-";
 
+/// Standard output. A reader that has gone away, as of `| head`, is no failure: what it does not want is
+/// lost, and all else that was asked for is done.
+struct Standard<W>(W);
+
+impl<W: Write> Write for Standard<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
+    }
+}
+
 /// A file being written. It takes its name with [`Output::commit`]; dropped before that, nothing
 /// is left of it.
 pub struct Output {
@@ -22,7 +42,7 @@ impl Output {
     /// Opens `name`, or standard output for `-`.
     pub fn create(name: &str) -> Result<Self, Failure> {
         if name == STDOUT {
-            return Ok(Self::direct(name, io::stdout()));
+            return Ok(Self::direct(name, Standard(io::stdout())));
         }
         let fail = Failure::output(name);
         // Through a link to what it points at, so that the link stays.

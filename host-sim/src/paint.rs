@@ -12,10 +12,10 @@ impl Paint {
     /// No colour.
     pub const PLAIN: Self = Self { on: false };
 
-    /// Coloured if standard output is a terminal and NO_COLOR does not forbid it.
-    pub fn for_stdout() -> Self {
+    /// Coloured if the text goes to a terminal and NO_COLOR does not forbid it.
+    pub fn on(to: &impl IsTerminal) -> Self {
         Self {
-            on: std::io::stdout().is_terminal() && Self::wanted(),
+            on: to.is_terminal() && Self::wanted(),
         }
     }
 

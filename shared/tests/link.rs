@@ -6,8 +6,8 @@ use touchdown_core::controller::{Busy, Faults, Mode, Outputs};
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::error::ConfigError;
 use touchdown_core::link::{
-    Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Refusal, Reply,
-    Request, Server, State, encode,
+    Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
+    Reply, Request, Server, State, encode,
 };
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
@@ -109,6 +109,11 @@ impl Device for Bench {
 
     fn clear(&mut self) -> Result<(), Refusal> {
         Ok(())
+    }
+
+    fn recent(&mut self, step: u16) -> Recent {
+        let samples = (0..Recent::SAMPLES as u16).map(|it| [it * step, 2, 3, u16::MAX]);
+        Recent::new(300, u32::from(step), samples)
     }
 
     fn log(&mut self) -> &mut impl Log {
@@ -285,6 +290,21 @@ fn episode_comes_whole_in_chunks() {
     };
     let refused = Reply::Refused(Refusal::NoEpisode);
     assert_eq!(ask(&mut server, &mut bench, &fetch), refused);
+}
+
+#[test]
+fn newest_samples_come_at_the_step_that_was_asked() {
+    let (mut server, mut bench) = (server(), Bench::new());
+    for (asked, step) in [(0, 1), (7, 7)] {
+        let request = Request::Recent { step: asked };
+        let Reply::Recent(recent) = ask(&mut server, &mut bench, &request) else {
+            panic!("no samples");
+        };
+        assert_eq!((recent.sample, recent.step), (300, u32::from(step)));
+        let counts: Vec<_> = recent.counts().collect();
+        assert_eq!(counts.len(), 32);
+        assert_eq!(counts[31], [31 * step, 2, 3, u16::MAX]);
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::link::Recent;
 use touchdown_core::log::block::{Block, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::header::Header;
@@ -103,6 +104,23 @@ impl Capture {
     /// Tick of the trigger.
     pub(super) fn trigger(&self) -> u64 {
         self.trigger.map_or(0, |it| it.tick)
+    }
+
+    /// Tick of the last sample.
+    pub(super) fn newest(&self) -> u64 {
+        self.newest
+    }
+
+    /// The last samples, every `step`-th, oldest first.
+    pub(super) fn recent<'b>(
+        &self,
+        buffer: &'b [Counts; CAPACITY],
+        step: u16,
+    ) -> impl Iterator<Item = Counts> + use<'b> {
+        let (first, held, step) = (self.first, self.held, usize::from(step));
+        let back = (0..Recent::SAMPLES).rev().map(move |it| 1 + it * step);
+        let numbers = back.filter_map(move |back| held.checked_sub(back));
+        numbers.filter_map(move |number| buffer.get(wrapped(first + number)).copied())
     }
 
     pub(super) fn record(

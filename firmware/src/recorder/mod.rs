@@ -7,6 +7,7 @@
 mod capture;
 
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::link::Recent;
 use touchdown_core::log::block::Block;
 use touchdown_core::log::ending::Closing;
 use touchdown_core::log::waveform::{self, Counts};
@@ -213,6 +214,18 @@ impl<'m> Recorder<'m> {
         {
             capture.set_severity(severity);
         }
+    }
+
+    /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
+    pub fn recent(&self, step: u16) -> Recent {
+        let counts = self.recording.and_then(|at| {
+            let (capture, buffer) = (self.captures.get(at)?, self.memory.0.get(at)?);
+            Some((capture.newest(), capture.recent(buffer, step)))
+        });
+        let step = u32::from(step) * u32::from(self.plan.decimation);
+        counts.map_or(Recent::default(), |(newest, samples)| {
+            Recent::new(newest, step, samples)
+        })
     }
 
     /// Drops since reset of which nothing was recorded, as both buffers were in use.

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use touchdown_core::detect::Tuning;
 
+use super::help;
 use crate::emulator::Emulator;
 use crate::failure::Failure;
 use crate::paper::DROPS;
@@ -20,7 +22,8 @@ Examples:
   touchdown                             drop the rig of the source paper, write a report
   touchdown drop backward-whirl         another built-in scene
   touchdown drop my.toml --json -       all numbers, to standard output
-  touchdown drop my.toml --stream s.csv what the sensors would have recorded
+  touchdown drop my.toml --stream s.csv
+                                        what the sensors would have recorded
   touchdown replay s.csv --scene my.toml
                                         a recording through the same detector
   touchdown compare a.csv b.csv --scene my.toml
@@ -33,55 +36,11 @@ Examples:
   touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
   touchdown rig --keep rig              the firmware in an emulator, with its link on a socket
   touchdown log list flash.bin          the drops that the firmware recorded
+  touchdown live /dev/ttyACM0           what the controller sees and does now
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
 Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
-
-const REPLAY: &str = "\
-Examples:
-  touchdown replay s.csv --scene my.toml              a stream, as `drop --stream` writes it
-  touchdown replay r.csv --scene my.toml --columns map.toml
-  touchdown replay r.cfg --scene my.toml              COMTRADE with channels ax, ay, bx, by
-  touchdown replay r.csv --scene my.toml --columns map.toml --resample 20000
-
-The file of --columns; delimiter, decimal commas, comments and the header's line are found:
-  [time]
-  column = \"t\"                  a name without its unit, or a number from 1
-  unit = \"ms\"                   s, ms, us, ns; not needed where the header says it
-  [ax]                           also [ay], [bx], [by]: x right, y up
-  column = \"X1\"
-  unit = \"um\"                   um, mm, m, nm, mil, in, V, mV
-  [ay]
-  column = 3
-  unit = \"V\"
-  sensitivity = \"-7.87 V/mm\"    or \"200 mV/mil\"
-  offset = -10.0                 with the rotor in the bearing's centre, in that unit
-  reversed = true                it counts the other way
-  [speed]
-  column = \"n\"
-  unit = \"rpm\"                  rpm, rad/s, Hz; reversed = true: clockwise
-  [levitated]
-  column = \"AMB on\"
-  above = 2.5                    on where it is above this; reversed = true: off there
-
-Instead of a time column: rate_hz = 20000. Before the tables: axes = \"sensors\" where x and y
-are those of sensors mounted at the scene's mounting_deg. docs/recordings.md has all of it.
-
-Exit status: 0 done, whatever the rotor did; 2 bad usage or input.";
-
-const COMPARE: &str = "\
-Both go through the same detector. B is laid over A by the first fall, or else the first
-impact, and then by the waveforms about it. Each event is held against the nearest of its
-kind; one that only one of them has is a difference. Impacts below 20 mm/s are shown but
-not judged.
-
-Examples:
-  touchdown compare before.csv after.csv --scene my.toml
-  touchdown compare rig.csv model.csv --scene my.toml --columns map.toml --columns-b stream.toml
-  touchdown compare a.cfg b.cfg --scene my.toml --within-ms 0.2 --within-percent 5
-
-Exit status: 0 all within the tolerance; 1 not; 2 bad usage or input.";
 
 const PAPER: &str = "\
 printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
@@ -92,6 +51,10 @@ ours:    measured on runs of the model under test; - where no run can tell
 A note on each row says where its numbers come from and how close ours has to be; it is
 in the page and the JSON. Whirl is counted over random drops: the paper concludes that a
 large gap avoids it, which its own equations do not bear out.
+
+Examples:
+  touchdown paper --drops 100         with fewer random drops
+  touchdown paper --json paper.json
 
 Exit status: 0 ours is right in every row, whatever is printed; 1 it is not.";
 
@@ -112,7 +75,7 @@ What comes out is the force on the retainer through both its contacts and its fl
 0 in the flights. A steady force, as of a rotor that lies still, moves no accelerometer
 and is not seen.
 
-To see it work:
+Examples, to see it work:
   touchdown force --example try
   touchdown force try/recording.csv --calibration try/calibration.csv --report try/force.html
 
@@ -138,30 +101,17 @@ A plan:
 
 The folder gets drops.csv and drops.parquet (one row a drop), points.csv, sweep.json and
 sweep.html. A sweep that was killed goes on where it was when it is run again. The same
-plan gives the same bytes on any number of cores and in any number of parts:
+plan gives the same bytes on any number of cores and in any number of parts.
 
-  touchdown sweep plan.toml --out run --shard $SLURM_ARRAY_TASK_ID/8
+Examples:
+  touchdown sweep plan.toml
+  touchdown sweep plan.toml --out run --shard 1/2
+  touchdown sweep plan.toml --out run --shard 2/2
   touchdown sweep merge run
 
+As a Slurm job array: benches/slurm/sweep.sbatch.
+
 Exit status: 0 done; 2 bad usage or input.";
-
-#[cfg(unix)]
-const RIG: &str = "\
-It prints the socket and takes orders, a line each. The rotor lies at first:
-
-  lift                  lift the rotor, from wherever it is
-  drop                  let it go: the scene's drop, then it lies again
-  fault CHANNEL KIND    ax, ay, bx or by: open, short, dropped, stuck, reversed, swapped
-  repair                all channels
-  noise PART            of the link's bytes: 0.01 spoils one in a hundred
-  cut                   the controller's power, and give it back at once
-  quit
-
-In another terminal:
-  touchdown live tcp:127.0.0.1:PORT
-  touchdown log list FOLDER/log
-
-Exit status: 0 quit; 2 bad usage or input, or the image failed.";
 
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.
@@ -178,14 +128,16 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Drop a rotor: simulate, sense, detect
+    #[command(after_help = help::DROP)]
     Drop(DropArgs),
     /// Run the detector over a recording: CSV of any style, or COMTRADE
-    #[command(after_help = REPLAY)]
+    #[command(after_help = help::REPLAY)]
     Replay(ReplayArgs),
     /// Compare two recordings: events, speeds, regime, waveforms
-    #[command(after_help = COMPARE)]
+    #[command(after_help = help::COMPARE)]
     Compare(CompareArgs),
     /// Measure accuracy against cost: every rung, scheme, precision, math and step
+    #[command(after_help = help::TRADE)]
     Trade(TradeArgs),
     /// Check every number of the source paper: as printed, as right, as ours
     #[command(after_help = PAPER)]
@@ -195,13 +147,17 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// Run the firmware's image over a machine that falls when told, with its link on a socket
     #[cfg(unix)]
-    #[command(after_help = RIG)]
+    #[command(after_help = help::RIG)]
     Rig(RigArgs),
     /// List, show, export or verify the drops that the firmware recorded
+    #[command(after_help = help::LOG)]
     Log {
         #[command(subcommand)]
         what: LogCommand,
     },
+    /// Watch a controller over its serial link
+    #[command(after_help = help::LIVE)]
+    Live(LiveArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -219,6 +175,7 @@ pub(super) enum Command {
     /// contains the last digit of its spin.
     ///
     /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
+    #[command(after_help = help::LIMITS)]
     Limits(LimitsArgs),
     /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
     ///
@@ -227,11 +184,19 @@ pub(super) enum Command {
     /// numbers on any number of cores.
     ///
     /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
+    #[command(after_help = help::SCORE)]
     Score(ScoreArgs),
     /// Look at scenes
+    #[command(after_help = help::SCENE)]
     Scene {
         #[command(subcommand)]
         what: SceneCommand,
+    },
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions {
+        /// Which shell
+        shell: Shell,
     },
 }
 
@@ -491,6 +456,7 @@ pub(super) struct SweepArgs {
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum SweepCommand {
     /// Put the parts of a sweep together; the result is that of one run, to the byte
+    #[command(after_help = help::MERGE)]
     Merge(MergeArgs),
 }
 
@@ -504,19 +470,35 @@ pub(super) struct MergeArgs {
     pub json: Option<String>,
 }
 
+#[derive(Args, Clone, Debug)]
+pub(super) struct LiveArgs {
+    /// Serial device, tcp:HOST:PORT or unix:PATH
+    pub port: String,
+    /// All that is heard as lines of JSON, added to the end of FILE; `-`, or no FILE, is standard
+    /// output, in place of the view
+    #[arg(long, visible_alias = "record", value_name = "FILE", num_args = 0..=1,
+          default_missing_value = "-")]
+    pub json: Option<String>,
+    /// Stop after this time, s
+    #[arg(long, value_name = "S")]
+    pub seconds: Option<f64>,
+}
+
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum LogCommand {
     /// Each episode with its state, trigger and severity, and the lifetime counters
+    #[command(after_help = help::LOG_LIST)]
     List {
-        /// A dump of the log's flash, or a file of one episode
+        /// A dump of the log's flash, a file of one episode, or a controller's port
         file: String,
         /// The same as JSON; `-` is standard output
         #[arg(long, value_name = "FILE")]
         json: Option<String>,
     },
     /// One episode with its events
+    #[command(after_help = help::LOG_SHOW)]
     Show {
-        /// A dump of the log's flash, or a file of one episode
+        /// A dump of the log's flash, a file of one episode, or a controller's port
         file: String,
         /// Its number; the newest without
         number: Option<u32>,
@@ -525,8 +507,9 @@ pub(super) enum LogCommand {
         json: Option<String>,
     },
     /// One episode as a stream that `replay` reads, as COMTRADE or as JSON
+    #[command(after_help = help::LOG_EXPORT)]
     Export {
-        /// A dump of the log's flash, or a file of one episode
+        /// A dump of the log's flash, a file of one episode, or a controller's port
         file: String,
         /// Its number; the newest without
         number: Option<u32>,
@@ -538,8 +521,9 @@ pub(super) enum LogCommand {
         out: String,
     },
     /// List, and fail where an episode is damaged; one that was cut off is not
+    #[command(after_help = help::LOG_VERIFY)]
     Verify {
-        /// A dump of the log's flash, or a file of one episode
+        /// A dump of the log's flash, a file of one episode, or a controller's port
         file: String,
         /// The same as JSON; `-` is standard output
         #[arg(long, value_name = "FILE")]
@@ -605,12 +589,21 @@ pub(super) struct ForceArgs {
 #[derive(Debug, Subcommand)]
 pub(super) enum SceneCommand {
     /// Say what a scene models, what it leaves out, and the numbers that decide how it goes
+    #[command(after_help = help::EXPLAIN)]
     Explain {
         /// Scene file, or name of a built-in scene
         scene: String,
+        /// The same as JSON, section by section; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
     },
     /// List the built-in scenes
-    List,
+    #[command(after_help = help::SCENES)]
+    List {
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
 }
 
 #[derive(Args, Clone, Debug, Default)]

@@ -4,10 +4,9 @@ use std::io;
 use std::path::Path;
 
 use super::args::CompareArgs;
-use super::{commit, load, one_standard_output, open, say, warn};
+use super::{commit, load, one_standard_output, open, paint, say, warn};
 use crate::compare::{Tolerance, compare, page, table};
 use crate::failure::Failure;
-use crate::paint::Paint;
 
 /// Compares two recordings; fails where they differ.
 pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
@@ -32,10 +31,7 @@ pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
         out.put(&page(&scene, &comparison))?;
     }
     let written = commit([json_out, page_out, None])?;
-    say(
-        &names,
-        &(table(&comparison, Paint::for_stdout()) + &written),
-    );
+    say(&names, &(table(&comparison, paint(&names)) + &written));
     match comparison.beyond {
         0 => Ok(()),
         _ => Err(Failure::Check(

@@ -3,10 +3,9 @@
 use std::io;
 
 use super::args::LimitsArgs;
-use super::{commit, open, say};
+use super::{commit, open, paint, say};
 use crate::failure::Failure;
 use crate::limits::{Row, all_hold, json, run, table};
-use crate::paint::Paint;
 
 /// Runs the extremes, says and writes what came of them; fails where a limit does not hold.
 pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
@@ -17,7 +16,10 @@ pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
         out.put(&json.map_err(Failure::output(out.name()))?)?;
     }
     let files = commit([out, None, None])?;
-    say(&[&args.json], &(table(&rows, Paint::for_stdout()) + &files));
+    say(
+        &[&args.json],
+        &(table(&rows, paint(&[&args.json])) + &files),
+    );
     verdict(&rows)
 }
 

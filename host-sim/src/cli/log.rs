@@ -4,23 +4,23 @@ use std::io;
 use std::path::Path;
 
 use super::args::{ExportFormat, LogCommand};
-use super::{commit, open, say};
-use crate::drop_log::{Dump, Episode, comtrade, is_sound, list, read, show, stream};
+use super::{commit, open, paint, say};
+use crate::drop_log::{Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream};
 use crate::failure::Failure;
+use crate::link::Port;
 use crate::output::Output;
-use crate::paint::Paint;
 
 /// Lists, shows, exports or verifies the episodes of a log.
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
         LogCommand::List { file, json } => {
-            let dump = read(file)?;
-            tell(json, &dump, &list(&dump, Paint::for_stdout()))
+            let dump = source(file, Wanted::All)?;
+            tell(json, &dump, &list(&dump, paint(&[json])))
         }
         LogCommand::Show { file, number, json } => {
-            let dump = read(file)?;
+            let dump = source(file, wanted(*number))?;
             let episode = chosen(file, &dump, *number)?;
-            tell(json, episode, &show(episode, Paint::for_stdout()))
+            tell(json, episode, &show(episode, paint(&[json])))
         }
         LogCommand::Export {
             file,
@@ -28,12 +28,12 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
             format,
             out,
         } => {
-            let dump = read(file)?;
+            let dump = source(file, wanted(*number))?;
             export(chosen(file, &dump, *number)?, *format, out)
         }
         LogCommand::Verify { file, json } => {
-            let dump = read(file)?;
-            tell(json, &dump, &list(&dump, Paint::for_stdout()))?;
+            let dump = source(file, Wanted::All)?;
+            tell(json, &dump, &list(&dump, paint(&[json])))?;
             if is_sound(&dump) {
                 Ok(())
             } else {
@@ -41,6 +41,18 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
             }
         }
     }
+}
+
+fn wanted(number: Option<u32>) -> Wanted {
+    number.map_or(Wanted::Newest, Wanted::Number)
+}
+
+/// The log in a file, or as much of a controller's as is wanted.
+fn source(name: &str, wanted: Wanted) -> Result<Dump, Failure> {
+    let Some(port) = Port::if_no_file(name) else {
+        return Ok(read(name)?);
+    };
+    fetch(&port, wanted).map_err(|error| Failure::Target(format!("{port}: {error}")))
 }
 
 fn tell(json: &Option<String>, what: &impl serde::Serialize, text: &str) -> Result<(), Failure> {

@@ -3,11 +3,14 @@
 mod args;
 mod compare;
 mod force;
+mod help;
 mod limits;
+mod live;
 mod log;
 mod paper;
 #[cfg(unix)]
 mod rig;
+mod scene;
 mod score;
 mod subject;
 mod sweep;
@@ -18,13 +21,15 @@ pub use args::Cli;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use args::{Command, DropArgs, ReplayArgs, SceneCommand};
+use clap::CommandFactory;
+
+use args::{Command, DropArgs, ReplayArgs};
 
 use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
-use crate::scene::{BUILT_IN, Scene, explain};
+use crate::scene::{BUILT_IN, Scene};
 use crate::{drop, fidelity, replay, report, timeline};
 
 /// Where the report goes when nothing is asked for.
@@ -50,17 +55,14 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         #[cfg(unix)]
         Some(Command::Rig(args)) => rig::rig(&args),
         Some(Command::Log { what }) => log::log(&what),
-        Some(Command::Scene { what }) => {
-            match what {
-                SceneCommand::Explain { scene } => {
-                    let mut scene = load(&scene)?;
-                    let why = choose(&mut scene)?;
-                    say(&[], &(why + &explain(&scene)));
-                }
-                SceneCommand::List => say(&[], &list()?),
-            }
+        Some(Command::Live(args)) => live::live(&args),
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "touchdown", &mut script);
+            say(&[], &String::from_utf8_lossy(&script));
             Ok(())
         }
+        Some(Command::Scene { what }) => scene::look(&what),
     }
 }
 
@@ -82,7 +84,7 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
         out.put(&report::render(&subject::subject(&scene), &outcome))?;
     }
     let files = commit([json_out, report_out, stream_out])?;
-    let text = timeline::drop(&scene, &outcome, Paint::for_stdout());
+    let text = timeline::drop(&scene, &outcome, paint(&names));
     say(&names, &(why + &text + &files));
     Ok(())
 }
@@ -155,7 +157,7 @@ fn load(name: &str) -> Result<Scene, Failure> {
 
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        remark(&format!("warning: {warning}\n"));
     }
 }
 
@@ -178,30 +180,38 @@ fn one_standard_output(names: &[&Option<String>]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn list() -> Result<String, Failure> {
-    let mut text = String::new();
-    for built_in in BUILT_IN {
-        let scene = Scene::parse(built_in.name, built_in.text)?;
-        text += &format!("{:<16} {}\n", built_in.name, scene.heading());
+/// How [`say`] may colour.
+fn paint(names: &[&Option<String>]) -> Paint {
+    if is_taken(names) {
+        Paint::on(&io::stderr())
+    } else {
+        Paint::on(&io::stdout())
     }
-    Ok(text)
+}
+
+/// Whether a file has taken standard output.
+fn is_taken(names: &[&Option<String>]) -> bool {
+    names.iter().any(|name| name.as_deref() == Some(STDOUT))
 }
 
 /// Text for people: on standard output, or on standard error where a file has taken that. A reader
 /// that has gone away is no failure.
 fn say(names: &[&Option<String>], text: &str) {
-    let taken = names.iter().any(|name| name.as_deref() == Some(STDOUT));
-    let _ = if taken {
+    let _ = if is_taken(names) {
         io::stderr().lock().write_all(text.as_bytes())
     } else {
         io::stdout().lock().write_all(text.as_bytes())
     };
 }
 
+/// Text for people beside the result: on standard error, if somebody reads that.
+fn remark(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
 /// Shows why a command failed.
 pub fn complain(failure: &Failure) {
-    let colour = io::stderr().is_terminal() && Paint::wanted();
-    let theme = if colour {
+    let theme = if io::stderr().is_terminal() && Paint::wanted() {
         miette::GraphicalTheme::unicode()
     } else {
         miette::GraphicalTheme::none()
@@ -213,5 +223,5 @@ pub fn complain(failure: &Failure) {
     if handler.render_report(&mut text, failure).is_err() {
         text = failure.to_string();
     }
-    eprintln!("error:\n{}", text.trim_end());
+    remark(&format!("error:\n{}\n", text.trim_end()));
 }

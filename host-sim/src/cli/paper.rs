@@ -3,9 +3,8 @@
 use std::io;
 
 use super::args::PaperArgs;
-use super::{commit, one_standard_output, open, say};
+use super::{commit, one_standard_output, open, paint, say};
 use crate::failure::Failure;
-use crate::paint::Paint;
 use crate::paper;
 
 /// Works out, says and writes the numbers; fails where one of ours is not right.
@@ -23,10 +22,7 @@ pub(super) fn check(args: &PaperArgs) -> Result<(), Failure> {
         out.put(&paper::page(&paper))?;
     }
     let files = commit([json_out, page_out, None])?;
-    say(
-        &names,
-        &(paper::table(&paper, Paint::for_stdout()) + &files),
-    );
+    say(&names, &(paper::table(&paper, paint(&names)) + &files));
     if paper.agrees() {
         Ok(())
     } else {

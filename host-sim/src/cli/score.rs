@@ -3,9 +3,8 @@
 use std::io;
 
 use super::args::ScoreArgs;
-use super::{commit, one_standard_output, open, say};
+use super::{commit, one_standard_output, open, paint, say};
 use crate::failure::Failure;
-use crate::paint::Paint;
 use crate::score::{Score, all_hold, json, page, run, table};
 
 /// Measures, says and writes the rows; fails where a target is not reached.
@@ -25,7 +24,7 @@ pub(super) fn measure(args: &ScoreArgs) -> Result<(), Failure> {
         out.put(&page(&score))?;
     }
     let files = commit([json_out, page_out, None])?;
-    say(&names, &(table(&score, Paint::for_stdout()) + &files));
+    say(&names, &(table(&score, paint(&names)) + &files));
     verdict(&score)
 }
 

@@ -4,10 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
-use super::{commit, open, say};
+use super::{commit, open, paint, remark, say};
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::paint::Paint;
 use crate::sweep::{Part, Plan, journal_of, journals, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
@@ -37,7 +36,9 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     let json_out = open(&args.json)?;
     let had = run(&plan, part, Path::new(&folder))?;
     if had > 0 {
-        eprintln!("went on after {had} drops that {folder} had already");
+        remark(&format!(
+            "went on after {had} drops that {folder} had already\n"
+        ));
     }
     if part != Part::WHOLE {
         let Part { part, parts } = part;
@@ -69,7 +70,7 @@ fn finish(
     if let Some(out) = &mut json_out {
         out.put(&written.json)?;
     }
-    let mut text = table(plan, &written.points, Paint::for_stdout());
+    let mut text = table(plan, &written.points, paint(&[json_name]));
     for name in &written.names {
         text += &format!("wrote {name}\n");
     }

@@ -3,9 +3,8 @@
 use std::io;
 
 use super::args::TradeArgs;
-use super::{commit, load, one_standard_output, open, say};
+use super::{commit, load, one_standard_output, open, paint, say};
 use crate::failure::Failure;
-use crate::paint::Paint;
 use crate::trade;
 
 /// Measures, says and writes the table.
@@ -31,9 +30,6 @@ pub(super) fn table(args: &TradeArgs) -> Result<(), Failure> {
         out.put(&trade::svg(&trade))?;
     }
     let files = commit([json_out, page_out, svg_out])?;
-    say(
-        &names,
-        &(trade::table(&trade, Paint::for_stdout()) + &files),
-    );
+    say(&names, &(trade::table(&trade, paint(&names)) + &files));
     Ok(())
 }

@@ -1,13 +1,15 @@
-//! The firmware's drop log as a file: a dump of its flash, or one episode. Format: `docs/log.md`.
+//! The firmware's drop log as a file, a dump of its flash or one episode, or over the link. Format: `docs/log.md`.
 
 mod comtrade;
 mod dump;
 mod episode;
+mod fetch;
 mod text;
 
 pub use comtrade::comtrade;
 pub use dump::{Dump, read};
 pub use episode::{Episode, Event};
+pub use fetch::{Wanted, fetch};
 pub use text::{list, show};
 
 use std::io::Write;

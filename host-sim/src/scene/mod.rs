@@ -18,7 +18,7 @@ mod support;
 mod two_plane;
 
 pub use builtin::{BUILT_IN, BuiltIn};
-pub use explain::explain;
+pub use explain::{Explanation, explain, explanation};
 pub use materials::{Contact, Materials};
 pub use model::{Math, Model, Precision, Rung, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};

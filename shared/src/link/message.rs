@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Faults, Mode, Outputs};
 use crate::detect::Phase;
+use crate::log::waveform::{self, COUNTS_BYTES, Counts};
 use crate::wire::NOTICE_BYTES;
 
 /// Most bytes of a log chunk.
@@ -49,6 +50,11 @@ pub enum Request {
         /// The episode's number.
         episode: u32,
     },
+    /// Where the rotor has been just now. Answer: `Recent`.
+    Recent {
+        /// Every so many recorded samples one is wanted; 0 is taken for 1.
+        step: u16,
+    },
 }
 
 /// From the controller. An answer carries its request's sequence number; `Notice` and the `State` that
@@ -76,6 +82,43 @@ pub enum Reply {
         /// Those from the requested offset on; none at its end.
         bytes: Chunk,
     },
+    /// The newest samples.
+    Recent(Recent),
+}
+
+/// The newest of the recorded samples, at equal distances.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Recent {
+    /// Number of the newest, from 0.
+    pub sample: u64,
+    /// From each to the next, samples.
+    pub step: u32,
+    counts: Chunk,
+}
+
+impl Recent {
+    /// Most samples.
+    pub const SAMPLES: usize = CHUNK_BYTES / COUNTS_BYTES;
+
+    /// The newest one's number, the step, and the counts, oldest first; of more than
+    /// [`Self::SAMPLES`] the last ones are left out.
+    pub fn new(sample: u64, step: u32, samples: impl Iterator<Item = Counts>) -> Self {
+        let mut counts = Chunk::new();
+        for count in samples.take(Self::SAMPLES).flatten() {
+            // There is room for SAMPLES.
+            let _ = counts.extend_from_slice(&count.to_le_bytes());
+        }
+        Self {
+            sample,
+            step,
+            counts,
+        }
+    }
+
+    /// Counts of each, oldest first.
+    pub fn counts(&self) -> impl Iterator<Item = Counts> {
+        waveform::counts_of(&self.counts)
+    }
 }
 
 /// Who is there.

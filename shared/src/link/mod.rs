@@ -16,6 +16,6 @@ mod server;
 
 pub use frame::{Decoder, FRAME_BYTES, Frame, FrameError, Received, VERSION, encode};
 pub use message::{
-    CHUNK_BYTES, Chunk, Counters, Hello, Refusal, Reply, Request, State, TEXT_BYTES, Text,
+    CHUNK_BYTES, Chunk, Counters, Hello, Recent, Refusal, Reply, Request, State, TEXT_BYTES, Text,
 };
 pub use server::{Device, Log, Server};

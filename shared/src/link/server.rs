@@ -1,7 +1,7 @@
 //! The controller's side: requests in, answers out.
 
 use super::frame::{self, Decoder, Frame};
-use super::message::{Chunk, Hello, Refusal, Reply, Request, State, shortened};
+use super::message::{Chunk, Hello, Recent, Refusal, Reply, Request, State, shortened};
 use crate::config_block::{self, Block, Settings};
 use crate::event::Notice;
 use crate::wire::{Record, encode_record};
@@ -63,6 +63,9 @@ pub trait Device {
 
     /// Clears what is latched.
     fn clear(&mut self) -> Result<(), Refusal>;
+
+    /// The newest samples, every `step`-th of those that are recorded.
+    fn recent(&mut self, step: u16) -> Recent;
 
     /// The log.
     fn log(&mut self) -> &mut impl Log;
@@ -150,6 +153,7 @@ impl Server {
                 }
             }
             Request::Erase { episode } => done(device.log().erase(episode)),
+            Request::Recent { step } => Reply::Recent(device.recent(step.max(1))),
         }
     }
 }

@@ -13,7 +13,8 @@ pub const NO_VALUE: u16 = u16::MAX;
 /// Samples of a block.
 pub const SAMPLES_PER_BLOCK: usize = (PAYLOAD_BYTES - 4) / COUNTS_BYTES;
 
-const COUNTS_BYTES: usize = 2 * CHANNELS;
+/// Bytes of a sample.
+pub const COUNTS_BYTES: usize = 2 * CHANNELS;
 
 /// What is recorded of `sample`.
 pub fn counts(sample: &Sample) -> Counts {
@@ -56,12 +57,17 @@ impl<'a> Waveform<'a> {
 
     /// The samples.
     pub fn samples(&self) -> impl ExactSizeIterator<Item = Counts> + use<'a> {
-        self.bytes.chunks_exact(COUNTS_BYTES).map(|sample| {
-            let mut counts = [0; CHANNELS];
-            for (count, pair) in counts.iter_mut().zip(sample.as_chunks().0) {
-                *count = u16::from_le_bytes(*pair);
-            }
-            counts
-        })
+        counts_of(self.bytes)
     }
+}
+
+/// The samples in `bytes`, [`COUNTS_BYTES`] each; what is left over at the end is none.
+pub fn counts_of(bytes: &[u8]) -> impl ExactSizeIterator<Item = Counts> + use<'_> {
+    bytes.chunks_exact(COUNTS_BYTES).map(|sample| {
+        let mut counts = [0; CHANNELS];
+        for (count, pair) in counts.iter_mut().zip(sample.as_chunks().0) {
+            *count = u16::from_le_bytes(*pair);
+        }
+        counts
+    })
 }

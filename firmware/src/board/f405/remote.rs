@@ -3,7 +3,7 @@
 use cortex_m::peripheral::DWT;
 use stm32f4::stm32f405::{FLASH, GPIOB, RCC};
 use touchdown_core::config_block::{Block, Settings};
-use touchdown_core::link::{Device, Log, Refusal, State};
+use touchdown_core::link::{Device, Log, Recent, Refusal, State};
 
 use super::clocks::CORE_HZ;
 use super::outputs::Watchdog;
@@ -86,6 +86,10 @@ impl Device for Remote {
         Watchdog::forget(&self.rcc);
         record::clear();
         Ok(())
+    }
+
+    fn recent(&mut self, step: u16) -> Recent {
+        with_tick(|tick| tick.recorder.recent(step)).unwrap_or_default()
     }
 
     fn log(&mut self) -> &mut impl Log {

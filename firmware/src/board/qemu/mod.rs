@@ -168,7 +168,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         if let Some(log) = &mut log {
             store(log, recorder);
         }
-        board.line.serve(app, &board.block, &mut log);
+        board.line.serve(app, recorder, &board.block, &mut log);
         if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
             return Err(Failure::Log);
         }

@@ -6,13 +6,14 @@ use semihosting::experimental::time::Instant;
 use stm32f4::stm32f405::Peripherals;
 use touchdown_core::config_block::{Block, Settings};
 use touchdown_core::event::Notice;
-use touchdown_core::link::{Device, Log, Refusal, Server, State};
+use touchdown_core::link::{Device, Log, Recent, Refusal, Server, State};
 
 use super::FileLog;
 use super::settings::SettingsFile;
 use crate::app::App;
 use crate::board::STATE_SAMPLES;
 use crate::board::serial::Serial;
+use crate::recorder::Recorder;
 
 /// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
 /// has been taken.
@@ -75,9 +76,16 @@ impl Line {
     }
 
     /// Takes what has come, and sends until nothing is left.
-    pub fn serve(&mut self, app: &mut App, block: &Block, log: &mut Option<FileLog>) {
+    pub fn serve(
+        &mut self,
+        app: &mut App,
+        recorder: &Recorder<'_>,
+        block: &Block,
+        log: &mut Option<FileLog>,
+    ) {
         let mut remote = Remote {
             app,
+            recorder,
             block,
             log,
             rate: self.rate,
@@ -114,6 +122,7 @@ impl Line {
 
 struct Remote<'a> {
     app: &'a mut App,
+    recorder: &'a Recorder<'a>,
     block: &'a Block,
     log: &'a mut Option<FileLog>,
     rate: f32,
@@ -145,6 +154,10 @@ impl Device for Remote<'_> {
 
     fn clear(&mut self) -> Result<(), Refusal> {
         Ok(self.app.clear()?)
+    }
+
+    fn recent(&mut self, step: u16) -> Recent {
+        self.recorder.recent(step)
     }
 
     fn log(&mut self) -> &mut impl Log {

@@ -7,46 +7,83 @@ mod sensors;
 
 use std::fmt::Write;
 
+use serde::Serialize;
+
 use super::parts::{Part, parts};
 use super::{Rung, Scene};
 
+type Row = (&'static str, String);
+
+/// What there is to say of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Explanation {
+    heading: String,
+    source: Option<String>,
+    sections: Vec<Section>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Section {
+    title: &'static str,
+    rows: Vec<Named>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Named {
+    name: &'static str,
+    value: String,
+}
+
+/// The explanation, for programs.
+pub fn explanation(scene: &Scene) -> Explanation {
+    let parts = parts(scene);
+    let mut sections = vec![section("Model", model::model(scene))];
+    if scene.model.rung == Rung::Hertz {
+        sections.push(section("Contact", contact::contact(scene)));
+    }
+    sections.extend([
+        section("Modelled", chosen(&parts, true)),
+        section("Left out", chosen(&parts, false)),
+        section("Scales", numbers::scales(scene)),
+        section("Speeds and times", numbers::speeds(scene)),
+        section("Sensors", sensors::sensors(&scene.sensors, scene)),
+    ]);
+    Explanation {
+        heading: scene.heading().to_owned(),
+        source: scene.source.clone(),
+        sections,
+    }
+}
+
 /// The explanation, for people.
 pub fn explain(scene: &Scene) -> String {
-    let mut text = format!("{}\n", scene.heading());
-    if let Some(source) = &scene.source {
+    let explanation = explanation(scene);
+    let mut text = format!("{}\n", explanation.heading);
+    if let Some(source) = &explanation.source {
         text += &format!("source: {source}\n");
     }
-    let parts = parts(scene);
-    section(&mut text, "Model", &model::model(scene));
-    if scene.model.rung == Rung::Hertz {
-        section(&mut text, "Contact", &contact::contact(scene));
+    for section in &explanation.sections {
+        let _ = write!(text, "\n{}\n", section.title);
+        for Named { name, value } in &section.rows {
+            let _ = writeln!(text, "  {name:<37}{value}");
+        }
     }
-    section(&mut text, "Modelled", &chosen(&parts, true));
-    section(&mut text, "Left out", &chosen(&parts, false));
-    section(&mut text, "Scales", &numbers::scales(scene));
-    section(&mut text, "Speeds and times", &numbers::speeds(scene));
-    section(
-        &mut text,
-        "Sensors",
-        &sensors::sensors(&scene.sensors, scene),
-    );
     text
 }
 
-type Row = (&'static str, String);
+fn section(title: &'static str, rows: Vec<Row>) -> Section {
+    let rows = rows.into_iter().map(|(name, value)| Named { name, value });
+    Section {
+        title,
+        rows: rows.collect(),
+    }
+}
 
 fn chosen(parts: &[Part], modelled: bool) -> Vec<Row> {
     let parts = parts.iter().filter(|part| part.modelled == modelled);
     parts
         .map(|part| (part.name, part.reason.to_owned()))
         .collect()
-}
-
-fn section(text: &mut String, title: &str, rows: &[Row]) {
-    let _ = write!(text, "\n{title}\n");
-    for (name, value) in rows {
-        let _ = writeln!(text, "  {name:<37}{value}");
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,221 @@
+//! Asks the controller.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use touchdown_core::config_block::{self, Settings};
+use touchdown_core::event::Notice;
+use touchdown_core::link::{
+    Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode,
+};
+use touchdown_core::wire::{Record, decode_record};
+
+use super::error::LinkError;
+use super::line::Line;
+
+/// Without an answer for so long, the request is sent again.
+const PATIENCE: Duration = Duration::from_millis(200);
+/// 5 s: a sector that is being erased takes 400 ms, an emulator on a busy machine more.
+const ATTEMPTS: u32 = 25;
+/// Longer than any episode that a controller keeps, bytes.
+const LONGEST_EPISODE: u32 = 1 << 20;
+/// Of what comes by itself, kept while an answer is waited for; the oldest go first.
+const KEPT: usize = 1_000;
+
+/// What the controller says by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Told {
+    /// What goes on.
+    State(State),
+    /// What happened.
+    Notice(Notice),
+}
+
+/// The desktop's end of an open line.
+pub struct Client {
+    line: Box<dyn Line>,
+    decoder: Decoder,
+    /// Read from the line, not yet decoded.
+    bytes: VecDeque<u8>,
+    told: VecDeque<Told>,
+    sequence: u8,
+    damaged: u32,
+}
+
+impl Client {
+    /// Over `line`, with nothing said yet.
+    pub fn new(line: Box<dyn Line>) -> Self {
+        Self {
+            line,
+            decoder: Decoder::default(),
+            bytes: VecDeque::new(),
+            told: VecDeque::new(),
+            sequence: 0,
+            damaged: 0,
+        }
+    }
+
+    /// Frames that came damaged.
+    pub fn damaged(&self) -> u32 {
+        self.damaged
+    }
+
+    /// Sends `request`, again where no answer comes; the answer, unless it is a refusal.
+    pub fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        self.sequence = self.sequence.wrapping_add(1);
+        // A zero first ends what noise began.
+        let mut bytes = vec![0];
+        bytes.extend(encode(self.sequence, request).ok_or(LinkError::Senseless)?);
+        for _ in 0..ATTEMPTS {
+            self.line.write(&bytes)?;
+            let end = Instant::now() + PATIENCE;
+            while let Some((sequence, reply)) = self.receive(end)? {
+                if sequence == self.sequence && answers(request, &reply) {
+                    return match reply {
+                        Reply::Refused(why) => Err(LinkError::Refused(why)),
+                        reply => Ok(reply),
+                    };
+                }
+                self.keep(reply);
+            }
+        }
+        Err(LinkError::Silent)
+    }
+
+    /// What the controller says by itself, after at most `limit`.
+    pub fn listen(&mut self, limit: Duration) -> Result<Option<Told>, LinkError> {
+        let end = Instant::now() + limit;
+        while self.told.is_empty() {
+            let Some((_, reply)) = self.receive(end)? else {
+                break;
+            };
+            self.keep(reply);
+        }
+        Ok(self.told.pop_front())
+    }
+
+    /// Who is there.
+    pub fn hello(&mut self) -> Result<Hello, LinkError> {
+        match self.ask(&Request::Hello)? {
+            Reply::Hello(hello) => Ok(hello),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// The configuration in force.
+    pub fn settings(&mut self) -> Result<Settings, LinkError> {
+        match self.ask(&Request::ReadConfig)? {
+            Reply::Config(block) => {
+                let (_, settings) = config_block::decode(&block).map_err(LinkError::Config)?;
+                Ok(settings)
+            }
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// Where the rotor has been: every `step`-th of the newest samples.
+    pub fn recent(&mut self, step: u16) -> Result<Recent, LinkError> {
+        match self.ask(&Request::Recent { step })? {
+            Reply::Recent(recent) => Ok(recent),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// Numbers of the first and of the last episode in the log.
+    pub fn episodes(&mut self) -> Result<Option<(u32, u32)>, LinkError> {
+        match self.ask(&Request::Episodes)? {
+            Reply::Episodes(range) => Ok(range),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// Bytes of an episode from `offset` on, and how many the whole has; `None` where there is no such
+    /// episode.
+    pub fn chunk(
+        &mut self,
+        episode: u32,
+        offset: u32,
+    ) -> Result<Option<(u32, Vec<u8>)>, LinkError> {
+        match self.ask(&Request::Fetch { episode, offset }) {
+            Ok(Reply::Chunk { total, bytes }) => Ok(Some((total, bytes.to_vec()))),
+            Ok(_) => Err(LinkError::Senseless),
+            Err(LinkError::Refused(Refusal::NoEpisode)) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// All bytes of an episode; `None` where there is no such episode. `progress` hears how many are there
+    /// of how many.
+    pub fn episode(
+        &mut self,
+        episode: u32,
+        mut progress: impl FnMut(u32, u32),
+    ) -> Result<Option<Vec<u8>>, LinkError> {
+        let mut bytes = Vec::new();
+        loop {
+            let offset = bytes.len() as u32;
+            let Some((total, chunk)) = self.chunk(episode, offset)? else {
+                return Ok(None);
+            };
+            if total > LONGEST_EPISODE {
+                return Err(LinkError::Senseless);
+            }
+            bytes.extend(&chunk);
+            progress(bytes.len() as u32, total);
+            if chunk.is_empty() || bytes.len() as u32 >= total {
+                return Ok(Some(bytes));
+            }
+        }
+    }
+
+    /// The next whole frame until `end`.
+    fn receive(&mut self, end: Instant) -> Result<Option<(u8, Reply)>, LinkError> {
+        loop {
+            while let Some(byte) = self.bytes.pop_front() {
+                match self.decoder.take::<Reply>(byte) {
+                    None => {}
+                    Some(Ok(received)) => return Ok(Some((received.sequence, received.message))),
+                    Some(Err(FrameError::Version(version))) => {
+                        return Err(LinkError::Version(version));
+                    }
+                    Some(Err(_)) => self.damaged = self.damaged.saturating_add(1),
+                }
+            }
+            let limit = end.saturating_duration_since(Instant::now());
+            if limit.is_zero() {
+                return Ok(None);
+            }
+            let mut bytes = [0; 512];
+            let came = self.line.read(&mut bytes, limit)?;
+            self.bytes.extend(&bytes[..came]);
+        }
+    }
+
+    /// What is no answer, for [`Self::listen`]. An answer that comes too late is none any more.
+    fn keep(&mut self, reply: Reply) {
+        let told = match reply {
+            Reply::State(state) => Some(Told::State(state)),
+            Reply::Notice(bytes) => match decode_record(&bytes) {
+                Some(Record::Notice(notice)) => Some(Told::Notice(notice)),
+                _ => {
+                    self.damaged = self.damaged.saturating_add(1);
+                    None
+                }
+            },
+            _ => None,
+        };
+        if self.told.len() == KEPT {
+            self.told.pop_front();
+        }
+        self.told.extend(told);
+    }
+}
+
+/// Whether `reply` can be the answer to `request`. What comes by itself may have its sequence number.
+fn answers(request: &Request, reply: &Reply) -> bool {
+    match reply {
+        Reply::Notice(_) => false,
+        Reply::State(_) => matches!(request, Request::State),
+        _ => true,
+    }
+}

@@ -1,0 +1,22 @@
+//! `touchdown live`: what a controller says, as it says it.
+//!
+//! | file | says |
+//! |---|---|
+//! | `watcher` | a thread that holds the line, and opens it again |
+//! | `update` | what it passes on |
+//! | `line` | an update as a line of JSON |
+//! | `watched` | all that is known by now |
+//! | `view`, `orbit` | that on a terminal |
+
+mod line;
+mod orbit;
+mod update;
+mod view;
+mod watched;
+mod watcher;
+
+pub use line::line;
+pub use update::{Greeting, Said, Update};
+pub use view::{View, draw};
+pub use watched::{Link, Watched};
+pub use watcher::Watcher;

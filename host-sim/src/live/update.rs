@@ -1,0 +1,45 @@
+//! What the watcher passes on.
+
+use touchdown_core::config_block::Settings;
+use touchdown_core::event::Notice;
+use touchdown_core::link::{Recent, State};
+use touchdown_core::log::header::Header;
+
+/// Something that was heard, and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Update {
+    /// Since the watcher's start, s.
+    pub at: f64,
+    /// What.
+    pub said: Said,
+}
+
+/// What was heard.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Said {
+    /// The line is open, and a controller answers.
+    Connected(Greeting),
+    /// The line is not open any more, or cannot be opened, and why.
+    Lost(String),
+    /// What goes on.
+    State(State),
+    /// What happened.
+    Notice(Notice),
+    /// Where the rotor has been.
+    Recent(Recent),
+    /// An episode is in the log; its header, where that is whole.
+    Episode(u32, Option<Header>),
+    /// So many frames came damaged on this line so far.
+    Damaged(u32),
+}
+
+/// Who answered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Greeting {
+    /// Version of the firmware.
+    pub firmware: String,
+    /// Samples per second, Hz.
+    pub sample_rate: f32,
+    /// Its configuration.
+    pub settings: Settings,
+}

@@ -1,0 +1,90 @@
+//! A sweep as a Slurm job array, by the script that docs/sweep.md gives, on a Slurm of one node that lasts as long as
+//! the test: the same bytes as one run's, also where a part comes later.
+//!
+//! Runs only where Slurm and munge are installed (Debian: slurm-wlm, munge) and as root; elsewhere it says so and
+//! passes.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use touchdown_tests::binary::{program, touchdown};
+
+const PLAN: &str = r#"
+scene = "rig"
+drops = 400
+seed = 7
+[start]
+within = 0.5
+speed_mm_s = 50
+[[parameter]]
+key = "retainer.friction"
+values = [0.05, 0.1, 0.15]
+[[parameter]]
+key = "retainer.restitution"
+uniform = [0.3, 0.6]
+[[parameter]]
+key = "run.duration_s"
+values = [0.1]
+"#;
+
+const RESULTS: [&str; 5] = [
+    "drops.csv",
+    "drops.parquet",
+    "points.csv",
+    "sweep.json",
+    "sweep.html",
+];
+
+/// Part 3 is left out at first: what is missing is not merged. `--wait` comes back when all tasks are done.
+const JOBS: &str = r#"
+set -eu
+sbatch --wait --array=1-2,4-5 "$1" plan.toml many 5
+if "$TOUCHDOWN" sweep merge many; then exit 9; fi
+sbatch --wait --array=3 "$1" plan.toml many 5
+"$TOUCHDOWN" sweep merge many
+"#;
+
+fn is_there(tool: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
+}
+
+/// Why it cannot run here.
+fn obstacle() -> Option<String> {
+    for tool in ["munged", "slurmctld", "slurmd", "sbatch"] {
+        if !is_there(tool) {
+            return Some(format!("no {tool}: apt-get install slurm-wlm munge"));
+        }
+    }
+    let id = Command::new("id").arg("-u").output().ok()?;
+    (id.stdout.trim_ascii() != b"0").then(|| "slurmd needs root".to_owned())
+}
+
+#[test]
+fn a_job_array_gives_the_bytes_of_one_run() {
+    if let Some(why) = obstacle() {
+        println!("SKIPPED, nothing was tested: {why}");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("plan.toml"), PLAN).expect("a plan");
+    let sweep = ["sweep", "plan.toml", "--out", "one"];
+    touchdown(at).args(sweep).assert().success();
+
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../benches/slurm");
+    let run = Command::new(scripts.join("local"))
+        .args(["sh", "-c", JOBS, "jobs"])
+        .arg(scripts.join("sweep.sbatch"))
+        .env("TOUCHDOWN", program())
+        .current_dir(at)
+        .output()
+        .expect("Slurm");
+    assert!(run.status.success(), "{run:?}");
+    for name in RESULTS {
+        let [one, many] = ["one", "many"].map(|it| fs::read(at.join(it).join(name)).expect(name));
+        assert!(one == many, "{name} differs");
+    }
+}
