@@ -125,12 +125,3 @@ fn a_pendulum_is_foretold_to_stay_one() {
     let whirls = forecast.probability_forward + forecast.probability_backward;
     assert!(whirls <= 0.01, "{forecast:?}");
 }
-
-#[test]
-#[ignore = "thousands of drops: the figures of docs/forecast.md"]
-fn figures() {
-    let drops = std::env::var("DROPS").map_or(2000, |it| it.parse().expect("a number"));
-    for misled in [0.0, 0.3] {
-        scored(drops, 1_000_000, misled);
-    }
-}

@@ -67,7 +67,7 @@ impl Coloured {
 /// A force on the rotor or on its base, per mass, that the controller catches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kick {
-    /// A load that comes, or goes, at once: up to the rotor's weight.
+    /// A load that comes at once, and goes at once: up to the rotor's weight.
     Load,
     /// A half sine of 5 ms, up to 2 g.
     Shock,
@@ -87,7 +87,7 @@ const SHOCK: f64 = 5e-3;
 /// From one kick to the next, s.
 const EVERY: f64 = 0.5;
 
-/// A rotor held by a loop of second order, kicked twice a second in any direction.
+/// A rotor held by a loop of second order; twice a second a kick in any direction, or a load's end.
 #[derive(Clone, Debug)]
 pub struct Held {
     kick: Kick,
@@ -116,7 +116,9 @@ impl Held {
             self.since = 0.0;
             let most = self.kick.largest();
             let size = most * random.random_range(0.0..1.0);
-            self.force = direction(random).map(|part| size * part);
+            let goes = self.kick == Kick::Load && self.force != [0.0; 2];
+            let new = direction(random).map(|part| size * part);
+            self.force = if goes { [0.0; 2] } else { new };
         }
         let now = match self.kick {
             Kick::Load => 1.0,
