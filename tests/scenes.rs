@@ -142,6 +142,7 @@ fn drop_json_has_the_documented_shape() {
         keys(&json),
         [
             "contact_starts_s",
+            "controller",
             "detector",
             "final",
             "forecasts",

@@ -127,7 +127,7 @@ impl Controller {
 fn logged(episode: &Episode) -> String {
     let state = match episode.verdict {
         Verdict::Whole => "whole",
-        Verdict::Incomplete => "open: the run ended before the drop",
+        Verdict::Incomplete => "open at the end of the run",
         Verdict::Damaged => "damaged",
         Verdict::Empty => "empty",
     };
@@ -145,7 +145,7 @@ fn logged(episode: &Episode) -> String {
 impl Link {
     fn text(&self) -> String {
         format!(
-            "link: firmware {} at {} Hz; {} samples, {} notices lost, {} damaged frames\n",
+            "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
             self.firmware,
             self.sample_rate_hz,
             self.lost_samples,
