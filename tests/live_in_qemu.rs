@@ -61,7 +61,8 @@ impl Drop for Process {
     }
 }
 
-/// The image with its samples from a pipe, so that it goes on as long as the test wants.
+/// The image with its samples from a pipe, so that it goes on as long as the test wants, and with a place for
+/// settings, so that it expects somebody on its line.
 fn qemu(folder: &Path) -> (Process, File) {
     let image = built("touchdown-qemu");
     assert!(image.is_file(), "{}: cargo xtask firmware", image.display());
@@ -75,7 +76,7 @@ fn qemu(folder: &Path) -> (Process, File) {
             "socket,id=link,path=rig.sock,server=on,wait=off",
         ])
         .args(["-serial", "chardev:link", "-semihosting-config"])
-        .arg("enable=on,target=native,arg=replay,arg=answer,arg=log")
+        .arg("enable=on,target=native,arg=replay,arg=answer,arg=log,arg=settings")
         .arg("-kernel")
         .arg(image)
         .current_dir(folder)
