@@ -112,7 +112,7 @@ impl Device for Bench {
     }
 
     fn recent(&mut self, step: u16) -> Recent {
-        let samples = (0..Recent::SAMPLES as u16).map(|it| [it * step, 2, 3, u16::MAX]);
+        let samples = (0..Recent::SAMPLES as u16).map(|it| [it.wrapping_mul(step), 2, 3, u16::MAX]);
         Recent::new(300, u32::from(step), samples)
     }
 
