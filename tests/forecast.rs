@@ -9,7 +9,7 @@ use touchdown_sim::outcome::{Detection, Forecast};
 use touchdown_sim::scene::{Scene, Start};
 use touchdown_sim::target::Target;
 
-/// Other drops than those that the figures of docs/forecast.md are of.
+/// Other drops than the score's.
 const SEED: u64 = 1;
 
 fn scored(drops: u64, seed: u64, misled: f64) -> Score {
