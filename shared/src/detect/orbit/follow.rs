@@ -3,7 +3,7 @@
 //! With the angle theta of the orbit, each axis is a constant plus a_k cos(k theta) + b_k sin(k theta), k from 1 to
 //! `HARMONICS`. The constant and k = 1 start with a fit by least squares, which needs no whole turn;
 //! then all follow the residual by its gradient. A phase-locked loop keeps theta: what is left along the
-//! motion is an error of the angle.
+//! motion is an error of the angle. It is one of third order, so that a speed that changes evenly is followed as well.
 
 use crate::real::sin_cos;
 
@@ -18,6 +18,9 @@ const CENTRE_TIME: f32 = 0.02;
 const LOOP: f32 = 250.0;
 /// Its damping.
 const DAMPING: f32 = 0.7;
+/// Part of its natural frequency to the third power with which it follows a speed that changes: at 10 Hz and 20 % a
+/// second it would else stay 0.013 rad behind, 0.4 um of an orbit of 30 um.
+const SLOPE: f32 = 0.125;
 /// Variance of the parameters before the fit, over that of the noise.
 const UNKNOWN: f32 = 1e4;
 /// Turns that the fit remembers: the frequency is not quite right yet.
@@ -40,8 +43,9 @@ pub(super) struct Orbit {
     /// Cosine and sine of theta, and of its change in a sample.
     angle: [f32; 2],
     turn: [f32; 2],
-    /// Change of theta in a sample, rad.
+    /// Change of theta in a sample, rad, and that of it.
     rate: f32,
+    slope: f32,
     spin: Option<f32>,
     /// m.
     centre: [f32; 2],
@@ -73,6 +77,7 @@ impl Follow {
             angle: [1.0, 0.0],
             turn: [cos, sin],
             rate,
+            slope: 0.0,
             spin: None,
             centre,
             waves: [[[0.0; 2]; 2]; HARMONICS],
@@ -116,7 +121,8 @@ impl Follow {
         if power > 0.0 {
             let pull = (LOOP * self.period).min(0.5 * orbit.rate);
             let off = (along / power).clamp(-MOST_OFF, MOST_OFF);
-            orbit.hasten(pull * pull * off);
+            orbit.slope += SLOPE * pull * pull * pull * off;
+            orbit.hasten(orbit.slope + pull * pull * off);
             orbit.angle = unit(product(orbit.angle, [1.0, 2.0 * DAMPING * pull * off]));
         }
     }
