@@ -15,6 +15,10 @@ const WHITE_LEVEL: f32 = 1.8;
 /// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
 /// before it is that far in a sample.
 const LOUDEST: f32 = 6.0;
+/// Threshold of an instant that is no samples and one sample old: below it, what a reading that jumps by a count in
+/// each plane at once adds to noise may be. With shift s in standard deviations (of the mean of two planes of 1 um and 12
+/// bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 between n = 30 and 80 samples.
+const SHIFTED: [f32; 2] = [16.7, 0.28];
 /// Seconds over which the mean is learnt.
 const LEVEL_TIME: f32 = 0.2;
 
@@ -61,11 +65,25 @@ impl ReleaseBank {
         self.statistic = 0.0;
     }
 
+    /// Whether an instant is above the threshold, and above what readings that jump by a count may do.
+    fn is_more_than_a_shift(&self, threshold: f32, scale: f32) -> bool {
+        let mut candidates = self.candidates.iter().take(self.live);
+        candidates.any(|it| it.statistic(scale) > threshold.max(SHIFTED[0] + SHIFTED[1] * it.age))
+    }
+
     /// Forgets what was learnt as well.
     pub(crate) fn forget(&mut self) {
         self.restart();
         self.level = 0.0;
         self.count = 0.0;
+    }
+}
+
+impl Candidate {
+    /// `scale`: half over the variance, 1/m^2.
+    fn statistic(&self, scale: f32) -> f32 {
+        let [a, b] = self.sum;
+        (a * a + b * b) * scale / self.energy
     }
 }
 
@@ -115,8 +133,7 @@ impl Release {
             candidate.sum[0] += x * w;
             candidate.sum[1] += y * w;
             candidate.energy += w * w;
-            let [a, b] = candidate.sum;
-            let any = (a * a + b * b) * scale / candidate.energy;
+            let any = candidate.statistic(scale);
             if any > best.0 {
                 best = (any, candidate.age);
             }
@@ -125,7 +142,7 @@ impl Release {
         let threshold = self.threshold * loudness;
         bank.count = (bank.count + 1.0).min(self.memory);
         bank.level += (best.0 - bank.level) / bank.count;
-        if best.0 <= threshold {
+        if best.0 <= threshold || !bank.is_more_than_a_shift(threshold, scale) {
             return None;
         }
         // With gravity known, the instant follows from the fall's shape far better.
