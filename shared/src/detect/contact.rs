@@ -19,9 +19,15 @@ const SURE: f32 = 3.0;
 /// Way back from the last turning point, in standard deviations of the position, that makes a swing.
 const CLEAR_SWING: f32 = 12.0;
 
+/// Angle in a sample, rad, from which on a whirl is not followed well enough to tell whether it slides or rolls.
+const TOO_FAST: f32 = 0.5;
 /// Cosine of the angle from the bottom up to which a rotor that goes back swings: near the sides
 /// one that has left the wall comes back as well.
 const SWINGS: f32 = 0.3;
+/// That of a turning point where the wall may not have pressed, and up to which it is then waited: the rotor may have left
+/// the wall there by less than the sensors show, and comes back to it lower.
+const ASIDE: f32 = 0.1;
+const BACK: f32 = 0.9;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +77,8 @@ pub(crate) struct Touching {
     /// Slip against an inner ring that turns, where measured.
     pub(crate) slip: Option<Slip>,
     verdict: Verdict,
+    /// Whether it has been too fast to tell sliding from rolling.
+    too_fast: bool,
 }
 
 /// The last turning point of a swing.
@@ -79,11 +87,14 @@ struct Turning {
     angle: f32,
     age: u32,
     direction: f32,
+    /// Cosine of its angle from the bottom.
+    cos: f32,
 }
 
 impl Turning {
-    /// Follows the angle (rad); true where it has come back by `clear` from a turning point.
-    fn take(&mut self, angle: f32, clear: f32) -> bool {
+    /// Follows the angle turned (rad) and the cosine of that from the bottom; true where it has come back by `clear`
+    /// from a turning point.
+    fn take(&mut self, angle: f32, cos: f32, clear: f32) -> bool {
         self.age = self.age.saturating_add(1);
         if self.direction == 0.0 {
             if (angle - self.angle).abs() > clear {
@@ -95,6 +106,7 @@ impl Turning {
         }
         if (angle - self.angle) * self.direction >= 0.0 {
             self.angle = angle;
+            self.cos = cos;
             self.age = 0;
             return false;
         }
@@ -154,6 +166,7 @@ impl ContactTest {
         state.age = state.age.saturating_add(1);
         let spin = signals.spin;
         let rate = state.swing().rate;
+        state.too_fast |= rate.abs() * self.period > TOO_FAST;
         let surface = self.machine.rotor_radius * spin.unwrap_or(self.machine.spin);
         let mut slip = surface + rate * self.machine.clearance;
         state.slip = None;
@@ -201,6 +214,7 @@ impl ContactTest {
                 (long.then_some(Kind::Rolling), state.slow as f32)
             }
             None if state.slip_left > 0.0 => (Some(Kind::Sliding), 0.0),
+            None if state.too_fast && state.kind.is_some() => (None, 0.0),
             None => self.by_likelihood(state),
         };
         let found = found.filter(|kind| state.kind != Some(*kind))?;
@@ -262,7 +276,12 @@ impl ContactTest {
         let swing = *state.swing();
         let block = state.still.take(fix.position, self.still_samples);
         let clear = CLEAR_SWING * sqrt(fix.variance) / self.machine.clearance;
-        let turned_back = state.turning.take(swing.turned, clear);
+        let turned_back = state.turning.take(swing.turned, swing.cos, clear);
+        let lowest = if state.turning.cos < ASIDE {
+            BACK
+        } else {
+            SWINGS
+        };
         let has_turned = swing.turned.abs() >= TAU;
         let (found, age) = if has_turned || self.goes_round(state, slip) {
             let way = if has_turned { swing.turned } else { swing.rate };
@@ -273,7 +292,7 @@ impl ContactTest {
                 Regime::BackwardWhirl
             };
             (whirl, state.age as f32)
-        } else if turned_back && swing.cos >= SWINGS {
+        } else if turned_back && swing.cos >= lowest {
             (Regime::Pendulum, state.turning.age as f32)
         } else if block
             .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)

@@ -13,6 +13,9 @@ pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
 /// Time after the foreseen end of a series in which a missed impact would still show, s.
 const SERIES_MARGIN: f32 = 5e-4;
 
+/// Times that of `dwell`, near the wall without impact, after which it is contact whatever was foreseen: a wall that hardly
+/// presses, or gravity seen the wrong way round, foresees anything.
+const OVERDUE: u32 = 4;
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
@@ -23,6 +26,8 @@ const WHITE_LEVEL: f32 = 0.6;
 /// From this ratio to it on, the sensors are louder than white noise.
 const LOUD: f32 = 1.5;
 
+/// Part of the wall's tolerance by which its radius may differ from where the last impact was.
+const UNEVEN: f32 = 0.33;
 /// Samples in a row that no flight and no impact explains, which are left out: a spike. More are a motion.
 const LEFT_OUT: u8 = 2;
 /// Way of an impact in the sample after it, in samples' ways of the speed before it: twice that speed is the most that
@@ -45,6 +50,8 @@ pub(crate) struct FlightTest {
     certain: f32,
     /// Radius from which on the wall is near, m.
     near: f32,
+    /// How far the wall may be from where an impact was, m.
+    uneven: f32,
     /// Samples near the wall, without impact, that no bounce of that height lasts.
     dwell: u32,
 }
@@ -58,6 +65,8 @@ pub(crate) struct Airborne {
     /// The impacts so far.
     pub(crate) series: Series,
     near_wall: u32,
+    /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
+    seen_near: u32,
     /// Samples in a row that are left out.
     left_out: u8,
     /// Radius from which on the rotor may lie on the wall, m.
@@ -71,6 +80,7 @@ impl Airborne {
     fn restart(&mut self, loudness: f32) {
         self.bank.begin(loudness);
         self.near_wall = 0;
+        self.seen_near = 0;
         self.lying = 0;
     }
 
@@ -140,6 +150,16 @@ impl Landing {
     }
 }
 
+/// A jump that is an impact.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    bounce: Bounce,
+    /// With which the flight before it had left the wall, m/s; 0 where it is the first.
+    launch_speed: f32,
+    /// From the centre, m.
+    radius: f32,
+}
+
 /// A position as the sensors give it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fix {
@@ -167,6 +187,7 @@ impl FlightTest {
             threshold,
             certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
+            uneven: UNEVEN * tolerance,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
         }
     }
@@ -240,15 +261,16 @@ impl FlightTest {
             let impact = self.judge(flight, &jump, fix);
             flight.track.shift(&jump);
             flight.bank.restart();
-            if let Some((bounce, launch_speed)) = impact {
-                flight
-                    .series
-                    .take(bounce, launch_speed, &self.machine, self.period);
+            if let Some(hit) = impact {
+                let (series, machine) = (&mut flight.series, &self.machine);
+                series.take(hit.bounce, hit.launch_speed, machine, self.period);
+                flight.lies = self.near.max(hit.radius - self.uneven);
                 flight.near_wall = 0;
+                flight.seen_near = 0;
                 flight.lying = 0;
                 return Some(Landing::Impact {
                     age: jump.age,
-                    normal_speed: bounce.normal_speed,
+                    normal_speed: hit.bounce.normal_speed,
                 });
             }
         }
@@ -292,7 +314,7 @@ impl FlightTest {
     /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
     /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
     /// it finds after the time t in which a fall is found, as a jump of pressing times t.
-    fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<(Bounce, f32)> {
+    fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<Hit> {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
@@ -322,7 +344,11 @@ impl FlightTest {
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             -(u * last.outward[0] + v * last.outward[1])
         });
-        Some((bounce, launch_speed))
+        Some(Hit {
+            bounce,
+            launch_speed,
+            radius,
+        })
     }
 
     /// Part of the flight after an impact in which another is impossible, s: on a flat wall it would leave
@@ -349,6 +375,16 @@ impl FlightTest {
     }
 
     fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+        let (_, seen) = direction(fix.position);
+        flight.seen_near = if seen < self.near {
+            0
+        } else {
+            flight.seen_near + 1
+        };
+        if flight.seen_near > OVERDUE * self.dwell {
+            let age = flight.seen_near as f32;
+            return Some(Landing::Contact { age });
+        }
         let (_, radius) = direction(flight.track.position);
         if radius < self.near {
             flight.near_wall = 0;
