@@ -7,6 +7,8 @@ use crate::real::sqrt;
 
 /// Times the tolerance of the wall that it may seem beyond it.
 const BEYOND: f32 = 3.0;
+/// Part of the way to each look that the place goes which is followed: a single value is none.
+const SMOOTH: f32 = 0.5;
 /// Part of the radius by which a rotor lies at a side or the top.
 const ASIDE: f32 = 0.9;
 
@@ -29,6 +31,9 @@ pub(crate) struct Lying {
     touches: bool,
     first: [f32; 2],
     sum: [f32; 2],
+    /// Followed, and in contact farthest from the centre along each axis, m.
+    place: [f32; 2],
+    far: [f32; 2],
 }
 
 /// Where a rotor cannot be.
@@ -57,7 +62,14 @@ impl Lie {
     pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2], touches: bool) -> Option<Place> {
         if it.looks == 0 {
             it.first = position;
+            it.place = position;
             it.touches = true;
+        }
+        for ((place, far), now) in it.place.iter_mut().zip(&mut it.far).zip(position) {
+            *place += SMOOTH * (now - *place);
+            if touches {
+                *far = far.max(place.abs());
+            }
         }
         let [x, y] = [position[0] - it.first[0], position[1] - it.first[1]];
         it.sum[0] += x;
@@ -70,15 +82,21 @@ impl Lie {
         let count = f32::from(it.looks);
         let [x, y] = it.sum.map(|sum| sum / count);
         let mean = [x + it.first[0], y + it.first[1]];
-        let touches = it.touches;
+        let (touches, far) = (it.touches, it.far);
         *it = Lying::default();
-        self.judge(mean, touches)
+        self.judge(mean, far, touches)
     }
 
-    fn judge(&self, [x, y]: [f32; 2], touches: bool) -> Option<Place> {
+    fn judge(&self, [x, y]: [f32; 2], far: [f32; 2], touches: bool) -> Option<Place> {
         let radius = sqrt(x * x + y * y);
         if radius > self.beyond {
             return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
+        }
+        // A retainer that gives way to one that whirls does so all round.
+        match far.map(|it| it > self.beyond) {
+            [true, false] => return Some(Place::Beyond(0)),
+            [false, true] => return Some(Place::Beyond(1)),
+            _ => {}
         }
         // Nearer to the centre is the mean of one that whirls or swings far.
         if !(touches && self.falls && radius > 0.5 * self.clearance) {

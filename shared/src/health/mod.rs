@@ -26,7 +26,7 @@ use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 
 /// Speed, m/s, that no impact is below of which spikes are told from: two such impacts a sample apart may be.
-const LEAST_SPEED: f32 = 0.2;
+const LEAST_SPEED: f32 = 0.17;
 /// Samples' way at that speed that a channel may be off the prediction when the rotor does not float.
 const REACH: f32 = 4.0;
 /// Orbits of fewer counts show no sense.
