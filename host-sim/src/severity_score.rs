@@ -23,6 +23,8 @@ pub struct Strained {
     pub speeds: Vec<f64>,
     /// In permanent contact, s.
     pub dwell: f64,
+    /// Starts and ends of a contact up to the end.
+    pub changes: usize,
     /// Greatest speed of the centre, m/s.
     pub speed: f64,
     /// Greatest force in contact, once it has gone round, N.
@@ -86,6 +88,12 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
         dwell: contacts
             .map(|it| (it.end_s.min(end) - it.start_s).max(0.0))
             .sum(),
+        changes: history
+            .contact_starts
+            .iter()
+            .chain(&history.lift_offs)
+            .filter(|it| **it <= end)
+            .count(),
         speed,
         whirl_load,
     })

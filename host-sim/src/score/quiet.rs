@@ -44,13 +44,15 @@ pub enum Case {
     Steps,
     Hum,
     Coloured,
+    /// Orbit, runout, offset, sweep, steps and hum.
+    Together,
     Load,
     Shock,
     Setpoint,
     Landing,
 }
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 12] = [
     Case::White,
     Case::Orbit,
     Case::Offset,
@@ -58,6 +60,7 @@ const CASES: [Case; 11] = [
     Case::Steps,
     Case::Hum,
     Case::Coloured,
+    Case::Together,
     Case::Load,
     Case::Shock,
     Case::Setpoint,
@@ -75,6 +78,7 @@ impl Case {
             Self::Steps => "sensor steps of 1 LSB",
             Self::Hum => "mains hum 50 Hz, 2 um",
             Self::Coloured => "noise 1 um below 500 Hz",
+            Self::Together => "orbit, runout, offset, sweep, steps and hum at once",
             Self::Load => "load steps up to 1 g, caught",
             Self::Shock => "base shocks up to 2 g, caught",
             Self::Setpoint => "setpoint changes of 50 um in 20 ms",
@@ -126,6 +130,12 @@ impl Stretch {
                 floats.place = direction(&mut random).map(|part| far * part);
             }
             Case::Coloured => scene.sensors.noise = 0.3e-6,
+            Case::Together => {
+                scene.sensors.runout = RUNOUT;
+                scene.sensors.runout_harmonic = random.random_range(1..=3);
+                let far = 0.5 * scene.retainer.clearance;
+                floats.place = direction(&mut random).map(|part| far * part);
+            }
             _ => {}
         }
         scene.rotor.spin = floats.spin;
@@ -149,9 +159,13 @@ impl Stretch {
     fn next(&mut self, time: f64, period: f64) -> Motion {
         let shift = self.shift(time, period);
         let [x, y] = self.floats.position(time);
+        let spin = match self.case {
+            Case::Together => TAU * swept(time).0,
+            _ => self.floats.spin,
+        };
         Motion {
             planes: shift.map(|[u, v]| [x + u, y + v]),
-            spin: self.floats.spin,
+            spin,
             levitated: true,
             bearing: None,
         }
@@ -164,6 +178,12 @@ impl Stretch {
             Case::Steps => self.steps.next(&mut self.random, period, self.count),
             Case::Hum => hum(time, 2e-6),
             Case::Coloured => self.coloured.next(&mut self.random, period, 1e-6, 500.0),
+            Case::Together => {
+                let [x, y] = resonance(time);
+                let steps = self.steps.next(&mut self.random, period, self.count);
+                let hum = hum(time, 2e-6);
+                [0, 1].map(|k| [x + steps[k][0] + hum[k][0], y + steps[k][1] + hum[k][1]])
+            }
             Case::Load | Case::Shock => self.held.next(&mut self.random, period),
             Case::Setpoint => {
                 // There for half a second, and back.
@@ -181,13 +201,12 @@ impl Stretch {
     }
 }
 
-/// Orbit of a rotor whose speed goes from 20 to 200 Hz in 10 s and back; resonance at 100 Hz with a
-/// tenth of critical damping, 30 um there, the response of a steady speed.
-fn resonance(time: f64) -> [f64; 2] {
+/// A speed that goes from 20 to 200 Hz in 10 s and back: Hz, and turns.
+fn swept(time: f64) -> (f64, f64) {
     let (low, high, half) = (20.0, 200.0, 10.0);
     let within = time % (2.0 * half);
     let slope = (high - low) / half;
-    let (frequency, turns) = if within < half {
+    if within < half {
         let turns = low * within + 0.5 * slope * within * within;
         (low + slope * within, turns)
     } else {
@@ -195,7 +214,13 @@ fn resonance(time: f64) -> [f64; 2] {
         // As many turns as on the way up, less those still to come.
         let turns = half * (low + high) - low * left - 0.5 * slope * left * left;
         (low + slope * left, turns)
-    };
+    }
+}
+
+/// Orbit at that speed; resonance at 100 Hz with a tenth of critical damping, 30 um there, the response of a
+/// steady speed.
+fn resonance(time: f64) -> [f64; 2] {
+    let (frequency, turns) = swept(time);
     let ratio = frequency / 100.0;
     let (stiff, damped) = (1.0 - ratio * ratio, 0.2 * ratio);
     let radius = 6e-6 * ratio * ratio / f64::hypot(stiff, damped);

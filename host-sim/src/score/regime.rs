@@ -9,7 +9,7 @@ use super::figure::Figure;
 use super::impact::dropped;
 use super::levitated::Levitated;
 use super::row::Row;
-use super::watch::{Drop, Watched};
+use super::watch::{Drop, Instant, Watched};
 use super::{Findings, Plan};
 use crate::failure::Failure;
 use crate::history::{History, Regime};
@@ -28,9 +28,13 @@ const SETTLED: f64 = 0.1;
 const LONG: f64 = 3.0;
 /// Turns of a whirl that has to be declared: one, and time to say so.
 const CERTAIN: f64 = 1.5;
+/// Time before its contact at which it may be, s: as far off as the start of the contact may be dated.
+const EARLY: f64 = 1e-3;
 /// A pendulum that swings less, over that time, cannot be told from rest: three standard deviations of
 /// the noise, either way, m.
 const STILL: f64 = 6e-6;
+/// A rotor that hops by less, over that time, cannot be told from one that stays on the wall: the noise, m.
+const HOP: f64 = 1e-6;
 
 /// How a run starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +116,7 @@ fn row(regime: Regime) -> usize {
 /// Column of what the monitor last said.
 fn column(watched: &Watched) -> usize {
     let mut column = 4;
-    let mut lift_offs = 0;
+    let (mut lift_offs, mut touches) = (0, false);
     for event in &watched.detection.events {
         column = match event.event {
             EventKind::Rest => 0,
@@ -123,12 +127,16 @@ fn column(watched: &Watched) -> usize {
                 lift_offs += 1;
                 4
             }
-            EventKind::Sliding => KINDS,
-            // Slip ends within a regime.
-            EventKind::Rolling if column < 4 => column,
-            EventKind::Rolling => KINDS,
+            // Slip ends, and begins again, within a regime.
+            EventKind::Sliding | EventKind::Rolling if touches => column,
+            EventKind::Sliding | EventKind::Rolling => KINDS,
             EventKind::FreeFall => 4,
             EventKind::Impact | EventKind::Levitated | EventKind::SensorFault => column,
+        };
+        touches = match event.event {
+            EventKind::Sliding | EventKind::Rolling => true,
+            EventKind::LiftOff | EventKind::FreeFall | EventKind::Impact => false,
+            _ => touches,
         };
     }
     // Four lift-offs without whirl are intermittent contact, whatever came last.
@@ -196,7 +204,10 @@ fn whirls(watched: &Watched, end: f64) -> Vec<f64> {
         let stop = lift_off.copied().unwrap_or(end);
         let during = |time: f64| time >= start && time <= stop;
         let mut events = watched.detection.events.iter();
-        let told = events.find(|it| it.event == EventKind::BackwardWhirl && during(it.declared_s));
+        let told = events.find(|it| {
+            it.event == EventKind::BackwardWhirl
+                && (during(it.declared_s) || during(it.declared_s + EARLY))
+        });
         let instants = watched.instants.iter().filter(|it| during(it.time));
         let farthest = instants.fold(0.0, |least, it| f64::min(least, it.turns));
         if farthest <= -CERTAIN {
@@ -206,18 +217,20 @@ fn whirls(watched: &Watched, end: f64) -> Vec<f64> {
     whirls
 }
 
-/// A pendulum that hardly moves.
+/// A pendulum that hardly moves, or a rotor that hardly leaves the wall.
 fn is_blurred(watched: &Watched, end: f64) -> bool {
-    if watched.truth.regime != Regime::Pendulum {
-        return false;
+    let span = |of: fn(&Instant) -> f64| {
+        let last = watched.instants.iter().filter(|it| it.time > end - SETTLED);
+        let (low, high) = last.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| {
+            (f64::min(low, of(it)), f64::max(high, of(it)))
+        });
+        high - low
+    };
+    match watched.truth.regime {
+        Regime::Pendulum => span(|it| it.position[0]) < STILL,
+        Regime::Intermittent => span(|it| f64::hypot(it.position[0], it.position[1])) < HOP,
+        _ => false,
     }
-    let last = watched.instants.iter().filter(|it| it.time > end - SETTLED);
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for instant in last {
-        low = low.min(instant.position[0]);
-        high = high.max(instant.position[0]);
-    }
-    high - low < STILL
 }
 
 /// Runs the group.
