@@ -1,9 +1,14 @@
 //! What is wrong with an input file: the file, the line and the rule.
 
 use std::fmt;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+
+/// Larger than any scene, plan or mapping, bytes.
+pub const LARGEST_TOML: u64 = 4 << 20;
 
 /// A flaw in a scene or a recorded stream.
 #[derive(Debug)]
@@ -64,19 +69,33 @@ impl InputError {
         self
     }
 
-    /// The whole text of a file.
-    pub fn read(path: &Path) -> Result<String, Self> {
+    /// The whole text of a file of at most `most` bytes.
+    pub fn read(path: &Path, most: u64) -> Result<String, Self> {
+        let bytes = Self::read_bytes(path, most)?;
         let file = path.display().to_string();
-        if path.is_dir() {
-            return Err(Self::of_file(&file, "is a folder, not a file"));
-        }
-        let bytes = std::fs::read(path).map_err(|error| Self::of_file(&file, reason(&error)))?;
         String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let before = &error.as_bytes()[..valid];
             let line = 1 + before.iter().filter(|b| **b == b'\n').count();
             Self::at_line(&file, line as u64, "the text is not UTF-8")
         })
+    }
+
+    /// All bytes of a file, at most `most`; what is not a file may have no end.
+    pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Self> {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            return Err(Self::of_file(&file, "is a folder, not a file"));
+        }
+        let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
+        let mut bytes = Vec::new();
+        let mut start = File::open(path).map_err(unread)?.take(most + 1);
+        start.read_to_end(&mut bytes).map_err(unread)?;
+        if bytes.len() as u64 > most {
+            let rule = format!("is larger than {} MiB, the most that is read", most >> 20);
+            return Err(Self::of_file(&file, rule));
+        }
+        Ok(bytes)
     }
 
     /// The rule that is broken.
