@@ -49,7 +49,7 @@ impl Layout {
         }
         if let Some(place) = head.iter().position(|byte| *byte == 0) {
             let line = 1 + head[..place].iter().filter(|it| **it == b'\n').count() as u64;
-            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff)";
+            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff, Parquet in .parquet)";
             return Err((line, rule.to_owned()));
         }
         let bom = if head.starts_with(b"\xef\xbb\xbf") {
