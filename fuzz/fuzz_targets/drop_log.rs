@@ -23,7 +23,7 @@ fn seal(bytes: &mut [u8], size: usize) {
 fn look(bytes: &[u8]) {
     let dump = Dump::of(bytes);
     let _ = is_sound(&dump);
-    let paint = Paint::for_stdout();
+    let paint = Paint::PLAIN;
     assert!(!list(&dump, paint).is_empty());
     for episode in &dump.episodes {
         assert!(!show(episode, paint).is_empty());
