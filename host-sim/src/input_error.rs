@@ -73,6 +73,9 @@ impl InputError {
     pub fn read(path: &Path, most: u64) -> Result<String, Self> {
         let bytes = Self::read_bytes(path, most)?;
         let file = path.display().to_string();
+        if is_utf_16(&bytes) {
+            return Err(Self::at_line(&file, 1, UTF_16));
+        }
         String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let before = &error.as_bytes()[..valid];
@@ -88,14 +91,19 @@ impl InputError {
             return Err(Self::of_file(&file, "is a folder, not a file"));
         }
         let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
+        let there = File::open(path).map_err(unread)?;
         let mut bytes = Vec::new();
-        let mut start = File::open(path).map_err(unread)?.take(most + 1);
-        start.read_to_end(&mut bytes).map_err(unread)?;
-        if bytes.len() as u64 > most {
-            let rule = format!("is larger than {} MiB, the most that is read", most >> 20);
-            return Err(Self::of_file(&file, rule));
+        if there.metadata().map_err(unread)?.len() <= most {
+            there
+                .take(most + 1)
+                .read_to_end(&mut bytes)
+                .map_err(unread)?;
+            if bytes.len() as u64 <= most {
+                return Ok(bytes);
+            }
         }
-        Ok(bytes)
+        let rule = format!("is larger than {} MiB, the most that is read", most >> 20);
+        Err(Self::of_file(&file, rule))
     }
 
     /// The rule that is broken.
@@ -109,12 +117,24 @@ impl InputError {
     }
 }
 
+/// What is wrong with a text of [`is_utf_16`].
+pub const UTF_16: &str = "the text is UTF-16; save it as UTF-8";
+
+/// Whether a text begins as UTF-16 does.
+pub fn is_utf_16(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff])
+}
+
 /// Why a file cannot be opened, read or written, without the number of the system's error.
 pub fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => error.to_string(),
+        std::io::ErrorKind::NotADirectory => "is no folder".to_owned(),
+        _ => match error.to_string().split_once(" (os error") {
+            Some((text, _)) => text.to_owned(),
+            None => error.to_string(),
+        },
     }
 }
 

@@ -26,7 +26,7 @@ use remarks::Remarks;
 use resample::Resampled;
 use text::{Head, TextRows};
 
-use crate::input_error::{InputError, reason};
+use crate::input_error::{InputError, UTF_16, reason};
 use crate::scene::Scene;
 use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate};
 
@@ -113,6 +113,9 @@ impl Recording {
     ) -> Result<Self, InputError> {
         let remarks = Remarks::default();
         let head = Head::read(file, bytes)?;
+        if head.is_utf_16() {
+            return Err(InputError::at_line(file, 1, UTF_16));
+        }
         let opened = match &reading.mapping {
             Some(mapping) => {
                 let rows = TextRows::new(file, head, mapping, &scene.sensors, &remarks)?;

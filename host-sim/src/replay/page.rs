@@ -129,12 +129,8 @@ fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
     let drop = replay.first_drop().map(|it| it.onset_s);
     let parts = match drop {
         Some(onset) => vec![
-            (
-                "levitated",
-                "before the first drop",
-                [f64::NEG_INFINITY, onset],
-            ),
-            ("motion", "from it on", [onset, f64::INFINITY]),
+            ("levitated", "before it", [f64::NEG_INFINITY, onset]),
+            ("motion", "from the first drop on", [onset, f64::INFINITY]),
         ],
         None => vec![("motion", "all of it", [f64::NEG_INFINITY, f64::INFINITY])],
     };

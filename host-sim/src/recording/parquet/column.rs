@@ -4,6 +4,7 @@ use parquet::basic::{Compression, LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::recording::pick::Heading;
@@ -26,11 +27,12 @@ pub struct Used {
 }
 
 impl Used {
-    /// Column `index` of the file, each of its parts with its compression; else the rule that is broken.
-    pub fn new(
+    /// Column `index` of a file of `size` bytes, and its parts; else the rule that is broken.
+    pub fn new<'a>(
         index: usize,
         column: &ColumnDescriptor,
-        mut codecs: impl Iterator<Item = Compression>,
+        parts: impl Iterator<Item = &'a ColumnChunkMetaData>,
+        size: u64,
     ) -> Result<Self, String> {
         if !is_number(column) {
             let kind = column.logical_type_ref().map_or_else(
@@ -41,12 +43,26 @@ impl Used {
                 "is no column of numbers that are read (float, double, signed integer, boolean, timestamp), but {kind}"
             ));
         }
-        let is_other =
-            |it: &Compression| !matches!(it, Compression::UNCOMPRESSED | Compression::SNAPPY);
-        if let Some(other) = codecs.find(is_other) {
-            return Err(format!(
-                "is compressed by {other}, which is not read: write it with Snappy, or without compression"
-            ));
+        for part in parts {
+            let codec = part.compression();
+            if !matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY) {
+                return Err(format!(
+                    "is compressed by {codec}, which is not read: write it with Snappy, or without compression"
+                ));
+            }
+            // The crate takes these as they are, and panics.
+            let start = part
+                .dictionary_page_offset()
+                .unwrap_or(part.data_page_offset());
+            let end = start.checked_add(part.compressed_size());
+            let inside = start >= 0 && part.compressed_size() >= 0 && part.data_page_offset() >= 0;
+            if !inside
+                || end
+                    .and_then(|it| u64::try_from(it).ok())
+                    .is_none_or(|it| it > size)
+            {
+                return Err("lies outside the file, which is damaged".to_owned());
+            }
         }
         Ok(Self {
             index,

@@ -87,9 +87,9 @@ impl ParquetRows {
         let mut used = Vec::new();
         for index in indices {
             let column = schema.column(index);
-            let codecs = reader.metadata().row_groups().iter();
-            let codecs = codecs.filter_map(|it| Some(it.columns().get(index)?.compression()));
-            let opened = Used::new(index, &column, codecs);
+            let groups = reader.metadata().row_groups().iter();
+            let parts = groups.filter_map(|it| it.columns().get(index));
+            let opened = Used::new(index, &column, parts, there.len());
             used.push(
                 opened
                     .map_err(|rule| fail(format!("column {:?} {rule}", column.path().string())))?,
