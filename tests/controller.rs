@@ -15,6 +15,7 @@ use touchdown_core::controller::{Faults, Mode, Outputs};
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::link::{Chunk, Device, Log, Recent, Refusal, Server, State};
+use touchdown_core::log::counters::Counters;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 
@@ -116,6 +117,8 @@ pub struct Machine {
     pub noise: Vec<u8>,
     /// The log.
     pub episodes: BTreeMap<u32, Vec<u8>>,
+    /// What is counted over its life.
+    pub lifetime: Option<Counters>,
     block: Block,
 }
 
@@ -161,6 +164,10 @@ impl Log for Machine {
     fn erase(&mut self, _: u32) -> Result<(), Refusal> {
         Err(Refusal::NoEpisode)
     }
+
+    fn lifetime(&mut self) -> Option<Counters> {
+        self.lifetime
+    }
 }
 
 impl Default for Machine {
@@ -170,6 +177,7 @@ impl Default for Machine {
             notices: Vec::new(),
             noise: Vec::new(),
             episodes: BTreeMap::new(),
+            lifetime: None,
             block: config_block::encode(&settings()),
         }
     }

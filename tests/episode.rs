@@ -74,17 +74,21 @@ pub fn episode(sequence: u32) -> Vec<[u8; BLOCK_BYTES]> {
         .collect()
 }
 
+/// Of a log with some past.
+pub const COUNTERS: Counters = Counters {
+    generation: 3,
+    boots: 7,
+    episodes: 2,
+    landings: 5,
+    unweighed: 1,
+    lost: 3,
+    weight: 4_321,
+};
+
 /// Counters, then a slot for each of the episodes.
 pub fn dump(episodes: &[Vec<[u8; BLOCK_BYTES]>]) -> Vec<u8> {
     let mut bytes = vec![0xff; 8192 + SLOT * episodes.len()];
-    let counters = Counters {
-        generation: 3,
-        boots: 7,
-        episodes: episodes.len() as u32,
-        landings: 2,
-        ..Counters::default()
-    };
-    bytes[128..192].copy_from_slice(&counters.encode());
+    bytes[128..192].copy_from_slice(&COUNTERS.encode());
     for (slot, pages) in episodes.iter().enumerate() {
         let at = 8192 + SLOT * slot;
         bytes[at..at + BLOCK_BYTES * pages.len()].copy_from_slice(pages.as_flattened());

@@ -11,3 +11,4 @@ pub mod growth;
 pub mod moment;
 pub mod rotors;
 pub mod supports;
+pub mod sweeps;

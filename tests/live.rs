@@ -13,17 +13,19 @@ use proptest::prelude::*;
 use serde_json::Value;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::EventKind;
-use touchdown_core::link::{Request, Server};
+use touchdown_core::link::{Request, Server, VERSION};
+use touchdown_core::log::counters::Counters;
 use touchdown_sim::link::{Client, Line, LinkError, Told};
 use touchdown_tests::binary::{program, touchdown};
 use touchdown_tests::controller::{Controller, Machine, SAMPLE_RATE, event, settings};
-use touchdown_tests::episode::{dump, episode};
+use touchdown_tests::episode::{COUNTERS, dump, episode};
 
 /// Far longer than anything here takes.
 const LIMIT: Duration = Duration::from_secs(60);
 
 fn machine() -> Arc<Mutex<Machine>> {
     let mut machine = Machine::default();
+    machine.lifetime = Some(COUNTERS);
     for number in [2, 4] {
         let bytes = episode(number).as_flattened().to_vec();
         machine.episodes.insert(number, bytes);
@@ -134,6 +136,16 @@ fn what_the_controller_says_comes_out_as_lines() {
     assert_eq!(episodes[0]["trigger"], "free fall");
     let numbers: Vec<_> = episodes.iter().map(|it| it["number"].clone()).collect();
     assert_eq!(numbers, [2, 4]);
+
+    let told = live.so_far("lifetime").pop();
+    let lifetime = told.unwrap_or_else(|| live.next("lifetime"));
+    assert_eq!(lifetime["landings"], 5);
+    assert_eq!(lifetime["weight"], 4.321);
+    controller.machine().lifetime = Some(Counters {
+        landings: 6,
+        ..COUNTERS
+    });
+    assert_eq!(live.next("lifetime")["landings"], 6);
 }
 
 #[test]
@@ -201,6 +213,38 @@ fn a_controller_that_never_answers_is_a_failure() {
 }
 
 #[test]
+fn a_signal_gives_the_terminal_back() {
+    // A terminal of its own; the signal comes once the view has it.
+    const SCRIPT: &str = r#"
+        stty -g > before
+        "$TOUCHDOWN" live unix:rig.sock < /dev/tty &
+        until stty -a | grep -q -e -icanon; do sleep 0.02; done
+        kill -$SIGNAL $!
+        wait $!
+        echo $? > status
+        stty -g > after
+    "#;
+    for signal in ["TERM", "HUP"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = folder.path();
+        let _controller = Controller::at_path(&at.join("rig.sock"), machine());
+        fs::write(at.join("view.sh"), SCRIPT).expect("a script");
+        let shown = Command::new("script")
+            .args(["-qec", "sh view.sh", "/dev/null"])
+            .current_dir(at)
+            .env("TOUCHDOWN", program())
+            .env("SIGNAL", signal)
+            .stdin(Stdio::null())
+            .output()
+            .expect("script runs");
+        let text = |name: &str| fs::read_to_string(at.join(name)).unwrap_or_default();
+        assert_eq!(text("status"), "0\n", "{signal}: {shown:?}");
+        assert_eq!(text("after"), text("before"), "{signal}");
+        assert!(!text("before").is_empty());
+    }
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     let folder = tempfile::tempdir().expect("a folder");
     let _controller = Controller::at_path(&folder.path().join("rig.sock"), machine());
@@ -253,7 +297,10 @@ fn the_log_over_the_link_is_that_of_a_file() {
     let all: Value = serde_json::from_slice(&run(&["list", &port, "--json", "-"])).expect("JSON");
     let numbers = [0, 1].map(|it| all["episodes"][it]["sequence"].clone());
     assert_eq!(numbers, [2, 4]);
-    assert!(all["counters"].is_null());
+    let of_file = run(&["list", "flash.bin", "--json", "-"]);
+    let of_file: Value = serde_json::from_slice(&of_file).expect("JSON");
+    assert_eq!(all["counters"]["landings"], 5);
+    assert_eq!(all["counters"], of_file["counters"]);
     run(&["verify", &port]);
     touchdown(at)
         .args(["log", "show", &port, "3"])
@@ -355,7 +402,7 @@ impl Line for Parrot {
 
 #[test]
 fn another_version_is_named() {
-    let plain = [2, 1];
+    let plain = [VERSION + 1, 1];
     let body = [&plain[..], &CRC.checksum(&plain).to_le_bytes()].concat();
     // Without a zero in it, one length is all of the stuffing.
     assert!(!body.contains(&0));
@@ -363,7 +410,10 @@ fn another_version_is_named() {
     frame.extend(&body);
     frame.push(0);
     let error = Client::new(Box::new(Parrot(frame))).hello().unwrap_err();
-    assert!(matches!(error, LinkError::Version(2)), "{error}");
+    assert!(
+        matches!(error, LinkError::Version(it) if it == VERSION + 1),
+        "{error}"
+    );
 }
 
 #[test]

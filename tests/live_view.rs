@@ -8,10 +8,11 @@ use ratatui::style::Color;
 use touchdown_core::controller::{Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::link::{Counters, State};
+use touchdown_core::link::{self, State};
+use touchdown_core::log::counters::Counters;
 use touchdown_sim::live::{Greeting, Said, Update, View, Watched, draw, line};
 use touchdown_tests::controller::{SAMPLE_RATE, circle, event, settings, state};
-use touchdown_tests::episode::header;
+use touchdown_tests::episode::{COUNTERS, header};
 
 /// Five seconds with a drop in them, after which the plug is pulled.
 fn watched(updates: &[(f64, Said)]) -> Watched {
@@ -41,7 +42,7 @@ fn dropped() -> State {
         mode: Mode::Dropped,
         outputs: Outputs::SAFE,
         faults: Faults::NONE.with(Fault::Overrun).with(Fault::SensorsLost),
-        counters: Counters {
+        counters: link::Counters {
             lost_samples: 11,
             unusable_values: 22,
             lost_notices: 33,
@@ -51,7 +52,7 @@ fn dropped() -> State {
 }
 
 fn a_drop() -> Vec<(f64, Said)> {
-    let mut updates = vec![(0.5, greeting())];
+    let mut updates = vec![(0.5, greeting()), (0.5, Said::Lifetime(COUNTERS))];
     for tick in 0..100_u64 {
         let at = 0.5 + 0.05 * tick as f64;
         let sample = 1_000 * tick;
@@ -228,6 +229,14 @@ fn any_update() -> impl Strategy<Value = Said> {
         (any::<u32>(), any::<bool>())
             .prop_map(|(number, whole)| Said::Episode(number, whole.then(header))),
         any::<u32>().prop_map(Said::Damaged),
+        (any::<u32>(), any::<u64>()).prop_map(|(landings, weight)| {
+            let counted = Counters {
+                landings,
+                weight,
+                ..COUNTERS
+            };
+            Said::Lifetime(counted)
+        }),
     ]
 }
 

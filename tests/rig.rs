@@ -14,12 +14,12 @@ use tempfile::TempDir;
 use touchdown_core::config_block::{self, Settings};
 use touchdown_core::controller::{Busy, Fault, Mode};
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::link::{Refusal, Reply, Request, State};
+use touchdown_core::link::{Refusal, Request, State};
 use touchdown_core::log::reader::Verdict;
-use touchdown_core::wire::{Record, decode_record};
 use touchdown_sim::drop;
 use touchdown_sim::drop_log::{Dump, Episode};
-use touchdown_sim::emulator::{Emulator, Talk, TalkError};
+use touchdown_sim::emulator::Emulator;
+use touchdown_sim::link::{Client, LinkError, Told};
 use touchdown_sim::rig::{Options, Order, Rig};
 use touchdown_sim::scene::Scene;
 use touchdown_sim::sensors::{Failing, SensorFault};
@@ -42,9 +42,13 @@ fn started(scene: &str, folder: &Path, noise: f64) -> Rig {
     Rig::start(scene, emulator, options).expect("starts")
 }
 
-fn talk(rig: &Rig) -> Talk {
-    let line = TcpStream::connect(rig.address()).expect("the rig listens");
-    Talk::new(line).expect("a socket")
+fn talk(rig: &Rig) -> Client {
+    patient(TcpStream::connect(rig.address()).expect("the rig listens"))
+}
+
+fn patient(line: TcpStream) -> Client {
+    line.set_nodelay(true).expect("a socket");
+    Client::patient(Box::new(line))
 }
 
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
@@ -56,7 +60,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 }
 
 /// The state once `holds`.
-fn state_when(talk: &mut Talk, what: &str, holds: impl Fn(&State) -> bool) -> State {
+fn state_when(talk: &mut Client, what: &str, holds: impl Fn(&State) -> bool) -> State {
     let mut state = State::NONE;
     until(what, || {
         state = talk.state().expect("answers");
@@ -66,32 +70,32 @@ fn state_when(talk: &mut Talk, what: &str, holds: impl Fn(&State) -> bool) -> St
 }
 
 /// Number of the newest episode that is closed, 0 for none.
-fn newest(talk: &mut Talk) -> u32 {
+fn newest(talk: &mut Client) -> u32 {
     talk.episodes().expect("answers").map_or(0, |it| it.1)
 }
 
-fn refused(talk: &mut Talk, block: &[u8]) -> Refusal {
+fn fetched(talk: &mut Client, number: u32) -> Vec<u8> {
+    let bytes = talk.episode(number, |_, _| ()).expect("comes in the end");
+    bytes.expect("is there")
+}
+
+fn refused(talk: &mut Client, block: &[u8]) -> Refusal {
     let block = config_block::Block::from_slice(block).expect("fits");
     match talk.order(&Request::SetConfig(block)) {
-        Err(TalkError::Refused(why)) => why,
+        Err(LinkError::Refused(why)) => why,
         other => panic!("{other:?}"),
     }
 }
 
-fn settings_in_force(talk: &mut Talk) -> Settings {
-    let Ok(Reply::Config(block)) = talk.ask(&Request::ReadConfig) else {
-        panic!("no configuration");
-    };
-    config_block::decode(&block).expect("valid").1
+fn settings_in_force(talk: &mut Client) -> Settings {
+    talk.settings().expect("a valid configuration")
 }
 
-fn events_heard(talk: &Talk) -> Vec<EventKind> {
-    let notices = talk.heard.iter().filter_map(|reply| match reply {
-        Reply::Notice(bytes) => decode_record(bytes),
-        _ => None,
-    });
-    let events = notices.filter_map(|record| match record {
-        Record::Notice(Notice::Declared(event)) => Some(event.kind),
+/// Since the last call.
+fn events_heard(talk: &mut Client) -> Vec<EventKind> {
+    let told = std::iter::from_fn(|| talk.listen(Duration::ZERO).expect("a line"));
+    let events = told.filter_map(|told| match told {
+        Told::Notice(Notice::Declared(event)) => Some(event.kind),
         _ => None,
     });
     events.collect()
@@ -126,18 +130,18 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     assert_eq!(why, Refusal::Busy(Busy::Watching));
     // Lying is a contact, and so recorded too, after each of the two starts.
     let lying = newest(&mut talk);
-    talk.heard.clear();
+    events_heard(&mut talk);
     rig.order(Order::Drop);
     let state = state_when(&mut talk, "the drop", |it| it.mode == Mode::Dropped);
     assert_eq!(state.outputs.bits() & 0b1011, 0);
     // It lies again: 1 s after the last notice the episode is closed.
     until("the episode", || newest(&mut talk) > lying);
-    let heard = events_heard(&talk);
+    let heard = events_heard(&mut talk);
     assert_eq!(heard[0], EventKind::FreeFall);
     assert!(heard.contains(&EventKind::Impact), "{heard:?}");
 
     let number = newest(&mut talk);
-    let fetched = talk.fetch(number).expect("is there");
+    let fetched = fetched(&mut talk, number);
     let episode = Episode::of(&fetched);
     assert_eq!(episode.verdict, Verdict::Whole);
     assert_eq!(episode.samples.iter().flatten().count(), 5_000);
@@ -154,8 +158,8 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     }
     assert_eq!(talk.episodes().expect("answers"), None);
     let again = talk.order(&Request::Erase { episode: last });
-    assert!(matches!(again, Err(TalkError::Refused(Refusal::NoEpisode))));
-    assert_eq!(talk.damaged, 0);
+    assert!(matches!(again, Err(LinkError::Refused(Refusal::NoEpisode))));
+    assert_eq!(talk.damaged(), 0);
     rig.stop().expect("no failure");
 }
 
@@ -250,7 +254,7 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
         let state = talk.state().expect("answers in the end");
         assert_eq!((state.mode, state.outputs), (quiet.mode, quiet.outputs));
     }
-    assert!(talk.damaged > 0 && talk.repeated > 0);
+    assert!(talk.damaged() > 0 && talk.repeated() > 0);
     // An episode, a byte in two thousand spoilt.
     rig.order(Order::Noise(5e-4));
     rig.order(Order::Drop);
@@ -258,14 +262,14 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
     let before = newest(&mut talk);
     until("the episode", || newest(&mut talk) > before);
     let number = newest(&mut talk);
-    let episode = Episode::of(&talk.fetch(number).expect("comes in the end"));
+    let episode = Episode::of(&fetched(&mut talk, number));
     assert_eq!(episode.verdict, Verdict::Whole);
     // Nothing but noise.
     rig.order(Order::Noise(1.0));
     let mut line = TcpStream::connect(rig.address()).expect("the rig listens");
     line.write_all(&[0x55; 200]).expect("is read");
     rig.order(Order::Noise(0.0));
-    let mut talk = Talk::new(line).expect("a socket");
+    let mut talk = patient(line);
     let state = talk.state().expect("answers");
     assert!(state.counters.damaged_frames > 0);
     assert_eq!(state.faults.0, 0);
@@ -287,7 +291,7 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
     // One plane is enough to see the rotor.
     rig.order(Order::Spoil(0, Failing::Dropped));
-    let told = |talk: &mut Talk| {
+    let told = |talk: &mut Client| {
         talk.state().expect("answers");
         events_heard(talk).contains(&EventKind::SensorFault)
     };
@@ -300,7 +304,7 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     let cleared = talk.order(&Request::Clear);
     assert!(matches!(
         cleared,
-        Err(TalkError::Refused(Refusal::Busy(Busy::Blind)))
+        Err(LinkError::Refused(Refusal::Busy(Busy::Blind)))
     ));
     rig.order(Order::Repair);
     until("it is cleared", || talk.order(&Request::Clear).is_ok());

@@ -5,37 +5,11 @@
 //! passes.
 #![cfg(unix)]
 
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use touchdown_tests::binary::{program, touchdown};
-
-const PLAN: &str = r#"
-scene = "rig"
-drops = 400
-seed = 7
-[start]
-within = 0.5
-speed_mm_s = 50
-[[parameter]]
-key = "retainer.friction"
-values = [0.05, 0.1, 0.15]
-[[parameter]]
-key = "retainer.restitution"
-uniform = [0.3, 0.6]
-[[parameter]]
-key = "run.duration_s"
-values = [0.1]
-"#;
-
-const RESULTS: [&str; 5] = [
-    "drops.csv",
-    "drops.parquet",
-    "points.csv",
-    "sweep.json",
-    "sweep.html",
-];
+use touchdown_tests::sweeps::{folder, results};
 
 /// Part 3 is left out at first: what is missing is not merged. `--wait` comes back when all tasks are done.
 const JOBS: &str = r#"
@@ -68,9 +42,8 @@ fn a_job_array_gives_the_bytes_of_one_run() {
         println!("SKIPPED, nothing was tested: {why}");
         return;
     }
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder(400);
     let at = folder.path();
-    fs::write(at.join("plan.toml"), PLAN).expect("a plan");
     let sweep = ["sweep", "plan.toml", "--out", "one"];
     touchdown(at).args(sweep).assert().success();
 
@@ -83,8 +56,6 @@ fn a_job_array_gives_the_bytes_of_one_run() {
         .output()
         .expect("Slurm");
     assert!(run.status.success(), "{run:?}");
-    for name in RESULTS {
-        let [one, many] = ["one", "many"].map(|it| fs::read(at.join(it).join(name)).expect(name));
-        assert!(one == many, "{name} differs");
-    }
+    let [one, many] = ["one", "many"].map(|it| results(at, it));
+    assert!(one == many, "the files differ");
 }

@@ -10,50 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use touchdown_tests::binary::{program, touchdown};
-
-/// 6 points of friction and restitution, a gap that is drawn, random starts.
-const PLAN: &str = r#"
-scene = "rig"
-drops = DROPS
-seed = 7
-[start]
-within = 0.5
-speed_mm_s = 50
-[[parameter]]
-key = "retainer.friction"
-values = [0.05, 0.1, 0.15]
-[[parameter]]
-key = "retainer.restitution"
-from = 0.3
-to = 0.6
-steps = 2
-[[parameter]]
-key = "retainer.clearance_mm"
-uniform = [0.2, 0.4]
-[[parameter]]
-key = "run.duration_s"
-values = [0.1]
-"#;
-
-const RESULTS: [&str; 5] = [
-    "drops.csv",
-    "drops.parquet",
-    "points.csv",
-    "sweep.json",
-    "sweep.html",
-];
-
-fn folder(drops: u32) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    let plan = PLAN.replace("DROPS", &drops.to_string());
-    fs::write(folder.path().join("plan.toml"), plan).expect("a plan");
-    folder
-}
-
-fn results(folder: &Path, out: &str) -> Vec<Vec<u8>> {
-    let read = |name| fs::read(folder.join(out).join(name)).expect(name);
-    RESULTS.map(read).to_vec()
-}
+use touchdown_tests::sweeps::{PLAN, folder, results};
 
 fn sweep(folder: &Path, arguments: &[&str]) {
     touchdown(folder)

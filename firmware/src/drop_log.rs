@@ -3,6 +3,7 @@
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use touchdown_core::link::{CHUNK_BYTES, Chunk, Log, Refusal};
 use touchdown_core::log::block::Block;
+use touchdown_core::log::counters::Counters;
 
 use crate::store::{EPISODE_BYTES, MountError, Store};
 
@@ -67,5 +68,9 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
             Ok(false) => Err(Refusal::NoEpisode),
             Err(_) => Err(Refusal::StoreFailed),
         }
+    }
+
+    fn lifetime(&mut self) -> Option<Counters> {
+        Some(*self.store.counters())
     }
 }

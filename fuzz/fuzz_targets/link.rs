@@ -7,6 +7,7 @@ use libfuzzer_sys::fuzz_target;
 use touchdown_core::checksum::CRC;
 use touchdown_core::config_block;
 use touchdown_core::link::{Decoder, Reply, Request, encode};
+use touchdown_core::wire::decode_record;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut decoder = Decoder::default();
@@ -25,4 +26,7 @@ fuzz_target!(|bytes: &[u8]| {
     let _ = config_block::decode(bytes);
     let sealed = [bytes, &CRC.checksum(bytes).to_le_bytes()].concat();
     let _ = config_block::decode(&sealed);
+    for record in bytes.as_chunks().0 {
+        let _ = decode_record(record);
+    }
 });

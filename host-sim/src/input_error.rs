@@ -1,9 +1,14 @@
 //! What is wrong with an input file: the file, the line and the rule.
 
 use std::fmt;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+
+/// Larger than any scene, plan or mapping, bytes.
+pub const LARGEST_TOML: u64 = 4 << 20;
 
 /// A flaw in a scene or a recorded stream.
 #[derive(Debug)]
@@ -64,19 +69,41 @@ impl InputError {
         self
     }
 
-    /// The whole text of a file.
-    pub fn read(path: &Path) -> Result<String, Self> {
+    /// The whole text of a file of at most `most` bytes.
+    pub fn read(path: &Path, most: u64) -> Result<String, Self> {
+        let bytes = Self::read_bytes(path, most)?;
         let file = path.display().to_string();
-        if path.is_dir() {
-            return Err(Self::of_file(&file, "is a folder, not a file"));
+        if is_utf_16(&bytes) {
+            return Err(Self::at_line(&file, 1, UTF_16));
         }
-        let bytes = std::fs::read(path).map_err(|error| Self::of_file(&file, reason(&error)))?;
         String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let before = &error.as_bytes()[..valid];
             let line = 1 + before.iter().filter(|b| **b == b'\n').count();
             Self::at_line(&file, line as u64, "the text is not UTF-8")
         })
+    }
+
+    /// All bytes of a file, at most `most`; what is not a file may have no end.
+    pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Self> {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            return Err(Self::of_file(&file, "is a folder, not a file"));
+        }
+        let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
+        let there = File::open(path).map_err(unread)?;
+        let mut bytes = Vec::new();
+        if there.metadata().map_err(unread)?.len() <= most {
+            there
+                .take(most + 1)
+                .read_to_end(&mut bytes)
+                .map_err(unread)?;
+            if bytes.len() as u64 <= most {
+                return Ok(bytes);
+            }
+        }
+        let rule = format!("is larger than {} MiB, the most that is read", most >> 20);
+        Err(Self::of_file(&file, rule))
     }
 
     /// The rule that is broken.
@@ -90,12 +117,24 @@ impl InputError {
     }
 }
 
+/// What is wrong with a text of [`is_utf_16`].
+pub const UTF_16: &str = "the text is UTF-16; save it as UTF-8";
+
+/// Whether a text begins as UTF-16 does.
+pub fn is_utf_16(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff])
+}
+
 /// Why a file cannot be opened, read or written, without the number of the system's error.
 pub fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => error.to_string(),
+        std::io::ErrorKind::NotADirectory => "is no folder".to_owned(),
+        _ => match error.to_string().split_once(" (os error") {
+            Some((text, _)) => text.to_owned(),
+            None => error.to_string(),
+        },
     }
 }
 

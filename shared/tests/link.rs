@@ -7,11 +7,22 @@ use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::error::ConfigError;
 use touchdown_core::link::{
     Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
-    Reply, Request, Server, State, encode,
+    Reply, Request, Server, State, VERSION, encode,
 };
+use touchdown_core::log::counters::Counters as Lifetime;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::tachometer::TachometersConfig;
+
+const LIFETIME: Lifetime = Lifetime {
+    generation: 20,
+    boots: 3,
+    episodes: 9,
+    landings: 5,
+    unweighed: 1,
+    lost: 0,
+    weight: 6_250,
+};
 
 const STATE: State = State {
     sample: 300,
@@ -139,6 +150,10 @@ impl Log for Bench {
     fn erase(&mut self, _: u32) -> Result<(), Refusal> {
         Err(Refusal::NoEpisode)
     }
+
+    fn lifetime(&mut self) -> Option<Lifetime> {
+        Some(LIFETIME)
+    }
 }
 
 fn server() -> Server {
@@ -184,9 +199,19 @@ fn worked_examples_of_the_specification_are_what_is_sent() {
         "clear, refused",
         encode(2, &Reply::Refused(Busy::DropRuns.into())).unwrap(),
     ));
+    let lifetime = ask(&mut server, &mut bench, &Request::Lifetime);
+    frames.push(("lifetime, asked", encode(9, &Request::Lifetime).unwrap()));
+    frames.push(("lifetime, answered", encode(9, &lifetime).unwrap()));
+    let hex = |frame: &[u8]| {
+        frame
+            .iter()
+            .map(|it| format!("{it:02x} "))
+            .collect::<String>()
+    };
+    for (name, frame) in &frames {
+        println!("{name}: {}", hex(frame));
+    }
     for (name, frame) in frames {
-        let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
-        println!("{name}: {}", hex.join(" "));
         assert_eq!(printed(name), frame.as_slice(), "{name}");
     }
 }
@@ -201,7 +226,7 @@ fn frames_are_what_another_implementation_of_the_stuffing_makes() {
             let (end, stuffed) = frame.split_last().unwrap();
             assert_eq!(*end, 0);
             assert!(!stuffed.contains(&0));
-            let mut plain = vec![1, 0xff];
+            let mut plain = vec![VERSION, 0xff];
             plain.extend(postcard::to_slice(&reply, &mut [0; 512]).unwrap().iter());
             let checksum = touchdown_core::checksum::CRC.checksum(&plain);
             plain.extend(checksum.to_le_bytes());
@@ -310,14 +335,14 @@ fn newest_samples_come_at_the_step_that_was_asked() {
 #[test]
 fn version_and_length_are_named() {
     let mut decoder = Decoder::default();
-    let plain = [2, 0, 0];
+    let plain = [VERSION + 1, 0, 0];
     let checksum = touchdown_core::checksum::CRC.checksum(&plain).to_le_bytes();
     let other: Vec<u8> = cobs::encode_vec(&[&plain[..], &checksum].concat());
     let said = other
         .into_iter()
         .chain([0])
         .find_map(|byte| decoder.take::<Reply>(byte));
-    assert_eq!(said, Some(Err(FrameError::Version(2))));
+    assert_eq!(said, Some(Err(FrameError::Version(VERSION + 1))));
     let endless = core::iter::repeat_n(0x55, 2 * FRAME_BYTES).chain([0]);
     let said = endless
         .filter_map(|byte| decoder.take::<Reply>(byte))
@@ -392,7 +417,7 @@ proptest! {
 
     #[test]
     fn any_message_in_a_good_frame_is_taken(body in prop::collection::vec(any::<u8>(), 0..440)) {
-        let plain = [&[1, 0][..], &body].concat();
+        let plain = [&[VERSION, 0][..], &body].concat();
         let checksum = touchdown_core::checksum::CRC.checksum(&plain).to_le_bytes();
         let frame = cobs::encode_vec(&[&plain[..], &checksum].concat());
         let (mut server, mut bench) = (server(), Bench::new());

@@ -2,10 +2,14 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+#[cfg(unix)]
+use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::args::LiveArgs;
 use crate::failure::Failure;
@@ -45,8 +49,9 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
             ..View::default()
         };
         let fail = Failure::output("the terminal");
+        let stop = stop().map_err(&fail)?;
         let mut terminal = ratatui::try_init().map_err(&fail)?;
-        let ended = session.show(&mut terminal, view);
+        let ended = session.show(&mut terminal, view, &stop);
         ratatui::restore();
         ended?;
     }
@@ -59,6 +64,16 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
     };
     let port = session.watched.port();
     Err(Failure::Target(format!("{port}: {why}")))
+}
+
+/// True once the process is to end: killed in between, it would leave the terminal raw.
+fn stop() -> io::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    for signal in [SIGTERM, SIGHUP, SIGINT, SIGQUIT] {
+        signal_hook::flag::register(signal, stop.clone())?;
+    }
+    Ok(stop)
 }
 
 /// What was recorded before stays.
@@ -111,10 +126,15 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn show(&mut self, terminal: &mut DefaultTerminal, mut view: View) -> Result<(), Failure> {
+    fn show(
+        &mut self,
+        terminal: &mut DefaultTerminal,
+        mut view: View,
+        stop: &AtomicBool,
+    ) -> Result<(), Failure> {
         let fail = Failure::output("the terminal");
         let mut held: Option<(Watched, f64)> = None;
-        while self.watcher.now() < self.end {
+        while self.watcher.now() < self.end && !stop.load(Relaxed) {
             let updates: Vec<_> = self.watcher.updates().collect();
             for update in &updates {
                 self.take(update)?;

@@ -6,15 +6,11 @@ use super::table::verdict;
 use super::{Comparison, Pair};
 use crate::names::event_name;
 use crate::replay::Excerpt;
-use crate::report::chart::{Axis, Chart};
 use crate::report::page as in_style;
 use crate::report::tables::table;
 use crate::report::text::significant;
+use crate::report::waveform::{Line, Waveform, waveform};
 use crate::scene::Scene;
-
-const HEIGHT: f64 = 170.0;
-const MICRO: f64 = 1e6;
-const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
 
 /// Writes the page.
 pub fn page(scene: &Scene, comparison: &Comparison) -> String {
@@ -57,43 +53,18 @@ fn panel(
     comparison: &Comparison,
 ) -> Markup {
     let [a, b] = excerpts;
-    let clearance = scene.retainer.clearance;
-    let all = a
-        .positions
-        .iter()
-        .chain(&b.positions)
-        .map(|it| it[channel].abs());
-    let farthest = all.filter(|it| it.is_finite()).fold(clearance, f64::max);
-    let x = Axis::new(
-        a.start,
-        a.time(a.positions.len()),
-        "time of the first, s",
-        6.0,
-    );
-    let reach = 1.12 * farthest * MICRO;
-    let y = Axis::new(
-        -reach,
-        reach,
-        &format!("{}, \u{b5}m", CHANNELS[channel]),
-        5.0,
-    );
-    let chart = Chart {
-        title: CHANNELS[channel],
-        description: "Displacement of both recordings against time, the second shifted onto the first.",
-        x: &x,
-        y: &y,
-        height: HEIGHT,
-    };
-    let (mut first, mut second) = (chart.pen(), chart.pen());
-    for (index, positions) in a.positions.iter().enumerate() {
-        first.line_to(a.time(index), positions[channel] * MICRO);
-    }
-    for (index, positions) in b.positions.iter().enumerate() {
-        let time = b.time(index) - comparison.aligned.shift_s;
-        second.line_to(time, positions[channel] * MICRO);
-    }
-    let curves = html! { (second.finish("sensed")) (first.finish("motion")) };
-    chart.draw(&html! {}, &curves, &html! {})
+    let first = |line: Line<'_>| a.draw(channel, 0.0, line);
+    let second = |line: Line<'_>| b.draw(channel, -comparison.aligned.shift_s, line);
+    waveform(&Waveform {
+        channel,
+        span: [a.start, a.time(a.positions.len())],
+        time: "time of the first, s",
+        description: "Displacement of both recordings against time, the second shifted onto the first; \
+                      dashed lines at the clearance.",
+        clearance: scene.retainer.clearance,
+        curves: &[("sensed", &second), ("motion", &first)],
+        strokes: [&[], &[]],
+    })
 }
 
 fn events(comparison: &Comparison) -> Markup {

@@ -9,7 +9,7 @@ use touchdown_core::log::marks::{MARKS_BYTES, Marks};
 use touchdown_core::log::reader::Verdict;
 
 use super::episode::Episode;
-use crate::input_error::{InputError, reason};
+use crate::input_error::InputError;
 
 /// Bytes of the counters at the beginning of a dump.
 const COUNTERS: usize = 8192;
@@ -30,16 +30,7 @@ pub struct Dump {
 
 /// Reads the log at `path`.
 pub fn read(path: &str) -> Result<Dump, InputError> {
-    let unread = |error: std::io::Error| InputError::of_file(path, reason(&error));
-    let there = std::fs::metadata(path).map_err(unread)?;
-    if there.is_dir() {
-        return Err(InputError::of_file(path, "is a folder, not a file"));
-    }
-    if there.len() > LARGEST {
-        let rule = format!("is larger than {} MiB, more than any log", LARGEST >> 20);
-        return Err(InputError::of_file(path, rule));
-    }
-    let dump = Dump::of(&std::fs::read(Path::new(path)).map_err(unread)?);
+    let dump = Dump::of(&InputError::read_bytes(Path::new(path), LARGEST)?);
     if dump.counters.is_none() && dump.episodes.is_empty() {
         let rule = "has neither counters nor a block of an episode: it is no drop log";
         return Err(InputError::of_file(path, rule));

@@ -16,16 +16,14 @@ pub enum Wanted {
     Number(u32),
 }
 
-/// Fetches what is wanted and there. The link does not tell the lifetime counters.
+/// Fetches what is wanted and there, and the lifetime counters.
 pub fn fetch(port: &Port, wanted: Wanted) -> Result<Dump, LinkError> {
     let mut client = Client::new(port.open()?);
     client.hello()?;
+    let counters = client.lifetime()?;
     let mut episodes = Vec::new();
     let Some((first, last)) = client.episodes()? else {
-        return Ok(Dump {
-            counters: None,
-            episodes,
-        });
+        return Ok(Dump { counters, episodes });
     };
     // Numbers between may be gone; what is beyond the largest flash is never there.
     let numbers = match wanted {
@@ -43,10 +41,7 @@ pub fn fetch(port: &Port, wanted: Wanted) -> Result<Dump, LinkError> {
         let episode = bytes.map(|bytes| Episode::of(&bytes));
         episodes.extend(episode.filter(|it| it.report.sequence.is_some()));
     }
-    Ok(Dump {
-        counters: None,
-        episodes,
-    })
+    Ok(Dump { counters, episodes })
 }
 
 /// Episodes in the largest flash that a log is kept on.

@@ -3,7 +3,6 @@
 
 mod files;
 mod session;
-mod talk;
 
 use std::fs::{self, File};
 use std::io;
@@ -13,6 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::conduct::Conduct;
+use crate::link::LinkError;
 use crate::monitor_run::Answer;
 use defmt_decoder::{DecodeError, Table};
 use touchdown_core::monitor::MonitorConfig;
@@ -21,7 +21,6 @@ use touchdown_core::sample::Sample;
 pub use self::files::replay_head;
 use self::files::{decode_answer, write_replay};
 pub use self::session::{RESTART, Session};
-pub use self::talk::{Talk, TalkError};
 
 const QEMU: &str = "qemu-system-arm";
 /// An STM32F405; what of it is emulated is in docs/firmware.md.
@@ -71,7 +70,7 @@ pub enum EmulatorError {
     Damaged,
     /// It does not talk.
     #[error("the image: {0}")]
-    Talk(#[from] TalkError),
+    Link(#[from] LinkError),
 }
 
 /// An image and the means to run it.
@@ -133,11 +132,11 @@ impl Emulator {
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let mut session = self.open(folder.path())?;
         let (answer, outputs) = session.answer(limit)?;
-        let mut talk = session.talk()?;
+        let mut client = session.client()?;
         let conduct = Conduct {
             outputs,
-            hello: talk.hello()?,
-            state: talk.state()?,
+            hello: client.hello()?,
+            state: client.state()?,
             flash: read(&folder.path().join("log"))?,
         };
         let log = session.cut()?;

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use touchdown_core::wire::Switching;
 
-use super::{Emulator, EmulatorError, Talk, decode_answer, read};
+use super::{Emulator, EmulatorError, decode_answer, read};
+use crate::link::Client;
 use crate::monitor_run::Answer;
 
 /// Exit status of an image that has stored a configuration and would be reset now.
@@ -59,6 +60,7 @@ impl Session {
             match socket.accept() {
                 Ok((line, _)) => {
                     line.set_nonblocking(false).map_err(failed)?;
+                    line.set_nodelay(true).map_err(failed)?;
                     return Ok(line);
                 }
                 Err(e) if e.kind() != io::ErrorKind::WouldBlock => return Err(failed(e)),
@@ -101,11 +103,10 @@ impl Session {
     }
 
     /// Talks over the link; once.
-    pub fn talk(&mut self) -> Result<Talk, EmulatorError> {
-        let gone = || io::Error::from(io::ErrorKind::NotConnected);
-        let line = self.line().ok_or_else(gone);
-        line.and_then(Talk::new)
-            .map_err(|e| EmulatorError::Io("open the link", e))
+    pub fn client(&mut self) -> Result<Client, EmulatorError> {
+        let gone = || EmulatorError::Io("open the link", io::ErrorKind::NotConnected.into());
+        let line = self.line().ok_or_else(gone)?;
+        Ok(Client::patient(Box::new(line)))
     }
 
     /// How it ended, if it has.

@@ -11,6 +11,9 @@ const RATES: std::ops::RangeInclusive<f64> = 5e3..=1e6;
 /// Rates that are taken as one, part of the rate.
 const SAME_RATE: f64 = 1e-4;
 
+/// Of a file, bytes: 13 s at the highest rate. All of it is held in memory.
+const LARGEST: u64 = 256 << 20;
+
 const RECORDING: &str = "time_s,ax_m_s2[,ay_m_s2]";
 const CALIBRATION: &str = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
 
@@ -108,7 +111,7 @@ impl Table {
         allowed: impl Fn(&[&str]) -> bool,
     ) -> Result<Self, InputError> {
         let file = path.display().to_string();
-        let text = InputError::read(path)?;
+        let text = InputError::read(path, LARGEST)?;
         let mut lines = text.lines().zip(1..);
         let (header, _) = lines.next().unwrap_or(("", 1));
         let names: Vec<&str> = header.split(',').map(str::trim).collect();

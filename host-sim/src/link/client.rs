@@ -8,6 +8,7 @@ use touchdown_core::event::Notice;
 use touchdown_core::link::{
     Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode,
 };
+use touchdown_core::log::counters::Counters;
 use touchdown_core::wire::{Record, decode_record};
 
 use super::error::LinkError;
@@ -17,6 +18,12 @@ use super::line::Line;
 /// less often, as a controller that is slow is not helped by more of them. 4.4 s in all: a sector that is
 /// being erased takes 0.4 s, an emulator on a busy machine more.
 const PATIENCE: [u64; 7] = [200, 200, 400, 400, 800, 800, 1_600];
+/// The same for an emulator on a busy desktop, and for a line with noise: 35 s.
+const LONG_PATIENCE: [u64; 20] = {
+    let mut all = [2_000; 20];
+    (all[0], all[1], all[2], all[3]) = (200, 400, 800, 1_600);
+    all
+};
 /// Longer than any episode that a controller keeps, bytes.
 const LONGEST_EPISODE: u32 = 1 << 20;
 /// Of what comes by itself, kept while an answer is waited for; the oldest go first.
@@ -34,12 +41,14 @@ pub enum Told {
 /// The desktop's end of an open line.
 pub struct Client {
     line: Box<dyn Line>,
+    patience: &'static [u64],
     decoder: Decoder,
     /// Read from the line, not yet decoded.
     bytes: VecDeque<u8>,
     told: VecDeque<Told>,
     sequence: u8,
     damaged: u32,
+    repeated: u32,
 }
 
 impl Client {
@@ -47,11 +56,21 @@ impl Client {
     pub fn new(line: Box<dyn Line>) -> Self {
         Self {
             line,
+            patience: &PATIENCE,
             decoder: Decoder::default(),
             bytes: VecDeque::new(),
             told: VecDeque::new(),
             sequence: 0,
             damaged: 0,
+            repeated: 0,
+        }
+    }
+
+    /// The same, and waits for 35 s before it gives up: for an emulator, or a line with noise.
+    pub fn patient(line: Box<dyn Line>) -> Self {
+        Self {
+            patience: &LONG_PATIENCE,
+            ..Self::new(line)
         }
     }
 
@@ -60,15 +79,21 @@ impl Client {
         self.damaged
     }
 
+    /// Requests that were sent again.
+    pub fn repeated(&self) -> u32 {
+        self.repeated
+    }
+
     /// Sends `request`, again where no answer comes; the answer, unless it is a refusal.
     pub fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
         self.sequence = self.sequence.wrapping_add(1);
         // A zero first ends what noise began.
         let mut bytes = vec![0];
         bytes.extend(encode(self.sequence, request).ok_or(LinkError::Senseless)?);
-        for patience in PATIENCE {
+        for (attempt, patience) in self.patience.iter().enumerate() {
+            self.repeated += u32::from(attempt > 0);
             self.line.write(&bytes)?;
-            let end = Instant::now() + Duration::from_millis(patience);
+            let end = Instant::now() + Duration::from_millis(*patience);
             while let Some((sequence, reply)) = self.receive(end)? {
                 if sequence == self.sequence && answers(request, &reply) {
                     return match reply {
@@ -102,6 +127,22 @@ impl Client {
         }
     }
 
+    /// What goes on.
+    pub fn state(&mut self) -> Result<State, LinkError> {
+        match self.ask(&Request::State)? {
+            Reply::State(state) => Ok(state),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// Has something done: SetConfig, Clear or Erase.
+    pub fn order(&mut self, request: &Request) -> Result<(), LinkError> {
+        match self.ask(request)? {
+            Reply::Done => Ok(()),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
     /// The configuration in force.
     pub fn settings(&mut self) -> Result<Settings, LinkError> {
         match self.ask(&Request::ReadConfig)? {
@@ -117,6 +158,14 @@ impl Client {
     pub fn recent(&mut self, step: u16) -> Result<Recent, LinkError> {
         match self.ask(&Request::Recent { step })? {
             Reply::Recent(recent) => Ok(recent),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
+    /// The lifetime counters; `None` where the controller has no log.
+    pub fn lifetime(&mut self) -> Result<Option<Counters>, LinkError> {
+        match self.ask(&Request::Lifetime)? {
+            Reply::Lifetime(counters) => Ok(counters),
             _ => Err(LinkError::Senseless),
         }
     }

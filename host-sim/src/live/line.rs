@@ -50,6 +50,16 @@ pub fn line(update: &Update, watched: &Watched) -> String {
                 "time_s": header.map(|it| it.trigger as f64 / f64::from(it.sample_rate)),
             }),
         ),
+        Said::Lifetime(it) => (
+            "lifetime",
+            json!({
+                "boots": it.boots,
+                "landings": it.landings,
+                "landings_cut_off": it.unweighed,
+                "weight": it.weight as f64 / 1e3,
+                "drops_not_recorded": it.lost,
+            }),
+        ),
         Said::Damaged(count) => ("damaged", json!({ "frames": count })),
     };
     let mut all = Map::new();

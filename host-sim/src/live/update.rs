@@ -3,6 +3,7 @@
 use touchdown_core::config_block::Settings;
 use touchdown_core::event::Notice;
 use touchdown_core::link::{Recent, State};
+use touchdown_core::log::counters::Counters;
 use touchdown_core::log::header::Header;
 
 /// Something that was heard, and when.
@@ -29,6 +30,8 @@ pub enum Said {
     Recent(Recent),
     /// An episode is in the log; its header, where that is whole.
     Episode(u32, Option<Header>),
+    /// What was counted over the monitor's life, at first and where it has changed.
+    Lifetime(Counters),
     /// So many frames came damaged on this line so far.
     Damaged(u32),
 }

@@ -42,7 +42,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
     let [left, right] =
         Layout::horizontal([Constraint::Percentage(46), Constraint::Fill(1)]).areas(body);
     let [status, events, episodes] = Layout::vertical([
-        Constraint::Length(12),
+        Constraint::Length(14),
         Constraint::Fill(3),
         Constraint::Fill(2),
     ])
@@ -163,7 +163,30 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
         counters.damaged_frames,
         watched.damaged()
     )));
+    lines.extend(lifetime(watched));
     lines
+}
+
+/// In two lines: of an inspection, the landings are what counts.
+fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
+    let Some(it) = watched.lifetime() else {
+        return vec![Line::raw("lifetime  no log")];
+    };
+    let cut = match it.unweighed {
+        0 => String::new(),
+        count => format!(", {count} cut off"),
+    };
+    let weight = it.weight as f64 / 1e3;
+    vec![
+        Line::raw(format!(
+            "lifetime  {} landings, weight {weight:.3}{cut}",
+            it.landings
+        )),
+        Line::raw(format!(
+            "          {} times on, {} drops not recorded",
+            it.boots, it.lost
+        )),
+    ]
 }
 
 fn phase(state: &State, pen: Pen) -> Span<'static> {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use touchdown_core::event::Notice;
 use touchdown_core::link::{Recent, State};
+use touchdown_core::log::counters::Counters;
 use touchdown_core::log::header::Header;
 use touchdown_core::log::waveform::NO_VALUE;
 use touchdown_core::sample::{Sample, TACHOMETERS};
@@ -55,6 +56,7 @@ pub struct Watched {
     newest: usize,
     events: VecDeque<Numbered>,
     episodes: BTreeMap<u32, Option<Header>>,
+    lifetime: Option<Counters>,
     damaged: u32,
     restarts: u32,
 }
@@ -92,6 +94,7 @@ impl Watched {
             Said::Episode(number, header) => {
                 self.episodes.insert(*number, *header);
             }
+            Said::Lifetime(counters) => self.lifetime = Some(*counters),
             Said::Damaged(count) => self.damaged = *count,
         }
     }
@@ -236,6 +239,11 @@ impl Watched {
     /// Episodes that were seen in the log, newest first.
     pub fn episodes(&self) -> impl Iterator<Item = (u32, Option<&Header>)> {
         self.episodes.iter().rev().map(|it| (*it.0, it.1.as_ref()))
+    }
+
+    /// What was counted over the monitor's life.
+    pub fn lifetime(&self) -> Option<&Counters> {
+        self.lifetime.as_ref()
     }
 
     /// Frames that came damaged.

@@ -103,7 +103,7 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
     let mut positions = Due::every(RECENT);
     let mut log = Due::every(LOG);
     let mut heard = Instant::now();
-    let mut known = None;
+    let (mut known, mut lifetime) = (None, None);
     let mut damaged = 0;
     loop {
         while let Some(told) = client.listen(Duration::from_millis(20))? {
@@ -118,19 +118,16 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
         }
         if positions.is_due() {
             positions.put_off();
-            match client.recent(step) {
-                Ok(recent) => teller.tell(Said::Recent(recent))?,
-                // An older firmware does not know the question, and says nothing.
-                Err(LinkError::Silent) => {
-                    client.hello()?;
-                    positions.never();
-                }
-                Err(error) => return Err(error.into()),
-            }
+            teller.tell(Said::Recent(client.recent(step)?))?;
         }
         if log.is_due() {
             log.put_off();
             known = look(&mut client, known, teller)?;
+            let counters = client.lifetime()?;
+            if counters != lifetime {
+                lifetime = counters;
+                counters.map_or(Ok(()), |it| teller.tell(Said::Lifetime(it)))?;
+            }
         }
         if heard.elapsed() > SILENCE {
             client.hello()?;
@@ -168,24 +165,20 @@ fn look(
 /// When to do something again.
 struct Due {
     every: Duration,
-    at: Option<Instant>,
+    at: Instant,
 }
 
 impl Due {
     fn every(every: Duration) -> Self {
-        let at = Some(Instant::now());
+        let at = Instant::now();
         Self { every, at }
     }
 
     fn is_due(&self) -> bool {
-        self.at.is_some_and(|at| at <= Instant::now())
+        self.at <= Instant::now()
     }
 
     fn put_off(&mut self) {
-        self.at = Some(Instant::now() + self.every);
-    }
-
-    fn never(&mut self) {
-        self.at = None;
+        self.at = Instant::now() + self.every;
     }
 }

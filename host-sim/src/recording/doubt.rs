@@ -36,6 +36,7 @@ pub struct Doubt {
     spin: f64,
     sensors: SensorsConfig,
     samples: u64,
+    seen: bool,
     farthest: f64,
     saturated: u64,
     fastest: f64,
@@ -51,6 +52,7 @@ impl Doubt {
             spin: scene.rotor.spin,
             sensors: scene.sensors,
             samples: 0,
+            seen: false,
             farthest: 0.0,
             saturated: 0,
             fastest: 0.0,
@@ -69,6 +71,7 @@ impl Doubt {
             if distance > self.farthest {
                 self.farthest = distance;
             }
+            self.seen |= !distance.is_nan();
             beyond |= plane.iter().any(|it| it.abs() > range);
         }
         self.saturated += u64::from(beyond);
@@ -83,7 +86,12 @@ impl Doubt {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let ratio = self.farthest / self.clearance;
-        if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
+        if self.samples > 0 && !self.seen {
+            warnings.push(format!(
+                "{}: not one sample has a position: are these the right columns?",
+                self.file
+            ));
+        } else if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
             let would = |it: &&(&str, f64)| (0.2..=1.5).contains(&(ratio / it.1));
             let units = UNITS.iter().find(would);
             let units = units.map_or(String::new(), |(name, _)| format!(" ({name}?)"));
@@ -121,7 +129,7 @@ impl Doubt {
                 self.file
             ));
         }
-        if self.samples > 0 && !self.planes && self.sensors.planes == 2 {
+        if self.seen && !self.planes && self.sensors.planes == 2 {
             warnings.push(format!(
                 "{}: it has plane a alone, the scene two planes: falls and impacts are found later",
                 self.file

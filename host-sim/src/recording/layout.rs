@@ -43,13 +43,9 @@ pub fn text_of(bytes: &[u8]) -> String {
 impl Layout {
     /// From the first bytes of a file, `whole` if that is all of it. Else the line and the rule.
     pub fn find(head: &[u8], whole: bool, hints: &TextHints) -> Result<Self, (u64, String)> {
-        if head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) {
-            let rule = "the text is UTF-16; save it as UTF-8";
-            return Err((1, rule.to_owned()));
-        }
         if let Some(place) = head.iter().position(|byte| *byte == 0) {
             let line = 1 + head[..place].iter().filter(|it| **it == b'\n').count() as u64;
-            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff)";
+            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff, Parquet in .parquet)";
             return Err((line, rule.to_owned()));
         }
         let bom = if head.starts_with(b"\xef\xbb\xbf") {

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::unit::{Displacement, Sensitivity, Speed, Time};
-use crate::input_error::InputError;
+use crate::input_error::{InputError, LARGEST_TOML};
 
 /// Names of the displacements in the mapping.
 pub const POSITIONS: [&str; 4] = ["ax", "ay", "bx", "by"];
@@ -205,7 +205,10 @@ fn half() -> f64 {
 impl Mapping {
     /// Reads the mapping at `path`.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::parse(&path.display().to_string(), &InputError::read(path)?)
+        Self::parse(
+            &path.display().to_string(),
+            &InputError::read(path, LARGEST_TOML)?,
+        )
     }
 
     /// Reads the mapping `text`; errors name it `name`.

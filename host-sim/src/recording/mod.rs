@@ -1,9 +1,10 @@
-//! Recordings as they come: CSV of any style, or COMTRADE, as rows of a stream. `docs/recordings.md`.
+//! Recordings as they come: CSV of any style, COMTRADE or Parquet, as rows of a stream. `docs/recordings.md`.
 
 mod comtrade;
 mod doubt;
 mod layout;
 mod mapping;
+mod parquet;
 mod pick;
 mod remarks;
 mod resample;
@@ -17,6 +18,7 @@ use std::path::Path;
 pub use comtrade::{Cfg, combined};
 pub use mapping::Mapping;
 
+use self::parquet::{ParquetRows, is_parquet};
 use comtrade::{ComtradeRows, is_comtrade};
 use doubt::Doubt;
 use layout::Layout;
@@ -24,7 +26,7 @@ use remarks::Remarks;
 use resample::Resampled;
 use text::{Head, TextRows};
 
-use crate::input_error::{InputError, reason};
+use crate::input_error::{InputError, UTF_16, reason};
 use crate::scene::Scene;
 use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate};
 
@@ -81,6 +83,11 @@ impl Recording {
             let opened = of_comtrade(dat, size, reading, scene, &remarks)?;
             return Self::paced(&file, opened, reading, scene, remarks);
         }
+        if is_parquet(path) {
+            let remarks = Remarks::default();
+            let opened = of_parquet(path, reading, scene, &remarks)?;
+            return Self::paced(&file, opened, reading, scene, remarks);
+        }
         if path.is_dir() {
             return Err(InputError::of_file(&file, "is a folder, not a file"));
         }
@@ -106,6 +113,9 @@ impl Recording {
     ) -> Result<Self, InputError> {
         let remarks = Remarks::default();
         let head = Head::read(file, bytes)?;
+        if head.is_utf_16() {
+            return Err(InputError::at_line(file, 1, UTF_16));
+        }
         let opened = match &reading.mapping {
             Some(mapping) => {
                 let rows = TextRows::new(file, head, mapping, &scene.sensors, &remarks)?;
@@ -259,6 +269,25 @@ fn of_comtrade<R: Read + 'static>(
         rate: cfg.rate(),
         header: 1,
         format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data.name())),
+        size,
+        rows: Box::new(rows),
+    })
+}
+
+fn of_parquet(
+    path: &Path,
+    reading: &Reading,
+    scene: &Scene,
+    remarks: &Remarks,
+) -> Result<Opened, InputError> {
+    let mapping = reading.mapping.as_ref();
+    let (rows, size) = ParquetRows::new(path, mapping, &scene.sensors, remarks)?;
+    Ok(Opened {
+        columns: rows.pick().columns(),
+        meter: rows.meter(),
+        rate: rows.rate(),
+        header: 1,
+        format: Some("Parquet".to_owned()),
         size,
         rows: Box::new(rows),
     })

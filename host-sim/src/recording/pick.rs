@@ -2,7 +2,9 @@
 
 use touchdown_core::sample::CHANNELS;
 
-use super::mapping::{Axes, Column, Mapping, POSITIONS};
+use super::mapping::{
+    Axes, Column, LevitatedColumn, Mapping, POSITIONS, PositionColumn, SpeedColumn,
+};
 use super::remarks::Remarks;
 use super::unit::{Displacement, Speed, Time, split};
 use crate::sensors::{SensorsConfig, to_sensor_axes};
@@ -230,6 +232,49 @@ fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String>
 fn no_unit(what: &str, heading: &Heading, example: &str) -> String {
     let named = &heading.text;
     format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+}
+
+/// Columns that are named as in a stream: ax, ay, bx, by, speed, levitated.
+pub fn by_name(found: &[Heading]) -> Option<Mapping> {
+    let there = |name: &str| {
+        let is = |it: &&Heading| it.parts().0.trim().eq_ignore_ascii_case(name);
+        found
+            .iter()
+            .any(|it| is(&it))
+            .then(|| Column::Name(name.to_owned()))
+    };
+    let position = |name: &str| {
+        there(name).map(|column| {
+            let it = PositionColumn {
+                column,
+                unit: None,
+                sensitivity: None,
+                offset: 0.0,
+                reversed: false,
+            };
+            toml::Spanned::new(0..0, it)
+        })
+    };
+    let [ax, ay, bx, by] = POSITIONS.map(position);
+    let (bx, by) = bx.zip(by).unzip();
+    let (ax, ay) = ax.zip(ay).unzip();
+    ax.is_some().then_some(Mapping {
+        ax,
+        ay,
+        bx,
+        by,
+        speed: there("speed").map(|column| SpeedColumn {
+            column,
+            unit: None,
+            reversed: false,
+        }),
+        levitated: there("levitated").map(|column| LevitatedColumn {
+            column,
+            above: 0.5,
+            reversed: false,
+        }),
+        ..Mapping::default()
+    })
 }
 
 /// The columns, for people.

@@ -8,7 +8,7 @@ use super::layout::{HEAD, Layout, is_missing, text_of, with_point};
 use super::mapping::{Mapping, TextHints};
 use super::pick::{Pick, list};
 use super::remarks::Remarks;
-use crate::input_error::{InputError, reason};
+use crate::input_error::{InputError, is_utf_16, reason};
 use crate::sensors::SensorsConfig;
 use crate::stream::{Bounded, Meter, Stamp, Stamped, csv_error};
 
@@ -28,6 +28,11 @@ impl<R: Read> Head<R> {
             bytes: head,
             rest: bytes,
         })
+    }
+
+    /// Whether it is in an encoding that is not read.
+    pub fn is_utf_16(&self) -> bool {
+        is_utf_16(&self.bytes)
     }
 
     /// How it is written.

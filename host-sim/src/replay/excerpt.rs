@@ -6,6 +6,7 @@ use touchdown_core::sample::CHANNELS;
 
 use crate::failure::Failure;
 use crate::recording::{Reading, Recording};
+use crate::report::waveform::Line;
 use crate::scene::Scene;
 
 /// Most samples that are kept: 2.6 s at 100 kHz.
@@ -38,6 +39,13 @@ impl Excerpt {
         Some(std::array::from_fn(|channel| {
             here[channel] + part * (next[channel] - here[channel])
         }))
+    }
+
+    /// Hands out the points of a channel, s and m, so much later.
+    pub fn draw(&self, channel: usize, later: f64, line: Line<'_>) {
+        for (index, positions) in self.positions.iter().enumerate() {
+            line(self.time(index) + later, positions[channel]);
+        }
     }
 
     /// Time of sample `index`, s.

@@ -21,6 +21,7 @@ use crate::progress::Progress;
 use crate::recording::{Reading, Recording};
 use crate::scene::Scene;
 use crate::sensors::SensorsConfig;
+use crate::spectrogram::{Analyser, Spectrogram};
 use crate::stream::to_sample;
 use crate::target::Target;
 
@@ -37,8 +38,20 @@ pub struct Replay {
     pub detection: Detection,
     /// All of it, coarse.
     pub envelope: Envelope,
+    /// Of the sensors of plane a, a bounded number of spectra.
+    pub spectrogram: Spectrogram,
     /// What is worth a warning.
     pub warnings: Vec<String>,
+}
+
+impl Replay {
+    /// The first fall that stood, or the first impact.
+    pub fn first_drop(&self) -> Option<&DetectedEvent> {
+        self.detection.events.iter().find(|it| {
+            it.event == EventKind::Impact
+                || it.event == EventKind::FreeFall && it.withdrawn_s.is_none()
+        })
+    }
 }
 
 /// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
@@ -70,12 +83,14 @@ pub fn recording(
     config.detector.sample_rate = rate as f32;
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
+    let mut analyser = Analyser::new(rate);
     let samples = Samples {
         sensors: &sensors,
         flaw: &mut flaw,
         progress: Progress::of_bytes("replay", recording.size),
         recording: &mut recording,
         envelope: &mut envelope,
+        analyser: &mut analyser,
         seen: 0,
     };
     let answer = target.run(&config, samples)?;
@@ -87,6 +102,7 @@ pub fn recording(
             start: recording.start,
             detection: detection(&answer, timebase),
             envelope,
+            spectrogram: analyser.finish(),
             warnings: recording.warnings(),
         }),
     }
@@ -102,10 +118,7 @@ pub fn first_drop(
     scene: &Scene,
     replay: &Replay,
 ) -> Result<Option<Excerpt>, Failure> {
-    let is_drop = |it: &&DetectedEvent| {
-        it.event == EventKind::Impact || it.event == EventKind::FreeFall && it.withdrawn_s.is_none()
-    };
-    let Some(event) = replay.detection.events.iter().find(is_drop) else {
+    let Some(event) = replay.first_drop() else {
         return Ok(None);
     };
     let about = [event.onset_s - AROUND[0], event.onset_s + AROUND[1]];
@@ -119,6 +132,7 @@ struct Samples<'a> {
     flaw: &'a mut Option<InputError>,
     progress: Progress,
     envelope: &'a mut Envelope,
+    analyser: &'a mut Analyser,
     seen: u64,
 }
 
@@ -132,6 +146,8 @@ impl Iterator for Samples<'_> {
                 self.progress
                     .passed(self.seen, || self.recording.bytes_read());
                 self.envelope.take(&row.positions);
+                let [x, y, ..] = row.positions;
+                self.analyser.take(row.time, Some([x, y]));
                 Some(to_sample(&row, self.sensors, self.recording.rate))
             }
             Err(flaw) => {

@@ -6,17 +6,12 @@ use touchdown_core::event::EventKind;
 use super::{Excerpt, Replay};
 use crate::names::event_name;
 use crate::outcome::DetectedEvent;
-use crate::report::chart::{Axis, Chart};
 use crate::report::page as in_style;
+use crate::report::spectrum::{Spectra, spectra};
 use crate::report::tables::table;
 use crate::report::text::{ms_or_dash, si, significant};
+use crate::report::waveform::{Line, Waveform, waveform};
 use crate::scene::Scene;
-
-const HEIGHT: f64 = 150.0;
-const MICRO: f64 = 1e6;
-/// Strokes at events that a chart gets.
-const STROKES: usize = 400;
-const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
 
 /// Writes the page; `drop` is the first drop, sample by sample.
 pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) -> String {
@@ -52,6 +47,10 @@ pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) 
             }
         }
         section {
+            h2 { "Full spectrum" }
+            (spectrum(scene, replay))
+        }
+        section {
             h2 { "Events" }
             (events(replay))
             @if detection.left_out > 0 {
@@ -68,89 +67,79 @@ fn figure(name: &str, value: &str) -> Markup {
 
 fn whole(scene: &Scene, replay: &Replay) -> Markup {
     let envelope = &replay.envelope;
-    let end = replay.start + replay.detection.samples as f64 / replay.rate;
     let stretch = envelope.stride as f64 / replay.rate;
-    html! {
-        @for channel in 0..2 * usize::from(envelope.planes) {
-            (panel(channel, [replay.start, end], scene, replay, |line| {
-                for (index, bucket) in envelope.buckets().enumerate() {
-                    let time = replay.start + (index as f64 + 0.5) * stretch;
-                    line(time, bucket[channel][0]);
-                    line(time, bucket[channel][1]);
-                }
-            }))
-        }
-    }
+    panels(
+        [replay.start, end(replay)],
+        scene,
+        replay,
+        &|channel, line| {
+            for (index, bucket) in envelope.buckets().enumerate() {
+                let time = replay.start + (index as f64 + 0.5) * stretch;
+                line(time, bucket[channel][0]);
+                line(time, bucket[channel][1]);
+            }
+        },
+    )
 }
 
 fn close(drop: &Excerpt, scene: &Scene, replay: &Replay) -> Markup {
-    let end = drop.time(drop.positions.len());
+    let span = [drop.start, drop.time(drop.positions.len())];
+    panels(span, scene, replay, &|channel, line| {
+        drop.draw(channel, 0.0, line)
+    })
+}
+
+/// The end of the recording, s.
+fn end(replay: &Replay) -> f64 {
+    replay.start + replay.detection.samples as f64 / replay.rate
+}
+
+/// A chart for each channel; `draw` hands out its points, s and m.
+fn panels(
+    span: [f64; 2],
+    scene: &Scene,
+    replay: &Replay,
+    draw: &dyn Fn(usize, Line<'_>),
+) -> Markup {
+    let onsets = |impacts: bool| -> Vec<f64> {
+        let events = replay.detection.events.iter();
+        let wanted = events.filter(|it| (it.event == EventKind::Impact) == impacts);
+        wanted.map(|it| it.onset_s).collect()
+    };
+    let (events, impacts) = (onsets(false), onsets(true));
+    let panel = |channel: usize| {
+        let points = |line: Line<'_>| draw(channel, line);
+        waveform(&Waveform {
+            channel,
+            span,
+            time: "time, s",
+            description: "Recorded displacement against time, dashed lines at the clearance, strokes at events.",
+            clearance: scene.retainer.clearance,
+            curves: &[("motion", &points)],
+            strokes: [&events, &impacts],
+        })
+    };
     html! {
-        @for channel in 0..2 * usize::from(replay.envelope.planes) {
-            (panel(channel, [drop.start, end], scene, replay, |line| {
-                for (index, positions) in drop.positions.iter().enumerate() {
-                    line(drop.time(index), positions[channel]);
-                }
-            }))
-        }
+        @for channel in 0..2 * usize::from(replay.envelope.planes) { (panel(channel)) }
     }
 }
 
-/// A chart of one channel; `draw` hands out its points, s and m.
-fn panel(
-    channel: usize,
-    [from, to]: [f64; 2],
-    scene: &Scene,
-    replay: &Replay,
-    draw: impl Fn(&mut dyn FnMut(f64, f64)),
-) -> Markup {
-    let clearance = scene.retainer.clearance;
-    let mut farthest = clearance;
-    draw(&mut |_, place| {
-        if place.abs() > farthest {
-            farthest = place.abs();
-        }
-    });
-    let x = Axis::new(from, to, "time, s", 6.0);
-    let reach = 1.12 * farthest * MICRO;
-    let y = Axis::new(
-        -reach,
-        reach,
-        &format!("{}, \u{b5}m", CHANNELS[channel]),
-        5.0,
-    );
-    let chart = Chart {
-        title: CHANNELS[channel],
-        description: "Recorded displacement against time, dashed lines at the clearance, strokes at events.",
-        x: &x,
-        y: &y,
-        height: HEIGHT,
+/// Before and after the first drop's onset.
+fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
+    let drop = replay.first_drop().map(|it| it.onset_s);
+    let parts = match drop {
+        Some(onset) => vec![
+            ("levitated", "before it", [f64::NEG_INFINITY, onset]),
+            ("motion", "from the first drop on", [onset, f64::INFINITY]),
+        ],
+        None => vec![("motion", "all of it", [f64::NEG_INFINITY, f64::INFINITY])],
     };
-    let mut motion = chart.pen();
-    draw(&mut |time, place| motion.line_to(time, place * MICRO));
-    let mut wall = chart.pen();
-    for side in [-1.0, 1.0] {
-        wall.lift();
-        wall.line_to(x.lo, side * clearance * MICRO);
-        wall.line_to(x.hi, side * clearance * MICRO);
-    }
-    let curves = html! { (wall.finish("wall")) (motion.finish("motion")) };
-    let strokes = |impacts: bool| {
-        let wanted = move |it: &&DetectedEvent| (it.event == EventKind::Impact) == impacts;
-        let onsets = replay
-            .detection
-            .events
-            .iter()
-            .filter(wanted)
-            .map(|it| it.onset_s);
-        let shown = onsets.filter(|it| x.shows(*it)).take(STROKES);
-        shown.map(|it| x.percent(it)).collect::<Vec<_>>()
-    };
-    let front = html! {
-        @for at in strokes(false) { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
-        @for at in strokes(true) { line.hit x1=(at) x2=(at) y1=(HEIGHT - 9.0) y2=(HEIGHT) {} }
-    };
-    chart.draw(&html! {}, &curves, &front)
+    spectra(&Spectra {
+        found: &replay.spectrogram,
+        spin: scene.rotor.spin,
+        parts,
+        time: "time, s",
+    })
 }
 
 fn events(replay: &Replay) -> Markup {

@@ -14,12 +14,13 @@ mod parameters;
 mod phase_plane;
 pub(crate) mod regions;
 mod severity;
-mod spectrum;
+pub(crate) mod spectrum;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod text;
 mod timeline;
 mod verdict;
+pub(crate) mod waveform;
 pub mod window;
 
 #[cfg(test)]
@@ -33,6 +34,7 @@ use crate::reference::Machine;
 use crate::scene::parts::Part;
 use force::Press;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use spectrum::Spectra;
 use window::Window;
 
 /// What was dropped and how; SI.
@@ -145,10 +147,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
         }
         section {
             h2 { "Full spectrum" }
-            (spectrum::full(whole, subject, outcome))
-            h3 { "Waterfall" }
-            (spectrum::waterfall(subject, outcome))
-            p.note { "Of what the sensors of plane a give, x + j y, without its mean; Hann windows. Each shade of the waterfall is 6 dB." }
+            (spectra(whole, subject, outcome))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
         section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
@@ -165,6 +164,18 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
     };
     let title = format!("{} \u{2013} touchdown report", subject.title);
     page(&title, &body).into_string()
+}
+
+fn spectra(whole: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+    spectrum::spectra(&Spectra {
+        found: &outcome.spectrogram,
+        spin: subject.spin,
+        parts: vec![
+            ("levitated", "before it", [f64::NEG_INFINITY, 0.0]),
+            ("motion", "after the release", [0.0, whole.end]),
+        ],
+        time: "time since release, s",
+    })
 }
 
 /// Ends, ring and inner ring, where they are there.

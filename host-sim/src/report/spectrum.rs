@@ -1,9 +1,6 @@
 //! Full spectra of the sensed motion, and how they change over time.
 
-use super::Subject;
 use super::chart::{Axis, Chart, Pen};
-use super::window::Window;
-use crate::outcome::Outcome;
 use crate::spectrogram::Spectrogram;
 use maud::{Markup, html};
 
@@ -16,20 +13,38 @@ const SHADES: usize = 8;
 const SHADE_DB: f64 = 6.0;
 const MICRO: f64 = 1e6;
 
-/// Amplitude against frequency before and after the release.
-pub fn full(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
-    let found = &outcome.spectrogram;
-    let parts = [
-        ("levitated", [f64::NEG_INFINITY, 0.0]),
-        ("motion", [0.0, window.end]),
-    ];
-    let curves: Vec<(&str, Vec<f64>)> = (parts.into_iter())
-        .filter_map(|(class, span)| Some((class, found.amplitudes(span)?)))
+/// What is drawn.
+pub struct Spectra<'a> {
+    /// Of x + j y.
+    pub found: &'a Spectrogram,
+    /// Of the rotor, counter-clockwise positive, rad/s.
+    pub spin: f64,
+    /// A curve each: class, name, and the stretch of time that it is the mean of, s.
+    pub parts: Vec<(&'static str, &'static str, [f64; 2])>,
+    /// Name of the time axis, in s.
+    pub time: &'static str,
+}
+
+/// Full spectrum and waterfall.
+pub fn spectra(shown: &Spectra<'_>) -> Markup {
+    html! {
+        (full(shown))
+        h3 { "Waterfall" }
+        (waterfall(shown))
+        p.note { "Of what the sensors of plane a give, x + j y, without its mean; Hann windows. Each shade of the waterfall is 6 dB." }
+    }
+}
+
+/// Amplitude against frequency.
+fn full(shown: &Spectra<'_>) -> Markup {
+    let found = shown.found;
+    let curves: Vec<(&str, &str, Vec<f64>)> = (shown.parts.iter())
+        .filter_map(|(class, name, span)| Some((*class, *name, found.amplitudes(*span)?)))
         .collect();
-    let Some(most) = (curves.iter().flat_map(|it| it.1.iter().copied())).reduce(f64::max) else {
+    let Some(most) = (curves.iter().flat_map(|it| it.2.iter().copied())).reduce(f64::max) else {
         return html! { p { "The run is shorter than a window of the spectrum." } };
     };
-    let reach = reach(found, subject);
+    let reach = reach(shown);
     let x = Axis::new(-reach, reach, "frequency, Hz (+: counter-clockwise)", 8.0);
     let most = (MICRO * most).max(1e-2);
     let y = Axis::decades(1e-4 * most, most, "amplitude, \u{b5}m", 5.0);
@@ -43,11 +58,11 @@ pub fn full(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
     };
     let floor = 10f64.powf(y.lo);
     let drawn = html! {
-        @for (class, amplitudes) in &curves {
+        @for (class, _, amplitudes) in &curves {
             (line(chart.pen(), found, amplitudes, reach, floor).finish(class))
         }
     };
-    let spin = subject.spin / std::f64::consts::TAU;
+    let spin = shown.spin / std::f64::consts::TAU;
     let front = html! {
         @for at in [spin, -spin].into_iter().filter(|it| x.shows(*it)) {
             line.mark x1=(x.percent(at)) x2=(x.percent(at)) y1="0" y2=(HEIGHT) {}
@@ -56,9 +71,8 @@ pub fn full(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
     html! {
         (chart.draw(&html! {}, &drawn, &front))
         ul.legend {
-            li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } "after the release" }
-            @if curves.iter().any(|it| it.0 == "levitated") {
-                li { svg width="34" height="12" aria-hidden="true" { path.curve.levitated d="M1 6H33" {} } "before it" }
+            @for (class, name, _) in curves.iter().rev() {
+                li { svg width="34" height="12" aria-hidden="true" { path class={ "curve " (class) } d="M1 6H33" {} } (name) }
             }
             li { svg width="34" height="12" aria-hidden="true" { line.mark x1="17" x2="17" y1="0" y2="12" {} } "speed of the rotor, and against it" }
         }
@@ -81,22 +95,23 @@ fn line<'a>(
     pen
 }
 
-fn reach(found: &Spectrogram, subject: &Subject) -> f64 {
+fn reach(shown: &Spectra<'_>) -> f64 {
+    let found = shown.found;
     let bins = found.spectra.first().map_or(0, |it| it.power.len());
-    let turns = TURNS * subject.spin.abs() / std::f64::consts::TAU;
+    let turns = TURNS * shown.spin.abs() / std::f64::consts::TAU;
     turns.max(LEAST).min(found.frequency(bins.max(1) - 1))
 }
 
 /// The spectra one over the other, later ones higher, as shades.
-pub fn waterfall(subject: &Subject, outcome: &Outcome) -> Markup {
-    let found = &outcome.spectrogram;
+fn waterfall(spectra: &Spectra<'_>) -> Markup {
+    let found = spectra.found;
     let [Some(first), Some(last)] = [found.spectra.first(), found.spectra.last()] else {
         return html! {};
     };
-    let reach = reach(found, subject);
+    let reach = reach(spectra);
     let middle = |span: [f64; 2]| 0.5 * (span[0] + span[1]);
     let x = Axis::new(-reach, reach, "frequency, Hz (+: counter-clockwise)", 8.0);
-    let y = Axis::new(first.span[0], last.span[1], "time since release, s", 6.0);
+    let y = Axis::new(first.span[0], last.span[1], spectra.time, 6.0);
     let chart = Chart {
         title: "Waterfall of the full spectrum",
         description: "Amplitude of the sensed motion as shades over frequency and time; the darkest \

@@ -31,7 +31,7 @@ use std::path::Path;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::monitor::MonitorConfig;
 
-use crate::input_error::InputError;
+use crate::input_error::{InputError, LARGEST_TOML};
 use crate::model_run::compliance;
 use crate::reference::Machine;
 pub use crate::reference::Start;
@@ -123,7 +123,7 @@ impl Scene {
     /// The text of the scene file at `name`, or else of the built-in scene of that name.
     pub fn text(name: &str) -> Result<Cow<'static, str>, InputError> {
         if Path::new(name).exists() {
-            return InputError::read(Path::new(name)).map(Cow::Owned);
+            return InputError::read(Path::new(name), LARGEST_TOML).map(Cow::Owned);
         }
         match BUILT_IN.iter().find(|scene| scene.name == name) {
             Some(scene) => Ok(Cow::Borrowed(scene.text)),

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
 use super::parameter::{Distribution, ParameterTable, Values};
-use crate::input_error::InputError;
+use crate::input_error::{InputError, LARGEST_TOML};
 use crate::scene::Scene;
 
 /// Most drops of a sweep.
@@ -74,7 +74,7 @@ pub(super) struct RandomStart {
 impl Plan {
     /// Reads the plan at `path`. Its scene is a file beside it, or a built-in one.
     pub fn load(path: &str) -> Result<Self, InputError> {
-        let text = InputError::read(Path::new(path))?;
+        let text = InputError::read(Path::new(path), LARGEST_TOML)?;
         let file = parsed(path, &text)?;
         let scene = file.scene.get_ref();
         let beside = Path::new(path).with_file_name(scene);

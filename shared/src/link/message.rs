@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Faults, Mode, Outputs};
 use crate::detect::Phase;
+use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
 use crate::wire::NOTICE_BYTES;
 
@@ -55,6 +56,8 @@ pub enum Request {
         /// Every so many recorded samples one is wanted; 0 is taken for 1.
         step: u16,
     },
+    /// What was counted over the monitor's life. Answer: `Lifetime`.
+    Lifetime,
 }
 
 /// From the controller. An answer carries its request's sequence number; `Notice` and the `State` that
@@ -84,6 +87,8 @@ pub enum Reply {
     },
     /// The newest samples.
     Recent(Recent),
+    /// What was counted over the monitor's life; none where there is no log.
+    Lifetime(Option<Lifetime>),
 }
 
 /// The newest of the recorded samples, at equal distances.

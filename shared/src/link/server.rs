@@ -4,6 +4,7 @@ use super::frame::{self, Decoder, Frame};
 use super::message::{Chunk, Hello, Recent, Refusal, Reply, Request, State, shortened};
 use crate::config_block::{self, Block, Settings};
 use crate::event::Notice;
+use crate::log::counters::Counters as Lifetime;
 use crate::wire::{Record, encode_record};
 
 /// The log, as the link sees it: numbered episodes of bytes.
@@ -17,6 +18,9 @@ pub trait Log {
 
     /// Erases an episode.
     fn erase(&mut self, episode: u32) -> Result<(), Refusal>;
+
+    /// The lifetime counters.
+    fn lifetime(&mut self) -> Option<Lifetime>;
 }
 
 /// A controller that keeps no log.
@@ -31,6 +35,10 @@ impl Log for () {
 
     fn erase(&mut self, _: u32) -> Result<(), Refusal> {
         Err(Refusal::NoEpisode)
+    }
+
+    fn lifetime(&mut self) -> Option<Lifetime> {
+        None
     }
 }
 
@@ -47,6 +55,10 @@ impl<L: Log> Log for Option<L> {
 
     fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
         self.as_mut().ok_or(Refusal::NoEpisode)?.erase(episode)
+    }
+
+    fn lifetime(&mut self) -> Option<Lifetime> {
+        self.as_mut()?.lifetime()
     }
 }
 
@@ -153,6 +165,7 @@ impl Server {
                 }
             }
             Request::Erase { episode } => done(device.log().erase(episode)),
+            Request::Lifetime => Reply::Lifetime(device.log().lifetime()),
             Request::Recent { step } => Reply::Recent(device.recent(step.max(1))),
         }
     }

@@ -88,6 +88,13 @@ struct Lines<'a> {
 
 type Flaw = (u64, String);
 
+/// As much of a text as belongs into a message.
+fn shown(text: &str) -> &str {
+    const MOST: usize = 40;
+    let end = text.char_indices().nth(MOST).map_or(text.len(), |it| it.0);
+    &text[..end]
+}
+
 impl<'a> Lines<'a> {
     fn next(&mut self, what: &str) -> Result<&'a str, Flaw> {
         self.number += 1;
@@ -111,7 +118,7 @@ impl<'a> Lines<'a> {
     fn number<T: FromStr>(&self, fields: &[&str], at: usize, what: &str) -> Result<T, Flaw> {
         let text = fields.get(at).copied().unwrap_or("");
         let number = text.parse();
-        number.or_else(|_| self.fail(format!("{what} must be a number, is {text:?}")))
+        number.or_else(|_| self.fail(format!("{what} must be a number, is {:?}", shown(text))))
     }
 
     fn finite(&self, fields: &[&str], at: usize, what: &str) -> Result<f64, Flaw> {
@@ -227,7 +234,7 @@ fn counts(lines: &mut Lines) -> Result<(usize, usize), Flaw> {
     let (Some(analogs), Some(digitals)) = (count(1, 'A'), count(2, 'D')) else {
         return lines.fail(format!(
             "the numbers of channels must be as 4,3A,1D, are {:?}",
-            fields.join(",")
+            shown(&fields.join(","))
         ));
     };
     if analogs > MOST_CHANNELS || digitals > MOST_CHANNELS {

@@ -12,8 +12,8 @@ pub use cfg::Cfg;
 pub use dat::Dat;
 pub use files::{combined, is_comtrade, open};
 
-use super::mapping::{Column, LevitatedColumn, Mapping, POSITIONS, PositionColumn, SpeedColumn};
-use super::pick::{Heading, Pick};
+use super::mapping::Mapping;
+use super::pick::{Heading, Pick, by_name};
 use super::remarks::Remarks;
 use crate::input_error::InputError;
 use crate::sensors::SensorsConfig;
@@ -193,47 +193,4 @@ fn headings(cfg: &Cfg) -> Vec<Heading> {
         unit: None,
     });
     analog.chain(digital).collect()
-}
-
-/// Channels that are named as in a stream: ax, ay, bx, by, speed, levitated.
-fn by_name(found: &[Heading]) -> Option<Mapping> {
-    let there = |name: &str| {
-        let is = |it: &&Heading| it.text.trim().eq_ignore_ascii_case(name);
-        found
-            .iter()
-            .any(|it| is(&it))
-            .then(|| Column::Name(name.to_owned()))
-    };
-    let position = |name: &str| {
-        there(name).map(|column| {
-            let it = PositionColumn {
-                column,
-                unit: None,
-                sensitivity: None,
-                offset: 0.0,
-                reversed: false,
-            };
-            toml::Spanned::new(0..0, it)
-        })
-    };
-    let [ax, ay, bx, by] = POSITIONS.map(position);
-    let (bx, by) = bx.zip(by).unzip();
-    let (ax, ay) = ax.zip(ay).unzip();
-    ax.is_some().then_some(Mapping {
-        ax,
-        ay,
-        bx,
-        by,
-        speed: there("speed").map(|column| SpeedColumn {
-            column,
-            unit: None,
-            reversed: false,
-        }),
-        levitated: there("levitated").map(|column| LevitatedColumn {
-            column,
-            above: 0.5,
-            reversed: false,
-        }),
-        ..Mapping::default()
-    })
 }
