@@ -33,11 +33,10 @@ fn whirling() -> Scene {
 }
 
 fn config(folder: &Path, port: &str, arguments: &[&str]) -> Assert {
-    let command = touchdown(folder)
+    touchdown(folder)
         .args(["config", port])
         .args(arguments)
-        .assert();
-    command
+        .assert()
 }
 
 /// The configuration that a controller shows.
