@@ -88,8 +88,8 @@ const JSON: [&str; 15] = [
     "scene explain my.toml",
 ];
 
-/// Those that give no numbers, or lines of them.
-const OTHERS: [&str; 4] = ["rig", "live", "log export", "completions"];
+/// Those that give no numbers, or lines of them, or need a controller.
+const OTHERS: [&str; 5] = ["rig", "live", "config", "log export", "completions"];
 
 /// Names of all commands that do something, as `log list`.
 fn commands() -> Vec<String> {

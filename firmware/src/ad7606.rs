@@ -1,9 +1,11 @@
 //! AD7606: eight channels of 16 bit, +-10 V, all sampled at one instant. Serial mode, first four
 //! channels, over embedded-hal.
 //!
-//! Source: Analog Devices, AD7606/AD7606-6/AD7606-4, Rev. C. SPI mode 2 (clock idles high, data are
-//! taken on its falling edge: page 28), chip select by the device. The conversion must be over before
-//! the data are read; nothing here waits for longer than [`LONGEST_CONVERSION_NS`].
+//! Sources: [DS] Analog Devices, AD7606/AD7606-6/AD7606-4, Rev. C, timing specifications, as its figures are
+//! known; held against what others build by it: [L] Linux, drivers/iio/adc/ad7606.c; [G] GSI,
+//! bel_projects, modules/ad7606/ad7606.vhd. Where they differ the safer one is kept. SPI mode 2 (clock
+//! idles high, data are taken on its falling edge: DS page 28), chip select by the device. The conversion must be
+//! over before the data are read; nothing here waits for longer than [`LONGEST_CONVERSION_NS`].
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -12,18 +14,17 @@ use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 
 /// How the SPI must be set up.
 pub const SPI_MODE: Mode = MODE_2;
-/// Fastest clock at 3.3 V, Hz: serial timing, f_SCLK for VDRIVE above 3 V.
-pub const LONGEST_CLOCK_HZ: u32 = 17_000_000;
-/// Shortest RESET pulse, ns: t_RESET.
-pub const RESET_NS: u32 = 50;
-/// Shortest CONVST pulse, low or high, ns: t_2, t_3.
+/// Fastest clock at 3.3 V, Hz: f_SCLK. G: 14.5 MHz, which is DS's for VDRIVE above 2.7 V; its 17 MHz are for above
+/// 3.3 V, which a supply of 3.3 V is not.
+pub const FASTEST_CLOCK_HZ: u32 = 14_500_000;
+/// Shortest RESET pulse, ns: t_RESET. L: 100; DS and G: 50.
+pub const RESET_NS: u32 = 100;
+/// Shortest CONVST pulse, low or high, ns: t_2, t_3. DS and G: 25.
 pub const CONVST_NS: u32 = 25;
-/// From CONVST to BUSY, ns: t_1.
+/// From CONVST to BUSY, ns: t_1. DS only; the others wait for BUSY itself.
 pub const BUSY_NS: u32 = 45;
-/// Longest conversion without oversampling, ns: t_CONV.
+/// Longest conversion without oversampling, ns: t_CONV. DS only: 4 us typical, 4.15 us at most.
 pub const LONGEST_CONVERSION_NS: u32 = 4_150;
-/// Shortest time between samples, ns: t_CYCLE, read after the conversion.
-pub const CYCLE_NS: u32 = 5_000;
 /// Reads of BUSY, 100 ns apart, before the converter is given up.
 const READS: u32 = LONGEST_CONVERSION_NS.div_ceil(100);
 

@@ -16,6 +16,7 @@ pub mod drop_log;
 #[cfg(target_os = "none")]
 mod journal;
 pub mod memory;
+pub mod outgoing;
 pub mod outputs;
 pub mod overrun;
 pub mod permit;

@@ -1,9 +1,20 @@
-//! The driver's every move on its pins and its bus, against mocks.
+//! The driver's every move on its pins and its bus, against mocks; its times against a converter that is as slow as
+//! one may be.
 
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use embedded_hal::spi::{self, Operation, SpiDevice};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock as Spi, Transaction};
-use touchdown_firmware::ad7606::Ad7606;
+use touchdown_firmware::ad7606::{
+    Ad7606, BUSY_NS, CONVST_NS, FASTEST_CLOCK_HZ, LONGEST_CONVERSION_NS, RESET_NS,
+};
+use touchdown_firmware::board::SAMPLE_RATE_HZ;
 
 fn levels(states: &[State]) -> Vec<Level> {
     states.iter().map(|it| Level::set(*it)).collect()
@@ -51,4 +62,134 @@ fn sample_is_read_when_the_conversion_is_over() {
 fn converter_that_stays_busy_gives_no_valid_channel_and_does_not_block() {
     let sample = sample(&[State::High; 43], None);
     assert_eq!(sample.valid, 0);
+}
+
+/// A converter on a clock that only delays move: pins and bus take no time, which is the worst for who must wait.
+#[derive(Default)]
+struct Converter {
+    now: u32,
+    conversion: u32,
+    levels: [bool; 2],
+    /// When each pin rose and fell last.
+    rose: [u32; 2],
+    fell: [u32; 2],
+    reads: u32,
+}
+
+const CONVST: usize = 0;
+const RESET: usize = 1;
+
+impl Converter {
+    fn set(&mut self, pin: usize, high: bool) {
+        let now = self.now;
+        // How long the level lasted that ends here.
+        match (pin, self.levels[pin], high) {
+            (CONVST, false, true) => assert!(now - self.fell[CONVST] >= 25, "CONVST low"),
+            (CONVST, true, false) => assert!(now - self.rose[CONVST] >= 25, "CONVST high"),
+            (RESET, true, false) => assert!(now - self.rose[RESET] >= 100, "RESET high"),
+            _ => {}
+        }
+        self.levels[pin] = high;
+        if high {
+            self.rose[pin] = now;
+        } else {
+            self.fell[pin] = now;
+        }
+    }
+
+    fn is_busy(&self) -> bool {
+        let since = self.now - self.rose[CONVST];
+        assert!(since >= 45, "BUSY is not valid yet");
+        since < self.conversion
+    }
+}
+
+#[derive(Clone)]
+struct Wire(Rc<RefCell<Converter>>, usize);
+
+impl ErrorType for Wire {
+    type Error = Infallible;
+}
+
+impl OutputPin for Wire {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().set(self.1, false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().set(self.1, true);
+        Ok(())
+    }
+}
+
+impl InputPin for Wire {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(self.0.borrow().is_busy())
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.0.borrow().is_busy())
+    }
+}
+
+impl spi::ErrorType for Wire {
+    type Error = Infallible;
+}
+
+impl SpiDevice for Wire {
+    fn transaction(&mut self, _: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        let mut converter = self.0.borrow_mut();
+        assert!(!converter.is_busy(), "read before the conversion was over");
+        converter.reads += 1;
+        Ok(())
+    }
+}
+
+impl DelayNs for Wire {
+    fn delay_ns(&mut self, ns: u32) {
+        self.0.borrow_mut().now += ns;
+    }
+}
+
+/// Three samples of a converter that takes `conversion` (ns); those that were read, and the longest take, ns.
+fn samples(conversion: u32) -> (u32, u32) {
+    let converter = Rc::new(RefCell::new(Converter {
+        conversion,
+        now: 1_000,
+        ..Converter::default()
+    }));
+    let wire = |pin| Wire(Rc::clone(&converter), pin);
+    let mut delay = wire(0);
+    let mut adc =
+        Ad7606::try_new(wire(0), wire(CONVST), wire(0), wire(RESET), &mut delay).expect("resets");
+    let mut longest = 0;
+    for _ in 0..3 {
+        let before = converter.borrow().now;
+        adc.start(&mut delay).expect("starts");
+        adc.take(&mut delay);
+        longest = longest.max(converter.borrow().now - before);
+    }
+    let reads = converter.borrow().reads;
+    (reads, longest)
+}
+
+/// The sources' figures stand here again, so that one that is changed in the driver must be changed twice.
+#[test]
+fn the_driver_keeps_the_times_of_its_sources() {
+    assert_eq!((RESET_NS, CONVST_NS, BUSY_NS), (100, 25, 45));
+    assert_eq!(
+        (LONGEST_CONVERSION_NS, FASTEST_CLOCK_HZ),
+        (4_150, 14_500_000)
+    );
+    for conversion in [50, 3_450, 4_000, 4_150] {
+        let (reads, longest) = samples(conversion);
+        assert_eq!(reads, 3, "a conversion of {conversion} ns is waited for");
+        assert!(longest >= conversion);
+    }
+    // One that hangs is given up, in time for the next sample: with the reading, four times sixteen clocks.
+    let (reads, longest) = samples(u32::MAX);
+    assert_eq!(reads, 0);
+    let reading = 64 * 1_000_000_000_u64 / u64::from(FASTEST_CLOCK_HZ);
+    assert!(u64::from(longest) + reading < 1_000_000_000 / u64::from(SAMPLE_RATE_HZ) / 5);
 }

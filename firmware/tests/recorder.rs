@@ -3,6 +3,7 @@
 mod common;
 
 use common::rig::{IDENTITY, Read, Rig, config, read};
+use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::log::block::{BLOCK_BYTES, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
@@ -227,6 +228,43 @@ fn a_withdrawn_fall_is_no_landing() {
         (ending.closing, ending.landing),
         (Closing::Withdrawn, false)
     );
+}
+
+/// It lies there at power-on: that is recorded, as a contact, and is no landing. What falls afterwards is one.
+#[test]
+fn a_rotor_that_has_not_floated_yet_has_not_landed() {
+    for lies in [EventKind::Sliding, EventKind::Rolling, EventKind::Pendulum] {
+        let mut rig = Rig::switched_on(1_000.0, 8);
+        rig.recorder.set_phase(Phase::Sliding);
+        quiet(&mut rig, 50);
+        rig.tick(&[lies]);
+        rig.tick(&[EventKind::Rest]);
+        quiet(&mut rig, 1_100);
+        assert!(!ending(&fetch(&mut rig)).landing, "{lies:?}");
+        rig.recorder.set_phase(Phase::Levitated);
+        rig.tick(&[EventKind::FreeFall]);
+        rig.tick(&[EventKind::Impact]);
+        quiet(&mut rig, 1_100);
+        assert!(ending(&fetch(&mut rig)).landing, "{lies:?}");
+    }
+}
+
+/// Lifted and let fall while what lay there is still being recorded: one episode, with the landing. A fall that is
+/// caught is none, though it lay there before.
+#[test]
+fn a_landing_while_the_lying_is_still_recorded_counts() {
+    for (after, landing) in [(EventKind::Impact, true), (EventKind::Levitated, false)] {
+        let mut rig = Rig::switched_on(1_000.0, 8);
+        quiet(&mut rig, 50);
+        rig.tick(&[EventKind::Sliding]);
+        rig.tick(&[EventKind::LiftOff, EventKind::Levitated]);
+        rig.recorder.set_phase(Phase::Levitated);
+        quiet(&mut rig, 10);
+        rig.tick(&[EventKind::FreeFall]);
+        rig.tick(&[after]);
+        quiet(&mut rig, 1_100);
+        assert_eq!(ending(&fetch(&mut rig)).landing, landing, "{after:?}");
+    }
 }
 
 #[test]

@@ -43,6 +43,7 @@ pub fn run(
     for sample in samples {
         app.tick(&mut desk, &sample, 0, &mut notices);
         recorder.set_severity(app.state().severity());
+        recorder.set_phase(app.state().phase());
         recorder.take(&sample, &notices);
         if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
             desk.report(&outlook);

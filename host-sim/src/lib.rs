@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod compare;
 pub mod conduct;
+pub mod configuration;
 pub mod controller_run;
 pub mod detection;
 pub mod drop;

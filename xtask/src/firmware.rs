@@ -11,17 +11,21 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-const IMAGES: [&str; 6] = [
+/// For chip and emulator, and what the budget looks at.
+const IMAGES: [&str; 5] = [
     "touchdown-firmware",
     "touchdown-qemu",
-    "touchdown-count-rigid",
     "touchdown-count-tick",
-    "touchdown-count",
+    "touchdown-tick",
     "touchdown-crash",
 ];
-/// Those that use no rung but the rigid one.
-const RIGID: usize = 3;
-/// Folder of these, built without the other rungs in the library, for comparison.
+/// Their profile: small below the tick, fast in it.
+const PROFILE: &str = "firmware";
+/// They count what the model costs, as fast as it can be.
+const COUNTING: [&str; 2] = ["touchdown-count-rigid", "touchdown-count"];
+/// Profile of these.
+const FASTEST: &str = "release";
+/// Folder of the first of these, built without the other rungs in the library, for comparison.
 const WITHOUT_RUNGS: &str = "without-rungs";
 const RAM_START: u64 = 0x2000_0000;
 
@@ -31,13 +35,20 @@ pub fn build() -> anyhow::Result<()> {
     let images = images();
     let without = images.join(WITHOUT_RUNGS);
     fs::create_dir_all(&without).context("cannot make a folder for images")?;
-    // These first: the others take their names.
-    cargo(&["--no-default-features"])?;
-    for name in &IMAGES[..RIGID] {
-        fs::copy(images.join(name), without.join(name)).context("cannot copy an image")?;
+    let counting = folder(FASTEST);
+    let copy = |name: &str, to: &Path| {
+        let copied = fs::copy(counting.join(name), to.join(name));
+        copied.context("cannot copy an image").map(|_| ())
+    };
+    // This one first: the other takes its name.
+    cargo(FASTEST, &COUNTING[..1], &["--no-default-features"])?;
+    copy(COUNTING[0], &without)?;
+    cargo(FASTEST, &COUNTING, &[])?;
+    for name in COUNTING {
+        copy(name, &images)?;
     }
-    cargo(&[])?;
-    for name in IMAGES {
+    cargo(PROFILE, &IMAGES, &[])?;
+    for name in IMAGES.iter().chain(&COUNTING) {
         let image = images.join(name);
         let (flash, ram) = size(&image)?;
         println!(
@@ -54,8 +65,7 @@ pub const PLANTED: &str = "planted";
 /// Builds the images that the budget looks at with a panic, an f64 and a slow path planted.
 pub fn build_planted() -> anyhow::Result<()> {
     let names = ["touchdown-tick", "touchdown-count-tick"];
-    let bins = names.iter().flat_map(|name| ["--bin", *name]);
-    cargo(&[&["--features", "plants"], &bins.collect::<Vec<_>>()[..]].concat())?;
+    cargo(PROFILE, &names, &["--features", "plants"])?;
     let planted = images().join(PLANTED);
     fs::create_dir_all(&planted).context("cannot make a folder for images")?;
     for name in names {
@@ -76,7 +86,13 @@ pub enum Extra {
 /// Builds one image.
 pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
     let mut cargo = Machine::look().toolchain.cargo("rustc");
-    cargo.args(["--quiet", "--release", "--package", "touchdown-firmware"]);
+    cargo.args([
+        "--quiet",
+        "--profile",
+        PROFILE,
+        "--package",
+        "touchdown-firmware",
+    ]);
     cargo.args(["--bin", name]).current_dir(workspace());
     if extra == Extra::StackSizes {
         // The flag is for nightly compilers; this one is stable.
@@ -90,14 +106,20 @@ pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
 
 /// Folder of the images.
 pub fn images() -> PathBuf {
-    target_directory().join(TARGET).join("release")
+    folder(PROFILE)
 }
 
-fn cargo(arguments: &[&str]) -> anyhow::Result<()> {
+fn folder(profile: &str) -> PathBuf {
+    target_directory().join(TARGET).join(profile)
+}
+
+fn cargo(profile: &str, images: &[&str], arguments: &[&str]) -> anyhow::Result<()> {
     let status = Machine::look()
         .toolchain
         .cargo("build")
-        .args(["--quiet", "--release", "--package", "touchdown-firmware"])
+        .args(["--quiet", "--profile", profile])
+        .args(["--package", "touchdown-firmware"])
+        .args(images.iter().flat_map(|name| ["--bin", *name]))
         .args(arguments)
         .current_dir(workspace())
         .status()

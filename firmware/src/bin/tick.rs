@@ -65,6 +65,7 @@ mod image {
     ) {
         app.tick(&mut Bare(config), sample, lost, notices);
         recorder.set_severity(app.state().severity());
+        recorder.set_phase(app.state().phase());
         recorder.take(sample, notices);
         if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
             recorder.hear(&outlook);

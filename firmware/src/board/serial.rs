@@ -1,16 +1,14 @@
 //! USART1, polled: in the emulator as on silicon.
 
-use heapless::Deque;
 use stm32f4::stm32f405::USART1;
-use touchdown_core::link::{FRAME_BYTES, Frame};
+use touchdown_core::link::Frame;
 
-/// Bytes on their way out: two of the longest frames.
-const OUT_BYTES: usize = 2 * FRAME_BYTES;
+use crate::outgoing::Outgoing;
 
 /// The line.
 pub struct Serial {
     usart: USART1,
-    out: Deque<u8, OUT_BYTES>,
+    out: Outgoing,
 }
 
 impl Serial {
@@ -23,30 +21,32 @@ impl Serial {
             .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
         Self {
             usart,
-            out: Deque::new(),
+            out: Outgoing::default(),
         }
     }
 
     /// Sends what it can, and hands out what came.
     pub fn poll(&mut self) -> Option<u8> {
+        self.push();
         let status = self.usart.sr().read();
-        if status.txe().bit_is_set()
-            && let Some(byte) = self.out.pop_front()
-        {
-            self.usart.dr().write(|w| w.dr().set(u16::from(byte)));
-        }
         // Reading status, then data clears an overrun as well.
         let came = status.rxne().bit_is_set() || status.ore().bit_is_set();
         came.then(|| self.usart.dr().read().dr().bits() as u8)
     }
 
-    /// Queues a frame; without room for all of it, none of it.
-    pub fn send(&mut self, frame: &Frame) {
-        if frame.len() <= OUT_BYTES - self.out.len() {
-            for &byte in frame {
-                let _ = self.out.push_back(byte);
-            }
+    /// Sends what it can.
+    pub fn push(&mut self) {
+        if self.usart.sr().read().txe().bit_is_set()
+            && let Some(byte) = self.out.pop()
+        {
+            self.usart.dr().write(|w| w.dr().set(u16::from(byte)));
         }
+    }
+
+    /// Queues a frame, where there is one; whether it had room.
+    #[must_use]
+    pub fn send(&mut self, frame: Option<&Frame>) -> bool {
+        frame.is_none_or(|it| self.out.push(it))
     }
 
     /// Whether all has gone out.

@@ -27,7 +27,8 @@ struct Trigger {
     tick: u64,
     /// Samples to be recorded, those before it included.
     planned: usize,
-    continues: bool,
+    /// A contact in it is a landing.
+    lands: bool,
 }
 
 /// How far the store has come.
@@ -141,15 +142,21 @@ impl Capture {
         }
     }
 
-    /// Begins an episode, or goes on with one that has ended but is still being recorded.
-    pub(super) fn begin(&mut self, kind: EventKind, tick: u64, continues: bool, plan: &Plan) {
+    /// Begins an episode, or goes on with one that has ended but is still being recorded. Whether a contact
+    /// from now on `lands`.
+    pub(super) fn begin(&mut self, kind: EventKind, tick: u64, lands: bool, plan: &Plan) {
         self.closing = None;
-        self.trigger.get_or_insert(Trigger {
+        let trigger = self.trigger.get_or_insert(Trigger {
             kind,
             tick,
             planned: self.held + plan.after,
-            continues,
+            lands: false,
         });
+        if lands && !trigger.lands {
+            // What it touched before, it lay on.
+            self.touched = false;
+            trigger.lands = true;
+        }
     }
 
     pub(super) fn note(&mut self, notice: &Notice) {
@@ -258,7 +265,7 @@ impl Capture {
         self.fetched.endings += 1;
         let ending = Ending {
             closing,
-            landing: self.touched && !trigger.continues,
+            landing: self.touched && trigger.lands,
             blocks: self.fetched.blocks + left,
             samples: self.held as u32,
             notices: self.notices.len() as u32,

@@ -6,6 +6,7 @@
 
 mod capture;
 
+use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::link::Recent;
 use touchdown_core::log::block::Block;
@@ -148,6 +149,8 @@ pub struct Recorder<'m> {
     last_notice: u64,
     /// The last episode was as long as one may be, and its drop goes on.
     continues: bool,
+    /// It has floated since reset: what lies there from the start has not landed.
+    floated: bool,
     lost: u32,
 }
 
@@ -165,6 +168,7 @@ impl<'m> Recorder<'m> {
             drop: Drop::None,
             last_notice: 0,
             continues: false,
+            floated: false,
             lost: 0,
         }
     }
@@ -214,6 +218,11 @@ impl<'m> Recorder<'m> {
         {
             capture.set_severity(severity);
         }
+    }
+
+    /// The rotor's phase, before the tick's [`Self::take`].
+    pub fn set_phase(&mut self, phase: Phase) {
+        self.floated |= phase == Phase::Levitated;
     }
 
     /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
@@ -283,7 +292,8 @@ impl<'m> Recorder<'m> {
         if let Some(at) = self.recording
             && let Some(capture) = self.captures.get_mut(at)
         {
-            capture.begin(kind, self.tick, continues, &self.plan);
+            let lands = self.floated && !continues;
+            capture.begin(kind, self.tick, lands, &self.plan);
             self.drop = Drop::Recorded(at);
         } else if !continues {
             self.lost = self.lost.saturating_add(1);

@@ -1,5 +1,6 @@
 //! A recorder that is fed with noise and drops, and remembers what it was fed with.
 
+use touchdown_core::detect::Phase;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::log::header::Header;
 use touchdown_core::log::reader::{Item, Reader, Report, Verdict};
@@ -34,7 +35,15 @@ pub struct Rig {
 }
 
 impl Rig {
+    /// Of a rotor that has floated.
     pub fn new(rate: f32, seed: u64) -> Self {
+        let mut rig = Self::switched_on(rate, seed);
+        rig.recorder.set_phase(Phase::Levitated);
+        rig
+    }
+
+    /// Of one that has not been seen to float.
+    pub fn switched_on(rate: f32, seed: u64) -> Self {
         let memory = Box::leak(Box::new(Memory::EMPTY));
         Self {
             recorder: Recorder::new(memory, &config(rate), IDENTITY),

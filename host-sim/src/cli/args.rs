@@ -37,6 +37,7 @@ Examples:
   touchdown rig --keep rig              the firmware in an emulator, with its link on a socket
   touchdown log list flash.bin          the drops that the firmware recorded
   touchdown live /dev/ttyACM0           what the controller sees and does now
+  touchdown config /dev/ttyACM0         what it was configured with; --set changes it
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -158,6 +159,9 @@ pub(super) enum Command {
     /// Watch a controller over its serial link
     #[command(after_help = help::LIVE)]
     Live(LiveArgs),
+    /// Show a controller's configuration, or set another one over its serial link
+    #[command(after_help = help::CONFIG)]
+    Config(ConfigArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -482,6 +486,18 @@ pub(super) struct LiveArgs {
     /// Stop after this time, s
     #[arg(long, value_name = "S")]
     pub seconds: Option<f64>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ConfigArgs {
+    /// Serial device, tcp:HOST:PORT or unix:PATH
+    pub port: String,
+    /// Set this configuration: a file as this command prints it. The controller restarts with it
+    #[arg(long, value_name = "FILE.toml")]
+    pub set: Option<String>,
+    /// The configuration in force, and what changed, as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
 }
 
 #[derive(Clone, Debug, Subcommand)]

@@ -171,6 +171,21 @@ fields. A line that breaks is opened again until q, Ctrl-C or --seconds ends it.
 
 Exit status: 0 done; 2 bad usage, or no controller answered in all the time of --seconds.";
 
+pub(super) const CONFIG: &str = "\
+Examples:
+  touchdown config /dev/ttyACM0               as TOML, to look at
+  touchdown config /dev/ttyACM0 > c.toml      or to edit
+  touchdown config /dev/ttyACM0 --set c.toml  and to send back
+  touchdown config unix:/tmp/rig.sock --json -
+                                              the emulated controller's, as JSON
+
+The file has tables, keys and units of a scene, and those of the sensors' converter:
+docs/link.md. It is checked before anything is sent. The controller stores it and restarts:
+its outputs fall for a moment. It refuses while it watches, and while a drop runs or is
+latched. What has changed is printed once it is back.
+
+Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
+
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   touchdown completions bash > ~/.local/share/bash-completion/completions/touchdown

@@ -2,6 +2,7 @@
 
 mod args;
 mod compare;
+mod config;
 mod force;
 mod help;
 mod limits;
@@ -56,6 +57,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Rig(args)) => rig::rig(&args),
         Some(Command::Log { what }) => log::log(&what),
         Some(Command::Live(args)) => live::live(&args),
+        Some(Command::Config(args)) => config::config(&args),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "touchdown", &mut script);

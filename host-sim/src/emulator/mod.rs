@@ -217,7 +217,7 @@ pub fn built(name: &str) -> PathBuf {
         || Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"),
         PathBuf::from,
     );
-    target.join("thumbv7em-none-eabihf/release").join(name)
+    target.join("thumbv7em-none-eabihf/firmware").join(name)
 }
 
 fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {

@@ -154,6 +154,14 @@ impl Client {
         }
     }
 
+    /// Puts another configuration in force; the controller restarts with it.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), LinkError> {
+        match self.ask(&Request::SetConfig(config_block::encode(settings)))? {
+            Reply::Done => Ok(()),
+            _ => Err(LinkError::Senseless),
+        }
+    }
+
     /// Where the rotor has been: every `step`-th of the newest samples.
     pub fn recent(&mut self, step: u16) -> Result<Recent, LinkError> {
         match self.ask(&Request::Recent { step })? {

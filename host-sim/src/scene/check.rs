@@ -14,9 +14,9 @@ use super::support::{BallBearingTable, SupportTable};
 use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
 use crate::sensors::{SensorsConfig, Tachometers};
 
-pub(super) const RPM: f64 = std::f64::consts::TAU / 60.0;
-pub(super) const MILLI: f64 = 1e-3;
-pub(super) const MICRO: f64 = 1e-6;
+pub(crate) const RPM: f64 = std::f64::consts::TAU / 60.0;
+pub(crate) const MILLI: f64 = 1e-3;
+pub(crate) const MICRO: f64 = 1e-6;
 
 pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
     let rotor = rotor(&file.rotor)?;
@@ -75,7 +75,7 @@ pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> 
     ))
 }
 
-pub(super) fn zero_or_more(
+pub(crate) fn zero_or_more(
     table: &'static str,
     key: &'static str,
     value: f64,
@@ -90,7 +90,7 @@ pub(super) fn zero_or_more(
     ))
 }
 
-pub(super) fn between(
+pub(crate) fn between(
     table: &'static str,
     key: &'static str,
     value: f64,
@@ -111,15 +111,7 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
         return Err(Flaw::new("run", "duration_s", rule));
     }
     let rate = table.sample_rate_hz;
-    let gravity = zero_or_more("run", "gravity_m_s2", table.gravity_m_s2)?;
-    if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
-        let rule = format!(
-            "gravity_m_s2 must be 0, or {:e} or more, is {gravity:e}",
-            limits::LEAST_GRAVITY_M_S2
-        );
-        return Err(Flaw::new("run", "gravity_m_s2", rule));
-    }
-    let gravity = between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)?;
+    let gravity = gravity(table.gravity_m_s2)?;
     let inclination = table.inclination_deg;
     let inclination = between(
         "run",
@@ -139,6 +131,19 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
         sample_rate: between("run", "sample_rate_hz", rate, 100.0..=200_000.0)?,
         seed: table.seed,
     })
+}
+
+/// Gravity, m/s^2.
+pub(crate) fn gravity(given: f64) -> Result<f64, Flaw> {
+    let gravity = zero_or_more("run", "gravity_m_s2", given)?;
+    if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
+        let rule = format!(
+            "gravity_m_s2 must be 0, or {:e} or more, is {gravity:e}",
+            limits::LEAST_GRAVITY_M_S2
+        );
+        return Err(Flaw::new("run", "gravity_m_s2", rule));
+    }
+    between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)
 }
 
 /// The lowest rung that has all parts of the machine.
@@ -278,7 +283,7 @@ fn monitor(scene: &Scene) -> Result<(), Flaw> {
 }
 
 /// A rule in the words of the configuration, in those of the file.
-pub(super) fn translate(error: &ConfigError) -> Flaw {
+pub(crate) fn translate(error: &ConfigError) -> Flaw {
     let parameter = error.parameter();
     let (table, key) = match parameter {
         "clearance" => ("retainer", "clearance_mm"),

@@ -1,11 +1,32 @@
 //! The scene file as it is written: one struct a table, in the file's units.
 
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use touchdown_core::detect::Tuning;
 
 use super::faults::FaultTable;
+use super::flaw;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
+use crate::input_error::InputError;
+
+/// The tables of `text`, with finite numbers; errors name it `name`.
+pub(crate) fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
+    let file = toml::from_str(text).map_err(|error| {
+        let rule = error
+            .message()
+            .replacen("missing field", "missing required key", 1)
+            .replacen("unknown field", "unknown key", 1);
+        InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
+    })?;
+    match flaw::not_finite(text) {
+        Some((key, span)) => {
+            let rule = format!("{key} must be a finite number");
+            Err(InputError::at_span(name, text, span, rule))
+        }
+        None => Ok(file),
+    }
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,18 +59,18 @@ pub(super) struct SceneFile {
     pub detector: Tuning,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RotorTable {
+pub(crate) struct RotorTable {
     pub mass_kg: f64,
     pub radius_mm: f64,
     pub polar_inertia_kg_m2: Option<f64>,
     pub speed_rpm: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RetainerTable {
+pub(crate) struct RetainerTable {
     pub clearance_mm: f64,
     pub friction: f64,
     pub restitution: f64,

@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A key that breaks a rule.
 #[derive(Debug)]
-pub(super) struct Flaw {
+pub(crate) struct Flaw {
     pub table: &'static str,
     pub key: &'static str,
     pub rule: String,

@@ -9,7 +9,7 @@ use super::{Retainer, Rotor, Start};
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 pub(super) const ON_THE_WALL: f64 = 1e-9;
 
-pub(super) fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
+pub(crate) fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
     let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
     let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
     let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
@@ -40,7 +40,7 @@ pub(super) fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
     })
 }
 
-pub(super) fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
+pub(crate) fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
     let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
     let friction = zero_or_more("retainer", "friction", table.friction)?;
     Ok(Retainer {

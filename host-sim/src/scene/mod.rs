@@ -2,14 +2,14 @@
 
 mod auto;
 mod builtin;
-mod check;
+pub(crate) mod check;
 mod contact;
 mod explain;
 mod faults;
-mod file;
-mod flaw;
+pub(crate) mod file;
+pub(crate) mod flaw;
 pub mod limits;
-mod machine;
+pub(crate) mod machine;
 mod materials;
 mod model;
 mod outputs;
@@ -140,17 +140,7 @@ impl Scene {
 
     /// Reads the scene `text`; errors name it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
-        let file = toml::from_str(text).map_err(|error| {
-            let rule = error
-                .message()
-                .replacen("missing field", "missing required key", 1)
-                .replacen("unknown field", "unknown key", 1);
-            InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
-        })?;
-        if let Some((key, span)) = flaw::not_finite(text) {
-            let rule = format!("{key} must be a finite number");
-            return Err(InputError::at_span(name, text, span, rule));
-        }
+        let file = file::read(name, text)?;
         check::scene(name, file)
             .map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))
     }
@@ -199,28 +189,13 @@ impl Scene {
 
     /// What the monitor is told of this scene.
     pub fn monitor_config(&self) -> MonitorConfig {
-        let Rotor {
-            mass,
-            radius,
-            polar_inertia,
-            spin,
-        } = self.rotor;
         MonitorConfig {
             fitted: self.sensors.fitted(),
             sensing: self.sensors.sensing(),
             tachometers: self.sensors.tachometers.as_ref().map(Tachometers::config),
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,
-                machine: MachineConfig {
-                    mass: mass as f32,
-                    clearance: self.retainer.clearance as f32,
-                    gravity: self.run.gravity as f32,
-                    rotor_radius: radius as f32,
-                    inertia_ratio: (polar_inertia / (mass * radius * radius)) as f32,
-                    friction: self.retainer.friction as f32,
-                    restitution: self.retainer.restitution as f32,
-                    spin: spin as f32,
-                },
+                machine: machine_config(&self.rotor, &self.retainer, self.run.gravity),
                 tuning: self.tuning,
             },
         }
@@ -266,5 +241,25 @@ impl Scene {
     /// The title, or else the name.
     pub fn heading(&self) -> &str {
         self.title.as_deref().unwrap_or(&self.name)
+    }
+}
+
+/// What the monitor is told of a machine; gravity across the rotor's axis, m/s^2.
+pub(crate) fn machine_config(rotor: &Rotor, retainer: &Retainer, gravity: f64) -> MachineConfig {
+    let Rotor {
+        mass,
+        radius,
+        polar_inertia,
+        spin,
+    } = *rotor;
+    MachineConfig {
+        mass: mass as f32,
+        clearance: retainer.clearance as f32,
+        gravity: gravity as f32,
+        rotor_radius: radius as f32,
+        inertia_ratio: (polar_inertia / (mass * radius * radius)) as f32,
+        friction: retainer.friction as f32,
+        restitution: retainer.restitution as f32,
+        spin: spin as f32,
     }
 }

@@ -31,7 +31,7 @@ impl Closing {
 pub struct Ending {
     /// Why it ended.
     pub closing: Closing,
-    /// Whether it counts as a landing: the retainer was touched, and no earlier episode tells of
+    /// Whether it counts as a landing: the retainer was touched by what had floated, and no earlier episode tells of
     /// the same drop.
     pub landing: bool,
     /// Blocks of the episode, this one and the copies of header and ending included.

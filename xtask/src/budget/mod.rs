@@ -3,6 +3,7 @@
 mod calls;
 mod image;
 mod judge;
+mod modules;
 #[cfg(test)]
 mod planted;
 mod ticks;
@@ -70,6 +71,14 @@ pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
     }
     let silicon = images.join("touchdown-firmware");
     let (flash_bytes, ram_bytes) = firmware::size(&silicon)?;
+    let modules = modules::modules(&silicon)?;
+    let known: u64 = modules.iter().map(|(_, bytes)| bytes).sum();
+    println!("  flash by module:");
+    for (module, bytes) in &modules {
+        println!("    {bytes:7}  {module}");
+    }
+    let rest = flash_bytes.saturating_sub(known);
+    println!("    {rest:7}  constants, and code of no line");
     let stack = image::stack(&silicon)?;
     println!("  stack: {stack}");
 

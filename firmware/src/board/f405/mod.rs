@@ -154,7 +154,9 @@ pub fn main(memory: &'static mut Memory) -> ! {
     loop {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
-            server.notice(&notice).iter().for_each(|it| serial.send(it));
+            if !serial.send(server.notice(&notice).as_ref()) {
+                remote.lose_notice();
+            }
         }
         let sight = with_tick(|tick| tick.app.sight(lookout.asks()));
         if let Some(outlook) = sight.and_then(|it| lookout.work(&it)) {
@@ -165,8 +167,8 @@ pub fn main(memory: &'static mut Memory) -> ! {
         }
         remote.work();
         if let Some(byte) = serial.poll() {
-            let answer = server.take(byte, &mut remote);
-            answer.iter().for_each(|it| serial.send(it));
+            // An answer without room is asked for again.
+            let _ = serial.send(server.take(byte, &mut remote).as_ref());
         }
         let (outputs, faults, samples) = with_tick(|tick| {
             let app = &*tick.app;
@@ -181,10 +183,8 @@ pub fn main(memory: &'static mut Memory) -> ! {
         }
         let is_due = samples.saturating_sub(known.2) >= STATE_SAMPLES;
         if is_due {
-            server
-                .state(&mut remote)
-                .iter()
-                .for_each(|it| serial.send(it));
+            // The next one tells more.
+            let _ = serial.send(server.state(&mut remote).as_ref());
         }
         known = (outputs, faults, if is_due { samples } else { known.2 });
         if remote.wants_reset() && serial.is_done() {
@@ -317,6 +317,7 @@ pub fn on_converted() {
         let notices = &mut tick.notices;
         tick.app.tick(&mut tick.board, &sample, lost, notices);
         tick.recorder.set_severity(tick.app.state().severity());
+        tick.recorder.set_phase(tick.app.state().phase());
         tick.recorder.take(&sample, notices);
     });
 }

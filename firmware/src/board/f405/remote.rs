@@ -27,6 +27,7 @@ pub struct Remote {
     rcc: RCC,
     log: Option<ChipLog>,
     wants_reset: bool,
+    lost_notices: u32,
 }
 
 impl Remote {
@@ -37,6 +38,7 @@ impl Remote {
             rcc,
             log,
             wants_reset: false,
+            lost_notices: 0,
         }
     }
 
@@ -49,6 +51,11 @@ impl Remote {
         }
     }
 
+    /// Counts a notice for which there was no room on the line.
+    pub fn lose_notice(&mut self) {
+        self.lost_notices = self.lost_notices.saturating_add(1);
+    }
+
     /// Whether another configuration waits for a reset.
     pub fn wants_reset(&self) -> bool {
         self.wants_reset
@@ -59,8 +66,8 @@ impl Device for Remote {
     fn state(&mut self) -> State {
         with_tick(|tick| {
             let age = DWT::cycle_count().wrapping_sub(tick.at);
-            tick.app
-                .report(age / (CORE_HZ / 1_000_000), tick.board.lost_notices)
+            let lost = tick.board.lost_notices.saturating_add(self.lost_notices);
+            tick.app.report(age / (CORE_HZ / 1_000_000), lost)
         })
         .unwrap_or(State::NONE)
     }

@@ -146,6 +146,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
             for sample in samples {
                 app.tick(&mut board, &sample, 0, &mut notices);
                 recorder.set_severity(app.state().severity());
+                recorder.set_phase(app.state().phase());
                 recorder.take(&sample, &notices);
                 if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
                     board.report(&outlook);

@@ -72,7 +72,10 @@ impl Line {
     /// Queues a notice.
     pub fn notice(&mut self, notice: &Notice) {
         let frame = self.server.notice(notice);
-        frame.iter().for_each(|it| self.serial.send(it));
+        // Nothing is lost: the emulated line has no speed.
+        while !self.serial.send(frame.as_ref()) {
+            self.serial.push();
+        }
     }
 
     /// Takes what has come, and sends until nothing is left.
@@ -94,8 +97,8 @@ impl Line {
         };
         if remote.app.state().samples() >= self.told + STATE_SAMPLES {
             self.told = remote.app.state().samples();
-            let frame = self.server.state(&mut remote);
-            frame.iter().for_each(|it| self.serial.send(it));
+            // The next one tells more.
+            let _ = self.serial.send(self.server.state(&mut remote).as_ref());
         }
         let (mut idle, mut polls) = (0, IDLE_POLLS);
         while idle < polls {
@@ -114,8 +117,10 @@ impl Line {
             idle = 0;
             self.heard = true;
             polls = if byte == 0 { IDLE_POLLS } else { FRAME_POLLS };
-            let answer = self.server.take(byte, &mut remote);
-            answer.iter().for_each(|it| self.serial.send(it));
+            // An answer without room is asked for again.
+            let _ = self
+                .serial
+                .send(self.server.take(byte, &mut remote).as_ref());
         }
     }
 }

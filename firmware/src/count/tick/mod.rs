@@ -83,6 +83,7 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
         let ((), instructions) = counter.count(|| {
             app.tick(&mut board, sample, 0, &mut notices);
             recorder.set_severity(app.state().severity());
+            recorder.set_phase(app.state().phase());
             recorder.take(sample, &notices);
         });
         told += notices.len() as u32;
@@ -112,6 +113,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
+            recorder.set_phase(app.state().phase());
             recorder.take(sample, &notices);
         });
         let (outlook, forecast) = counter.count(|| lookout.work(&app.sight(lookout.asks())));

@@ -1,0 +1,95 @@
+//! `touchdown config`.
+
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+use touchdown_core::config_block::Settings;
+
+use super::args::ConfigArgs;
+use super::{commit, open, say};
+use crate::configuration::{
+    ChangeError, Difference, Tables, differences, in_force, parse, put, text,
+};
+use crate::failure::Failure;
+use crate::input_error::InputError;
+use crate::link::{Client, LinkError, Port};
+
+/// What the command tells.
+#[derive(Serialize)]
+struct Told {
+    port: String,
+    firmware: String,
+    /// In force now.
+    config: Tables,
+    /// By this command.
+    changed: Vec<Difference>,
+}
+
+/// Shows the configuration in force, or puts that of a file in force.
+pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
+    // What is wrong with the file is said whether or not there is a controller.
+    let wanted = args.set.as_deref().map(load).transpose()?;
+    let mut out = open(&args.json)?;
+    let port = Port::of(&args.port);
+    let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
+    let mut client = Client::new(port.open().map_err(silent)?);
+    let before = in_force(&mut client).map_err(silent)?;
+    let (config, changed, shown) = match wanted {
+        None => {
+            let head = format!("# {port}, firmware {}\n\n", before.firmware);
+            (before.settings, Vec::new(), head + &text(&before.settings))
+        }
+        Some(wanted) => {
+            let changed = differences(&before.settings, &wanted);
+            if wanted != before.settings {
+                put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
+            }
+            let shown = summary(&port, &changed);
+            (wanted, changed, shown)
+        }
+    };
+    if let Some(out) = &mut out {
+        let told = Told {
+            port: port.to_string(),
+            firmware: before.firmware,
+            config: Tables::from(&config),
+            changed,
+        };
+        let text = serde_json::to_string_pretty(&told).map_err(io::Error::from);
+        out.put(&(text.map_err(Failure::output(out.name()))? + "\n"))?;
+    }
+    let files = commit([out, None, None])?;
+    // What goes into a file of TOML stays TOML.
+    let files = files.lines().map(|it| format!("# {it}\n"));
+    say(&[&args.json], &(shown + &files.collect::<String>()));
+    Ok(())
+}
+
+fn load(name: &str) -> Result<Settings, Failure> {
+    Ok(parse(name, &InputError::read(Path::new(name))?)?)
+}
+
+/// A refusal is the controller's answer; all else is none.
+fn refused(port: &Port, error: &ChangeError) -> Failure {
+    let text = format!("{port}: {error}");
+    match error {
+        ChangeError::Link(LinkError::Refused(_)) => Failure::Check(text),
+        _ => Failure::Target(text),
+    }
+}
+
+/// For people.
+fn summary(port: &Port, changed: &[Difference]) -> String {
+    if changed.is_empty() {
+        return format!("{port}: nothing to change, nothing sent\n");
+    }
+    let value = |it: &Option<String>| it.clone().unwrap_or_else(|| "none".to_owned());
+    let lines = changed
+        .iter()
+        .map(|it| format!("  {}: {} -> {}\n", it.key, value(&it.from), value(&it.to)));
+    format!(
+        "{port}: the controller has restarted with another configuration\n{}",
+        lines.collect::<String>()
+    )
+}

@@ -1,0 +1,126 @@
+//! Where an image's code comes from: bytes by module, from its line table, which knows what was inlined.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context;
+use gimli::{Dwarf, EndianSlice, LittleEndian, SectionId};
+use object::{Object, ObjectSection};
+
+type Slice<'a> = EndianSlice<'a, LittleEndian>;
+
+/// Program flash: below lies the code that the linker left out, above is RAM.
+const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0810_0000;
+
+/// Bytes of code by module, the largest first.
+pub fn modules(image: &Path) -> anyhow::Result<Vec<(String, u64)>> {
+    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let file = object::File::parse(&*bytes)?;
+    let section = |id: SectionId| {
+        let section = file.section_by_name(id.name());
+        let data = section.and_then(|it| it.data().ok()).unwrap_or_default();
+        Ok::<_, gimli::Error>(EndianSlice::new(data, LittleEndian))
+    };
+    let dwarf = Dwarf::load(section)?;
+    let mut sums = BTreeMap::new();
+    let mut units = dwarf.units();
+    while let Some(header) = units.next()? {
+        add(&dwarf, &dwarf.unit(header)?, &mut sums)?;
+    }
+    let mut sums: Vec<_> = sums.into_iter().collect();
+    sums.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+    Ok(sums)
+}
+
+/// Adds what one unit has: from each row of its line table to the next.
+fn add<'a>(
+    dwarf: &Dwarf<Slice<'a>>,
+    unit: &gimli::Unit<Slice<'a>>,
+    sums: &mut BTreeMap<String, u64>,
+) -> anyhow::Result<()> {
+    let Some(program) = unit.line_program.clone() else {
+        return Ok(());
+    };
+    let mut rows = program.rows();
+    let mut last: Option<(u64, String)> = None;
+    while let Some((header, row)) = rows.next_row()? {
+        let address = row.address();
+        if let Some((from, module)) = last.take() {
+            *sums.entry(module).or_default() += address.saturating_sub(from);
+        }
+        if row.end_sequence() || !FLASH.contains(&address) {
+            continue;
+        }
+        let mut path = String::new();
+        if let Some(file) = row.file(header) {
+            for part in file.directory(header).into_iter().chain([file.path_name()]) {
+                path += "/";
+                path += &dwarf.attr_string(unit, part)?.to_string_lossy();
+            }
+        }
+        last = Some((address, module(&path)));
+    }
+    Ok(())
+}
+
+/// Module of ours, or package, that a source file belongs to.
+fn module(path: &str) -> String {
+    let first = |rest: &str| {
+        let name = rest.split('/').next().unwrap_or(rest);
+        name.trim_end_matches(".rs").to_owned()
+    };
+    for (folder, package) in [("shared/src/", "core"), ("firmware/src/", "firmware")] {
+        if let Some((_, rest)) = path.split_once(folder) {
+            return format!("{package}: {}", first(rest));
+        }
+    }
+    // ~/.cargo/registry/src/INDEX/NAME-VERSION/src/...
+    if let Some((_, rest)) = path.split_once("/registry/src/") {
+        let package = rest.split('/').nth(1).unwrap_or(rest);
+        let end = package.find(|it: char| it.is_ascii_digit());
+        return package[..end.unwrap_or(package.len())]
+            .trim_end_matches('-')
+            .to_owned();
+    }
+    match path.split_once("/library/") {
+        Some((_, rest)) => format!("rust: {}", first(rest)),
+        None => "other".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_belong_to_modules_and_packages() {
+        for (path, name) in [
+            ("/work/shared/src/detect/flight.rs", "core: detect"),
+            ("/work/shared/src/monitor.rs", "core: monitor"),
+            ("/firmware/src/board/f405/mod.rs", "firmware: board"),
+            (
+                "/home/.cargo/registry/src/index.crates.io-1949/postcard-1.1.3/src/de/mod.rs",
+                "postcard",
+            ),
+            (
+                "/usr/lib/rustlib/src/rust/library/core/src/slice/mod.rs",
+                "rust: core",
+            ),
+            ("/rustc/abc/src/x.rs", "other"),
+        ] {
+            assert_eq!(module(path), name);
+        }
+    }
+
+    #[test]
+    fn most_of_the_built_image_has_a_module() {
+        let image = crate::firmware::images().join("touchdown-firmware");
+        let modules = modules(&image).expect("`cargo xtask firmware` builds it");
+        let (flash, _) = crate::firmware::size(&image).expect("an image");
+        let known: u64 = modules.iter().map(|(_, bytes)| bytes).sum();
+        assert!(known <= flash, "{known} of {flash}");
+        assert!(known > flash * 9 / 10, "{known} of {flash}");
+        assert!(modules.iter().any(|(name, _)| name == "core: detect"));
+    }
+}
