@@ -15,7 +15,8 @@ use touchdown_core::config_block::Settings;
 use touchdown_core::controller::Mode;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_sim::configuration::{differences, parse, text};
-use touchdown_sim::emulator::{Emulator, Talk};
+use touchdown_sim::emulator::Emulator;
+use touchdown_sim::link::Client;
 use touchdown_sim::rig::{Options, Order, Rig};
 use touchdown_sim::scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
@@ -58,7 +59,8 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 /// Waits for a mode, with a line of its own: the rig has one desktop at a time.
 fn until_mode(rig: &Rig, mode: Mode) {
     let line = std::net::TcpStream::connect(rig.address()).expect("the rig listens");
-    let mut talk = Talk::new(line).expect("a socket");
+    line.set_nodelay(true).expect("a socket");
+    let mut talk = Client::patient(Box::new(line));
     until(&format!("{mode:?}"), || {
         talk.state().expect("answers").mode == mode
     });

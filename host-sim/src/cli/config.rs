@@ -12,7 +12,7 @@ use crate::configuration::{
     ChangeError, Difference, Tables, differences, in_force, parse, put, text,
 };
 use crate::failure::Failure;
-use crate::input_error::InputError;
+use crate::input_error::{InputError, LARGEST_TOML};
 use crate::link::{Client, LinkError, Port};
 
 /// What the command tells.
@@ -67,7 +67,10 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
 }
 
 fn load(name: &str) -> Result<Settings, Failure> {
-    Ok(parse(name, &InputError::read(Path::new(name))?)?)
+    Ok(parse(
+        name,
+        &InputError::read(Path::new(name), LARGEST_TOML)?,
+    )?)
 }
 
 /// A refusal is the controller's answer; all else is none.
