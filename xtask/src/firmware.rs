@@ -11,14 +11,15 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-/// For chip and emulator, and what the budget looks at.
-const IMAGES: [&str; 5] = [
+/// For chip and emulator.
+const IMAGES: [&str; 4] = [
     "touchdown-firmware",
     "touchdown-qemu",
     "touchdown-count-tick",
-    "touchdown-tick",
     "touchdown-crash",
 ];
+/// The budget looks at it; without a stack, as it is never run.
+const NEVER_RUN: &str = "touchdown-tick";
 /// Their profile: small below the tick, fast in it.
 const PROFILE: &str = "firmware";
 /// They count what the model costs, as fast as it can be.
@@ -47,7 +48,7 @@ pub fn build() -> anyhow::Result<()> {
     for name in COUNTING {
         copy(name, &images)?;
     }
-    cargo(PROFILE, &IMAGES, &[])?;
+    cargo(PROFILE, &[&IMAGES[..], &[NEVER_RUN]].concat(), &[])?;
     for name in IMAGES.iter().chain(&COUNTING) {
         let image = images.join(name);
         let (flash, ram) = size(&image)?;
