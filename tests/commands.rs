@@ -307,6 +307,7 @@ fn only_read(example: &str) -> Option<&'static str> {
         ("--on qemu", "needs the image"),
         ("/dev/", "needs a controller"),
         ("touchdown live", "needs a controller"),
+        ("touchdown config", "needs a controller"),
         ("touchdown rig", "runs until it is told to quit"),
         ("rig/log", "needs a run of the rig"),
         (".cfg", "read in recordings.rs"),

@@ -27,6 +27,6 @@ mod tests {
             -30_000.0
         );
         assert_eq!(shortest(0.0, 1e-3), 0.0);
-        assert_eq!(shortest(2_000e-6 / 4_096.0, 1e-6), 0.48828125);
+        assert_eq!(shortest(2_000e-6 / 4_096.0, 1e-6), 0.488_281_3);
     }
 }
