@@ -15,10 +15,11 @@ const WHITE_LEVEL: f32 = 1.8;
 /// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
 /// before it is that far in a sample.
 const LOUDEST: f32 = 6.0;
-/// Threshold of an instant that is no samples and one sample old: below it, what a reading that jumps by a count in
-/// each plane at once adds to noise may be. With shift s in standard deviations (of the mean of two planes of 1 um and 12
-/// bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 between n = 30 and 80 samples.
-const SHIFTED: [f32; 2] = [16.7, 0.28];
+/// Parts of the threshold that an instant needs which is no samples old, and for each that it is: below them, what a
+/// reading that jumps by a count in each plane at once adds to noise may be. With a shift of s standard deviations (of
+/// the mean of two planes of 1 um and 12 bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 over 25.3, between
+/// n = 30 and 80.
+const SHIFTED: [f32; 2] = [0.66, 0.011];
 /// Seconds over which the mean is learnt.
 const LEVEL_TIME: f32 = 0.2;
 
@@ -66,9 +67,12 @@ impl ReleaseBank {
     }
 
     /// Whether an instant is above the threshold, and above what readings that jump by a count may do.
-    fn is_more_than_a_shift(&self, threshold: f32, scale: f32) -> bool {
+    fn is_more_than_a_shift(&self, threshold: f32, loudness: f32, scale: f32) -> bool {
         let mut candidates = self.candidates.iter().take(self.live);
-        candidates.any(|it| it.statistic(scale) > threshold.max(SHIFTED[0] + SHIFTED[1] * it.age))
+        candidates.any(|it| {
+            let part = loudness.max(SHIFTED[0] + SHIFTED[1] * it.age);
+            it.statistic(scale) > threshold * part
+        })
     }
 
     /// Forgets what was learnt as well.
@@ -142,7 +146,7 @@ impl Release {
         let threshold = self.threshold * loudness;
         bank.count = (bank.count + 1.0).min(self.memory);
         bank.level += (best.0 - bank.level) / bank.count;
-        if best.0 <= threshold || !bank.is_more_than_a_shift(threshold, scale) {
+        if best.0 <= threshold || !bank.is_more_than_a_shift(self.threshold, loudness, scale) {
             return None;
         }
         // With gravity known, the instant follows from the fall's shape far better.

@@ -66,8 +66,8 @@ pub(crate) struct Watched {
     count: u16,
     repeats: u16,
     stuck_after: u16,
-    /// Velocity when it came for the first time.
-    course: f32,
+    /// Velocity and acceleration when it came for the first time.
+    course: [f32; 2],
     /// Whether that is known no longer.
     stale: bool,
     /// The last values used.
@@ -103,7 +103,7 @@ impl Default for Watched {
             count: 0,
             repeats: 0,
             stuck_after: u16::MAX,
-            course: 0.0,
+            course: [0.0; 2],
             stale: false,
             last: [0.0; 3],
             bad: 0,
@@ -168,7 +168,7 @@ impl Watch {
             return None;
         }
         if repeats == 0 {
-            it.course = it.velocity;
+            it.course = [it.velocity, it.acceleration];
         }
         it.count = count;
         it.repeats = repeats;
@@ -203,7 +203,7 @@ impl Watch {
             it.repeats = it.repeats.saturating_add(1);
         } else {
             it.repeats = 0;
-            it.course = it.velocity;
+            it.course = [it.velocity, it.acceleration];
         }
         it.count = count;
         it.value = value - it.shift;
@@ -410,8 +410,15 @@ impl Watched {
         if repeats < self.stuck_after / STOPS || self.stuck_after == u16::MAX {
             return false;
         }
-        let way = f32::from(repeats) * self.course;
-        repeats >= self.stuck_after || (!floats && way * way > GONE * GONE * self.quiet)
+        if repeats >= self.stuck_after {
+            return true;
+        }
+        // At the end of a fast swing the filter is late, and takes the channel to be still under way.
+        let (time, [velocity, acceleration]) = (f32::from(repeats), self.course);
+        let way = time * velocity;
+        let turning = way + 0.5 * time * time * acceleration;
+        let gone = GONE * GONE * self.quiet;
+        !floats && way * way > gone && turning * turning > gone
     }
 
     /// Whether its value is no smooth continuation of the last either: where the rotor whirls, the filter lags.
