@@ -25,8 +25,13 @@ static WHOLE: LazyLock<(TempDir, Vec<u8>)> = LazyLock::new(|| {
 fuzz_target!(|bytes: &[u8]| {
     let (folder, whole) = &*WHOLE;
     let path = journal_of(PART, folder.path());
-    let kept = bytes.first().map_or(0, |it| whole.len() * usize::from(*it) / 255);
-    for journal in [bytes, &[&whole[..kept], bytes.get(1..).unwrap_or(&[])].concat()] {
+    let kept = bytes
+        .first()
+        .map_or(0, |it| whole.len() * usize::from(*it) / 255);
+    for journal in [
+        bytes,
+        &[&whole[..kept], bytes.get(1..).unwrap_or(&[])].concat(),
+    ] {
         std::fs::write(&path, journal).expect("a journal");
         if let Ok((plan, paths)) = journals(&[folder.path().display().to_string()])
             && plan.size() < 1000
