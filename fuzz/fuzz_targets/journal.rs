@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use touchdown_sim::scene::Scene;
 use touchdown_sim::sweep::{Part, Plan, journal_of, journals, run, write};
 
-const PLAN: &str = "scene = 'rig'\ndrops = 2\nseed = 1\n[[parameter]]\nkey = 'retainer.friction'\nvalues = [0.1]\n";
+const PLAN: &str = "scene = 'rig'\ndrops = 2\nseed = 1\n[start]\nwithin = 0.5\n[[parameter]]\nkey = 'retainer.friction'\nvalues = [0.1]\n";
 const PART: Part = Part { part: 1, parts: 1 };
 
 /// A folder, and the bytes of a whole journal.
