@@ -21,7 +21,12 @@ fuzz_target!(|bytes: &[u8]| {
     let ram = 0x2000_0000..0x2002_0000;
     let chip = Chip { flash: FLASH, ram };
     if let Ok(layout) = image::check(bytes, &chip) {
-        assert!(layout.programmed.iter().any(|it| it.contains(&layout.start)));
+        assert!(
+            layout
+                .programmed
+                .iter()
+                .any(|it| it.contains(&layout.start))
+        );
         let inside = |it: &Range<u64>| FLASH.start <= it.start && it.end <= FLASH.end;
         assert!(layout.programmed.iter().all(inside));
     }

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use touchdown_sim::scene::Scene;
 use touchdown_sim::sweep::{Part, Plan, journal_of, journals, run, write};
 
-const PLAN: &str = "scene = 'rig'\ndrops = 2\nseed = 1\n[[parameter]]\nkey = 'retainer.friction'\nvalues = [0.1]\n";
+const PLAN: &str = "scene = 'rig'\ndrops = 2\nseed = 1\n[start]\nwithin = 0.5\n[[parameter]]\nkey = 'retainer.friction'\nvalues = [0.1]\n";
 const PART: Part = Part { part: 1, parts: 1 };
 
 /// A folder, and the bytes of a whole journal.
@@ -25,8 +25,13 @@ static WHOLE: LazyLock<(TempDir, Vec<u8>)> = LazyLock::new(|| {
 fuzz_target!(|bytes: &[u8]| {
     let (folder, whole) = &*WHOLE;
     let path = journal_of(PART, folder.path());
-    let kept = bytes.first().map_or(0, |it| whole.len() * usize::from(*it) / 255);
-    for journal in [bytes, &[&whole[..kept], bytes.get(1..).unwrap_or(&[])].concat()] {
+    let kept = bytes
+        .first()
+        .map_or(0, |it| whole.len() * usize::from(*it) / 255);
+    for journal in [
+        bytes,
+        &[&whole[..kept], bytes.get(1..).unwrap_or(&[])].concat(),
+    ] {
         std::fs::write(&path, journal).expect("a journal");
         if let Ok((plan, paths)) = journals(&[folder.path().display().to_string()])
             && plan.size() < 1000

@@ -22,7 +22,10 @@ const MOST: usize = 100_000;
 fuzz_target!(|bytes: &[u8]| {
     std::fs::write(&*FILE, bytes).expect("a file");
     let name = FILE.display().to_string();
-    for mapping in [None, Some(Mapping::parse("map", MAPPING).expect("a mapping"))] {
+    for mapping in [
+        None,
+        Some(Mapping::parse("map", MAPPING).expect("a mapping")),
+    ] {
         let reading = Reading {
             mapping,
             resample: None,

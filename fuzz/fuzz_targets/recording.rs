@@ -11,7 +11,8 @@ use touchdown_sim::scene::Scene;
 
 static RIG: LazyLock<Scene> = LazyLock::new(|| Scene::load("rig").expect("built-in scene"));
 /// For texts without a mapping of their own.
-const MAPPING: &str = "[time]\nrate_hz = 1000\n[ax]\ncolumn = 1\nunit = 'um'\n[ay]\ncolumn = 2\nunit = 'mil'\n";
+const MAPPING: &str =
+    "[time]\nrate_hz = 1000\n[ax]\ncolumn = 1\nunit = 'um'\n[ay]\ncolumn = 2\nunit = 'mil'\n";
 /// A recording may be stretched to more samples than it has rows.
 const MOST: usize = 100_000;
 
@@ -20,7 +21,11 @@ fuzz_target!(|bytes: &[u8]| {
     let (mapping, text) = bytes.split_at(end);
     let given = std::str::from_utf8(mapping).unwrap_or("");
     let given = Mapping::parse("map", given).ok();
-    let text = if given.is_some() { text.get(1..).unwrap_or(&[]) } else { bytes };
+    let text = if given.is_some() {
+        text.get(1..).unwrap_or(&[])
+    } else {
+        bytes
+    };
     let usual = Mapping::parse("map", MAPPING).expect("a mapping");
     for resample in [None, Some(20e3)] {
         let reading = Reading {
