@@ -99,7 +99,7 @@ pub(crate) struct Approach {
 }
 
 /// Part by which a jump may differ from restitution's.
-const JUMP_SPREAD: f32 = 0.1;
+const JUMP_SPREAD: f32 = 0.2;
 /// Part of the speed into the wall that every impact takes off, for all that noise does.
 const STOPPED: f32 = 0.8;
 
