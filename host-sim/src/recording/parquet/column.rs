@@ -46,6 +46,8 @@ impl Used {
         for part in parts {
             let codec = part.compression();
             if !matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY) {
+                let codec = codec.to_string();
+                let codec = codec.split('(').next().unwrap_or_default();
                 return Err(format!(
                     "is compressed by {codec}, which is not read: write it with Snappy, or without compression"
                 ));
