@@ -16,10 +16,10 @@ const ASIDE: f32 = 0.9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lie {
     clearance: f32,
-    /// Mean radius that is beyond the wall, m.
-    beyond: f32,
-    /// Distance along an axis that the wall, as it is, still allows, m.
+    /// Distance that shows a wall where it should be, at most, m.
     within: f32,
+    /// That is beyond the wall, m.
+    beyond: f32,
     /// Whether there is a bottom, and friction cannot hold a rotor at a side.
     falls: bool,
     looks: u16,
@@ -45,10 +45,8 @@ pub(crate) enum Place {
     Top,
     /// At a side.
     Side,
-    /// Beyond the wall on average, along x (0) or along y (1).
+    /// Beyond the wall, along x (0) or along y (1).
     Beyond(u8),
-    /// Beyond the wall now and then, along x (0) or along y (1) alone.
-    Far(u8),
 }
 
 impl Lie {
@@ -56,8 +54,8 @@ impl Lie {
     pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
         Self {
             clearance,
-            beyond: clearance + BEYOND * tolerance,
             within: clearance + tolerance,
+            beyond: clearance + BEYOND * tolerance,
             falls,
             looks,
         }
@@ -66,12 +64,9 @@ impl Lie {
     /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot.
     pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2], touches: bool) -> Option<Place> {
         if it.looks == 0 {
-            *it = Lying {
-                touches: true,
-                first: position,
-                place: position,
-                ..Lying::default()
-            };
+            it.first = position;
+            it.place = position;
+            it.touches = true;
         }
         for ((place, far), now) in it.place.iter_mut().zip(&mut it.far).zip(position) {
             *place += SMOOTH * (now - *place);
@@ -90,14 +85,9 @@ impl Lie {
         let count = f32::from(it.looks);
         let [x, y] = it.sum.map(|sum| sum / count);
         let mean = [x + it.first[0], y + it.first[1]];
-        it.looks = 0;
-        self.judge(mean, it.far, it.touches)
-    }
-
-    /// Whether an end has been at the wall along an axis and never beyond, in these looks or the last judged.
-    pub(crate) fn finds_the_wall(&self, it: &Lying, axis: u8) -> bool {
-        let [x, y] = it.far;
-        (0.5 * self.clearance..self.within).contains(if axis == 0 { &x } else { &y })
+        let (touches, far) = (it.touches, it.far);
+        *it = Lying::default();
+        self.judge(mean, far, touches)
     }
 
     fn judge(&self, [x, y]: [f32; 2], far: [f32; 2], touches: bool) -> Option<Place> {
@@ -105,13 +95,18 @@ impl Lie {
         if radius > self.beyond {
             return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
         }
-        match far.map(|it| it > self.beyond) {
-            [true, false] => return Some(Place::Far(0)),
-            [false, true] => return Some(Place::Far(1)),
-            _ => {}
+        // Nearer to the centre is the mean of one that whirls or swings far, and a retainer may give way to it.
+        if radius < 0.5 * self.clearance {
+            return None;
         }
-        // Nearer to the centre is the mean of one that whirls or swings far.
-        if !(touches && self.falls && radius > 0.5 * self.clearance) {
+        let [far_x, far_y] = far;
+        if far_x > self.beyond && far_y < self.within {
+            return Some(Place::Beyond(0));
+        }
+        if far_y > self.beyond && far_x < self.within {
+            return Some(Place::Beyond(1));
+        }
+        if !(touches && self.falls) {
             return None;
         }
         if y > ASIDE * radius {

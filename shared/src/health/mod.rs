@@ -219,10 +219,6 @@ impl Health {
             let Some(place) = self.lie.take(it, position, phase.is_contact()) else {
                 continue;
             };
-            let [of_a, of_b] = state.spare();
-            let [a, b] = &state.lying;
-            let (spare, other) = if index == 0 { (of_b, b) } else { (of_a, a) };
-            let spare = self.fitted == 0b1111 && spare;
             let (axis, kind) = match place {
                 Place::Top => (1, FaultKind::Reversed),
                 Place::Side => (0, FaultKind::Swapped),
@@ -230,12 +226,9 @@ impl Health {
                     (state.pairing.axis(), FaultKind::Gain)
                 }
                 Place::Beyond(axis) => (usize::from(axis), FaultKind::Gain),
-                // A retainer may give way, and does so at both ends.
-                Place::Far(axis) if spare && self.lie.finds_the_wall(other, axis) => {
-                    (usize::from(axis), FaultKind::Gain)
-                }
-                Place::Far(_) => continue,
             };
+            let [of_a, of_b] = state.spare();
+            let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
         }
         if phases != [Phase::Levitated; PLANES] {
