@@ -269,7 +269,7 @@ impl FlightTest {
                 flight.seen_near = 0;
                 flight.lying = 0;
                 return Some(Landing::Impact {
-                    age: jump.age,
+                    age: jump.dated,
                     normal_speed: hit.bounce.normal_speed,
                 });
             }

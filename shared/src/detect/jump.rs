@@ -75,6 +75,8 @@ impl JumpBank {
 pub(crate) struct Jump {
     /// Samples since, to a fraction.
     pub(crate) age: f32,
+    /// The same, for a date alone.
+    pub(crate) dated: f32,
     /// m/s.
     pub(crate) change: [f32; 2],
     /// Variance of each axis of `change`, (m/s)^2.
@@ -98,8 +100,36 @@ pub(crate) struct Approach {
     pub(crate) restitution: f32,
 }
 
+/// What restitution makes of a jump at an instant of the bank.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    statistic: f32,
+    /// Inward, m/s, and its variance, (m/s)^2.
+    jump: f32,
+    variance: f32,
+    /// Speed into the wall before it, m/s.
+    speed: f32,
+    /// What restitution expects of it, m/s.
+    expected: f32,
+}
+
+impl Guess {
+    /// Whether such a jump at least stops the rotor at the wall.
+    fn stops(&self) -> bool {
+        self.jump >= STOPPED * self.speed
+    }
+
+    /// Logarithm of how likely the instant is, where the jump may differ from restitution's by `spread`, a part of it.
+    fn likelihood(&self, spread: f32) -> f32 {
+        let (off, spread) = (self.jump - self.expected, spread * self.expected);
+        self.statistic - 0.5 * off * off / (self.variance + spread * spread)
+    }
+}
+
 /// Part by which a jump may differ from restitution's.
 const JUMP_SPREAD: f32 = 0.2;
+/// The same for the date of an impact: a wrong jump spoils the flight after it, a wrong date itself alone.
+const DATE_SPREAD: f32 = 0.1;
 /// Part of the speed into the wall that every impact takes off, for all that noise does.
 const STOPPED: f32 = 0.8;
 
@@ -126,8 +156,18 @@ impl JumpTest {
         if bank.statistic <= self.threshold * bank.loudness {
             return None;
         }
-        let index = self.likeliest(bank, approach, inward)?;
-        Some(self.jump(bank, index, inward))
+        let (index, dated) = self.likeliest(bank, approach)?;
+        let found = bank.candidates().get(index)?;
+        let scale = 1.0 / found.information;
+        Some(Jump {
+            age: self.age(bank, index, approach, JUMP_SPREAD),
+            dated: self.age(bank, dated, approach, DATE_SPREAD),
+            change: found.sum.map(|sum| sum * scale),
+            variance: scale,
+            effect: found.effect,
+            // Evenly anywhere between two instants of the bank.
+            timing: f32::from(self.stride) * self.period * UNIFORM,
+        })
     }
 
     /// To the next sample, which is left out.
@@ -181,49 +221,50 @@ impl JumpTest {
         bank.statistic = statistic;
     }
 
-    /// The likeliest instant. Just after an impact a small jump long ago explains the first sample as
-    /// well as a large one now; what restitution makes of the speed into the wall decides. A jump that
-    /// does not even stop the rotor at the wall waits for another sample, unless it is past doubt.
-    fn likeliest(&self, bank: &JumpBank, approach: &Approach, inward: [f32; 2]) -> Option<usize> {
+    /// Places in the bank of the likeliest instant, and of that which dates the jump. Just after an impact a small
+    /// jump long ago explains the first sample as well as a large one now; what restitution makes of the speed into
+    /// the wall decides. A jump that does not even stop the rotor at the wall waits for another sample, unless it is
+    /// past doubt.
+    fn likeliest(&self, bank: &JumpBank, approach: &Approach) -> Option<(usize, usize)> {
         let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
         let mut best = (f32::NEG_INFINITY, None);
+        let mut dated = (f32::NEG_INFINITY, 0);
         for (index, candidate) in bank.candidates().iter().enumerate() {
-            let statistic = candidate.statistic(inward);
-            if statistic <= 0.5 * bank.statistic {
+            let guess = candidate.guess(approach, self.period);
+            if guess.statistic <= 0.5 * bank.statistic || !(guess.stops() || past_doubt) {
                 continue;
             }
-            let scale = 1.0 / candidate.information;
-            let along = (candidate.sum[0] * inward[0] + candidate.sum[1] * inward[1]) * scale;
-            let time = candidate.age * self.period;
-            let speed = approach.speed + (1.0 - candidate.effect[1]) * along - approach.pull * time;
-            if along < STOPPED * speed && !past_doubt {
-                continue;
-            }
-            let expected = (1.0 + approach.restitution) * speed.max(0.0);
-            let spread = JUMP_SPREAD * expected;
-            let off = along - expected;
-            let value = statistic - 0.5 * off * off / (scale + spread * spread);
+            let value = guess.likelihood(JUMP_SPREAD);
             if value > best.0 {
                 best = (value, Some(index));
             }
+            let value = guess.likelihood(DATE_SPREAD);
+            if value > dated.0 {
+                dated = (value, index);
+            }
         }
-        best.1
+        best.1.map(|index| (index, dated.1))
     }
 
-    fn jump(&self, bank: &JumpBank, index: usize, inward: [f32; 2]) -> Jump {
+    /// Samples since an instant of the bank, moved to the peak between its neighbours, by a parabola through the
+    /// three.
+    fn age(&self, bank: &JumpBank, index: usize, approach: &Approach, spread: f32) -> f32 {
+        let value = |candidate: &Candidate| {
+            let guess = candidate.guess(approach, self.period);
+            guess.likelihood(spread)
+        };
         let found = bank.candidates().get(index).copied().unwrap_or_default();
-        // The peak between neighbouring instants, by a parabola through the three.
         let last = self.instants - 1;
         let older = if index == 0 { last } else { index - 1 };
         let younger = if index == last { 0 } else { index + 1 };
         let neighbour = |at: usize| {
             let near = bank.candidates().get(at)?;
             let apart = (near.age - found.age).abs();
-            (apart == f32::from(self.stride)).then(|| near.statistic(inward))
+            (apart == f32::from(self.stride)).then(|| value(near))
         };
         let shift = match (neighbour(older), neighbour(younger)) {
             (Some(older), Some(younger)) => {
-                let bend = older - 2.0 * found.statistic(inward) + younger;
+                let bend = older - 2.0 * value(&found) + younger;
                 if bend < 0.0 {
                     (0.5 * (younger - older) / bend).clamp(-0.5, 0.5) * f32::from(self.stride)
                 } else {
@@ -232,15 +273,7 @@ impl JumpTest {
             }
             _ => 0.0,
         };
-        let scale = 1.0 / found.information;
-        Jump {
-            age: (found.age - 0.5 + shift).max(0.0),
-            change: found.sum.map(|sum| sum * scale),
-            variance: scale,
-            effect: found.effect,
-            // Evenly anywhere between two instants of the bank.
-            timing: f32::from(self.stride) * self.period * UNIFORM,
-        }
+        (found.age - 0.5 + shift).max(0.0)
     }
 }
 
@@ -248,6 +281,21 @@ impl Candidate {
     fn predict(&mut self, period: f32) {
         self.age += 1.0;
         self.effect[0] += period * self.effect[1];
+    }
+
+    fn guess(&self, approach: &Approach, period: f32) -> Guess {
+        let inward = approach.outward.map(|n| -n);
+        let variance = 1.0 / self.information;
+        let jump = (self.sum[0] * inward[0] + self.sum[1] * inward[1]) * variance;
+        let fallen = approach.pull * self.age * period;
+        let speed = approach.speed + (1.0 - self.effect[1]) * jump - fallen;
+        Guess {
+            statistic: self.statistic(inward),
+            jump,
+            variance,
+            speed,
+            expected: (1.0 + approach.restitution) * speed.max(0.0),
+        }
     }
 
     fn statistic(&self, [nx, ny]: [f32; 2]) -> f32 {
