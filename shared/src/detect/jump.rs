@@ -126,10 +126,21 @@ impl Guess {
     }
 }
 
+/// Instants of the bank between the likeliest and that which dates it, at most.
+const AROUND: usize = 4;
 /// Part by which a jump may differ from restitution's.
 const JUMP_SPREAD: f32 = 0.2;
 /// The same for the date of an impact: a wrong jump spoils the flight after it, a wrong date itself alone.
 const DATE_SPREAD: f32 = 0.1;
+/// A peak of likelihood around an instant of the bank.
+#[derive(Clone, Copy, Debug)]
+struct Peak {
+    /// Samples since, to a fraction.
+    age: f32,
+    /// The neighbour that is likelier, if there is one.
+    higher: Option<usize>,
+}
+
 /// Part of the speed into the wall that every impact takes off, for all that noise does.
 const STOPPED: f32 = 0.8;
 
@@ -156,12 +167,14 @@ impl JumpTest {
         if bank.statistic <= self.threshold * bank.loudness {
             return None;
         }
-        let (index, dated) = self.likeliest(bank, approach)?;
+        let index = self.likeliest(bank, approach)?;
         let found = bank.candidates().get(index)?;
         let scale = 1.0 / found.information;
+        let dated = self.date(bank, index, approach);
+        let (middle, half) = (found.age - 0.5, 0.5 * f32::from(self.stride));
         Some(Jump {
-            age: self.age(bank, index, approach, JUMP_SPREAD),
-            dated: self.age(bank, dated, approach, DATE_SPREAD),
+            age: dated.clamp(middle - half, middle + half).max(0.0),
+            dated,
             change: found.sum.map(|sum| sum * scale),
             variance: scale,
             effect: found.effect,
@@ -221,39 +234,49 @@ impl JumpTest {
         bank.statistic = statistic;
     }
 
-    /// Places in the bank of the likeliest instant, and of that which dates the jump. Just after an impact a small
-    /// jump long ago explains the first sample as well as a large one now; what restitution makes of the speed into
-    /// the wall decides. A jump that does not even stop the rotor at the wall waits for another sample, unless it is
-    /// past doubt.
-    fn likeliest(&self, bank: &JumpBank, approach: &Approach) -> Option<(usize, usize)> {
+    /// The place in the bank of the likeliest instant. Just after an impact a small jump long ago explains the first
+    /// sample as well as a large one now; what restitution makes of the speed into the wall decides. A jump that does
+    /// not even stop the rotor at the wall waits for another sample, unless it is past doubt.
+    fn likeliest(&self, bank: &JumpBank, approach: &Approach) -> Option<usize> {
         let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
+        let inward = approach.outward.map(|n| -n);
         let mut best = (f32::NEG_INFINITY, None);
-        let mut dated = (f32::NEG_INFINITY, 0);
         for (index, candidate) in bank.candidates().iter().enumerate() {
+            if candidate.statistic(inward) <= 0.5 * bank.statistic {
+                continue;
+            }
             let guess = candidate.guess(approach, self.period);
-            if guess.statistic <= 0.5 * bank.statistic || !(guess.stops() || past_doubt) {
+            if !(guess.stops() || past_doubt) {
                 continue;
             }
             let value = guess.likelihood(JUMP_SPREAD);
             if value > best.0 {
                 best = (value, Some(index));
             }
-            let value = guess.likelihood(DATE_SPREAD);
-            if value > dated.0 {
-                dated = (value, index);
-            }
         }
-        best.1.map(|index| (index, dated.1))
+        best.1
     }
 
-    /// Samples since an instant of the bank, moved to the peak between its neighbours, by a parabola through the
-    /// three.
-    fn age(&self, bank: &JumpBank, index: usize, approach: &Approach, spread: f32) -> f32 {
-        let value = |candidate: &Candidate| {
-            let guess = candidate.guess(approach, self.period);
-            guess.likelihood(spread)
-        };
+    /// Samples since the likeliest instant around one of the bank, where restitution is nearly right.
+    fn date(&self, bank: &JumpBank, index: usize, approach: &Approach) -> f32 {
+        let mut peak = self.peak(bank, index, approach);
+        for _ in 0..AROUND {
+            let Some(next) = peak.higher else {
+                break;
+            };
+            peak = self.peak(bank, next, approach);
+        }
+        peak.age
+    }
+
+    /// Around an instant of the bank: the peak between its neighbours, by a parabola through the three.
+    fn peak(&self, bank: &JumpBank, index: usize, approach: &Approach) -> Peak {
         let found = bank.candidates().get(index).copied().unwrap_or_default();
+        let value = |candidate: &Candidate| {
+            candidate
+                .guess(approach, self.period)
+                .likelihood(DATE_SPREAD)
+        };
         let last = self.instants - 1;
         let older = if index == 0 { last } else { index - 1 };
         let younger = if index == last { 0 } else { index + 1 };
@@ -262,18 +285,30 @@ impl JumpTest {
             let apart = (near.age - found.age).abs();
             (apart == f32::from(self.stride)).then(|| value(near))
         };
-        let shift = match (neighbour(older), neighbour(younger)) {
-            (Some(older), Some(younger)) => {
-                let bend = older - 2.0 * value(&found) + younger;
+        let here = value(&found);
+        let (before, after) = (neighbour(older), neighbour(younger));
+        let shift = match (before, after) {
+            (Some(before), Some(after)) => {
+                let bend = before - 2.0 * here + after;
                 if bend < 0.0 {
-                    (0.5 * (younger - older) / bend).clamp(-0.5, 0.5) * f32::from(self.stride)
+                    (0.5 * (after - before) / bend).clamp(-0.5, 0.5) * f32::from(self.stride)
                 } else {
                     0.0
                 }
             }
             _ => 0.0,
         };
-        (found.age - 0.5 + shift).max(0.0)
+        let higher = if before > Some(here) {
+            Some(older)
+        } else if after > Some(here) {
+            Some(younger)
+        } else {
+            None
+        };
+        Peak {
+            age: (found.age - 0.5 + shift).max(0.0),
+            higher,
+        }
     }
 }
 
