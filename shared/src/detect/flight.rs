@@ -1,5 +1,7 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
+use core::ops::Range;
+
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::ladder::sum;
@@ -18,6 +20,9 @@ const SERIES_MARGIN: f32 = 5e-4;
 const OVERDUE: u32 = 4;
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
+/// Parts of it in which the next impact is due, and part of the speed that it then has to have.
+const EXPECTED: Range<f32> = 0.8..1.25;
+const FAINTER: f32 = 0.88;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -330,13 +335,17 @@ impl FlightTest {
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
-        let faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
-        if radius < self.near || normal_speed <= faintest {
-            return None;
+        let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        if let Some(last) = flight.series.last() {
+            let part = bounce.at.since(last.at) * self.period / self.flat_flight(last, flight);
+            if part < IMPOSSIBLE {
+                return None;
+            }
+            if EXPECTED.contains(&part) {
+                faintest *= FAINTER;
+            }
         }
-        if let Some(last) = flight.series.last()
-            && bounce.at.since(last.at) * self.period < self.shortest_flight(last, flight)
-        {
+        if radius < self.near || normal_speed <= faintest {
             return None;
         }
         let launch_speed = flight.series.last().map_or(0.0, |last| {
@@ -351,17 +360,13 @@ impl FlightTest {
         })
     }
 
-    /// Part of the flight after an impact in which another is impossible, s: on a flat wall it would leave
-    /// with speed v and come back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
-    fn shortest_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
+    /// How long the flight after an impact would last on a flat wall, s: it leaves with speed v and comes back after
+    /// 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
+    fn flat_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
         let launch = flight.series.restitution(&self.machine) * last.normal_speed;
         let squares = last.along * last.along + launch * launch;
         let back = squares / self.machine.clearance + self.machine.gravity;
-        if back > 0.0 {
-            IMPOSSIBLE * 2.0 * launch / back
-        } else {
-            0.0
-        }
+        if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.

@@ -173,7 +173,7 @@ impl JumpTest {
         let dated = self.date(bank, index, approach);
         let (middle, half) = (found.age - 0.5, 0.5 * f32::from(self.stride));
         Some(Jump {
-            age: dated.clamp(middle - half, middle + half).max(0.0),
+            age: dated.max(middle - half).min(middle + half).max(0.0),
             dated,
             change: found.sum.map(|sum| sum * scale),
             variance: scale,
