@@ -256,7 +256,7 @@ impl FlightTest {
         let (outward, _) = direction(flight.track.position);
         let [u, v] = flight.track.velocity;
         let approach = Approach {
-            outward,
+            inward: outward.map(|n| -n),
             speed: u * outward[0] + v * outward[1],
             pull: -self.machine.gravity * outward[1],
             restitution: flight.series.restitution(&self.machine),

@@ -9,6 +9,14 @@ use crate::detect::track::Innovation;
 
 /// Standard deviation of a value that lies anywhere in a span of 1.
 const UNIFORM: f32 = 0.288_675_13;
+/// Instants of the bank between the likeliest and that which dates it, at most.
+const AROUND: usize = 4;
+/// Part by which a jump may differ from restitution's.
+const JUMP_SPREAD: f32 = 0.2;
+/// The same for the date of an impact: a wrong jump spoils the flight after it, a wrong date itself alone.
+const DATE_SPREAD: f32 = 0.1;
+/// Part of the speed into the wall that every impact takes off, for all that noise does.
+const STOPPED: f32 = 0.8;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -90,8 +98,8 @@ pub(crate) struct Jump {
 /// What an impact now would be like, along the outward normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
-    /// Outward unit vector.
-    pub(crate) outward: [f32; 2],
+    /// Inward unit vector.
+    pub(crate) inward: [f32; 2],
     /// Outward velocity, m/s.
     pub(crate) speed: f32,
     /// Outward acceleration of the flight, m/s^2.
@@ -126,12 +134,6 @@ impl Guess {
     }
 }
 
-/// Instants of the bank between the likeliest and that which dates it, at most.
-const AROUND: usize = 4;
-/// Part by which a jump may differ from restitution's.
-const JUMP_SPREAD: f32 = 0.2;
-/// The same for the date of an impact: a wrong jump spoils the flight after it, a wrong date itself alone.
-const DATE_SPREAD: f32 = 0.1;
 /// A peak of likelihood around an instant of the bank.
 #[derive(Clone, Copy, Debug)]
 struct Peak {
@@ -140,9 +142,6 @@ struct Peak {
     /// The neighbour that is likelier, if there is one.
     higher: Option<usize>,
 }
-
-/// Part of the speed into the wall that every impact takes off, for all that noise does.
-const STOPPED: f32 = 0.8;
 
 impl JumpTest {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, threshold: f32) -> Self {
@@ -162,8 +161,7 @@ impl JumpTest {
         innovation: &Innovation,
         approach: &Approach,
     ) -> Option<Jump> {
-        let inward = approach.outward.map(|n| -n);
-        self.update(bank, innovation, inward);
+        self.update(bank, innovation, approach.inward);
         if bank.statistic <= self.threshold * bank.loudness {
             return None;
         }
@@ -239,10 +237,9 @@ impl JumpTest {
     /// not even stop the rotor at the wall waits for another sample, unless it is past doubt.
     fn likeliest(&self, bank: &JumpBank, approach: &Approach) -> Option<usize> {
         let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
-        let inward = approach.outward.map(|n| -n);
         let mut best = (f32::NEG_INFINITY, None);
         for (index, candidate) in bank.candidates().iter().enumerate() {
-            if candidate.statistic(inward) <= 0.5 * bank.statistic {
+            if candidate.statistic(approach.inward) <= 0.5 * bank.statistic {
                 continue;
             }
             let guess = candidate.guess(approach, self.period);
@@ -319,7 +316,7 @@ impl Candidate {
     }
 
     fn guess(&self, approach: &Approach, period: f32) -> Guess {
-        let inward = approach.outward.map(|n| -n);
+        let inward = approach.inward;
         let variance = 1.0 / self.information;
         let jump = (self.sum[0] * inward[0] + self.sum[1] * inward[1]) * variance;
         let fallen = approach.pull * self.age * period;
