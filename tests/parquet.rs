@@ -10,6 +10,7 @@ use parquet::data_type::{DoubleType, Int64Type};
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use proptest::prelude::*;
 use serde_json::Value;
@@ -208,6 +209,23 @@ fn what_cannot_be_read_says_why() {
             .code(2)
             .stderr(contains(rule));
     }
+}
+
+/// The footer no longer says where a dictionary lies, and its crate would panic.
+#[test]
+fn a_dictionary_that_is_gone_is_an_error() {
+    const FIELD: usize = 10_172;
+    let folder = TempDir::new().unwrap();
+    let mut bytes = fs::read(data("logger.parquet")).unwrap();
+    bytes[FIELD] = 164;
+    fs::write(folder.path().join("r.parquet"), &bytes).unwrap();
+    fs::write(folder.path().join("columns.toml"), COLUMNS).unwrap();
+    touchdown(folder.path())
+        .args(["replay", "r.parquet", "--scene", "rig"])
+        .args(["--columns", "columns.toml"])
+        .assert()
+        .code(2)
+        .stderr(contains("damaged").and(contains("panicked").not()));
 }
 
 proptest! {

@@ -3,6 +3,7 @@
 //! Read a page of each column at a time, so that a recording of any size fits.
 
 mod column;
+mod guard;
 
 use std::fs::File;
 use std::path::Path;
@@ -17,6 +18,7 @@ use crate::input_error::{InputError, reason};
 use crate::sensors::SensorsConfig;
 use crate::stream::{Meter, Stamp, Stamped};
 use column::{Used, heading};
+use guard::guarded;
 
 /// Whether the name of `path` is that of a Parquet file.
 pub fn is_parquet(path: &Path) -> bool {
@@ -56,7 +58,8 @@ impl ParquetRows {
         if there.is_dir() {
             return Err(fail("is a folder, not a file".to_owned()));
         }
-        let reader = SerializedFileReader::new(bytes).map_err(|error| fail(damaged(&error)))?;
+        let reader =
+            guarded(|| SerializedFileReader::new(bytes)).map_err(|error| fail(damaged(&error)))?;
         let schema = reader.metadata().file_metadata().schema_descr();
         let found: Vec<Heading> = schema.columns().iter().map(|it| heading(it)).collect();
         let named;
@@ -166,7 +169,7 @@ impl ParquetRows {
         loop {
             let mut lengths = Vec::new();
             for at in 0..self.used.len() {
-                let filled = self.used[at].fill();
+                let filled = guarded(|| self.used[at].fill());
                 filled.map_err(|error| self.flaw(damaged(&error)))?;
                 lengths.push(self.used[at].len());
             }
@@ -182,8 +185,7 @@ impl ParquetRows {
             if self.group == self.reader.num_row_groups() {
                 return Ok(false);
             }
-            self.next_group()
-                .map_err(|error| self.flaw(damaged(&error)))?;
+            guarded(|| self.next_group()).map_err(|error| self.flaw(damaged(&error)))?;
         }
     }
 
