@@ -315,6 +315,11 @@ impl Touching {
         self.lift.wall
     }
 
+    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
+    pub(crate) fn wavering(&self) -> Option<f32> {
+        self.lift.wavering()
+    }
+
     /// As it goes on at one end of the rotor alone, where the wall seems to be `shift` (m) farther.
     pub(crate) fn at_one_end(&self, shift: f32) -> Self {
         Self {

@@ -24,6 +24,8 @@ use crate::severity::Strain;
 const MOVED: f32 = 8.0;
 /// Angle beyond that of friction, rad, up to which a rotor at the wall may lie there still.
 const RESTING_ANGLE: f32 = 0.1;
+/// Times the mean square of their wavering that sensors may be off on the wall, where that is less than while it floated.
+const WAVERING: f32 = 2.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -320,9 +322,12 @@ impl Detector {
         signals: &Signals,
         teller: &mut Teller,
     ) {
-        // On the wall, what else moves the sensors is there as it was while levitated.
+        // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
+        let learnt = state.levitation.learnt_variance();
+        let wavering = state.rotor.contact.wavering();
+        let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
         let fix = fix.map(|fix| Fix {
-            variance: fix.variance.max(state.levitation.learnt_variance()),
+            variance: fix.variance.max(shown),
             ..*fix
         });
         let loudness = state.listener.loudness();

@@ -6,6 +6,9 @@ use crate::real::{root, sqrt};
 const WARM_UP: u16 = 16;
 /// Samples that the wall's learnt place remembers.
 const MEMORY: f32 = 256.0;
+/// Samples that show how far the sensors waver on the wall: a turn of the rotor, or so much of it as the wall's
+/// learnt place does not follow.
+const LEARNT: u16 = 128;
 /// Distance that the test is tuned to, in standard deviations: above what noise and the waves of a
 /// sensor's error do, below what a flight soon reaches.
 const SHIFT: f32 = 4.0;
@@ -24,6 +27,8 @@ pub(crate) struct LiftOff {
     /// Distance of the last sample from it, inward, m.
     pub(crate) gap: f32,
     count: u16,
+    /// Mean square of that distance on the wall, m^2.
+    square: f32,
     sum: f32,
     age: u16,
 }
@@ -32,6 +37,11 @@ impl LiftOff {
     /// Whether the last sample was at the wall.
     pub(crate) fn is_at_wall(&self) -> bool {
         self.age == 0
+    }
+
+    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
+    pub(crate) fn wavering(&self) -> Option<f32> {
+        (self.count >= LEARNT).then_some(self.square)
     }
 
     /// At one end alone, where the wall seems to be `shift` (m) farther. Which end has left it, the next
@@ -58,6 +68,9 @@ impl LiftOff {
             self.age = 0;
             self.count = self.count.saturating_add(1);
             let gain = 1.0 / f32::from(self.count).min(MEMORY);
+            if self.count > 1 {
+                self.square += gain * (self.gap * self.gap - self.square);
+            }
             self.wall += gain * (radius - self.wall);
             return None;
         }
