@@ -260,6 +260,31 @@ fn one_end_lifts_off_while_the_other_lies() {
     }
 }
 
+/// Orbits of 30 um before the fall are no error of the sensors on the wall after it.
+#[test]
+fn a_lift_off_after_an_orbit_is_seen() {
+    const HOP: f64 = BEFORE + 0.25;
+    for hz in [50.0, 150.0, 400.0] {
+        let watched = watch(HOP + 0.01, |t| {
+            let [x, mut y] = HIGH.place(t - BEFORE);
+            // From 0.25 s on it rises with the third power of time, to 30 um in 10 ms.
+            y += 30e-6 * ((t - HOP) / 0.01).max(0.0).powi(3);
+            let (sin, cos) = (TAU * hz * t).sin_cos();
+            let radius = if t < BEFORE { 30e-6 } else { 0.0 };
+            [[x + radius * cos, y + radius * sin]; 2]
+        });
+        assert_eq!(watched.confirmed.len(), 1, "{hz} Hz");
+        let lift_offs: Vec<_> = watched.of(EventKind::LiftOff).collect();
+        let [lift_off] = lift_offs[..] else {
+            panic!("{hz} Hz: {lift_offs:?}");
+        };
+        assert_eq!(lift_off.plane, Plane::Both, "{hz} Hz");
+        let late = lift_off.declared as f64 / RATE - HOP;
+        // By then it is 5 um away.
+        assert!(late < 0.0055, "{hz} Hz: {late}");
+    }
+}
+
 #[test]
 fn ends_that_fall_together_stay_one() {
     let watched = watch(BEFORE + 0.3, |t| [HIGH.place(t - BEFORE); 2]);
