@@ -222,6 +222,17 @@ fn bad_usage_is_2_and_says_why() {
     }
 }
 
+/// As `touchdown rig --keep rig` leaves behind.
+#[test]
+fn a_folder_does_not_hide_a_built_in_scene() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("rig")).expect("a folder");
+    touchdown(folder.path())
+        .args(["scene", "explain", "rig"])
+        .assert()
+        .success();
+}
+
 #[test]
 fn a_check_that_does_not_hold_is_1() {
     let folder = folder();

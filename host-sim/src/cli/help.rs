@@ -107,7 +107,7 @@ Examples:
   touchdown log list /dev/ttyACM0               the controller itself, 5 s an episode
 
 DUMP or port: a dump from the log's first address, a file of one episode, a serial device
-(/dev/..., COM3), tcp:HOST:PORT or unix:PATH. A port does not tell the lifetime counters.";
+(/dev/..., COM3), tcp:HOST:PORT or unix:PATH.";
 
 pub(super) const LOG_LIST: &str = "\
 Examples:

@@ -120,12 +120,13 @@ impl Scene {
         Self::parse(name, &Self::text(name)?)
     }
 
-    /// The text of the scene file at `name`, or else of the built-in scene of that name.
+    /// The text of the scene file at `name`, or else of the built-in scene of that name, which a folder does not hide.
     pub fn text(name: &str) -> Result<Cow<'static, str>, InputError> {
-        if Path::new(name).exists() {
-            return InputError::read(Path::new(name), LARGEST_TOML).map(Cow::Owned);
+        let (path, built_in) = (Path::new(name), BUILT_IN.iter().find(|it| it.name == name));
+        if path.exists() && !(path.is_dir() && built_in.is_some()) {
+            return InputError::read(path, LARGEST_TOML).map(Cow::Owned);
         }
-        match BUILT_IN.iter().find(|scene| scene.name == name) {
+        match built_in {
             Some(scene) => Ok(Cow::Borrowed(scene.text)),
             None => {
                 let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
