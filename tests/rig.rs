@@ -151,7 +151,8 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     let flash = Dump::of(&fs::read(folder.path().join("log")).expect("the flash"));
     let stored = flash.episodes.iter().find(|it| it.sequence == number);
     assert_eq!(stored.expect("is there").report, episode.report);
-    // It lay there at both starts, and landed once; an episode that a restart cut off may count besides.
+    // It lay there at both starts, and landed once, even if it has begun to roll since; an episode that a restart cut off
+    // may count besides.
     let counters = flash.counters.expect("counters");
     assert_eq!(counters.landings - counters.unweighed, 1);
 

@@ -164,11 +164,8 @@ impl Capture {
         if self.notices.push(record).is_err() {
             self.notices_lost = self.notices_lost.saturating_add(1);
         }
+        self.touched |= touches(notice);
         if let Notice::Declared(event) = notice {
-            self.touched |= !matches!(
-                event.kind,
-                EventKind::FreeFall | EventKind::Levitated | EventKind::SensorFault
-            );
             self.fastest = self.fastest.max(event.normal_speed);
         }
     }
@@ -275,6 +272,17 @@ impl Capture {
         };
         Block::of(Kind::Ending, &ending.encode())
     }
+}
+
+/// Whether it tells of the retainer.
+pub(super) fn touches(notice: &Notice) -> bool {
+    let Notice::Declared(event) = notice else {
+        return false;
+    };
+    !matches!(
+        event.kind,
+        EventKind::FreeFall | EventKind::Levitated | EventKind::SensorFault
+    )
 }
 
 /// A place in the ring; `place` is below twice its size.

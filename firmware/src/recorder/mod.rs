@@ -147,9 +147,7 @@ pub struct Recorder<'m> {
     fetching: usize,
     drop: Drop,
     last_notice: u64,
-    /// The last episode was as long as one may be, and its drop goes on.
-    continues: bool,
-    /// It has floated since reset: what lies there from the start has not landed.
+    /// It has floated since it last touched the retainer, or since reset: only then it lands.
     floated: bool,
     lost: u32,
 }
@@ -167,7 +165,6 @@ impl<'m> Recorder<'m> {
             fetching: 0,
             drop: Drop::None,
             last_notice: 0,
-            continues: false,
             floated: false,
             lost: 0,
         }
@@ -268,6 +265,7 @@ impl<'m> Recorder<'m> {
             self.begin(kind);
         }
         self.last_notice = self.tick;
+        self.floated &= !capture::touches(notice);
         let levitated =
             matches!(notice, Notice::Declared(event) if event.kind == EventKind::Levitated);
         let withdrawn = matches!(notice, Notice::Withdrawn { .. });
@@ -286,16 +284,13 @@ impl<'m> Recorder<'m> {
     }
 
     fn begin(&mut self, kind: EventKind) {
-        let continues = self.continues && self.tick - self.last_notice < self.plan.quiet;
-        self.continues = false;
         self.drop = Drop::Lost;
         if let Some(at) = self.recording
             && let Some(capture) = self.captures.get_mut(at)
         {
-            let lands = self.floated && !continues;
-            capture.begin(kind, self.tick, lands, &self.plan);
+            capture.begin(kind, self.tick, self.floated, &self.plan);
             self.drop = Drop::Recorded(at);
-        } else if !continues {
+        } else if self.floated {
             self.lost = self.lost.saturating_add(1);
         }
     }
@@ -306,7 +301,6 @@ impl<'m> Recorder<'m> {
         {
             capture.end(closing, self.tick);
         }
-        self.continues = closing == Closing::Longest;
         self.drop = Drop::None;
     }
 

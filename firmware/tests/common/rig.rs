@@ -88,7 +88,10 @@ impl Rig {
     pub fn drop_tick(&mut self, tick: usize, length: usize) {
         match tick {
             0 => self.tick(&[EventKind::FreeFall]),
-            _ if tick == length => self.tick(&[EventKind::LiftOff, EventKind::Levitated]),
+            _ if tick == length => {
+                self.tick(&[EventKind::LiftOff, EventKind::Levitated]);
+                self.recorder.set_phase(Phase::Levitated);
+            }
             _ if tick < length && tick % 37 == 36 => self.tick(&[EventKind::Impact]),
             _ => self.tick(&[]),
         }
