@@ -1,6 +1,8 @@
 //! Impacts of drops at 1 um noise on two planes: how many are found, how well they are dated and
 //! measured, how late they are declared against the bound for their velocity jump, and what is invented.
 
+use std::f64::consts::TAU;
+
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
@@ -32,6 +34,11 @@ const LATE: f64 = 1.3;
 /// The bounce series of restitution 0.8 is over after 70 ms.
 const WATCHED: f64 = 0.12;
 const LEAD: f64 = 0.2;
+/// Likewise where it orbits: 15 turns of the slowest.
+const ORBIT_LEAD: f64 = 0.5;
+/// Radius of an unbalance orbit, m, and its slowest and fastest, Hz.
+const ORBIT: f64 = 30e-6;
+const TURNS: [f64; 2] = [30.0, 500.0];
 const FRICTIONS: [f64; 3] = [0.05, 0.1, 0.2];
 const SPINS: [f64; 2] = [1.0, -1.0];
 
@@ -42,12 +49,16 @@ struct Case {
     friction: f64,
     /// Sign.
     spin: f64,
+    /// Whether it orbits before.
+    orbits: bool,
 }
 
 impl Case {
     /// Of the cases that are judged together.
     fn name(self) -> String {
-        format!("{} kHz, restitution {}", self.rate / 1e3, self.restitution)
+        let before = if self.orbits { ", out of an orbit" } else { "" };
+        let khz = self.rate / 1e3;
+        format!("{khz} kHz, restitution {}{before}", self.restitution)
     }
 
     fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
@@ -56,6 +67,9 @@ impl Case {
         scene.run.duration = WATCHED;
         scene.retainer.restitution = self.restitution;
         scene.retainer.friction = self.friction;
+        if self.orbits {
+            return Ok(thrown(plan, scene, self.spin, random));
+        }
         let spin = self.spin * scene.rotor.spin.abs();
         Ok(dropped(plan, scene, spin, random))
     }
@@ -73,21 +87,39 @@ pub fn dropped(plan: &Plan, mut scene: Scene, spin: f64, random: &mut ChaCha8Rng
     Drop::released(plan, scene, floats, [0.0; 2], LEAD, first)
 }
 
+/// Likewise out of an orbit of any speed, which throws it, with a spin of that speed and this sign.
+pub fn thrown(plan: &Plan, mut scene: Scene, sign: f64, random: &mut ChaCha8Rng) -> Drop {
+    scene.run.seed = random.random();
+    let [slow, fast] = TURNS;
+    let floats = Levitated {
+        place: in_disc(random, 0.5 * scene.retainer.clearance),
+        radius: ORBIT,
+        angle: random.random_range(0.0..TAU),
+        spin: sign * TAU * slow * (fast / slow).powf(random.random()),
+        ..Levitated::default()
+    };
+    let first = random.random_range(0.0..1.0);
+    Drop::released(plan, scene, floats, [0.0; 2], ORBIT_LEAD, first)
+}
+
 /// Cases whose drops are judged together.
 const JUDGED: usize = FRICTIONS.len() * SPINS.len();
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for rate in [20e3, 50e3] {
-        for restitution in [0.3, 0.5, 0.8] {
-            for friction in FRICTIONS {
-                for spin in SPINS {
-                    cases.push(Case {
-                        rate,
-                        restitution,
-                        friction,
-                        spin,
-                    });
+    for orbits in [false, true] {
+        for rate in [20e3, 50e3] {
+            for restitution in [0.3, 0.5, 0.8] {
+                for friction in FRICTIONS {
+                    for spin in SPINS {
+                        cases.push(Case {
+                            rate,
+                            restitution,
+                            friction,
+                            spin,
+                            orbits,
+                        });
+                    }
                 }
             }
         }
