@@ -37,6 +37,13 @@ pub fn cusum(variance: f64, rate: f64, first: f64, signature: impl Fn(f64) -> f6
     f64::INFINITY
 }
 
+/// Whether noise lets flights of a rotor off a flat wall be told from lying there, each given by the speed (m/s) with which it
+/// begins or ends and by its length, s: a parabola of speed v and length T has the energy v^2 T^3/30.
+pub fn is_told(variance: f64, rate: f64, flights: &[[f64; 2]]) -> bool {
+    let energies = flights.iter().map(|[v, t]| v * v * t.powi(3) / 30.0);
+    energies.sum::<f64>() * rate / (2.0 * variance) >= threshold()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,5 +60,25 @@ mod tests {
         let mean = steps.sum::<f64>() / 100.0;
         assert!((closed / 0.845e-3 - 1.0).abs() < 0.02, "{closed}");
         assert!((mean / closed - 1.0).abs() < 0.02, "{mean} {closed}");
+    }
+
+    /// Against the sum sample by sample, at the speed where it is just enough.
+    #[test]
+    fn a_flight_off_the_wall() {
+        let (variance, rate, pressing) = (0.5e-12, 1e6, 50.0);
+        let energy = |speed: f64| {
+            let samples = (2.0 * speed / pressing * rate) as u32;
+            let heights = (0..samples).map(|k| {
+                let t = f64::from(k) / rate;
+                speed * t - 0.5 * pressing * t * t
+            });
+            heights.map(|h| h * h).sum::<f64>() / (2.0 * variance)
+        };
+        let told = |speed: f64| is_told(variance, rate, &[[speed, 2.0 * speed / pressing]]);
+        let mut speed = 1e-3;
+        while !told(speed) {
+            speed *= 1.001;
+        }
+        assert!((energy(speed) / threshold() - 1.0).abs() < 0.02, "{speed}");
     }
 }

@@ -16,6 +16,7 @@ use super::watch::Drop;
 use super::{Findings, Plan};
 use crate::evenly::in_disc;
 use crate::failure::Failure;
+use crate::history::{History, Impact};
 use crate::matching::match_events;
 use crate::scene::Scene;
 use crate::statistics::{median, quantile, share};
@@ -140,6 +141,8 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
 struct Seen {
     /// All of them.
     impacts: usize,
+    /// Others with such a jump, which cannot be told from lying on the wall, and how many of these were found.
+    hidden: [usize; 2],
     /// Distance in onset of those found, samples.
     dated: Vec<f64>,
     /// Relative, of their speeds.
@@ -153,6 +156,8 @@ struct Seen {
 impl Seen {
     fn take(&mut self, other: &Self) {
         self.impacts += other.impacts;
+        self.hidden[0] += other.hidden[0];
+        self.hidden[1] += other.hidden[1];
         self.dated.extend(&other.dated);
         self.measured.extend(&other.measured);
         self.late.extend(&other.late);
@@ -177,6 +182,11 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
         if jump < JUMP {
             continue;
         }
+        if !bound::is_told(drop.variance(), case.rate, &flights(truth, impact, jump)) {
+            seen.hidden[0] += 1;
+            seen.hidden[1] += usize::from(found.detected.is_some());
+            continue;
+        }
         seen.impacts += 1;
         let (Some(index), Some(latency)) = (found.detected, found.latency_s) else {
             continue;
@@ -193,6 +203,24 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
         seen.late.push(latency / bound);
     }
     Ok(seen)
+}
+
+/// The flights before and after an impact that takes off the speed `jump`: with which speed they meet and leave the
+/// wall, m/s, and how long they are, s.
+fn flights(truth: &History, impact: &Impact, jump: f64) -> [[f64; 2]; 2] {
+    let time = impact.state.time;
+    let others = truth.impacts.iter().map(|it| it.state.time);
+    let contacts = truth.contact_starts.iter().chain(&truth.lift_offs);
+    let (mut last, mut next) = (0.0, truth.end.time);
+    for touch in others.chain(contacts.copied()) {
+        if touch < time {
+            last = f64::max(last, touch);
+        } else if touch > time {
+            next = f64::min(next, touch);
+        }
+    }
+    let leaves = jump - impact.normal_speed;
+    [[impact.normal_speed, time - last], [leaves, next - time]]
 }
 
 /// Runs the group.
@@ -225,12 +253,18 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 
 fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
     let found = seen.dated.len();
+    let mut note = format!("{found} of {} in {drops} drops", seen.impacts);
+    if let [hidden @ 1.., others] = seen.hidden {
+        note += &format!("; of {hidden} that noise hides {others}");
+    }
     [
         Row::at_least(name, "found_share", share(found, seen.impacts), FOUND)
             .with("drops", drops)
             .with("impacts", seen.impacts)
             .with("found", found)
-            .noted(format!("{found} of {} in {drops} drops", seen.impacts)),
+            .with("hidden", seen.hidden[0])
+            .with("hidden_found", seen.hidden[1])
+            .noted(note),
         Row::at_most(
             name,
             "onset_error_median_samples",

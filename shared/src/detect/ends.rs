@@ -196,7 +196,7 @@ impl EndsTest {
         let are_home = seen.all(|(fix, home)| fix.is_some_and(|fix| is_home(&fix, home, variance)));
         pending
             .as_mut()
-            .is_some_and(|pending| self.ladder.is_caught(pending, are_home))
+            .is_some_and(|pending| self.ladder.is_caught(pending, are_home, variance))
     }
 
     /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.

@@ -1,10 +1,9 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
-use core::ops::Range;
-
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::ladder::sum;
+use crate::detect::next_impact::NextImpact;
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
@@ -20,9 +19,8 @@ const SERIES_MARGIN: f32 = 5e-4;
 const OVERDUE: u32 = 4;
 /// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
 const IMPOSSIBLE: f32 = 0.3;
-/// Parts of it in which the next impact is due, and part of the speed that it then has to have.
-const EXPECTED: Range<f32> = 0.8..1.25;
-const FAINTER: f32 = 0.88;
+/// Part of the faintest impact's speed that one which is foreseen has to have.
+const FAINTER: f32 = 0.42;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -159,6 +157,10 @@ impl Landing {
 #[derive(Clone, Copy, Debug)]
 struct Hit {
     bounce: Bounce,
+    /// Samples since, for its event.
+    age: f32,
+    /// Whether the impacts before it say more of it than it shows.
+    foreseen: bool,
     /// With which the flight before it had left the wall, m/s; 0 where it is the first.
     launch_speed: f32,
     /// From the centre, m.
@@ -267,20 +269,28 @@ impl FlightTest {
             flight.track.shift(&jump);
             flight.bank.restart();
             if let Some(hit) = impact {
-                let (series, machine) = (&mut flight.series, &self.machine);
-                series.take(hit.bounce, hit.launch_speed, machine, self.period);
-                flight.lies = self.near.max(hit.radius - self.uneven);
-                flight.near_wall = 0;
-                flight.seen_near = 0;
-                flight.lying = 0;
+                self.take_in(flight, &hit);
                 return Some(Landing::Impact {
-                    age: jump.dated,
+                    age: hit.age,
                     normal_speed: hit.bounce.normal_speed,
                 });
             }
         }
         self.relaunch(flight, fix);
         self.contact(flight, fix)
+    }
+
+    fn take_in(&self, flight: &mut Airborne, hit: &Hit) {
+        let (series, machine) = (&mut flight.series, &self.machine);
+        if hit.foreseen {
+            series.go_on(hit.bounce, machine, self.period);
+        } else {
+            series.take(hit.bounce, hit.launch_speed, machine, self.period);
+            flight.lies = self.near.max(hit.radius - self.uneven);
+            flight.near_wall = 0;
+        }
+        flight.seen_near = 0;
+        flight.lying = 0;
     }
 
     /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
@@ -328,42 +338,46 @@ impl FlightTest {
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
-        let bounce = Bounce {
+        let mut bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
             along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
         };
-        let mut faintest = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        let mut age = jump.dated;
+        let mut least = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        let mut launch_speed = 0.0;
+        let mut foreseen = false;
         if let Some(last) = flight.series.last() {
-            let part = bounce.at.since(last.at) * self.period / self.flat_flight(last, flight);
-            if part < IMPOSSIBLE {
+            let flown = bounce.at.since(last.at) * self.period;
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
                 return None;
             }
-            if EXPECTED.contains(&part) {
-                faintest *= FAINTER;
+            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
+            launch_speed = -(u * last.outward[0] + v * last.outward[1]);
+            let next = NextImpact::of(&flight.series, bounce.pressing, &self.machine, self.period);
+            if let Some(next) = next.filter(|it| it.is_weaker(&bounce, least)) {
+                foreseen = true;
+                age = next.age(fix.now, age);
+                bounce.at = fix.now.later(-age);
+                bounce.normal_speed = next.speed();
+                least *= FAINTER;
             }
         }
-        if radius < self.near || normal_speed <= faintest {
-            return None;
-        }
-        let launch_speed = flight.series.last().map_or(0.0, |last| {
-            let flown = bounce.at.since(last.at) * self.period;
-            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
-            -(u * last.outward[0] + v * last.outward[1])
-        });
-        Some(Hit {
+        let is_hit = radius >= self.near && bounce.normal_speed > least;
+        is_hit.then_some(Hit {
             bounce,
+            age,
+            foreseen,
             launch_speed,
             radius,
         })
     }
 
-    /// How long the flight after an impact would last on a flat wall, s: it leaves with speed v and comes back after
-    /// 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
-    fn flat_flight(&self, last: &Bounce, flight: &Airborne) -> f32 {
-        let launch = flight.series.restitution(&self.machine) * last.normal_speed;
+    /// How long the flight after an impact would last on a flat wall, s: it leaves with the speed v = `launch` and comes
+    /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
+    fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
         let squares = last.along * last.along + launch * launch;
         let back = squares / self.machine.clearance + self.machine.gravity;
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }

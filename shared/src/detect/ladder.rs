@@ -275,17 +275,25 @@ impl Ladder {
         if self.is_far(at, home) && self.fell(pending, fix.now, at, home) {
             return Fall::Certain;
         }
-        let is_home = is_home(fix, home, levitation.variance);
-        if self.is_caught(pending, is_home) {
+        let variance = levitation.variance;
+        if self.is_caught(pending, is_home(fix, home, variance), variance) {
             return Fall::Caught;
         }
         Fall::Open
     }
 
-    /// Takes whether the rotor is where it floated; whether it has been for long enough.
-    pub(crate) fn is_caught(&self, pending: &mut Pending, is_home: bool) -> bool {
+    /// Takes whether the rotor is where it floated, with this variance (m^2); whether it has been for long enough.
+    pub(crate) fn is_caught(&self, pending: &mut Pending, is_home: bool, variance: f32) -> bool {
         pending.back = if is_home { pending.back + 1 } else { 0 };
-        pending.back >= self.catch_samples
+        pending.back >= self.catch_samples && !self.may_fall_for(pending.back, variance)
+    }
+
+    /// Whether a rotor that was thrown up, and falls, may be within noise of home for so many samples: one that goes
+    /// through a circle of radius r from below and back is in it for up to 4 sqrt(r/g).
+    fn may_fall_for(&self, samples: u32, variance: f32) -> bool {
+        let time = samples as f32 * self.period;
+        let way = self.machine.gravity * time * time / 16.0;
+        way * way < CAUGHT * CAUGHT * variance && way > 0.0
     }
 
     /// Whether no caught disturbance goes from `home` to `position`, m.

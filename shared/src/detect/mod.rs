@@ -28,6 +28,7 @@ mod jump;
 mod ladder;
 mod levitation;
 mod lift_off;
+mod next_impact;
 mod noise;
 mod orbit;
 mod release;

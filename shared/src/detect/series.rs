@@ -170,6 +170,11 @@ impl Series {
         self.ends = rest.map(|time| last.at.later(time / period));
     }
 
+    /// Speed, m/s, with which the rotor left the wall at the last impact.
+    pub(crate) fn launch(&self) -> f32 {
+        self.launch
+    }
+
     /// The last impact.
     pub(crate) fn last(&self) -> Option<&Bounce> {
         self.last.as_ref()
@@ -193,13 +198,24 @@ impl Series {
             self.seen[1] += weight;
             speed = timed_speed(last, &bounce, period).unwrap_or(speed);
         }
+        self.leave(bounce, speed, machine, period);
+        self.assumed = true;
+    }
+
+    /// Takes an impact that is as foreseen: it says nothing new of the restitution.
+    pub(crate) fn go_on(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
+        self.leave(bounce, bounce.normal_speed, machine, period);
+        self.assumed = false;
+    }
+
+    /// After an impact with that speed into the wall, m/s.
+    fn leave(&mut self, bounce: Bounce, speed: f32, machine: &MachineConfig, period: f32) {
         let restitution = self.restitution(machine);
         self.launch = restitution * speed;
         let rest = bounce.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
-        self.assumed = true;
     }
 
     /// End of the series; `None` where the wall does not press on, or the series does not end.

@@ -1,0 +1,141 @@
+//! The next impact of a series, as those before it foresee it: in a dense series the noise hides how a single bounce
+//! goes, but neither when the rotor is at the wall again nor how fast it then is.
+
+use core::ops::Range;
+
+use crate::detect::config::MachineConfig;
+use crate::detect::series::{Bounce, Series};
+use crate::event::Moment;
+
+/// Parts of the flight in which it is due, and of the speed that it may show.
+const DUE: Range<f32> = 0.8..1.6;
+const ALIKE: Range<f32> = 0.7..1.4;
+/// Weight of the date foreseen against that seen.
+const FORESEEN: f32 = 0.75;
+
+/// What is foreseen of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NextImpact {
+    /// Of the impact before it.
+    last: Moment,
+    /// Samples from there to it.
+    flight: f32,
+    /// Into the wall, m/s.
+    speed: f32,
+    /// Of the series.
+    end: Option<Moment>,
+}
+
+impl NextImpact {
+    /// The flight ends where the wall presses with `pressing` (m/s^2), and on the way there it presses evenly more or less:
+    /// from launch speed v under accelerations a at first and b at last it lasts 6 v/(2 a + b), and ends with
+    /// v (a + 2 b)/(2 a + b). `None` where it does not press.
+    pub(crate) fn of(
+        series: &Series,
+        pressing: f32,
+        machine: &MachineConfig,
+        period: f32,
+    ) -> Option<Self> {
+        let last = series.last()?;
+        let launch = series.launch();
+        // The wall bends towards the rotor.
+        let bend = launch * launch / machine.clearance;
+        let (first, then) = (last.pressing + bend, pressing + bend);
+        let early = 2.0 * first + then;
+        (first > 0.0 && then > 0.0).then(|| Self {
+            last: last.at,
+            flight: 6.0 * launch / (early * period),
+            speed: launch * (first + 2.0 * then) / early,
+            end: series.end(),
+        })
+    }
+
+    /// Whether an impact that was seen is this one, and one of both weaker than `faintest`, m/s.
+    pub(crate) fn is_weaker(&self, seen: &Bounce, faintest: f32) -> bool {
+        DUE.contains(&(seen.at.since(self.last) / self.flight))
+            && ALIKE.contains(&(seen.normal_speed / self.speed))
+            && seen.normal_speed.min(self.speed) < faintest
+            && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
+    }
+
+    /// Into the wall, m/s.
+    pub(crate) fn speed(&self) -> f32 {
+        self.speed
+    }
+
+    /// Samples since, where it seems to be `seen` samples old.
+    pub(crate) fn age(&self, now: Moment, seen: f32) -> f32 {
+        let foreseen = now.since(self.last) - self.flight;
+        seen + FORESEEN * (foreseen - seen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MACHINE: MachineConfig = MachineConfig {
+        mass: 3.42,
+        clearance: 3e-4,
+        gravity: 9.81,
+        rotor_radius: 0.024,
+        inertia_ratio: 0.5,
+        friction: 0.2,
+        restitution: 0.8,
+        spin: 0.0,
+    };
+    const PERIOD: f32 = 2e-5;
+
+    fn next(pressing: f32) -> NextImpact {
+        let mut series = Series::default();
+        let first = Bounce {
+            at: Moment::of_sample(1000),
+            normal_speed: 0.02,
+            pressing: 50.0,
+            outward: [0.0, -1.0],
+            ..Bounce::default()
+        };
+        series.take(first, 0.0, &MACHINE, PERIOD);
+        NextImpact::of(&series, pressing, &MACHINE, PERIOD).expect("the wall presses")
+    }
+
+    /// Against the flight in small steps.
+    #[test]
+    fn it_is_where_the_flight_ends() {
+        for pressing in [40.0, 50.0, 75.0] {
+            let next = next(pressing);
+            let bend = 0.016 * 0.016 / 3e-4;
+            let (mut height, mut speed, mut samples) = (0.0_f64, 0.016_f64, 0.0);
+            while height >= 0.0 {
+                let part = samples / f64::from(next.flight);
+                let back = 50.0 + bend + part * (f64::from(pressing) - 50.0);
+                speed -= back * 1e-3 * f64::from(PERIOD);
+                height += speed * 1e-3 * f64::from(PERIOD);
+                samples += 1e-3;
+            }
+            assert!(
+                (samples / f64::from(next.flight) - 1.0).abs() < 2e-3,
+                "{next:?}"
+            );
+            assert!(
+                (-speed / f64::from(next.speed) - 1.0).abs() < 2e-3,
+                "{next:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_comes_too_early_too_late_or_otherwise_is_another() {
+        let next = next(50.0);
+        let at = |part: f32, speed: f32| Bounce {
+            at: next.last.later(part * next.flight),
+            normal_speed: speed * next.speed,
+            ..Bounce::default()
+        };
+        assert!(next.is_weaker(&at(1.0, 1.0), 0.02));
+        for (part, speed) in [(0.7, 1.0), (1.7, 1.0), (1.0, 0.6), (1.0, 1.5)] {
+            assert!(!next.is_weaker(&at(part, speed), 0.02), "{part} {speed}");
+        }
+        assert!(!next.is_weaker(&at(1.0, 1.0), 0.01), "clear enough");
+    }
+}
