@@ -254,8 +254,9 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
     let found = seen.dated.len();
     let mut note = format!("{found} of {} in {drops} drops", seen.impacts);
-    if let [hidden @ 1.., others] = seen.hidden {
-        note += &format!("; of {hidden} that noise hides {others}");
+    let [hidden, others] = seen.hidden;
+    if hidden > 0 {
+        note += &format!("; {others} of {hidden} that noise hides");
     }
     [
         Row::at_least(name, "found_share", share(found, seen.impacts), FOUND)
