@@ -1,4 +1,4 @@
-//! Permanent contact at 1 um noise on two planes, 20 kHz: when it began, when slip ended, lift-offs, and
+//! Permanent contact at 1 um noise on two planes, 20 kHz where nothing else is said: when it began, when slip ended, lift-offs, and
 //! which phase is told over the time of a drop.
 
 use rand::Rng;
@@ -42,8 +42,8 @@ const WATCHED: f64 = 0.12;
 enum Case {
     /// Told friction and restitution over the true ones.
     Contact([f64; 2]),
-    /// Out of an orbit.
-    Thrown,
+    /// Out of an orbit, at a sample rate, Hz.
+    Thrown(f64),
     /// Whether the speed is known.
     Rolling(bool),
     LiftOff,
@@ -56,7 +56,7 @@ impl Case {
             Self::Contact([friction, restitution]) => {
                 format!("contact, told friction x {friction}, restitution x {restitution}")
             }
-            Self::Thrown => "contact, out of an orbit".to_owned(),
+            Self::Thrown(rate) => format!("contact, out of an orbit, {} kHz", rate / 1e3),
             Self::Rolling(true) => "sliding to rolling, speed known".to_owned(),
             Self::Rolling(false) => "sliding to rolling, speed unknown".to_owned(),
             Self::LiftOff => "lift-off".to_owned(),
@@ -75,7 +75,11 @@ impl Case {
                     monitor.detector.machine.restitution *= restitution as f32;
                 }))
             }
-            Self::Thrown => Ok(thrown(plan, any_rig(random)?, sign, random)),
+            Self::Thrown(rate) => {
+                let mut scene = any_rig(random)?;
+                scene.run.sample_rate = rate;
+                Ok(thrown(plan, scene, sign, random))
+            }
             Self::Rolling(speed) => {
                 let mut scene = Scene::load("rolling")?;
                 scene.sensors.speed = speed;
@@ -117,7 +121,8 @@ fn cases() -> Vec<Case> {
         Case::Rolling(false),
         Case::Rolling(true),
         Case::LiftOff,
-        Case::Thrown,
+        Case::Thrown(20e3),
+        Case::Thrown(50e3),
     ]
 }
 
@@ -166,7 +171,7 @@ struct Seen {
 fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let errors = match case {
-        Case::Contact(_) | Case::Thrown => contact_error(&watched).into_iter().collect(),
+        Case::Contact(_) | Case::Thrown(_) => contact_error(&watched).into_iter().collect(),
         Case::Rolling(_) => end_of_slip(&watched).into_iter().collect(),
         Case::LiftOff => lift_offs(&watched),
     };
@@ -233,7 +238,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         let sums = match case {
             Case::Contact([1.0, 1.0]) | Case::LiftOff => &mut phases[0],
             Case::Rolling(_) => &mut phases[1],
-            Case::Contact(_) | Case::Thrown => continue,
+            Case::Contact(_) | Case::Thrown(_) => continue,
         };
         drops.iter().for_each(|seen| add(sums, &seen.phases));
     }
@@ -286,7 +291,7 @@ fn judged(case: Case, errors: &[f64]) -> Row {
         sizes.len()
     );
     let row = match case {
-        Case::Contact([1.0, 1.0]) | Case::Thrown => {
+        Case::Contact([1.0, 1.0]) | Case::Thrown(_) => {
             Row::at_least(case.name(), "share_within_1_ms", within(ONSET[0]), MOST)
         }
         Case::Contact(_) => Row::at_least(case.name(), "share_within_3_ms", within(ONSET[1]), MOST),
