@@ -17,10 +17,10 @@ const SLIP_RESOLUTION: f32 = 0.02;
 /// Standard deviations of the velocity along the wall that bound its error.
 const SURE: f32 = 3.0;
 /// Way back from the last turning point, in standard deviations of the position, that makes a swing.
-const CLEAR_SWING: f32 = 12.0;
+const CLEAR_SWING: f32 = 8.0;
 
 /// Angle in a sample, rad, from which on a whirl is not followed well enough to tell whether it slides or rolls.
-const TOO_FAST: f32 = 0.5;
+const TOO_FAST: f32 = 0.3;
 /// Cosine of the angle from the bottom up to which a rotor that goes back swings: near the sides
 /// one that has left the wall comes back as well.
 const SWINGS: f32 = 0.3;

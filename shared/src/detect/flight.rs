@@ -55,7 +55,9 @@ pub(crate) struct FlightTest {
     near: f32,
     /// How far the wall may be from where an impact was, m.
     uneven: f32,
-    /// Samples near the wall, without impact, that no bounce of that height lasts.
+    /// Acceleration towards the wall that a bounce feels, m/s^2.
+    slowest: f32,
+    /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
 }
 
@@ -195,6 +197,7 @@ impl FlightTest {
             certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
+            slowest,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
         }
     }
@@ -357,7 +360,7 @@ impl FlightTest {
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             launch_speed = -(u * last.outward[0] + v * last.outward[1]);
             let next = NextImpact::of(&flight.series, bounce.pressing, &self.machine, self.period);
-            if let Some(next) = next.filter(|it| it.is_weaker(&bounce, least)) {
+            if let Some(next) = next.filter(|it| it.is_weaker(&bounce, age, least)) {
                 foreseen = true;
                 age = next.age(fix.now, age);
                 bounce.at = fix.now.later(-age);
@@ -381,6 +384,16 @@ impl FlightTest {
         let squares = last.along * last.along + launch * launch;
         let back = squares / self.machine.clearance + self.machine.gravity;
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
+    }
+
+    /// With what the wall presses on a rotor there, as a bounce feels it, m/s^2: no more than its weight, and a tenth of it
+    /// at least.
+    fn pressing(&self, track: &Track) -> f32 {
+        let ([x, y], _) = direction(track.position);
+        let [u, v] = track.velocity;
+        let along = v * x - u * y;
+        let pressing = along * along / self.machine.clearance - self.machine.gravity * y;
+        pressing.max(0.1 * self.slowest).min(self.slowest)
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
@@ -429,9 +442,11 @@ impl FlightTest {
             return None;
         }
         flight.lying += 1;
-        (flight.lying > self.dwell).then_some(Landing::Contact {
-            age: flight.lying as f32,
-        })
+        let age = flight.lying as f32;
+        // A wall that presses less lets it fly for longer.
+        let part = age / self.dwell as f32;
+        let lies = part * part * self.pressing(&flight.track) > self.slowest;
+        lies.then_some(Landing::Contact { age })
     }
 }
 

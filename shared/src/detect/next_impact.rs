@@ -7,8 +7,11 @@ use crate::detect::config::MachineConfig;
 use crate::detect::series::{Bounce, Series};
 use crate::event::Moment;
 
-/// Parts of the flight in which it is due, and of the speed that it may show.
-const DUE: Range<f32> = 0.8..1.6;
+/// Parts of the flight by which it may be early and late; by which it may seem late where the impact after it has already
+/// come; and of the speed that it may show.
+const EARLY: f32 = 0.2;
+const LATE: f32 = 0.25;
+const MERGED: f32 = 0.6;
 const ALIKE: Range<f32> = 0.7..1.4;
 /// Weight of the date foreseen against that seen.
 const FORESEEN: f32 = 0.75;
@@ -50,9 +53,11 @@ impl NextImpact {
         })
     }
 
-    /// Whether an impact that was seen is this one, and one of both weaker than `faintest`, m/s.
-    pub(crate) fn is_weaker(&self, seen: &Bounce, faintest: f32) -> bool {
-        DUE.contains(&(seen.at.since(self.last) / self.flight))
+    /// Whether an impact that was seen, `age` samples ago, is this one, and one of both weaker than `faintest`, m/s.
+    pub(crate) fn is_weaker(&self, seen: &Bounce, age: f32, faintest: f32) -> bool {
+        let late = seen.at.since(self.last) - self.flight;
+        let latest = (LATE * self.flight).max(age.min(MERGED * self.flight));
+        (-EARLY * self.flight..latest).contains(&late)
             && ALIKE.contains(&(seen.normal_speed / self.speed))
             && seen.normal_speed.min(self.speed) < faintest
             && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
@@ -132,10 +137,16 @@ mod tests {
             normal_speed: speed * next.speed,
             ..Bounce::default()
         };
-        assert!(next.is_weaker(&at(1.0, 1.0), 0.02));
-        for (part, speed) in [(0.7, 1.0), (1.7, 1.0), (1.0, 0.6), (1.0, 1.5)] {
-            assert!(!next.is_weaker(&at(part, speed), 0.02), "{part} {speed}");
+        assert!(next.is_weaker(&at(1.0, 1.0), 0.0, 0.02));
+        for (part, speed) in [(0.7, 1.0), (1.3, 1.0), (1.0, 0.6), (1.0, 1.5)] {
+            assert!(
+                !next.is_weaker(&at(part, speed), 0.0, 0.02),
+                "{part} {speed}"
+            );
         }
-        assert!(!next.is_weaker(&at(1.0, 1.0), 0.01), "clear enough");
+        // With the one after it.
+        assert!(next.is_weaker(&at(1.5, 1.0), 0.5 * next.flight, 0.02));
+        assert!(!next.is_weaker(&at(1.7, 1.0), next.flight, 0.02));
+        assert!(!next.is_weaker(&at(1.0, 1.0), 0.0, 0.01), "clear enough");
     }
 }
