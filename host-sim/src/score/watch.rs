@@ -97,10 +97,11 @@ impl Drop {
         const LOOK: f64 = 1e-3;
         let scene = self.scene.clone();
         let mut truth = Truth::new(&scene);
-        let (mut time, mut turns) = (0.0, 0.0);
+        let (mut time, mut turns) = (0.0_f64, 0.0_f64);
         while time < scene.run.duration {
             let now = truth.advance(time).rotor.turns_in_contact;
-            if (now - turns).abs() > FASTEST * LOOK {
+            // A lift-off sets them back.
+            if now.abs() - turns.abs() > FASTEST * LOOK {
                 self.scene.run.duration = time;
                 break;
             }
