@@ -285,6 +285,29 @@ fn a_lift_off_after_an_orbit_is_seen() {
     }
 }
 
+/// An orbit throws it up and it falls back, for longer than `catch_time` within the circle of the orbit: no controller
+/// has caught it.
+#[test]
+fn a_fall_through_the_orbit_is_not_withdrawn() {
+    for hz in [80.0, 100.0, 120.0, 140.0, 160.0] {
+        let rate = TAU * hz;
+        let watched = watch(BEFORE + 0.02, |t| {
+            let (since, radius) = (t - BEFORE, 30e-6);
+            let (sin, cos) = (rate * since).sin_cos();
+            let flown = radius * rate * since - 0.5 * GRAVITY * since * since;
+            let place = if since < 0.0 {
+                [radius * cos, radius * sin]
+            } else {
+                [radius, flown]
+            };
+            [place; 2]
+        });
+        assert!(watched.withdrawn.is_empty(), "{hz} Hz");
+        assert_eq!(watched.of(EventKind::FreeFall).count(), 1, "{hz} Hz");
+        assert_eq!(watched.confirmed.len(), 1, "{hz} Hz");
+    }
+}
+
 #[test]
 fn ends_that_fall_together_stay_one() {
     let watched = watch(BEFORE + 0.3, |t| [HIGH.place(t - BEFORE); 2]);
