@@ -211,7 +211,9 @@ impl ContactTest {
             Some(_) => {
                 state.slow = state.slow.saturating_add(1);
                 let long = state.slow > self.still_samples / 10;
-                (long.then_some(Kind::Rolling), state.slow as f32)
+                // Friction had to take the rest off first.
+                let age = state.slow as f32 - SLIP_RESOLUTION / taken;
+                (long.then_some(Kind::Rolling), age.max(0.0))
             }
             None if state.slip_left > 0.0 => (Some(Kind::Sliding), 0.0),
             None if state.too_fast && state.kind.is_some() => (None, 0.0),

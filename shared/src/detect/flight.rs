@@ -386,6 +386,14 @@ impl FlightTest {
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
+    /// Whether it goes outward faster than one that lies on the wall seems to.
+    fn is_about_to_hit(&self, flight: &Airborne, fix: &Fix) -> bool {
+        let (track, loudness) = (&flight.track, flight.bank.loudness());
+        let ([x, y], _) = direction(track.position);
+        let [u, v] = track.velocity;
+        u * x + v * y > self.faintest(self.pressing(track), fix.variance * loudness)
+    }
+
     /// With what the wall presses on a rotor there, as a bounce feels it, m/s^2: no more than its weight, and a tenth of it
     /// at least.
     fn pressing(&self, track: &Track) -> f32 {
@@ -430,8 +438,8 @@ impl FlightTest {
             if over < SERIES_MARGIN {
                 return None;
             }
-            // A rotor that left the wall after the foreseen end has refuted it.
-            if at_wall >= over {
+            // A rotor that left the wall after the foreseen end has refuted it, or will soon.
+            if at_wall >= over && !self.is_about_to_hit(flight, fix) {
                 return Some(Landing::Contact {
                     age: over / self.period,
                 });
