@@ -1,5 +1,5 @@
-//! Permanent contact at 1 um noise on two planes, 20 kHz where nothing else is said: when it began, when slip ended, lift-offs, and
-//! which phase is told over the time of a drop.
+//! Permanent contact at 1 um noise on two planes, 20 kHz where nothing else is said: when it began, when
+//! slip ended, lift-offs, and which phase is told over the time of a drop.
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

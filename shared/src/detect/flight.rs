@@ -21,6 +21,8 @@ const OVERDUE: u32 = 4;
 const IMPOSSIBLE: f32 = 0.3;
 /// Part of the faintest impact's speed that one which is foreseen has to have.
 const FAINTER: f32 = 0.42;
+/// Part of gravity that a wall is taken to press with at least.
+const LEAST_PRESSING: f32 = 0.1;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -386,27 +388,26 @@ impl FlightTest {
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
-    /// Whether it goes outward faster than one that lies on the wall seems to.
+    /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, fix: &Fix) -> bool {
         let (track, loudness) = (&flight.track, flight.bank.loudness());
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
-        u * x + v * y > self.faintest(self.pressing(track), fix.variance * loudness)
+        let pressing = self.pressing(track).max(self.slowest);
+        u * x + v * y > self.faintest(pressing, fix.variance * loudness)
     }
 
-    /// With what the wall presses on a rotor there, as a bounce feels it, m/s^2: no more than its weight, and a tenth of it
-    /// at least.
+    /// With what the wall presses on a rotor there, m/s^2.
     fn pressing(&self, track: &Track) -> f32 {
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
         let along = v * x - u * y;
-        let pressing = along * along / self.machine.clearance - self.machine.gravity * y;
-        pressing.max(0.1 * self.slowest).min(self.slowest)
+        along * along / self.machine.clearance - self.machine.gravity * y
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
     fn faintest(&self, pressing: f32, variance: f32) -> f32 {
-        let a = pressing.max(0.1 * self.machine.gravity);
+        let a = pressing.max(LEAST_PRESSING * self.machine.gravity);
         if a <= 0.0 {
             return 0.0;
         }
@@ -452,8 +453,11 @@ impl FlightTest {
         flight.lying += 1;
         let age = flight.lying as f32;
         // A wall that presses less lets it fly for longer.
+        let pressing = self
+            .pressing(&flight.track)
+            .max(LEAST_PRESSING * self.slowest);
         let part = age / self.dwell as f32;
-        let lies = part * part * self.pressing(&flight.track) > self.slowest;
+        let lies = part * part * pressing.min(self.slowest) > self.slowest;
         lies.then_some(Landing::Contact { age })
     }
 }
