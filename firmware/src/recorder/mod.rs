@@ -147,7 +147,7 @@ pub struct Recorder<'m> {
     fetching: usize,
     drop: Drop,
     last_notice: u64,
-    /// It has floated since it last touched the retainer, or since reset: only then it lands.
+    /// It has floated since reset, and since it last touched the retainer: only then it lands.
     floated: bool,
     lost: u32,
 }

@@ -10,7 +10,7 @@ use touchdown_core::event::EventKind;
 use super::bound;
 use super::campaign;
 use super::figure::{Curve, Figure, histogram};
-use super::levitated::Levitated;
+use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::Drop;
 use super::{Findings, Plan};
@@ -33,8 +33,6 @@ const ORBIT_LEAD: f64 = 1.0;
 /// Farthest that the rotor floats from the middle of the gap, m.
 const OFF_CENTRE: f64 = 60e-6;
 
-/// Radius of the unbalance orbit, m.
-const ORBIT: f64 = 30e-6;
 /// Amplitude of the runout, m.
 const RUNOUT: f64 = 5e-6;
 /// Change of speed where it sweeps, a second, up or down.

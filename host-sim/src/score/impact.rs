@@ -10,7 +10,7 @@ use touchdown_core::event::EventKind;
 use super::bound;
 use super::campaign;
 use super::figure::{Curve, Figure, histogram};
-use super::levitated::Levitated;
+use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::Drop;
 use super::{Findings, Plan};
@@ -37,8 +37,7 @@ const WATCHED: f64 = 0.12;
 const LEAD: f64 = 0.2;
 /// Likewise where it orbits: 15 turns of the slowest.
 const ORBIT_LEAD: f64 = 0.5;
-/// Radius of an unbalance orbit, m, and its slowest and fastest, Hz.
-const ORBIT: f64 = 30e-6;
+/// Slowest and fastest orbit, Hz.
 const TURNS: [f64; 2] = [30.0, 500.0];
 const FRICTIONS: [f64; 3] = [0.05, 0.1, 0.2];
 const SPINS: [f64; 2] = [1.0, -1.0];

@@ -1,5 +1,8 @@
 //! How a rotor floats: at a place, on the orbit of its unbalance.
 
+/// Radius of an unbalance orbit, m.
+pub const ORBIT: f64 = 30e-6;
+
 /// A floating rotor; time 0 is the release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Levitated {

@@ -12,7 +12,7 @@ use touchdown_core::sensing::PLANES;
 use super::campaign;
 use super::confirmation;
 use super::disturbance::{Coloured, Held, Kick, Shift, Steps, hum, smooth};
-use super::levitated::Levitated;
+use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::{Drop, refused};
 use super::{Findings, Plan};
@@ -28,8 +28,7 @@ const HOUR: f64 = 3600.0;
 /// -ln 0.05: upper end of the 95 % interval of a Poisson mean of which none was seen.
 const NONE_SEEN: f64 = 2.995_732_273_553_991;
 
-/// Radius of the unbalance orbit and amplitude of the runout, m.
-const ORBIT: f64 = 30e-6;
+/// Amplitude of the runout, m.
 const RUNOUT: f64 = 5e-6;
 /// Lowest and highest frequency of the orbit, Hz.
 const SPEEDS: [f64; 2] = [10.0, 500.0];

@@ -78,17 +78,8 @@ impl NextImpact {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detect::series::tests::MACHINE;
 
-    const MACHINE: MachineConfig = MachineConfig {
-        mass: 3.42,
-        clearance: 3e-4,
-        gravity: 9.81,
-        rotor_radius: 0.024,
-        inertia_ratio: 0.5,
-        friction: 0.2,
-        restitution: 0.8,
-        spin: 0.0,
-    };
     const PERIOD: f32 = 2e-5;
 
     fn next(pressing: f32) -> NextImpact {

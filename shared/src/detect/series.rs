@@ -240,10 +240,10 @@ fn timed_speed(last: &Bounce, next: &Bounce, period: f32) -> Option<f32> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const MACHINE: MachineConfig = MachineConfig {
+    pub(crate) const MACHINE: MachineConfig = MachineConfig {
         mass: 3.42,
         clearance: 3e-4,
         gravity: 9.81,
