@@ -35,6 +35,9 @@ const RIGHT: f64 = 0.95;
 /// Likewise where the rotor slides and rolls in turn: 2.5 ms late at each change, every 12 ms.
 const RIGHT_ROLLING: f64 = 0.8;
 
+/// Greatest true restitution.
+const MOST_RESTITUTION: f64 = 0.8;
+
 /// As of impacts.
 const WATCHED: f64 = 0.12;
 
@@ -67,7 +70,8 @@ impl Case {
         let sign = if random.random() { 1.0 } else { -1.0 };
         match self {
             Self::Contact([friction, restitution]) => {
-                let scene = any_rig(random)?;
+                // What is told has to be a restitution, too.
+                let scene = any_rig(MOST_RESTITUTION.min(1.0 / restitution), random)?;
                 let spin = sign * scene.rotor.spin;
                 let drop = dropped(plan, scene, spin, random);
                 Ok(drop.told(|monitor| {
@@ -76,7 +80,7 @@ impl Case {
                 }))
             }
             Self::Thrown(rate) => {
-                let mut scene = any_rig(random)?;
+                let mut scene = any_rig(MOST_RESTITUTION, random)?;
                 scene.run.sample_rate = rate;
                 Ok(thrown(plan, scene, sign, random))
             }
@@ -100,13 +104,12 @@ impl Case {
     }
 }
 
-/// The rig with another retainer.
-fn any_rig(random: &mut ChaCha8Rng) -> Result<Scene, Failure> {
+/// The rig with another retainer, of a restitution up to `most`.
+fn any_rig(most: f64, random: &mut ChaCha8Rng) -> Result<Scene, Failure> {
     let mut scene = Scene::load("rig")?;
     scene.run.duration = WATCHED;
     scene.retainer.friction = random.random_range(0.05..0.2);
-    // 30 % above it is still a restitution.
-    scene.retainer.restitution = random.random_range(0.3..0.76);
+    scene.retainer.restitution = random.random_range(0.3..most);
     Ok(scene)
 }
 
