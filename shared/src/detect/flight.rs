@@ -4,7 +4,7 @@ use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::ladder::sum;
 use crate::detect::next_impact::NextImpact;
-use crate::detect::series::{Bounce, Series};
+use crate::detect::series::{Bounce, Known, Series};
 use crate::detect::track::{Ballistic, Track};
 use crate::event::Moment;
 use crate::real::{root, sqrt};
@@ -346,6 +346,7 @@ impl FlightTest {
         let mut bounce = Bounce {
             at: fix.now.later(-jump.age),
             normal_speed,
+            known: Known::to(normal_speed, flight.track.speed_error()),
             along,
             outward,
             pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
@@ -356,18 +357,23 @@ impl FlightTest {
         let mut foreseen = false;
         if let Some(last) = flight.series.last() {
             let flown = bounce.at.since(last.at) * self.period;
-            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch().speed) {
                 return None;
             }
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             launch_speed = -(u * last.outward[0] + v * last.outward[1]);
             let next = NextImpact::of(&flight.series, bounce.pressing, &self.machine, self.period);
-            if let Some(next) = next.filter(|it| it.is_weaker(&bounce, age, least)) {
-                foreseen = true;
-                age = next.age(fix.now, age);
-                bounce.at = fix.now.later(-age);
-                bounce.normal_speed = next.speed();
-                least *= FAINTER;
+            if let Some(next) = next.filter(|it| it.is(&bounce, age)) {
+                foreseen = next.is_weak(&bounce, least);
+                if foreseen {
+                    age = next.age(fix.now, age);
+                    bounce.at = fix.now.later(-age);
+                    bounce.known = next.known();
+                    bounce.normal_speed = bounce.known.speed;
+                    least *= FAINTER;
+                } else {
+                    bounce.known = next.known().and(bounce.known);
+                }
             }
         }
         let is_hit = radius >= self.near && bounce.normal_speed > least;

@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use crate::detect::config::MachineConfig;
-use crate::detect::series::{Bounce, Series};
+use crate::detect::series::{Bounce, Known, Series};
 use crate::event::Moment;
 
 /// Parts of the flight by which it may be early and late; by which it may seem late where the impact after it has already
@@ -23,8 +23,8 @@ pub(crate) struct NextImpact {
     last: Moment,
     /// Samples from there to it.
     flight: f32,
-    /// Into the wall, m/s.
-    speed: f32,
+    /// Into the wall.
+    known: Known,
     /// Of the series.
     end: Option<Moment>,
 }
@@ -40,7 +40,10 @@ impl NextImpact {
         period: f32,
     ) -> Option<Self> {
         let last = series.last()?;
-        let launch = series.launch();
+        let Known {
+            speed: launch,
+            doubt,
+        } = series.launch();
         // The wall bends towards the rotor.
         let bend = launch * launch / machine.clearance;
         let (first, then) = (last.pressing + bend, pressing + bend);
@@ -48,24 +51,31 @@ impl NextImpact {
         (first > 0.0 && then > 0.0).then(|| Self {
             last: last.at,
             flight: 6.0 * launch / (early * period),
-            speed: launch * (first + 2.0 * then) / early,
+            known: Known {
+                speed: launch * (first + 2.0 * then) / early,
+                doubt,
+            },
             end: series.end(),
         })
     }
 
-    /// Whether an impact that was seen, `age` samples ago, is this one, and one of both weaker than `faintest`, m/s.
-    pub(crate) fn is_weaker(&self, seen: &Bounce, age: f32, faintest: f32) -> bool {
+    /// Whether an impact that was seen, `age` samples ago, is this one.
+    pub(crate) fn is(&self, seen: &Bounce, age: f32) -> bool {
         let late = seen.at.since(self.last) - self.flight;
         let latest = (LATE * self.flight).max(age.min(MERGED * self.flight));
         (-EARLY * self.flight..latest).contains(&late)
-            && ALIKE.contains(&(seen.normal_speed / self.speed))
-            && seen.normal_speed.min(self.speed) < faintest
+            && ALIKE.contains(&(seen.normal_speed / self.known.speed))
+    }
+
+    /// Whether, before the series ends, it was seen or foreseen weaker than `faintest`, m/s.
+    pub(crate) fn is_weak(&self, seen: &Bounce, faintest: f32) -> bool {
+        seen.normal_speed.min(self.known.speed) < faintest
             && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
     }
 
-    /// Into the wall, m/s.
-    pub(crate) fn speed(&self) -> f32 {
-        self.speed
+    /// Speed into the wall.
+    pub(crate) fn known(&self) -> Known {
+        self.known
     }
 
     /// Samples since, where it seems to be `seen` samples old.
@@ -87,6 +97,7 @@ mod tests {
         let first = Bounce {
             at: Moment::of_sample(1000),
             normal_speed: 0.02,
+            known: Known::to(0.02, 1e-4),
             pressing: 50.0,
             outward: [0.0, -1.0],
             ..Bounce::default()
@@ -114,7 +125,7 @@ mod tests {
                 "{next:?}"
             );
             assert!(
-                (-speed / f64::from(next.speed) - 1.0).abs() < 2e-3,
+                (-speed / f64::from(next.known.speed) - 1.0).abs() < 2e-3,
                 "{next:?}"
             );
         }
@@ -125,19 +136,17 @@ mod tests {
         let next = next(50.0);
         let at = |part: f32, speed: f32| Bounce {
             at: next.last.later(part * next.flight),
-            normal_speed: speed * next.speed,
+            normal_speed: speed * next.known.speed,
             ..Bounce::default()
         };
-        assert!(next.is_weaker(&at(1.0, 1.0), 0.0, 0.02));
+        assert!(next.is(&at(1.0, 1.0), 0.0));
         for (part, speed) in [(0.7, 1.0), (1.3, 1.0), (1.0, 0.6), (1.0, 1.5)] {
-            assert!(
-                !next.is_weaker(&at(part, speed), 0.0, 0.02),
-                "{part} {speed}"
-            );
+            assert!(!next.is(&at(part, speed), 0.0), "{part} {speed}");
         }
         // With the one after it.
-        assert!(next.is_weaker(&at(1.5, 1.0), 0.5 * next.flight, 0.02));
-        assert!(!next.is_weaker(&at(1.7, 1.0), next.flight, 0.02));
-        assert!(!next.is_weaker(&at(1.0, 1.0), 0.0, 0.01), "clear enough");
+        assert!(next.is(&at(1.5, 1.0), 0.5 * next.flight));
+        assert!(!next.is(&at(1.7, 1.0), next.flight));
+        assert!(next.is_weak(&at(1.0, 1.0), 0.02));
+        assert!(!next.is_weak(&at(1.0, 1.0), 0.01), "clear enough");
     }
 }

@@ -20,8 +20,39 @@ const SHOWN: f32 = 0.6;
 /// Samples that this must take: fewer show it no better than the impact did.
 const LONG_ENOUGH: f32 = 16.0;
 
-/// Part by which flight time and speed may disagree where the wall counts as flat.
-const FLAT: f32 = 0.25;
+/// Parts by which the speed foreseen of an impact may be off: for the wall's pressing, and for a restitution that no
+/// impact has shown yet.
+const UNEVEN: f32 = 0.02;
+const UNTAUGHT: f32 = 0.1;
+
+/// A speed, as well as it is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Known {
+    /// m/s.
+    pub(crate) speed: f32,
+    /// Variance of its logarithm.
+    pub(crate) doubt: f32,
+}
+
+impl Known {
+    /// Known to `error`, m/s.
+    pub(crate) fn to(speed: f32, error: f32) -> Self {
+        let part = error / speed;
+        Self {
+            speed,
+            doubt: part * part,
+        }
+    }
+
+    /// The same speed known twice.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let part = self.doubt / (self.doubt + other.doubt);
+        Self {
+            speed: self.speed + part * (other.speed - self.speed),
+            doubt: part * other.doubt,
+        }
+    }
+}
 
 /// An impact, as far as the series needs it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +61,8 @@ pub(crate) struct Bounce {
     pub(crate) at: Moment,
     /// Speed into the wall, m/s.
     pub(crate) normal_speed: f32,
+    /// The same, as the impacts before it say as well.
+    pub(crate) known: Known,
     /// Velocity along the wall after it, counter-clockwise, m/s.
     pub(crate) along: f32,
     /// Outward unit vector at the contact.
@@ -100,8 +133,8 @@ pub(crate) struct Series {
     impulse: f32,
     last: Option<Bounce>,
     ends: Option<Moment>,
-    /// Speed, m/s, with which the rotor left the wall at the last impact.
-    launch: f32,
+    /// Speed with which the rotor left the wall at the last impact.
+    launch: Known,
     /// Whether its velocity along the wall is still that which followed from the impact.
     assumed: bool,
 }
@@ -142,7 +175,7 @@ impl Series {
     /// has been taken from there.
     pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.launch / last.pressing;
+        let flight = 2.0 * self.launch.speed / last.pressing;
         let after = SHOWN * flight / period;
         (last.pressing > 0.0 && after >= LONG_ENOUGH).then_some(after)
     }
@@ -166,16 +199,21 @@ impl Series {
         last.along = v * x - u * y;
         last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
         let shown = -(u * x + v * y);
-        if (shown - self.launch).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
-            self.launch = shown;
+        if (shown - self.launch.speed).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
+            self.launch = Known::to(shown, error);
         }
-        let rest = last.rest(self.launch, restitution, machine);
+        let rest = last.rest(self.launch.speed, restitution, machine);
         self.ends = rest.map(|time| last.at.later(time / period));
     }
 
-    /// Speed, m/s, with which the rotor left the wall at the last impact.
-    pub(crate) fn launch(&self) -> f32 {
-        self.launch
+    /// Speed with which the rotor left the wall at the last impact; it comes back with that, but for what the pressing
+    /// and the restitution leave open.
+    pub(crate) fn launch(&self) -> Known {
+        let untaught = UNTAUGHT / (self.seen[1] + PRIOR_WEIGHT);
+        Known {
+            doubt: self.launch.doubt + UNEVEN * UNEVEN + untaught * untaught,
+            ..self.launch
+        }
     }
 
     /// The last impact.
@@ -192,30 +230,31 @@ impl Series {
         machine: &MachineConfig,
         period: f32,
     ) {
-        let mut speed = bounce.normal_speed;
         if let Some(last) = &self.last {
             let ratio = (launch_speed / last.normal_speed).clamp(0.0, 1.0);
             let clearness = last.normal_speed / CLEAR_SPEED;
             let weight = (clearness * clearness).min(4.0);
             self.seen[0] += weight * ratio;
             self.seen[1] += weight;
-            speed = timed_speed(last, &bounce, period).unwrap_or(speed);
         }
-        self.leave(bounce, speed, machine, period);
+        self.leave(bounce, machine, period);
         self.assumed = true;
     }
 
     /// Takes an impact that is as foreseen: it says nothing new of the restitution.
     pub(crate) fn go_on(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
-        self.leave(bounce, bounce.normal_speed, machine, period);
+        self.leave(bounce, machine, period);
         self.assumed = false;
     }
 
-    /// After an impact with that speed into the wall, m/s.
-    fn leave(&mut self, bounce: Bounce, speed: f32, machine: &MachineConfig, period: f32) {
+    /// After an impact.
+    fn leave(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
         let restitution = self.restitution(machine);
-        self.launch = restitution * speed;
-        let rest = bounce.rest(self.launch, restitution, machine);
+        self.launch = Known {
+            speed: restitution * bounce.known.speed,
+            ..bounce.known
+        };
+        let rest = bounce.rest(self.launch.speed, restitution, machine);
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
@@ -231,15 +270,6 @@ impl Series {
         let per_impulse = machine.friction * (1.0 + 1.0 / machine.inertia_ratio);
         nominal.abs() - per_impulse * self.impulse
     }
-}
-
-/// A short flight under a pressing a takes 2 v/a, which says of the speed into the wall as much as the
-/// filter does: their mean. `None` where the flight is so long that the curved wall spoils the rule.
-fn timed_speed(last: &Bounce, next: &Bounce, period: f32) -> Option<f32> {
-    let pressing = 0.5 * (last.pressing + next.pressing);
-    let timed = 0.5 * pressing * next.at.since(last.at) * period;
-    let ratio = timed / next.normal_speed;
-    ((1.0 - ratio).abs() < FLAT).then_some(0.5 * (timed + next.normal_speed))
 }
 
 #[cfg(test)]
@@ -264,6 +294,7 @@ pub(crate) mod tests {
         Bounce {
             at: Moment::default().later(samples),
             normal_speed,
+            known: Known::to(normal_speed, 1e-4),
             along: 0.0,
             outward: [0.0, -1.0],
             pressing: 9.81,
@@ -323,6 +354,14 @@ pub(crate) mod tests {
             }
         }
         time
+    }
+
+    #[test]
+    fn a_speed_known_twice_is_known_better() {
+        let both = Known::to(0.010, 1e-3).and(Known::to(0.013, 5e-4));
+        // Parts of 0.1 and 0.0385: weights of 100 and 676.
+        assert!((both.speed - 0.012_613).abs() < 1e-6, "{both:?}");
+        assert!((both.doubt - 1.0 / 776.0).abs() < 1e-6, "{both:?}");
     }
 
     #[test]
