@@ -197,6 +197,33 @@ fn only_what_is_asked_for() {
 }
 
 #[test]
+fn the_target_says_the_same() {
+    let folder = TempDir::new().unwrap();
+    let output = touchdown(folder.path())
+        .args(["score", "--on", "qemu", "--quick", "--json", "-"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for group in GROUPS {
+        let rows = json["groups"][group.name].as_array().unwrap();
+        assert!(!rows.is_empty(), "{}", group.name);
+        for row in rows {
+            assert_eq!(
+                (&row["drops"], &row["differences"]),
+                (&2.into(), &0.0.into()),
+                "{row}"
+            );
+            assert!(
+                row["samples"].as_u64() > Some(1000) && row["notices"].as_u64() > Some(0),
+                "{row}"
+            );
+        }
+    }
+}
+
+#[test]
 fn bad_usage() {
     let folder = TempDir::new().unwrap();
     for (arguments, complaint) in [

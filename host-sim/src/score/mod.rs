@@ -49,7 +49,7 @@ pub struct Group {
     /// What it measures, for people.
     pub about: &'static str,
     run: fn(&Plan) -> Result<Findings, Failure>,
-    /// Some of its drops, to compare two targets with.
+    /// A drop of some of its cases, to compare two targets with.
     drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Named, Failure>,
 }
 
@@ -134,18 +134,36 @@ pub struct Findings {
 pub struct Score {
     /// What was measured.
     pub plan: Plan,
+    /// Whether two targets were compared, instead.
+    pub compared: bool,
     /// Name, what it measures, what was found; in the order of [`GROUPS`].
     pub groups: Vec<(&'static Group, Findings)>,
 }
 
 impl Score {
+    /// How much was measured, for people.
+    fn extent(&self) -> String {
+        let Plan {
+            seeds,
+            first_seed,
+            seconds,
+            ..
+        } = self.plan;
+        let drops = format!("{seeds} drops a case from seed {first_seed}");
+        if self.compared {
+            format!("{drops}, on the host and on the target")
+        } else {
+            format!("{drops}, {seconds} s of levitation a case")
+        }
+    }
+
     /// All rows.
     pub fn rows(&self) -> impl Iterator<Item = &Row> {
         self.groups.iter().flat_map(|(_, found)| &found.rows)
     }
 }
 
-/// Measures. On another target than the host: some drops of each group, on both, which must agree.
+/// Measures. On another target than the host: some cases of each group, on both, which must agree.
 pub fn run(plan: &Plan, target: &Target) -> Result<Score, Failure> {
     let chosen = GROUPS.iter().filter(|it| plan.groups.contains(&it.name));
     let groups = chosen.map(|group| {
@@ -157,6 +175,7 @@ pub fn run(plan: &Plan, target: &Target) -> Result<Score, Failure> {
     });
     Ok(Score {
         plan: plan.clone(),
+        compared: !matches!(target, Target::Host),
         groups: groups.collect::<Result<_, Failure>>()?,
     })
 }

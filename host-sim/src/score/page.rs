@@ -15,15 +15,13 @@ const CLASSES: [&str; 5] = ["free-fall", "rolling", "impact", "sliding", "motion
 
 /// Writes the page.
 pub fn page(score: &Score) -> String {
-    let plan = &score.plan;
     let broken = score.rows().filter(|row| !row.holds).count();
     let body = html! {
         header {
             p.kind { "Detector" }
             h1 { (score.rows().count() - broken) " of " (score.rows().count()) " targets hold" }
             p.note {
-                (plan.seeds) " drops a case from seed " (plan.first_seed) ", " (plan.seconds)
-                " s of levitation a case. Truth: the independent reference, and what was put in. Bound: "
+                (score.extent()) ". Truth: the independent reference, and what was put in. Bound: "
                 "sequential test of the known signature at one false alarm in 10\u{2079} samples."
             }
         }

@@ -57,9 +57,5 @@ fn summary(score: &Score, paint: Paint) -> String {
     } else {
         paint.bad(&format!("{broken} do not hold"))
     };
-    let Score { plan, .. } = score;
-    format!(
-        "{all} rows, {verdict}; {} drops a case from seed {}, {} s of levitation a case\n",
-        plan.seeds, plan.first_seed, plan.seconds
-    )
+    format!("{all} rows, {verdict}; {}\n", score.extent())
 }
