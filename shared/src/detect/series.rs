@@ -74,15 +74,16 @@ pub(crate) struct Bounce {
 /// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
 /// times as many are gone.
 const REST_STEPS: u8 = 8;
+/// A flight under an acceleration a at first and b at last ends with (a + 2 b)/(2 a + b) of the speed that it began with,
+/// so the launch speed goes with this power of the pressing besides.
+const FOLLOWS: f32 = 1.0 / 3.0;
 
 impl Bounce {
     /// Time, s, from a launch with speed `launch` to the end of the series. The launch speed falls by
-    /// (1 - restitution)/2 times what the wall presses, whatever the bounces, and follows the pressing a as a^(1/3)
-    /// where they keep their speed, less where they do not: a flight under a pressing that falls ends slower than it
-    /// began. Meanwhile the rotor slides along the wall as if it lay on it. `None` where the wall ceases to press.
+    /// (1 - restitution)/2 times what the wall presses, whatever the bounces, and [`FOLLOWS`] the pressing; meanwhile the
+    /// rotor slides along the wall as if it lay on it. `None` where the wall ceases to press.
     fn rest(&self, launch: f32, restitution: f32, machine: &MachineConfig) -> Option<f32> {
         let loss = 0.5 * (1.0 - restitution);
-        let follows = 2.0 / 3.0 * restitution / (1.0 + restitution);
         if loss <= 0.0 || self.pressing <= 0.0 {
             return None;
         }
@@ -101,12 +102,6 @@ impl Bounce {
         let (mut cos, mut along, mut pressing) = (-minus_cos, self.along, self.pressing);
         let (mut left, mut time) = (launch, 0.0);
         for _ in 0..3 * REST_STEPS {
-            let taken = loss * pressing * step;
-            if taken >= left {
-                return Some(time + step * left / taken);
-            }
-            left -= taken;
-            time += step;
             let before = along;
             along += (friction * pressing - machine.gravity * sin) * step;
             let turn = 0.5 * (before + along) * step / machine.clearance;
@@ -114,10 +109,17 @@ impl Bounce {
             let norm = 1.5 - 0.5 * (sin * sin + cos * cos);
             (sin, cos) = (sin * norm, cos * norm);
             let next = along * along / machine.clearance + machine.gravity * cos;
+            let mean = 0.5 * (pressing + next);
+            let taken = loss * mean * step;
+            if taken >= left {
+                return Some(time + step * left / taken);
+            }
             if next <= 0.0 {
                 return None;
             }
-            left += follows * left * (next - pressing) / pressing;
+            left -= taken;
+            left += FOLLOWS * left * (next - pressing) / mean;
+            time += step;
             pressing = next;
         }
         None
