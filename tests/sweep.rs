@@ -1,7 +1,7 @@
 //! Sweeps: the same bytes on any number of threads, in any number of parts, however often killed; what a
 //! drop of a sweep does is what `drop` does; plans that make no sense are refused.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -46,7 +46,7 @@ fn what_is_missing_is_not_merged() {
     sweep(at, &["plan.toml", "--out", "parts", "--shard", "1/3"]);
     let merged = touchdown(at).args(["sweep", "merge", "parts"]).assert();
     let error = String::from_utf8(merged.code(2).get_output().stderr.clone()).expect("text");
-    assert!(error.contains("blocks of drops are missing"), "{error}");
+    assert!(error.contains("2 of 3 parts are missing"), "{error}");
     assert!(!at.join("parts/drops.csv").exists());
 }
 
@@ -76,36 +76,73 @@ fn a_killed_sweep_goes_on_where_it_was() {
     assert_eq!(results(at, "killed"), results(at, "whole"));
 }
 
-/// A journal that ends anywhere, or has a wrong byte anywhere behind its header, is gone on with.
+/// A part that ends anywhere, or has another digit anywhere in a row, is refused and not replaced.
 #[test]
-fn a_torn_or_damaged_journal_loses_no_drop() {
+fn a_part_that_was_cut_off_or_changed_is_refused() {
     let folder = folder(400);
     let at = folder.path();
     sweep(at, &["plan.toml", "--out", "run"]);
-    let whole = results(at, "run");
-    let journal = at.join("run/part-1-of-1.sweep");
-    let bytes = fs::read(&journal).expect("a journal");
+    let part = at.join("run/part-1-of-1.csv");
+    let bytes = fs::read(&part).expect("a part");
+    let head = bytes.iter().position(|it| *it == b'\n').expect("a line") + 1;
     let mut random = ChaCha8Rng::seed_from_u64(2);
-    for torn in [true, false] {
-        for _ in 0..8 {
-            let place = random.random_range(0..bytes.len());
-            let mut left = bytes.clone();
-            if torn {
-                left.truncate(place);
-            } else {
-                // The header tells whose journal it is; what is wrong there is refused instead.
-                let place = place.max(bytes.len() / 2);
-                left[place] ^= 0x10;
-            }
-            fs::write(&journal, &left).expect("a journal");
-            sweep(at, &["plan.toml", "--out", "run"]);
-            assert_eq!(results(at, "run"), whole, "{torn} {place}");
-        }
+    for _ in 0..16 {
+        // The last row without its end would still be whole.
+        let place = random.random_range(0..bytes.len() - 2);
+        fs::write(&part, &bytes[..place]).expect("a part");
+        let run = touchdown(at)
+            .args(["sweep", "plan.toml", "--out", "run"])
+            .assert();
+        let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
+        let rule = if place < head - 1 {
+            "is not the part of a sweep"
+        } else {
+            "remove the file, and run the part again"
+        };
+        assert!(error.contains(rule), "{place}: {error}");
+        assert_eq!(fs::read(&part).expect("a part"), &bytes[..place]);
     }
 }
 
 #[test]
-fn another_plan_does_not_go_on_with_the_journal() {
+fn a_part_of_another_version_is_refused() {
+    let folder = folder(2);
+    let at = folder.path();
+    sweep(at, &["plan.toml", "--out", "run"]);
+    let part = at.join("run/part-1-of-1.csv");
+    let text = fs::read_to_string(&part).expect("a part");
+    let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(text.contains(&version), "{text}");
+    fs::write(&part, text.replacen(&version, "\"version\":\"0.0.7\"", 1)).expect("a part");
+    for arguments in [
+        ["sweep", "plan.toml", "--out=run"],
+        ["sweep", "merge", "run"],
+    ] {
+        let run = touchdown(at).args(arguments).assert();
+        let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
+        assert!(error.contains("version 0.0.7"), "{error}");
+    }
+}
+
+#[test]
+fn parts_of_two_divisions_are_not_merged() {
+    let folder = folder(2);
+    let at = folder.path();
+    for (part, out) in [("1/2", "a"), ("2/2", "a"), ("1/3", "b"), ("1/2", "c")] {
+        sweep(at, &["plan.toml", "--out", out, "--shard", part]);
+    }
+    for (folders, rule) in [(["a", "b"], "keep one set"), (["a", "c"], "is part 1 of 2")] {
+        let run = touchdown(at)
+            .args(["sweep", "merge"])
+            .args(folders)
+            .assert();
+        let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
+        assert!(error.contains(rule), "{error}");
+    }
+}
+
+#[test]
+fn another_plan_does_not_go_on_with_the_parts() {
     let folder = folder(300);
     let at = folder.path();
     sweep(at, &["plan.toml", "--out", "run"]);
@@ -116,23 +153,6 @@ fn another_plan_does_not_go_on_with_the_journal() {
         .assert();
     let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
     assert!(error.contains("another plan"), "{error}");
-}
-
-#[test]
-fn two_sweeps_do_not_share_a_journal() {
-    let folder = folder(300);
-    let at = folder.path();
-    sweep(at, &["plan.toml", "--out", "run"]);
-    let journal = OpenOptions::new()
-        .write(true)
-        .open(at.join("run/part-1-of-1.sweep"))
-        .expect("a journal");
-    journal.lock().expect("a lock");
-    let run = touchdown(at)
-        .args(["sweep", "plan.toml", "--out", "run"])
-        .assert();
-    let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
-    assert!(error.contains("another sweep"), "{error}");
 }
 
 /// Rows of a sweep against `drop` on a scene with the row's values.

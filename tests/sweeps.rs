@@ -27,14 +27,8 @@ key = "run.duration_s"
 values = [0.1]
 "#;
 
-/// What a sweep writes beside its journal.
-const RESULTS: [&str; 5] = [
-    "drops.csv",
-    "drops.parquet",
-    "points.csv",
-    "sweep.json",
-    "sweep.html",
-];
+/// What a sweep writes beside its parts.
+const RESULTS: [&str; 4] = ["drops.csv", "points.csv", "sweep.json", "sweep.html"];
 
 /// A folder with the plan, of so many drops a point.
 ///

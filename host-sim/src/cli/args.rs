@@ -100,9 +100,9 @@ A plan:
   key = \"retainer.restitution\"
   uniform = [0.3, 0.8]           or log_uniform = [...], normal = [mean, deviation]
 
-The folder gets drops.csv and drops.parquet (one row a drop), points.csv, sweep.json and
-sweep.html. A sweep that was killed goes on where it was when it is run again. The same
-plan gives the same bytes on any number of cores and in any number of parts.
+The folder gets drops.csv (one row a drop), points.csv, sweep.json and sweep.html, made from
+part-K-of-N.csv. A sweep that was killed goes on after the last whole part when it is run
+again. The same plan gives the same bytes on any number of cores and in any number of parts.
 
 Examples:
   touchdown sweep plan.toml
@@ -446,7 +446,7 @@ pub(super) struct SweepArgs {
     /// The plan: a scene, and which of its keys take which values
     #[arg(value_name = "PLAN", required = true)]
     pub plan: Option<String>,
-    /// Folder for journal and results; by default the plan's name with -sweep
+    /// Folder for parts and results; by default the plan's name with -sweep
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<String>,
     /// Run part K of N, as a job of an array; the parts may share a folder
@@ -466,7 +466,7 @@ pub(super) enum SweepCommand {
 
 #[derive(Args, Clone, Debug)]
 pub(super) struct MergeArgs {
-    /// Folders with journals; the first takes the results
+    /// Folders with parts; the first takes the results
     #[arg(value_name = "FOLDER", required = true)]
     pub folders: Vec<String>,
     /// Points with probabilities and intervals as JSON; `-` is standard output
@@ -569,14 +569,14 @@ fn share(text: &str) -> Result<f64, String> {
 
 /// `K/N`.
 fn part(text: &str) -> Result<Part, String> {
-    let rule = || "K/N with 1 <= K <= N, as in 2/8".to_owned();
+    let rule = || format!("K/N with 1 <= K <= N <= {}, as in 2/8", Part::MOST);
     let (part, parts) = text.split_once('/').ok_or_else(rule)?;
     let [part, parts] = [part, parts].map(|it| it.parse::<u64>().map_err(|_| rule()));
     let part = Part {
         part: part?,
         parts: parts?,
     };
-    if (1..=part.parts).contains(&part.part) {
+    if (1..=part.parts).contains(&part.part) && part.parts <= Part::MOST {
         Ok(part)
     } else {
         Err(rule())

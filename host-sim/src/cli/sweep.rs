@@ -7,7 +7,7 @@ use super::args::{MergeArgs, SweepArgs, SweepCommand};
 use super::{commit, open, paint, remark, say};
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::sweep::{Part, Plan, journal_of, journals, run, table, write};
+use crate::sweep::{Part, Plan, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
 pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
@@ -27,46 +27,43 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             .to_string_lossy();
         format!("{stem}-sweep")
     });
-    let part = args.shard.unwrap_or(Part::WHOLE);
-    if part != Part::WHOLE && args.json.is_some() {
+    if args.shard.is_some() && args.json.is_some() {
         let rule = "a part has no result of its own: give --json to sweep merge";
         return Err(Failure::Usage(rule.to_owned()));
     }
     fs::create_dir_all(&folder).map_err(Failure::output(&folder))?;
     let json_out = open(&args.json)?;
-    let had = run(&plan, part, Path::new(&folder))?;
+    let parts = args.shard.map_or_else(|| Part::all(&plan), |it| vec![it]);
+    let had = run(&plan, &parts, Path::new(&folder))?;
     if had > 0 {
-        remark(&format!(
-            "went on after {had} drops that {folder} had already\n"
-        ));
+        remark(&format!("{folder} had {had} drops already\n"));
     }
-    if part != Part::WHOLE {
-        let Part { part, parts } = part;
+    if let Some(Part { part, parts }) = args.shard {
         let text = format!(
             "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
         );
         say(&[], &text);
         return Ok(());
     }
-    let journal = journal_of(part, Path::new(&folder));
-    finish(&plan, &[journal], &folder, &args.json, json_out)
+    let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
+    finish(&plan, &paths, &folder, &args.json, json_out)
 }
 
 fn merge(args: &MergeArgs) -> Result<(), Failure> {
     let json_out = open(&args.json)?;
-    let (plan, journals) = journals(&args.folders)?;
+    let (plan, parts) = found(&args.folders)?;
     let folder = args.folders.first().cloned().unwrap_or_default();
-    finish(&plan, &journals, &folder, &args.json, json_out)
+    finish(&plan, &parts, &folder, &args.json, json_out)
 }
 
 fn finish(
     plan: &Plan,
-    journals: &[PathBuf],
+    parts: &[PathBuf],
     folder: &str,
     json_name: &Option<String>,
     mut json_out: Option<Output>,
 ) -> Result<(), Failure> {
-    let written = write(plan, journals, Path::new(folder))?;
+    let written = write(plan, parts, Path::new(folder))?;
     if let Some(out) = &mut json_out {
         out.put(&written.json)?;
     }

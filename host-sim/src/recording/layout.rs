@@ -45,7 +45,7 @@ impl Layout {
     pub fn find(head: &[u8], whole: bool, hints: &TextHints) -> Result<Self, (u64, String)> {
         if let Some(place) = head.iter().position(|byte| *byte == 0) {
             let line = 1 + head[..place].iter().filter(|it| **it == b'\n').count() as u64;
-            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff, Parquet in .parquet)";
+            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff; Parquet has to be converted to CSV: docs/recordings.md)";
             return Err((line, rule.to_owned()));
         }
         let bom = if head.starts_with(b"\xef\xbb\xbf") {

@@ -1,10 +1,9 @@
-//! Recordings as they come: CSV of any style, COMTRADE or Parquet, as rows of a stream. `docs/recordings.md`.
+//! Recordings as they come: CSV of any style or COMTRADE, as rows of a stream. `docs/recordings.md`.
 
 mod comtrade;
 mod doubt;
 mod layout;
 mod mapping;
-mod parquet;
 mod pick;
 mod remarks;
 mod resample;
@@ -18,7 +17,6 @@ use std::path::Path;
 pub use comtrade::{Cfg, combined};
 pub use mapping::Mapping;
 
-use self::parquet::{ParquetRows, is_parquet};
 use comtrade::{ComtradeRows, is_comtrade};
 use doubt::Doubt;
 use layout::Layout;
@@ -81,11 +79,6 @@ impl Recording {
             let remarks = Remarks::default();
             let (dat, size) = comtrade::open(path)?;
             let opened = of_comtrade(dat, size, reading, scene, &remarks)?;
-            return Self::paced(&file, opened, reading, scene, remarks);
-        }
-        if is_parquet(path) {
-            let remarks = Remarks::default();
-            let opened = of_parquet(path, reading, scene, &remarks)?;
             return Self::paced(&file, opened, reading, scene, remarks);
         }
         if path.is_dir() {
@@ -269,25 +262,6 @@ fn of_comtrade<R: Read + 'static>(
         rate: cfg.rate(),
         header: 1,
         format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data.name())),
-        size,
-        rows: Box::new(rows),
-    })
-}
-
-fn of_parquet(
-    path: &Path,
-    reading: &Reading,
-    scene: &Scene,
-    remarks: &Remarks,
-) -> Result<Opened, InputError> {
-    let mapping = reading.mapping.as_ref();
-    let (rows, size) = ParquetRows::new(path, mapping, &scene.sensors, remarks)?;
-    Ok(Opened {
-        columns: rows.pick().columns(),
-        meter: rows.meter(),
-        rate: rows.rate(),
-        header: 1,
-        format: Some("Parquet".to_owned()),
         size,
         rows: Box::new(rows),
     })

@@ -1,4 +1,4 @@
-//! What a drop is written as: its columns, for every format.
+//! What a drop is written as: the columns of its row.
 
 use toml::Value;
 
@@ -6,42 +6,18 @@ use super::draw::Drawn;
 use super::plan::Plan;
 use super::record::{REGIMES, Record, number};
 
-/// Kind of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    Whole,
-    Number,
-    Text,
-}
-
-/// A value of a column.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Cell {
-    Whole(i64),
-    /// NaN where there is none.
-    Number(f64),
-    Text(String),
-}
-
-/// Names and kinds of the columns.
-pub(super) fn columns(plan: &Plan) -> Vec<(String, Kind)> {
-    let mut columns = vec![
-        ("drop".to_owned(), Kind::Whole),
-        ("point".to_owned(), Kind::Whole),
-    ];
-    for (key, values) in &plan.listed {
-        columns.push((key.clone(), kind(values)));
-    }
-    for (key, _) in &plan.drawn {
-        columns.push((key.clone(), Kind::Number));
-    }
+/// Names of the columns.
+pub(super) fn columns(plan: &Plan) -> Vec<String> {
+    let mut columns = vec!["drop".to_owned(), "point".to_owned()];
+    columns.extend(plan.listed.iter().map(|(key, _)| key.clone()));
+    columns.extend(plan.drawn.iter().map(|(key, _)| key.clone()));
     let starts = ["start_x_rel", "start_y_rel", "start_vx_m_s", "start_vy_m_s"];
     if plan.start.is_some() {
-        columns.extend(starts.map(|name| (name.to_owned(), Kind::Number)));
+        columns.extend(starts.map(str::to_owned));
     }
-    columns.push(("regime".to_owned(), Kind::Text));
-    columns.push(("impacts".to_owned(), Kind::Whole));
     let measured = [
+        "regime",
+        "impacts",
         "contact_start_s",
         "whirl_start_s",
         "impact_speed_max_m_s",
@@ -49,45 +25,23 @@ pub(super) fn columns(plan: &Plan) -> Vec<(String, Kind)> {
         "end_load_n",
         "whirl_frequency_hz",
     ];
-    columns.extend(measured.map(|name| (name.to_owned(), Kind::Number)));
+    columns.extend(measured.map(str::to_owned));
     columns
 }
 
-/// The values of one drop.
-pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<Cell> {
-    let mut cells = vec![
-        Cell::Whole(record.index as i64),
-        Cell::Whole(drawn.point as i64),
-    ];
-    for ((_, values), value) in plan.listed.iter().zip(plan.values(drawn.point)) {
-        cells.push(cell(kind(values), value));
-    }
-    cells.extend(drawn.values.iter().map(|value| Cell::Number(*value)));
+/// The values of one drop; empty where there is none.
+pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> {
+    let mut cells = vec![record.index.to_string(), drawn.point.to_string()];
+    cells.extend(plan.values(drawn.point).into_iter().map(text));
+    cells.extend(drawn.values.iter().map(f64::to_string));
     if let Some(([x, y], [u, v])) = drawn.start {
-        cells.extend([x, y, u, v].map(Cell::Number));
+        cells.extend([x, y, u, v].map(|it| it.to_string()));
     }
-    cells.push(Cell::Text(REGIMES[number(record.regime)].1.to_owned()));
-    cells.push(Cell::Whole(i64::from(record.impacts)));
-    cells.extend(record.values().map(Cell::Number));
+    cells.push(REGIMES[number(record.regime)].1.to_owned());
+    cells.push(record.impacts.to_string());
+    let number = |value: f64| (!value.is_nan()).then(|| value.to_string());
+    cells.extend(record.values().map(|it| number(it).unwrap_or_default()));
     cells
-}
-
-fn kind(values: &[Value]) -> Kind {
-    if values.iter().all(Value::is_integer) {
-        Kind::Whole
-    } else if values.iter().all(|it| as_number(it).is_some()) {
-        Kind::Number
-    } else {
-        Kind::Text
-    }
-}
-
-fn cell(kind: Kind, value: &Value) -> Cell {
-    match (kind, value) {
-        (Kind::Whole, Value::Integer(whole)) => Cell::Whole(*whole),
-        (Kind::Number, value) => Cell::Number(as_number(value).unwrap_or(f64::NAN)),
-        (_, value) => Cell::Text(text(value)),
-    }
 }
 
 /// Of a whole or decimal number.

@@ -5,20 +5,20 @@
 
 mod columns;
 mod draw;
-mod files;
-mod journal;
 mod map;
 mod page;
 mod parameter;
-mod parquet;
+mod part;
 mod plan;
 mod record;
+mod results;
 mod run;
 mod summary;
 mod table;
 
-pub use files::{Written, journal_of, journals, write};
+pub use part::Part;
 pub use plan::Plan;
-pub use run::{Part, run};
+pub use results::{Written, found, write};
+pub use run::run;
 pub use summary::Point;
 pub use table::table;

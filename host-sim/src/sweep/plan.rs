@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crc::{CRC_64_XZ, Crc};
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
@@ -214,16 +213,6 @@ impl Plan {
             .collect();
         values.reverse();
         values
-    }
-
-    /// Tells one plan from another, and its scene.
-    pub fn fingerprint(&self) -> u64 {
-        let crc = Crc::<u64>::new(&CRC_64_XZ);
-        let mut digest = crc.digest();
-        digest.update(self.text.as_bytes());
-        digest.update(&[0]);
-        digest.update(self.scene_text.as_bytes());
-        digest.finalize()
     }
 
     /// Texts of plan and scene.

@@ -1,10 +1,9 @@
 //! What a drop of a sweep came to.
 
+use csv::StringRecord;
+
 use crate::history::{History, Regime};
 use crate::scene::Scene;
-
-/// Bytes of one in the journal.
-pub(super) const BYTES: usize = 61;
 
 /// One drop, SI; NaN where there is no such thing.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +27,7 @@ pub(super) struct Record {
     pub whirl_frequency: f64,
 }
 
-/// Every regime, at its number in the journal.
+/// Every regime, and its name in a table.
 pub(super) const REGIMES: [(Regime, &str); 6] = [
     (Regime::Rest, "rest"),
     (Regime::Pendulum, "pendulum"),
@@ -83,31 +82,19 @@ impl Record {
         }
     }
 
-    /// As the journal has it.
-    pub fn bytes(&self) -> [u8; BYTES] {
-        let mut bytes = [0; BYTES];
-        let (head, values) = bytes.split_at_mut(13);
-        head[..8].copy_from_slice(&self.index.to_le_bytes());
-        head[8] = number(self.regime) as u8;
-        head[9..].copy_from_slice(&self.impacts.to_le_bytes());
-        for (place, value) in values.chunks_exact_mut(8).zip(self.values()) {
-            place.copy_from_slice(&value.to_le_bytes());
-        }
-        bytes
-    }
-
-    /// From the journal; `None` where the bytes are none of it.
-    pub fn from_bytes(bytes: &[u8; BYTES]) -> Option<Self> {
-        let (head, values) = bytes.split_at(13);
-        let mut values = values
-            .chunks_exact(8)
-            .filter_map(|it| it.try_into().ok())
-            .map(f64::from_le_bytes);
-        let mut next = || values.next();
+    /// From the end of a row of the table; `None` where that is none of it.
+    pub fn of_row(row: &StringRecord) -> Option<Self> {
+        let mut cells = row.iter().skip(row.len().checked_sub(8)?);
+        let regime = cells.next()?;
+        let impacts = cells.next()?.parse().ok()?;
+        let mut next = || match cells.next()? {
+            "" => Some(f64::NAN),
+            text => text.parse().ok(),
+        };
         Some(Self {
-            index: u64::from_le_bytes(head[..8].try_into().ok()?),
-            regime: REGIMES.get(usize::from(head[8]))?.0,
-            impacts: u32::from_le_bytes(head[9..].try_into().ok()?),
+            index: row.get(0)?.parse().ok()?,
+            regime: REGIMES.iter().find(|(_, name)| *name == regime)?.0,
+            impacts,
             contact_start: next()?,
             whirl_start: next()?,
             impact_speed: next()?,
@@ -127,30 +114,5 @@ impl Record {
             self.end_load,
             self.whirl_frequency,
         ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_journal_gives_back_what_it_was_given() {
-        for (number, (regime, _)) in REGIMES.into_iter().enumerate() {
-            let record = Record {
-                index: u64::MAX - number as u64,
-                regime,
-                impacts: 17,
-                contact_start: 0.068,
-                whirl_start: f64::NAN,
-                impact_speed: -0.0,
-                impulse: 1e-300,
-                end_load: f64::INFINITY,
-                whirl_frequency: -100.0,
-            };
-            let back = Record::from_bytes(&record.bytes()).expect("a record");
-            assert_eq!(back.bytes(), record.bytes());
-            assert_eq!(back.regime, regime);
-        }
     }
 }

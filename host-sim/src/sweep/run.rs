@@ -1,66 +1,78 @@
-//! Runs what a part of a sweep has not done yet.
+//! Runs the parts of a sweep that are not there yet.
 
-use std::collections::HashSet;
+use std::ops::Range;
 use std::path::Path;
-use std::sync::Mutex;
 
+use indicatif::ProgressBar;
 use rayon::prelude::*;
 
+use super::columns::{cells, columns};
 use super::draw::Scenes;
-pub use super::journal::Part;
-use super::journal::{BLOCK, Journal};
+use super::part::{Part, first_line};
 use super::plan::Plan;
 use super::record::Record;
 use crate::failure::Failure;
 use crate::input_error::InputError;
 use crate::model_run::simulate;
+use crate::output::Output;
 use crate::progress;
 
-/// Runs the blocks of `part` that its journal in `folder` does not have; how many drops it had.
-pub fn run(plan: &Plan, part: Part, folder: &Path) -> Result<u64, Failure> {
-    let journal = Journal::open(folder, part, plan)?;
-    let done: HashSet<u64> = journal.blocks.iter().map(|(block, _)| *block).collect();
-    let blocks = (0..plan.size().div_ceil(BLOCK)).filter(|block| part.has(*block));
-    let missing: Vec<u64> = blocks.filter(|block| !done.contains(block)).collect();
-    let had = done
-        .iter()
-        .map(|block| drops(plan, *block).count() as u64)
-        .sum();
-    let left: u64 = missing
-        .iter()
-        .map(|block| drops(plan, *block).count() as u64)
-        .sum();
-    let bar = progress::bar("sweep", had + left);
+/// Blocks that are simulated together, in parallel, and held in memory.
+const TOGETHER: usize = 64;
+
+/// Runs those of `parts` that `folder` does not have; how many drops it had.
+pub fn run(plan: &Plan, parts: &[Part], folder: &Path) -> Result<u64, Failure> {
+    let mut missing = Vec::new();
+    let (mut had, mut all) = (0, 0);
+    for part in parts {
+        let size = part.size(plan);
+        all += size;
+        if part.is_done(plan, folder)? {
+            had += size;
+        } else {
+            missing.push(*part);
+        }
+    }
+    let bar = progress::bar("sweep", all);
     bar.set_position(had);
     bar.reset_eta();
-    let journal = Mutex::new(journal);
-    let outcome = missing.par_iter().try_for_each(|block| {
-        let records = simulated(plan, *block)?;
-        bar.inc(records.len() as u64);
-        let mut journal = journal.lock().map_err(|_| lost())?;
-        journal.append(*block, &records)
-    });
+    for part in missing {
+        write(plan, part, folder, &bar)?;
+    }
     bar.finish_and_clear();
-    outcome.map(|()| had)
+    Ok(had)
 }
 
-fn lost() -> Failure {
-    Failure::Check("a thread of the sweep failed".to_owned())
+fn write(plan: &Plan, part: Part, folder: &Path, bar: &ProgressBar) -> Result<(), Failure> {
+    let mut out = Output::create(&part.path(folder).display().to_string())?;
+    out.put(&first_line(plan))?;
+    let name = out.name().to_owned();
+    let failed = |error: csv::Error| Failure::output(&name)(error.into());
+    let mut table = csv::Writer::from_writer(&mut out);
+    table.write_record(columns(plan)).map_err(&failed)?;
+    let blocks: Vec<_> = part.blocks(plan).collect();
+    for blocks in blocks.chunks(TOGETHER) {
+        let simulated: Vec<_> = (blocks.par_iter())
+            .map(|drops| simulated(plan, drops.clone(), bar))
+            .collect::<Result<_, _>>()?;
+        for record in simulated.into_iter().flatten() {
+            let row = cells(plan, &plan.draw(record.index), &record);
+            table.write_record(row).map_err(&failed)?;
+        }
+    }
+    table.flush().map_err(Failure::output(&name))?;
+    drop(table);
+    out.commit()
 }
 
-/// The drops of a block.
-fn drops(plan: &Plan, block: u64) -> std::ops::Range<u64> {
-    let first = block * BLOCK;
-    first..(first + BLOCK).min(plan.size())
-}
-
-fn simulated(plan: &Plan, block: u64) -> Result<Vec<Record>, Failure> {
+fn simulated(plan: &Plan, drops: Range<u64>, bar: &ProgressBar) -> Result<Vec<Record>, Failure> {
     let mut scenes = Scenes::new(plan);
     let record = |index| {
         let scene = scenes.of(&plan.draw(index))?;
         let history = simulate(&scene)
             .map_err(|error| InputError::of_file(&plan.name, format!("drop {index}: {error}")))?;
+        bar.inc(1);
         Ok(Record::of(index, &scene, &history))
     };
-    drops(plan, block).map(record).collect()
+    drops.map(record).collect()
 }
