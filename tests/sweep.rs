@@ -76,10 +76,10 @@ fn a_killed_sweep_goes_on_where_it_was() {
     assert_eq!(results(at, "killed"), results(at, "whole"));
 }
 
-/// A part that ends anywhere, or has another digit anywhere in a row, is refused and not replaced.
+/// A part that ends anywhere is refused and not replaced.
 #[test]
-fn a_part_that_was_cut_off_or_changed_is_refused() {
-    let folder = folder(400);
+fn a_part_that_was_cut_off_is_refused() {
+    let folder = folder(20);
     let at = folder.path();
     sweep(at, &["plan.toml", "--out", "run"]);
     let part = at.join("run/part-1-of-1.csv");
