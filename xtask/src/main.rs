@@ -1,8 +1,10 @@
-//! `cargo xtask`: set-up, firmware build, counts of instructions, budget and tests.
+//! `cargo xtask`: set-up, firmware build, counts of instructions, budget, tests and what they find.
 
 mod budget;
+mod faults;
 mod firmware;
 mod flash;
+mod golden;
 mod instructions;
 mod machine;
 mod setup;
@@ -53,7 +55,25 @@ enum Task {
         #[arg(long)]
         dry_run: bool,
     },
-    /// Set up what is missing, build the images, and run every test
+    /// Write anew what the golden tests hold; `git diff` shows the change
+    Golden {
+        /// Make the recorded streams anew as well
+        #[arg(long)]
+        streams: bool,
+    },
+    /// Plant faults in a copy of the sources, and run the tests that should find them
+    Faults {
+        /// Those alone whose area and name, as printed, contain this
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+        /// Every N-th of them, from the K-th on
+        #[arg(long, value_name = "K/N")]
+        slice: Option<faults::Slice>,
+        /// Write the outcomes to this file
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Set up what is missing, build the images, run every test, and try some planted faults
     Test {
         /// Do not ask
         #[arg(long)]
@@ -72,11 +92,16 @@ fn main() -> ExitCode {
             chip,
             dry_run,
         } => flash::run(image, &chip, dry_run),
+        Task::Golden { streams } => golden::run(streams),
+        Task::Faults { only, slice, json } => {
+            faults::run(&faults::Choice { only, slice }, json.as_deref())
+        }
         Task::Test { yes } => setup::run(yes)
             // These first: the others take their names.
             .and_then(|()| firmware::build_planted())
             .and_then(|()| firmware::build())
-            .and_then(|()| test::run()),
+            .and_then(|()| test::run())
+            .and_then(|()| faults::run(&faults::sample(), None)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,148 @@
+//! The whole controller over a stream, as text.
+
+use std::fmt::Write;
+
+use touchdown_core::checksum::CRC;
+use touchdown_core::config_block::{self, Block, Settings, Wiring};
+use touchdown_core::controller::{Faults, Outputs};
+use touchdown_core::event::{Notice, Notices};
+use touchdown_core::forecast::Lookout;
+use touchdown_core::link::{Chunk, Log};
+use touchdown_core::log::reader::{Item, Reader};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::{BLOCK_SAMPLES, Board};
+use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::w25q::W25q;
+
+use crate::common::chip::{Bus, Chip, NoDelay, flash};
+use crate::stream::Stream;
+
+type Episodes = DropLog<W25q<Bus, NoDelay>, 4>;
+
+/// Of the simulated chip, the logarithm of its bytes.
+const CAPACITY: u8 = 20;
+/// Time after a stream without anything new, in which its last drop ends, s.
+const QUIET: f32 = 1.1;
+
+/// A board that keeps nothing but its configuration.
+struct Desk(Block);
+
+impl Board for Desk {
+    fn report(&mut self, _: &Notice) {}
+
+    fn drive(&mut self, _: Outputs) {}
+
+    fn config(&self) -> &[u8] {
+        &self.0
+    }
+
+    fn feed(&mut self) {}
+}
+
+/// Every change of the outputs, and what is in the log when it has been switched off and on.
+pub fn text(stream: &Stream) -> String {
+    let (mut log, bus) = mount(Chip::new(CAPACITY));
+    let mut text = String::from("Sample, mode, outputs, faults\n");
+    run(stream, &mut log, &mut text);
+    text += "\nDrop log\n";
+    tell(&mut log, &mut text);
+    let again = bus.0.borrow().clone();
+    let (mut log, bus) = mount(again);
+    text += "\nSwitched on again, the first episode erased\n";
+    if let Some((first, _)) = log.episodes() {
+        log.erase(first).expect("it is there");
+    }
+    while log.work(0, || None) {}
+    tell(&mut log, &mut text);
+    assert_eq!(bus.0.borrow().set_bits, 0);
+    text
+}
+
+fn mount(chip: Chip) -> (Episodes, Bus) {
+    let (flash, bus) = flash(chip);
+    let Ok(log) = Episodes::mount(flash) else {
+        panic!("the chip has room for the slots");
+    };
+    (log, bus)
+}
+
+fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
+    let config: &MonitorConfig = &stream.config;
+    let mut desk = Desk(config_block::encode(&Settings {
+        monitor: *config,
+        wiring: Wiring::default(),
+    }));
+    let mut memory = Box::new(Memory::EMPTY);
+    let mut recorder = Recorder::new(&mut memory, config, Identity::new(&desk.0, log.boot()));
+    let mut app = App::try_new(config, Faults::NONE).expect("a valid configuration");
+    let mut lookout = Lookout::try_new(&config.detector).expect("a valid configuration");
+    let mut notices = Notices::new();
+    let mut last = None;
+    for (number, sample) in (0_usize..).zip(&stream.samples) {
+        app.tick(&mut desk, sample, 0, &mut notices);
+        recorder.set_severity(app.state().severity());
+        recorder.set_phase(app.state().phase());
+        recorder.take(sample, &notices);
+        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+            recorder.hear(&outlook);
+        }
+        let now = (
+            app.condition().mode,
+            app.outputs().bits(),
+            app.condition().faults,
+        );
+        if last.replace(now) != Some(now) {
+            let (mode, outputs, Faults(faults)) = now;
+            writeln!(text, "{number:6}  {mode:?} {outputs:04b} {faults:07b}").expect("a string");
+        }
+        if number % BLOCK_SAMPLES == 0 {
+            while log.work(recorder.lost(), || recorder.fetch()) {}
+        }
+    }
+    writeln!(text, "Clear at the end: {:?}", app.clear()).expect("a string");
+    let quiet = (QUIET * config.detector.sample_rate) as usize;
+    for sample in stream.samples.last().into_iter().cycle().take(quiet) {
+        recorder.take(sample, &[]);
+    }
+    while log.work(recorder.lost(), || recorder.fetch()) {}
+}
+
+fn tell(log: &mut Episodes, text: &mut String) {
+    writeln!(text, "{:?}", log.lifetime().expect("counters")).expect("a string");
+    let range = log.episodes();
+    writeln!(text, "episodes {range:?}").expect("a string");
+    for number in range.map_or(1..=0, |(first, last)| first..=last) {
+        let bytes = read(log, number);
+        writeln!(
+            text,
+            "\nepisode {number}, checksum {:08x}",
+            CRC.checksum(&bytes)
+        )
+        .expect("a string");
+        let mut reader = Reader::new(&bytes);
+        for item in &mut reader {
+            match item {
+                Item::Header(header) => writeln!(text, "{header:?}"),
+                Item::Ending(ending) => writeln!(text, "{ending:?}"),
+                _ => Ok(()),
+            }
+            .expect("a string");
+        }
+        writeln!(text, "{:?}", reader.finish()).expect("a string");
+    }
+}
+
+fn read(log: &mut Episodes, number: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    loop {
+        let mut chunk = Chunk::new();
+        let total = log.fetch(number, bytes.len() as u32, &mut chunk);
+        let total = total.expect("an episode") as usize;
+        bytes.extend_from_slice(&chunk);
+        if bytes.len() >= total {
+            return bytes;
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The list of planted faults: `xtask/faults`.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use serde::Deserialize;
+
+/// A change of one place in the sources.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fault {
+    /// What is wrong then.
+    pub name: String,
+    /// File of the list that it stands in, without its ending.
+    #[serde(skip)]
+    pub area: String,
+    /// From the workspace on.
+    pub file: String,
+    /// Stands in the file exactly once.
+    pub old: String,
+    pub new: String,
+    /// What finds it where the golden streams do not.
+    #[serde(default)]
+    pub test: Option<String>,
+    /// Why it changes nothing.
+    #[serde(default)]
+    pub equivalent: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Area {
+    fault: Vec<Fault>,
+}
+
+/// All lists of `folder`, in the order of their names.
+pub fn read(folder: &Path) -> anyhow::Result<Vec<Fault>> {
+    let entries =
+        fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut files = Vec::new();
+    for entry in entries {
+        let file = entry?.path();
+        if file.extension().is_some_and(|end| end == "toml") {
+            files.push(file);
+        }
+    }
+    files.sort();
+    let mut faults = Vec::new();
+    for file in files {
+        let text =
+            fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let area: Area = toml::from_str(&text).with_context(|| format!("{}", file.display()))?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        faults.extend(area.fault.into_iter().map(|fault| Fault {
+            area: name.clone().into_owned(),
+            ..fault
+        }));
+    }
+    Ok(faults)
+}
+
+impl Fault {
+    /// Area and name.
+    pub fn title(&self) -> String {
+        format!("{}: {}", self.area, self.name)
+    }
+
+    /// The text of its file with the fault in it.
+    pub fn planted(&self, text: &str) -> anyhow::Result<String> {
+        let found = text.matches(&self.old).count();
+        ensure!(
+            found == 1,
+            "the list of faults is stale: {}: the old text of \"{}\" stands there {found} times, must once",
+            self.file,
+            self.title()
+        );
+        ensure!(self.old != self.new, "\"{}\" changes nothing", self.title());
+        Ok(text.replacen(&self.old, &self.new, 1))
+    }
+
+    /// That it can be planted in the sources of `tree`.
+    pub fn check(&self, tree: &Path) -> anyhow::Result<()> {
+        let file = tree.join(&self.file);
+        let text =
+            fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        self.planted(&text).map(|_| ())
+    }
+}
+
+/// Which part of the list is tried.
+#[derive(Clone, Debug, Default)]
+pub struct Choice {
+    /// Words of area and name.
+    pub only: Option<String>,
+    /// Every N-th from the K-th on.
+    pub slice: Option<Slice>,
+}
+
+/// `K/N`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slice {
+    first: usize,
+    every: usize,
+}
+
+impl std::str::FromStr for Slice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        const RULE: &str = "must be K/N with K from 1 to N";
+        let (first, every) = text.split_once('/').ok_or(RULE)?;
+        let (first, every) = (
+            first.parse().map_err(|_| RULE)?,
+            every.parse().map_err(|_| RULE)?,
+        );
+        if (1..=every).contains(&first) {
+            Ok(Self { first, every })
+        } else {
+            Err(RULE)
+        }
+    }
+}
+
+impl Choice {
+    /// Those of `faults` that it takes.
+    pub fn of(&self, faults: Vec<Fault>) -> Vec<Fault> {
+        let named = |fault: &Fault| {
+            self.only
+                .as_ref()
+                .is_none_or(|only| fault.title().contains(only))
+        };
+        let Slice { first, every } = self.slice.unwrap_or(Slice { first: 1, every: 1 });
+        faults
+            .into_iter()
+            .filter(named)
+            .skip(first - 1)
+            .step_by(every)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(name: &str, old: &str) -> Fault {
+        Fault {
+            name: name.into(),
+            area: "area".into(),
+            file: "a.rs".into(),
+            old: old.into(),
+            new: "x".into(),
+            test: None,
+            equivalent: None,
+        }
+    }
+
+    #[test]
+    fn what_stands_there_never_or_twice_is_stale() {
+        assert_eq!(fault("", "a + b").planted("f(a + b)").unwrap(), "f(x)");
+        for text in ["f(a - b)", "a + b + (a + b)"] {
+            let error = fault("", "a + b").planted(text).unwrap_err().to_string();
+            assert!(error.contains("stale"), "{error}");
+        }
+        assert!(fault("", "x").planted("x").is_err());
+    }
+
+    #[test]
+    fn slices_share_the_list() {
+        let all: Vec<_> = ["a", "b", "c", "d", "e"].map(|name| fault(name, "")).into();
+        let names = |slice: &str| {
+            let choice = Choice {
+                only: None,
+                slice: Some(slice.parse().unwrap()),
+            };
+            let chosen = choice.of(all.clone());
+            chosen.into_iter().map(|it| it.name).collect::<String>()
+        };
+        assert_eq!(
+            [names("1/2"), names("2/2"), names("5/5")],
+            ["ace", "bd", "e"]
+        );
+        for wrong in ["0/2", "3/2", "1", "1/0"] {
+            assert!(wrong.parse::<Slice>().is_err(), "{wrong}");
+        }
+    }
+
+    /// The list is that of the sources as they are.
+    #[test]
+    fn every_fault_can_be_planted() {
+        let faults = read(&crate::workspace().join("xtask/faults")).unwrap();
+        assert!(faults.len() >= 40);
+        for fault in faults {
+            fault.check(crate::workspace()).unwrap();
+        }
+    }
+}

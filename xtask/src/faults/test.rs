@@ -1,0 +1,156 @@
+//! A test program that may find a fault.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail, ensure};
+use serde_json::Value;
+
+use crate::toolchain::default_cargo;
+
+/// Beyond it a test hangs, and that finds a fault as well.
+const LONGEST: Duration = Duration::from_secs(120);
+/// Between two looks at a test that runs.
+const POLL: Duration = Duration::from_millis(5);
+
+/// Package, one target, and names of tests.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Test {
+    package: String,
+    target: Vec<String>,
+    names: Vec<String>,
+}
+
+impl Test {
+    /// As it stands in the list: package, `--lib` or `--test TARGET`, then names.
+    pub fn parse(text: &str) -> anyhow::Result<Self> {
+        let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+        let (package, rest) = words.split_first().context("a test names its package")?;
+        let target = match rest.first().map(String::as_str) {
+            Some("--lib") => 1,
+            Some("--test") if rest.len() >= 2 => 2,
+            _ => bail!("\"{text}\": after the package comes --lib, or --test and a target"),
+        };
+        let (target, names) = rest.split_at(target);
+        Ok(Self {
+            package: package.clone(),
+            target: target.to_vec(),
+            names: names.to_vec(),
+        })
+    }
+
+    /// As it stands in the list.
+    pub fn text(&self) -> String {
+        let words = [
+            std::slice::from_ref(&self.package),
+            &self.target,
+            &self.names,
+        ];
+        words.concat().join(" ")
+    }
+
+    /// Builds it from the sources in `tree`.
+    pub fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<Program> {
+        let mut cargo = default_cargo();
+        cargo
+            .args([
+                "test",
+                "--no-run",
+                "--message-format=json-render-diagnostics",
+            ])
+            .args(["-p", &self.package])
+            .args(&self.target)
+            .arg("--target-dir")
+            .arg(target)
+            .current_dir(tree)
+            // A fault is a small change: all else is as it was.
+            .env("CARGO_INCREMENTAL", "1")
+            .stderr(Stdio::piped());
+        let built = cargo.output().context("cannot start cargo")?;
+        let errors = String::from_utf8_lossy(&built.stderr);
+        ensure!(
+            built.status.success(),
+            "{} does not build:\n{errors}",
+            self.text()
+        );
+        let messages = String::from_utf8_lossy(&built.stdout);
+        let messages = messages
+            .lines()
+            .filter_map(|line| serde_json::from_str::<Value>(line).ok());
+        let mut programs = messages.filter_map(|it| {
+            let executable = it["executable"].as_str()?;
+            let manifest = it["manifest_path"].as_str()?;
+            Some((PathBuf::from(executable), PathBuf::from(manifest)))
+        });
+        let (executable, manifest) = programs.next().context("cargo built no test")?;
+        let folder = manifest
+            .parent()
+            .context("a package has a folder")?
+            .to_owned();
+        Ok(Program {
+            executable,
+            folder,
+            tree: tree.to_owned(),
+            names: self.names.clone(),
+        })
+    }
+}
+
+/// A test that is built.
+pub struct Program {
+    executable: PathBuf,
+    folder: PathBuf,
+    tree: PathBuf,
+    names: Vec<String>,
+}
+
+impl Program {
+    /// Whether it passes, and how long that takes.
+    pub fn run(&self) -> anyhow::Result<(bool, Duration)> {
+        let begun = Instant::now();
+        let mut child = Command::new(&self.executable)
+            .args(&self.names)
+            .current_dir(&self.folder)
+            .env("CARGO_MANIFEST_DIR", &self.folder)
+            // Where expect-test looks for its files; it must not write them.
+            .env("CARGO_WORKSPACE_DIR", &self.tree)
+            .env_remove("UPDATE_EXPECT")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .with_context(|| format!("cannot start {}", self.executable.display()))?;
+        loop {
+            let taken = begun.elapsed();
+            if let Some(status) = child.try_wait()? {
+                return Ok((status.success(), taken));
+            }
+            if taken > LONGEST {
+                child.kill()?;
+                child.wait()?;
+                return Ok((false, taken));
+            }
+            thread::sleep(POLL);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_test_is_named_by_package_target_and_names() {
+        for text in [
+            "core --lib",
+            "core --test golden",
+            "core --test log a_name another",
+        ] {
+            assert_eq!(Test::parse(text).unwrap().text(), text);
+        }
+        for text in ["", "core", "core --test", "core name"] {
+            assert!(Test::parse(text).is_err(), "{text}");
+        }
+    }
+}
