@@ -481,27 +481,21 @@ pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::detect::config::{MachineConfig, Tuning};
+    use crate::detect::config::Tuning;
     use crate::detect::noise::white;
+    use crate::detect::series::tests::MACHINE;
+
+    fn test(sample_rate: f32) -> FlightTest {
+        let config = DetectorConfig {
+            sample_rate,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        FlightTest::new(&config, 25.3)
+    }
 
     fn level(sample_rate: f32, runout: f32) -> f32 {
-        let test = FlightTest::new(
-            &DetectorConfig {
-                sample_rate,
-                machine: MachineConfig {
-                    mass: 3.42,
-                    clearance: 3e-4,
-                    gravity: 9.81,
-                    rotor_radius: 0.024,
-                    inertia_ratio: 0.5,
-                    friction: 0.1,
-                    restitution: 0.8,
-                    spin: 3141.6,
-                },
-                tuning: Tuning::default(),
-            },
-            25.3,
-        );
+        let test = test(sample_rate);
         let (mut listener, mut seed) = (Listener::default(), 1);
         for k in 0..50_000_u16 {
             let (sin, cos) = libm::sincosf(3141.6 * f32::from(k) / sample_rate);
@@ -532,5 +526,37 @@ mod tests {
     #[test]
     fn runout_is_louder() {
         assert!(level(20_000.0, 3e-6) > 4.0 * WHITE_LEVEL);
+    }
+
+    /// A rotor that was off the wall after the foreseen end did not lie there since.
+    #[test]
+    fn a_rotor_that_comes_back_after_the_end_of_its_series_is_in_no_contact_since() {
+        let test = test(20_000.0);
+        let bounce = Bounce {
+            at: Moment::of_sample(1_000),
+            normal_speed: 5e-3,
+            known: Known::to(5e-3, 1e-4),
+            pressing: 9.81,
+            outward: [0.0, -1.0],
+            ..Bounce::default()
+        };
+        let contact = |away: core::ops::Range<u64>| {
+            let mut flight = Airborne::default();
+            flight.series.take(bounce, 0.0, &MACHINE, test.period);
+            let end = flight.series.end().expect("the wall presses").samples();
+            assert!((1_080.0..1_085.0).contains(&end), "{end}");
+            (1_000..1_105).find(|&sample| {
+                let y = if away.contains(&sample) { -2e-4 } else { -3e-4 };
+                flight.track.position = [0.0, y];
+                let fix = Fix {
+                    now: Moment::of_sample(sample),
+                    position: [0.0, y],
+                    variance: 1e-12,
+                };
+                test.contact(&mut flight, &fix).is_some()
+            })
+        };
+        assert!(contact(0..0).is_some_and(|at| at < 1_095));
+        assert_eq!(contact(1_076..1_096), None);
     }
 }

@@ -221,4 +221,30 @@ mod tests {
         });
         assert!(found.is_some(), "a fall of 0.3 mm in 7.8 ms");
     }
+
+    /// Where the statistic alone, which knows no gravity, is off by 2.8 samples.
+    #[test]
+    fn a_fall_is_dated_by_its_shape() {
+        let release = Release::new(&Tuning::default(), 20_000.0, 9.81, 25.3);
+        let mut seed = 1;
+        let mut noise = || 0.75e-6 * white(&mut seed);
+        let mut off = 0.0;
+        for drop in 0..400 {
+            let mut bank = ReleaseBank::default();
+            for _ in 0..400 + drop {
+                let found = release.take(&mut bank, [noise(), noise()], 0.56e-12);
+                assert_eq!(found, None);
+            }
+            let (fallen, age) = (1..100)
+                .find_map(|k| {
+                    let time = k as f32 / 20_000.0;
+                    let residual = [noise(), noise() - 0.5 * 9.81 * time * time];
+                    let found = release.take(&mut bank, residual, 0.56e-12);
+                    found.map(|age| (k as f32, age))
+                })
+                .expect("a fall of 0.12 mm");
+            off += (age - fallen).abs() / 400.0;
+        }
+        assert!(off < 1.6, "{off} samples");
+    }
 }

@@ -1,6 +1,6 @@
 //! The way of a rotor from sample to sample, and what its sensors make of it.
 
-use touchdown_sim::scene::{Scene, Start};
+use touchdown_sim::scene::Scene;
 use touchdown_sim::sensors::{Faults, Motion, SensorFault, Sensors};
 use touchdown_sim::truth::{Moving, Truth};
 
@@ -39,8 +39,8 @@ impl Path {
 
     /// Floats at the scene's start.
     pub fn floats(self, seconds: f64) -> Self {
-        let start = self.start();
-        self.moves(seconds, |_| [start; 2])
+        let start = self.held();
+        self.moves(seconds, |_| start)
     }
 
     /// As the scene has it, from its release to its end.
@@ -69,11 +69,14 @@ impl Path {
 
     /// Back to the scene's start, from where it is.
     pub fn is_lifted(self, seconds: f64) -> Self {
-        let start = self.start();
+        let start = self.held();
         let last = self.motions.last().expect("a motion").planes;
         self.moves(seconds, |time| {
             let part = smooth(time / seconds);
-            last.map(|[x, y]| [x + part * (start[0] - x), y + part * (start[1] - y)])
+            let way = |end: usize, axis: usize| {
+                last[end][axis] + part * (start[end][axis] - last[end][axis])
+            };
+            [0, 1].map(|end| [0, 1].map(|axis| way(end, axis)))
         })
     }
 
@@ -101,11 +104,9 @@ impl Path {
         }
     }
 
-    fn start(&self) -> [f64; 2] {
-        match self.scene.start {
-            Start::Free { position, .. } => position,
-            Start::Wall { .. } => [0.0; 2],
-        }
+    /// Where each end is before the release, m.
+    fn held(&self) -> Planes {
+        Truth::new(&self.scene).advance(-1.0).sensed
     }
 }
 

@@ -143,10 +143,11 @@ fn machines() -> Vec<(&'static str, Path)> {
         ),
         (
             "one_end_lifts",
-            // Both lie; then one is lifted by 0.2 mm in 20 ms.
-            Path::new(&rig("")).moves(0.35, |time| {
+            // Both lie; then one is lifted by 0.2 mm in 20 ms, and put down again.
+            Path::new(&rig("")).moves(0.6, |time| {
                 let part = ((time - 0.3) / 0.02).clamp(0.0, 1.0);
-                [[0.0, -GAP + 0.2e-3 * part * part * part], [0.0, -GAP]]
+                let lifted = part * part * part * (1.0 - smooth((time - 0.33) / 0.05));
+                [[0.0, -GAP + 0.2e-3 * lifted], [0.0, -GAP]]
             }),
         ),
     ]

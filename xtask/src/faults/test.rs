@@ -76,19 +76,10 @@ impl Test {
             self.text()
         );
         let messages = String::from_utf8_lossy(&built.stdout);
-        let messages = messages
-            .lines()
-            .filter_map(|line| serde_json::from_str::<Value>(line).ok());
-        let mut programs = messages.filter_map(|it| {
-            let executable = it["executable"].as_str()?;
-            let manifest = it["manifest_path"].as_str()?;
-            Some((PathBuf::from(executable), PathBuf::from(manifest)))
-        });
-        let (executable, manifest) = programs.next().context("cargo built no test")?;
-        let folder = manifest
-            .parent()
-            .context("a package has a folder")?
-            .to_owned();
+        let mut programs = messages.lines().filter_map(test_program);
+        let (Some((executable, folder)), None) = (programs.next(), programs.next()) else {
+            bail!("{}: cargo must build one test program for it", self.text());
+        };
         Ok(Program {
             executable,
             folder,
@@ -136,6 +127,17 @@ impl Program {
     }
 }
 
+/// Executable and package folder of a test, if this line of cargo's tells of one; the package's own programs are none.
+fn test_program(line: &str) -> Option<(PathBuf, PathBuf)> {
+    let message: Value = serde_json::from_str(line).ok()?;
+    if message["profile"]["test"] != true {
+        return None;
+    }
+    let executable = PathBuf::from(message["executable"].as_str()?);
+    let manifest = Path::new(message["manifest_path"].as_str()?);
+    Some((executable, manifest.parent()?.to_owned()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,5 +154,20 @@ mod tests {
         for text in ["", "core", "core --test", "core name"] {
             assert!(Test::parse(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_program_of_the_package_is_no_test() {
+        let line = |test: bool| {
+            format!(
+                r#"{{"manifest_path":"/a/Cargo.toml","profile":{{"test":{test}}},"executable":"/b/c"}}"#
+            )
+        };
+        assert_eq!(test_program(&line(false)), None);
+        assert_eq!(
+            test_program(&line(true)),
+            Some(("/b/c".into(), "/a".into()))
+        );
+        assert_eq!(test_program("Compiling"), None);
     }
 }

@@ -8,8 +8,8 @@ use anyhow::Context;
 
 use super::list::Fault;
 
-/// What no test of a fault needs: large, or not of the workspace.
-const LEFT_OUT: [&str; 4] = ["target", ".git", "fuzz", "benches"];
+/// Of the sources' folders, what is none of them.
+const LEFT_OUT: [&str; 2] = ["target", ".git"];
 
 /// The copy.
 pub struct Tree {
