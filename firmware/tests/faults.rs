@@ -335,6 +335,18 @@ fn overload_trips_after_20_lost_samples() {
 }
 
 #[test]
+fn samples_lost_before_clear_do_not_count_after_it() {
+    let mut bench = Bench::watching();
+    let sample = bench.at([0.0; 2]);
+    assert_eq!(bench.take(&sample, BLIND), 0);
+    assert_eq!(bench.app.clear(), Ok(()));
+    bench.take(&sample, BLIND - 1);
+    assert!(!bench.has(Fault::Overload));
+    bench.take(&sample, 1);
+    assert!(bench.has(Fault::Overload));
+}
+
+#[test]
 fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
     let block = config_block::encode(&default_settings());
     let limit = Patrol::steps(block.len()) as u32;

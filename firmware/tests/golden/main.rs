@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod controller;
+#[macro_use]
 #[path = "../../../shared/tests/golden/stream.rs"]
 mod stream;
 
@@ -11,10 +12,27 @@ use expect_test::expect_file;
 
 use crate::stream::{NAMES, Stream};
 
+/// A test for each stream.
+macro_rules! tests {
+    ($($name:ident)*) => {
+        $(
+            #[test]
+            fn $name() {
+                let text = controller::text(&Stream::read(stringify!($name)));
+                expect_file![concat!("expected/", stringify!($name), ".txt")].assert_eq(&text);
+            }
+        )*
+    };
+}
+
+with_streams!(tests);
+
 #[test]
-fn outputs_and_drop_log_of_every_stream() {
-    for name in NAMES {
-        let text = controller::text(&Stream::read(name));
-        expect_file![format!("expected/{name}.txt")].assert_eq(&text);
+fn no_text_is_of_a_stream_that_is_gone() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/expected");
+    for file in std::fs::read_dir(folder).expect("a folder").flatten() {
+        let name = file.file_name().into_string().expect("a name");
+        let stem = name.trim_end_matches(".txt");
+        assert!(NAMES.contains(&stem), "{name}");
     }
 }

@@ -44,5 +44,7 @@ pub use config::{DetectorConfig, MachineConfig, Tuning};
 pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};
 pub use ladder::Phase;
+#[cfg(test)]
+pub(crate) use noise::white;
 pub use signals::{Retainer, Signals};
 pub use slip::Slip;

@@ -486,6 +486,7 @@ fn erf(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detect::white;
 
     /// The first value is not foreseen: it must not count as noise.
     #[test]
@@ -515,5 +516,21 @@ mod tests {
         assert_eq!(stuck_after(innovations(2.048), 25.3), 16);
         assert_eq!(stuck_after(innovations(20.0), 25.3), 7);
         assert_eq!(stuck_after(innovations(0.5), 25.3), u16::MAX);
+    }
+
+    /// A rotor that is kicked goes 30 counts a sample: once that is known for motion, the filter has to catch up with it.
+    #[test]
+    fn what_was_motion_is_followed_before_it_is_judged() {
+        let watch = Watch::new(25.3, 80.0, 4095);
+        let (mut it, mut seed) = (Watched::default(), 1);
+        for k in 0..1_040_u16 {
+            let way = f32::from(30 * k.saturating_sub(1_000));
+            let count = (2_048.0 + way + 2.0 * white(&mut seed)) as u16;
+            let look = watch.look(&mut it, Some(count), true);
+            let taken = watch.take(&mut it, look, true, true);
+            if k > 1_000 + HELD {
+                assert_eq!(taken, (Some(f32::from(count)), None), "{k}");
+            }
+        }
     }
 }

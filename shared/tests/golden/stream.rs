@@ -7,30 +7,45 @@ use miniz_oxide::inflate::decompress_to_vec;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{Edges, Sample};
 
-/// Every stream, in the order of the alphabet.
-pub const NAMES: [&str; 21] = [
-    "backward_whirl",
-    "ball_bearing",
-    "bouncing",
-    "cold_pendulum",
-    "disturbance",
-    "ends_apart",
-    "forward_whirl",
-    "lift_off",
-    "mirrored",
-    "one_end_lifts",
-    "one_plane",
-    "orbit",
-    "pendulum",
-    "recovery",
-    "rest",
-    "reversed",
-    "rolling",
-    "sensors_drift",
-    "sensors_fail",
-    "sensors_lie",
-    "vertical",
-];
+/// Hands the name of every stream to a macro, in the order of the alphabet.
+macro_rules! with_streams {
+    ($user:ident) => {
+        $user! {
+            backward_whirl
+            ball_bearing
+            bouncing
+            cold_pendulum
+            disturbance
+            drift_of_a
+            ends_apart
+            forward_whirl
+            lift_off
+            mirrored
+            one_end_lifts
+            one_plane
+            orbit
+            pendulum
+            recovery
+            rest
+            reversed
+            rolling
+            sensors_drift
+            sensors_fail
+            sensors_lie
+            sensors_shift
+            vertical
+        }
+    };
+}
+
+macro_rules! names {
+    ($($name:ident)*) => {
+        /// Of every stream.
+        pub const NAMES: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+with_streams!(names);
 
 /// Words of a sample: counts, flags, spin, edges' counts, edges' ages.
 pub const COLUMNS: usize = 10;

@@ -14,7 +14,7 @@ fn main() {
     let mut recipes = recipes::all();
     recipes.sort_by_key(|(name, _)| *name);
     let names: Vec<_> = recipes.iter().map(|(name, _)| *name).collect();
-    assert_eq!(names, NAMES, "each stream has its recipe");
+    assert_eq!(names.as_slice(), NAMES, "each stream has its recipe");
     for (name, path) in recipes {
         let stream = path.sensed();
         deflated::write(&stream, name);

@@ -216,6 +216,7 @@ fn failing() -> Vec<(&'static str, Path)> {
                 .with(fault(0, Failing::Off(80e-6), 0.16, 5e-5))
                 .with(fault(BY, Failing::Dropped, 0.17, 1.5e-4))
                 .with(fault(BX, Failing::Stuck, 0.18, 5e-3))
+                .with(fault(BY, Failing::Stuck, 0.206, 2e-3))
                 .with(fault(AY, Failing::Off(-60e-6), 0.2149, 5e-5))
                 .with(fault(AY, Failing::Open, 0.3, 0.02))
                 .with(fault(BX, Failing::Short, 0.4, forever)),
@@ -226,6 +227,24 @@ fn failing() -> Vec<(&'static str, Path)> {
                 BX,
                 Failing::Drift(-120e-6),
                 0.6,
+                forever,
+            )),
+        ),
+        (
+            "drift_of_a",
+            Path::new(&slow("5000", "")).floats(1.6).with(fault(
+                0,
+                Failing::Drift(-120e-6),
+                0.6,
+                forever,
+            )),
+        ),
+        (
+            "sensors_shift",
+            Path::new(&slow("5000", "")).floats(0.5).drops().with(fault(
+                AY,
+                Failing::Off(15e-6),
+                0.3,
                 forever,
             )),
         ),
