@@ -204,6 +204,14 @@ fn rings(text: &mut String) {
         SPIN / 10.0,
         STEPS,
     );
+    run::<f64, _>(
+        text,
+        "support, ball bearing: spun up",
+        &bearing,
+        &at_bottom(0.5),
+        SPIN / 200.0,
+        20_000,
+    );
     two_plane(text);
 }
 
