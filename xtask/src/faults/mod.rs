@@ -27,7 +27,7 @@ const OF_FIRMWARE: &str = "touchdown-firmware --test golden";
 pub fn sample() -> Choice {
     Choice {
         only: Some("detector: ".into()),
-        slice: "1/5".parse().ok(),
+        slice: "4/5".parse().ok(),
     }
 }
 
