@@ -113,7 +113,7 @@ fn tell(log: &mut Episodes, text: &mut String) {
     writeln!(text, "\n{:?}", log.lifetime().expect("counters")).expect("a string");
     let range = log.episodes();
     writeln!(text, "episodes {range:?}").expect("a string");
-    for number in range.map_or(1..=0, |(first, last)| first..=last) {
+    for number in range.into_iter().flat_map(|(first, last)| first..=last) {
         let bytes = read(log, number);
         // Without each page's own checksum, after which any page would give the same.
         let mut digest = CRC.digest();
