@@ -22,6 +22,7 @@ mod sensors;
 mod severity;
 mod table;
 mod watch;
+mod whirl;
 
 use std::collections::BTreeMap;
 

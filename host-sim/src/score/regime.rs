@@ -10,9 +10,10 @@ use super::impact::dropped;
 use super::levitated::Levitated;
 use super::row::Row;
 use super::watch::{Drop, Instant, Watched};
+use super::whirl::{has_wrong_sign, turns, whirls};
 use super::{Findings, Plan};
 use crate::failure::Failure;
-use crate::history::{History, Regime};
+use crate::history::Regime;
 use crate::scene::{Scene, Start};
 use crate::statistics::{median, quantile, share};
 
@@ -26,10 +27,6 @@ const WATCHED: f64 = 0.5;
 /// A regime that began later than this before the end is not judged, s, but for a whirl of so many turns.
 const SETTLED: f64 = 0.1;
 const LONG: f64 = 3.0;
-/// Turns of a whirl that has to be declared: one, and time to say so.
-const CERTAIN: f64 = 1.5;
-/// Time before its contact at which it may be, s: as far off as the start of the contact may be dated.
-const EARLY: f64 = 1e-3;
 /// A pendulum that swings less, over that time, cannot be told from rest: three standard deviations of
 /// the noise, either way, m.
 const STILL: f64 = 6e-6;
@@ -163,58 +160,14 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let end = drop.end();
     let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
-    let mut wrong_signs = 0;
-    for event in &watched.detection.events {
-        let sign = match event.event {
-            EventKind::ForwardWhirl => 1.0,
-            EventKind::BackwardWhirl => -1.0,
-            _ => continue,
-        };
-        // One that is bound to go round may be declared before it has gone back over where it began.
-        let lift_offs = watched.truth.lift_offs.iter();
-        let over = lift_offs.copied().find(|it| *it > event.declared_s);
-        let gone = turns(&watched, over.unwrap_or(end).min(end));
-        wrong_signs += usize::from(gone * sign < 0.0);
-    }
+    let wrong_signs = (watched.detection.events.iter())
+        .filter(|event| has_wrong_sign(&watched, event))
+        .count();
     Ok(Seen {
         regime: settled.then(|| (row(regime), column(&watched))),
         turns: whirls(&watched, end),
         wrong_signs,
     })
-}
-
-/// True turns in the present contact, positive with the spin.
-fn turns(watched: &Watched, time: f64) -> f64 {
-    let mut instants = watched.instants.iter().rev();
-    let at = instants.find(|it| it.time <= time);
-    at.map_or(0.0, |it| it.turns)
-}
-
-/// Of each contact that goes round against the spin: turns when that was first declared in it; infinite
-/// where it was not.
-fn whirls(watched: &Watched, end: f64) -> Vec<f64> {
-    let History {
-        contact_starts,
-        lift_offs,
-        ..
-    } = &watched.truth;
-    let mut whirls = Vec::new();
-    for &start in contact_starts {
-        let lift_off = lift_offs.iter().find(|it| **it > start);
-        let stop = lift_off.copied().unwrap_or(end);
-        let during = |time: f64| time >= start && time <= stop;
-        let mut events = watched.detection.events.iter();
-        let told = events.find(|it| {
-            it.event == EventKind::BackwardWhirl
-                && (during(it.declared_s) || during(it.declared_s + EARLY))
-        });
-        let instants = watched.instants.iter().filter(|it| during(it.time));
-        let farthest = instants.fold(0.0, |least, it| f64::min(least, it.turns));
-        if farthest <= -CERTAIN {
-            whirls.push(told.map_or(f64::INFINITY, |it| turns(watched, it.declared_s).abs()));
-        }
-    }
-    whirls
 }
 
 /// A pendulum that hardly moves, or a rotor that hardly leaves the wall.
