@@ -184,6 +184,27 @@ fn a_slow_detector_does_not_hold() {
     assert!(!fall.holds && fall.values["false_falls"] == 0, "{fall:?}");
 }
 
+/// Rotors that go round with the spin once, are driven back and whirl against it: both whirls are told, both rightly. The second
+/// one has just left the wall when the first whirl is told.
+#[test]
+fn a_whirl_that_is_driven_back_has_the_sign_that_it_had() {
+    for first_seed in [500_001, 700_526] {
+        let plan = Plan {
+            groups: vec!["regime"],
+            seeds: 1,
+            first_seed,
+            seconds: 1.0,
+            tuning: Tuning::default(),
+        };
+        let score = run(&plan, &Target::Host).unwrap();
+        let row = case(&score, "sign of a whirl");
+        assert!(
+            row.holds,
+            "{row:?}"
+        );
+    }
+}
+
 #[test]
 fn only_what_is_asked_for() {
     let folder = TempDir::new().unwrap();

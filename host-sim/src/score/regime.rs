@@ -160,9 +160,9 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let end = drop.end();
     let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
-    let wrong_signs = (watched.detection.events.iter())
-        .filter(|event| has_wrong_sign(&watched, event))
-        .count();
+    let signs = watched.detection.events.iter();
+    let signs = signs.filter_map(|event| has_wrong_sign(&watched, event));
+    let wrong_signs = signs.filter(|it| *it).count();
     Ok(Seen {
         regime: settled.then(|| (row(regime), column(&watched))),
         turns: whirls(&watched, end),

@@ -11,29 +11,39 @@ const CERTAIN: f64 = 1.5;
 /// Time before its contact at which it may be, s: as far off as the start of the contact may be dated.
 const EARLY: f64 = 1e-3;
 
-/// Whether `event` tells a whirl that goes round the other way.
-pub fn has_wrong_sign(watched: &Watched, event: &DetectedEvent) -> bool {
+/// Of an `event` that tells a whirl: whether that goes round the other way. Its contact is the last to have begun by
+/// then, since a lift-off shows later than it happens.
+pub fn has_wrong_sign(watched: &Watched, event: &DetectedEvent) -> Option<bool> {
     let sign = match event.event {
         EventKind::ForwardWhirl => 1.0,
         EventKind::BackwardWhirl => -1.0,
-        _ => return false,
+        _ => return None,
     };
-    let mut lift_offs = watched.truth.lift_offs.iter();
-    let over = lift_offs.find(|it| **it > event.declared_s);
-    let over = over.copied().unwrap_or(f64::INFINITY);
-    sign * goes_round(&watched.instants, event.declared_s, over) < 0.0
+    let History {
+        contact_starts,
+        lift_offs,
+        ..
+    } = &watched.truth;
+    let told = event.declared_s;
+    let mut starts = contact_starts.iter().copied();
+    let turns = starts.rfind(|it| *it <= told + EARLY).map(|start| {
+        let lift_off = lift_offs.iter().find(|it| **it > start);
+        let stop = lift_off.copied().unwrap_or(f64::INFINITY);
+        let first = watched.instants.partition_point(|it| it.time < start);
+        let after = watched.instants.partition_point(|it| it.time < stop);
+        let contact = watched.instants.get(first..after).unwrap_or_default();
+        goes_round(contact, told)
+    });
+    Some(sign * turns.unwrap_or(0.0) < 0.0)
 }
 
-/// True turns, positive with the spin, once they are a whole one from `time` on: one that is bound to go round
-/// may be told before it has gone back over where it began, and one that has gone round may turn back later.
-/// Where the contact is `over` first, those at its end; s.
-fn goes_round(instants: &[Instant], time: f64, over: f64) -> f64 {
+/// True turns of a contact, positive with the spin, once they are a whole one from `time` (s) on: one that is bound to go
+/// round may be told before it has gone back over where it began, and one that has gone round may turn back later. Where
+/// the contact is over first, those at its end.
+fn goes_round(contact: &[Instant], time: f64) -> f64 {
     // The last sample up to then shows where it is then.
-    let from = instants
-        .partition_point(|it| it.time <= time)
-        .saturating_sub(1);
-    let until = instants.partition_point(|it| it.time <= over);
-    let rest = instants.get(from..until).unwrap_or_default();
+    let now = contact.partition_point(|it| it.time <= time);
+    let rest = contact.get(now.saturating_sub(1)..).unwrap_or_default();
     let whole = rest.iter().find(|it| it.turns.abs() >= 1.0);
     whole.or(rest.last()).map_or(0.0, |it| it.turns)
 }
@@ -100,16 +110,22 @@ mod tests {
             (0.0040, -1.1),
             (0.0070, -5.0),
         ] {
-            assert_eq!(goes_round(&both_ways, time, f64::INFINITY), turns, "{time}");
+            assert_eq!(goes_round(&both_ways, time), turns, "{time}");
         }
     }
 
     #[test]
     fn a_swing_the_other_way_first_is_no_turn() {
         let swings = instants(&[0.0, 0.4, 0.8, 0.2, -0.5, -1.2, -3.0]);
-        assert_eq!(goes_round(&swings, 0.002, f64::INFINITY), -1.2);
+        assert_eq!(goes_round(&swings, 0.002), -1.2);
         // Over before it has gone round: as far as it came.
-        assert_eq!(goes_round(&swings, 0.002, 0.0045), -0.5);
-        assert_eq!(goes_round(&[], 0.002, f64::INFINITY), 0.0);
+        assert_eq!(goes_round(&swings[..5], 0.002), -0.5);
+        assert_eq!(goes_round(&[], 0.002), 0.0);
+    }
+
+    #[test]
+    fn a_whirl_told_after_its_contact_is_over_is_that_contact_s() {
+        let turned = instants(&[0.0, 0.6, 1.1, 1.2]);
+        assert_eq!(goes_round(&turned, 0.1), 1.2);
     }
 }
