@@ -75,6 +75,7 @@ fn every_group_has_rows_with_case_target_and_verdict() {
                 }
             });
             assert!(!holds || within, "{row}");
+            assert!(!holds || row["undecided"] == false, "{row}");
         }
         assert!(seen.len() >= 4, "{group}: {}", seen.len());
     }
@@ -92,10 +93,30 @@ fn the_status_is_the_verdict() {
     let json = answer.value();
     let groups = json["groups"].as_object().unwrap();
     let mut rows = groups.values().flat_map(|rows| rows.as_array().unwrap());
-    let all = rows.all(|row| row["holds"] == true);
-    assert_eq!(answer.status, Some(i32::from(!all)));
-    assert_eq!(answer.said.contains("all hold"), all);
+    assert!(rows.clone().any(|row| row["holds"] == true));
+    let failed = rows.any(|row| row["holds"] == false && row["undecided"] == false);
+    assert_eq!(answer.status, Some(i32::from(failed)));
+    assert_eq!(answer.said.contains("do not hold"), failed);
     assert!(answer.said.contains("wrote s.json") && answer.said.contains("wrote s.html"));
+}
+
+/// Two drops of each case, of which some miss a target by chance and some have nothing to judge.
+#[test]
+fn a_quick_look_ends_well_where_nothing_fails() {
+    let answer = asked("2", "1");
+    let json = answer.value();
+    let groups = json["groups"].as_object().unwrap();
+    let rows = || groups.values().flat_map(|rows| rows.as_array().unwrap());
+    let undecided = rows().filter(|row| row["undecided"] == true);
+    assert!(undecided.count() > 0);
+    for row in rows().filter(|row| row["undecided"] == true) {
+        assert_eq!(row["holds"], false, "{row}");
+    }
+    assert_eq!(answer.status, Some(0), "{}", answer.said);
+    assert!(
+        answer.said.contains("none fails") && answer.said.contains("undecided with so few trials")
+    );
+    assert!(answer.page.contains("<td>undecided</td>"));
 }
 
 #[test]
@@ -152,11 +173,11 @@ fn a_nervous_detector_does_not_hold() {
     let score = of(&["fall", "quiet"], nervous);
     let fall = case(&score, FALL);
     assert!(
-        !fall.holds && fall.values["false_falls"].as_u64() > Some(0),
+        fall.fails() && fall.values["false_falls"].as_u64() > Some(0),
         "{fall:?}"
     );
     let quiet = case(&score, QUIET);
-    assert!(!quiet.holds && quiet.measured() > Some(0.0), "{quiet:?}");
+    assert!(quiet.fails() && quiet.measured() > Some(0.0), "{quiet:?}");
 }
 
 #[test]
@@ -167,9 +188,9 @@ fn a_deaf_detector_does_not_hold() {
     };
     let score = of(&["fall", "quiet"], deaf);
     let fall = case(&score, FALL);
-    assert!(!fall.holds && fall.values["missed"] == 4, "{fall:?}");
+    assert!(fall.fails() && fall.values["missed"] == 4, "{fall:?}");
     let quiet = case(&score, QUIET);
-    assert!(!quiet.holds && quiet.measured() == Some(0.0), "{quiet:?}");
+    assert!(quiet.fails() && quiet.measured() == Some(0.0), "{quiet:?}");
 }
 
 #[test]
@@ -182,6 +203,12 @@ fn a_slow_detector_does_not_hold() {
     let score = of(&["fall"], slow);
     let fall = case(&score, FALL);
     assert!(!fall.holds && fall.values["false_falls"] == 0, "{fall:?}");
+    // Four drops of one case may be late by chance, not those of several.
+    let late = score
+        .rows()
+        .filter(|row| row.case.starts_with("white noise"));
+    let late: Vec<_> = late.filter(|row| row.fails()).collect();
+    assert!(late.len() > 1, "{late:?}");
 }
 
 /// Rotors that go round with the spin once, are driven back and whirl against it: both whirls are told, both rightly. The second
@@ -199,7 +226,7 @@ fn a_whirl_that_is_driven_back_has_the_sign_that_it_had() {
         let score = run(&plan, &Target::Host).unwrap();
         let row = case(&score, "sign of a whirl");
         assert!(
-            row.holds,
+            row.holds && row.values["told"].as_u64() >= Some(2),
             "{row:?}"
         );
     }

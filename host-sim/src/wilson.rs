@@ -6,7 +6,12 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 /// The 95 % interval for the probability of what came `hits` times in `trials` (above 0).
 pub fn interval(hits: u64, trials: u64) -> (f64, f64) {
     let (hits, trials) = (hits as f64, trials as f64);
-    let (share, square) = (hits / trials, QUANTILE * QUANTILE);
+    of_share(hits / trials, trials)
+}
+
+/// Likewise, from the share. For the mean of numbers from 0 to 1 it is wide enough as well: they scatter no more than hits.
+pub fn of_share(share: f64, trials: f64) -> (f64, f64) {
+    let square = QUANTILE * QUANTILE;
     let middle = (share + square / (2.0 * trials)) / (1.0 + square / trials);
     let spread = share * (1.0 - share) / trials + square / (4.0 * trials * trials);
     let half = QUANTILE * spread.sqrt() / (1.0 + square / trials);

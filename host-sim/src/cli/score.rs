@@ -5,7 +5,7 @@ use std::io;
 use super::args::ScoreArgs;
 use super::{commit, one_standard_output, open, paint, say};
 use crate::failure::Failure;
-use crate::score::{Score, all_hold, json, page, run, table};
+use crate::score::{Score, json, none_fails, page, run, table};
 
 /// Measures, says and writes the rows; fails where a target is not reached.
 pub(super) fn measure(args: &ScoreArgs) -> Result<(), Failure> {
@@ -29,12 +29,14 @@ pub(super) fn measure(args: &ScoreArgs) -> Result<(), Failure> {
 }
 
 fn verdict(score: &Score) -> Result<(), Failure> {
-    if all_hold(score.rows()) {
+    if none_fails(score.rows()) {
         return Ok(());
     }
-    let broken = score.rows().filter(|row| !row.holds).count();
-    Err(Failure::Check(format!(
-        "{broken} of {} targets of the detector do not hold",
-        score.rows().count()
-    )))
+    let broken = score.rows().filter(|row| row.fails()).count();
+    let all = score.rows().count();
+    Err(Failure::Check(if broken > 0 {
+        format!("{broken} of {all} targets of the detector do not hold")
+    } else {
+        format!("too few trials: not one of {all} targets of the detector is decided")
+    }))
 }

@@ -234,7 +234,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     })?;
     let mut rows = Vec::new();
     // Of drops and lift-offs, and of rotors that end rolling.
-    let mut phases = [Counts::default(); 2];
+    let mut phases = [(Counts::default(), 0); 2];
     for (case, drops) in cases.iter().zip(&drops) {
         let errors: Vec<f64> = drops.iter().flat_map(|it| it.errors.clone()).collect();
         rows.push(judged(*case, &errors));
@@ -243,21 +243,22 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             Case::Rolling(_) => &mut phases[1],
             Case::Contact(_) | Case::Thrown(_) => continue,
         };
-        drops.iter().for_each(|seen| add(sums, &seen.phases));
+        drops.iter().for_each(|seen| add(&mut sums.0, &seen.phases));
+        sums.1 += drops.len();
     }
     let [dropping, rolling] = phases;
     rows.push(right_phase(
         "phases over time, drops and lift-offs",
-        &dropping,
+        dropping,
         RIGHT,
     ));
     rows.push(right_phase(
         "phases over time, sliding to rolling",
-        &rolling,
+        rolling,
         RIGHT_ROLLING,
     ));
-    let mut all = dropping;
-    add(&mut all, &rolling);
+    let mut all = dropping.0;
+    add(&mut all, &rolling.0);
     let figures = vec![Figure::Confusion {
         title: "Phases over time",
         unit: "samples",
@@ -295,13 +296,17 @@ fn judged(case: Case, errors: &[f64]) -> Row {
     );
     let row = match case {
         Case::Contact([1.0, 1.0]) | Case::Thrown(_) => {
-            Row::at_least(case.name(), "share_within_1_ms", within(ONSET[0]), MOST)
+            Row::at_least(case.name(), "share_within_1_ms", within(ONSET[0]), MOST).of(sizes.len())
         }
-        Case::Contact(_) => Row::at_least(case.name(), "share_within_3_ms", within(ONSET[1]), MOST),
-        Case::Rolling(_) => Row::at_most(case.name(), "onset_error_median_s", middle, ROLLING),
+        Case::Contact(_) => {
+            Row::at_least(case.name(), "share_within_3_ms", within(ONSET[1]), MOST).of(sizes.len())
+        }
+        Case::Rolling(_) => {
+            Row::quantile_at_most(case.name(), "onset_error_median_s", &sizes, 0.5, ROLLING)
+        }
         Case::LiftOff => {
             let found = share(sizes.len() - missed, sizes.len());
-            Row::at_least(case.name(), "found_share", found, LIFT_OFFS)
+            Row::at_least(case.name(), "found_share", found, LIFT_OFFS).of(sizes.len())
         }
     };
     row.with("events", sizes.len())
@@ -311,7 +316,8 @@ fn judged(case: Case, errors: &[f64]) -> Row {
         .noted(note)
 }
 
-fn right_phase(case: &str, phases: &Counts, target: f64) -> Row {
+/// Of so many drops: the samples of one do not stand for themselves.
+fn right_phase(case: &str, (phases, drops): (Counts, usize), target: f64) -> Row {
     let all: u64 = phases.iter().flatten().sum();
     let right = phases
         .iter()
@@ -319,5 +325,7 @@ fn right_phase(case: &str, phases: &Counts, target: f64) -> Row {
         .map(|(row, column)| row[column]);
     let right: u64 = right.sum();
     let part = share(right as usize, all as usize);
-    Row::at_least(case, "right_share", part, target).with("samples", all)
+    Row::at_least(case, "right_share", part, target)
+        .of(drops)
+        .with("samples", all)
 }

@@ -258,7 +258,8 @@ fn judged(case: &Case, falls: &[Fall]) -> Result<Row, Failure> {
     let early: usize = falls.iter().map(|it| it.early).sum();
     let (middle, late) = (median(&latencies), quantile(&latencies, 0.99));
     let missed = falls.len() - found;
-    let row = Row::at_most(&case.name, "ratio", middle / bound, case.target)
+    let ratios: Vec<f64> = latencies.iter().map(|it| it / bound).collect();
+    let row = Row::quantile_at_most(&case.name, "ratio", &ratios, 0.5, case.target)
         .and(missed == 0 && early == 0)
         .with("drops", falls.len())
         .with("found", found)

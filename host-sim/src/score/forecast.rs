@@ -106,14 +106,20 @@ fn judged(name: &str, score: &Score) -> [Row; 5] {
         )
     };
     let [declared, false_whirls] = score.declared;
+    // Where all end alike there is no base rate; the forecasts of a drop do not stand for themselves.
+    let asked = if whirls > 0 && others > 0 {
+        score.drops
+    } else {
+        0
+    };
     [
         Row::at_least(name, "hit_rate", score.hit_rate, HITS)
-            .and(whirls > 0)
+            .of(whirls)
             .with("drops", score.drops)
             .with("whirls", whirls)
             .noted(format!("{whirls} whirls in {} drops", score.drops)),
         Row::at_most(name, "lasting_false_rate", score.lasting_false_rate, FALSE)
-            .and(others > 0)
+            .of(others)
             .with("false_rate", score.false_rate)
             .with("others", others)
             .noted(format!("foretold at any time: {:.3}", score.false_rate)),
@@ -123,10 +129,11 @@ fn judged(name: &str, score: &Score) -> [Row; 5] {
             score.brier / score.brier_of_base_rate,
             BRIER,
         )
+        .of_mean(score.brier, asked, BRIER * score.brier_of_base_rate)
         .with("brier", score.brier)
         .with("forecasts", score.answers),
         Row::at_most(name, "late_share", score.late, LATE)
-            .and(whirls > 0)
+            .of(whirls)
             .with("lead_s", quantiles(score.lead))
             .with("lead_to_turn_s", quantiles(score.lead_to_turn))
             .with("begin_error_s", quantiles(score.onset_error))

@@ -257,35 +257,23 @@ fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
     if hidden > 0 {
         note += &format!("; {others} of {hidden} that noise hides");
     }
+    let quantiles = |quantity, values: &[f64], p, target| {
+        Row::quantile_at_most(name, quantity, values, p, target)
+    };
     [
         Row::at_least(name, "found_share", share(found, seen.impacts), FOUND)
+            .of(seen.impacts)
             .with("drops", drops)
             .with("impacts", seen.impacts)
             .with("found", found)
             .with("hidden", seen.hidden[0])
             .with("hidden_found", seen.hidden[1])
             .noted(note),
-        Row::at_most(
-            name,
-            "onset_error_median_samples",
-            median(&seen.dated),
-            DATED[0],
-        ),
-        Row::at_most(
-            name,
-            "onset_error_p999_samples",
-            quantile(&seen.dated, 0.999),
-            DATED[1],
-        ),
-        Row::at_most(
-            name,
-            "speed_error_p99",
-            quantile(&seen.measured, 0.99),
-            MEASURED,
-        )
-        .with("speed_error_median", median(&seen.measured)),
-        Row::at_most(name, "ratio", median(&seen.late), LATE)
-            .with("ratio_p99", quantile(&seen.late, 0.99)),
+        quantiles("onset_error_median_samples", &seen.dated, 0.5, DATED[0]),
+        quantiles("onset_error_p999_samples", &seen.dated, 0.999, DATED[1]),
+        quantiles("speed_error_p99", &seen.measured, 0.99, MEASURED)
+            .with("speed_error_median", median(&seen.measured)),
+        quantiles("ratio", &seen.late, 0.5, LATE).with("ratio_p99", quantile(&seen.late, 0.99)),
         Row::at_most(name, "invented", seen.invented as f64, 0.0).with("drops", drops),
     ]
 }

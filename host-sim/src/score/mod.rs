@@ -32,7 +32,7 @@ use touchdown_core::detect::Tuning;
 
 pub use figure::Figure;
 pub use page::page;
-pub use row::{Row, all_hold};
+pub use row::{Row, none_fails};
 pub use table::table;
 
 use crate::failure::Failure;

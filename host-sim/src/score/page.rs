@@ -15,11 +15,15 @@ const CLASSES: [&str; 5] = ["free-fall", "rolling", "impact", "sliding", "motion
 
 /// Writes the page.
 pub fn page(score: &Score) -> String {
-    let broken = score.rows().filter(|row| !row.holds).count();
+    let held = score.rows().filter(|row| row.holds).count();
+    let undecided = score.rows().filter(|row| row.undecided).count();
     let body = html! {
         header {
             p.kind { "Detector" }
-            h1 { (score.rows().count() - broken) " of " (score.rows().count()) " targets hold" }
+            h1 {
+                (held) " of " (score.rows().count()) " targets hold"
+                @if undecided > 0 { ", " (undecided) " undecided" }
+            }
             p.note {
                 (score.extent()) ". Truth: the independent reference, and what was put in. Bound: "
                 "sequential test of the known signature at one false alarm in 10\u{2079} samples."
@@ -52,7 +56,7 @@ fn rows_of(name: &str, rows: &[Row]) -> Markup {
             td { (row.quantity) }
             td.number { (row.measured().map_or("\u{2013}".to_owned(), short)) }
             td.number { (if row.at_least { "\u{2265} " } else { "\u{2264} " }) (short(row.target)) }
-            td { (if row.holds { "holds" } else { "does not hold" }) }
+            td { (if row.holds { "holds" } else if row.undecided { "undecided" } else { "does not hold" }) }
             td { (row.note) }
         }
     };

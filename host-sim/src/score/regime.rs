@@ -15,7 +15,8 @@ use super::{Findings, Plan};
 use crate::failure::Failure;
 use crate::history::Regime;
 use crate::scene::{Scene, Start};
-use crate::statistics::{median, quantile, share};
+use crate::statistics::{median, share};
+use crate::wilson;
 
 /// Part of the regimes that has to be told right.
 const RIGHT: f64 = 0.99;
@@ -150,7 +151,8 @@ struct Seen {
     regime: Option<(usize, usize)>,
     /// Turns of each backward whirl when it was declared; infinite for one that was not.
     turns: Vec<f64>,
-    /// Whirls whose sign is not that of the motion.
+    /// Whirls told, and those whose sign is not that of the motion.
+    told: usize,
     wrong_signs: usize,
 }
 
@@ -160,13 +162,16 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let end = drop.end();
     let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
-    let signs = watched.detection.events.iter();
-    let signs = signs.filter_map(|event| has_wrong_sign(&watched, event));
-    let wrong_signs = signs.filter(|it| *it).count();
+    let events = &watched.detection.events;
+    let signs: Vec<_> = events
+        .iter()
+        .filter_map(|it| has_wrong_sign(&watched, it))
+        .collect();
     Ok(Seen {
         regime: settled.then(|| (row(regime), column(&watched))),
         turns: whirls(&watched, end),
-        wrong_signs,
+        told: signs.len(),
+        wrong_signs: signs.iter().filter(|it| **it).count(),
     })
 }
 
@@ -204,7 +209,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             "right_share",
             share(right, judged.len()),
             RIGHT,
-        );
+        )
+        .of(judged.len());
         rows.push(
             row.with("drops", drops.len())
                 .with("judged", judged.len())
@@ -219,24 +225,30 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let all = || drops.iter().flatten();
     let turns: Vec<f64> = all().flat_map(|it| it.turns.clone()).collect();
     rows.push(
-        Row::at_most(
-            "backward whirl declared",
-            "turns_p99",
-            quantile(&turns, 0.99),
-            TURNS,
-        )
-        .with("whirls", turns.len())
-        .with("turns_median", median(&turns))
-        .noted(format!(
-            "{} whirls, median {:.3}",
-            turns.len(),
-            median(&turns)
-        )),
+        Row::quantile_at_most("backward whirl declared", "turns_p99", &turns, 0.99, TURNS)
+            .with("whirls", turns.len())
+            .with("turns_median", median(&turns))
+            .noted(format!(
+                "{} whirls, median {:.3}",
+                turns.len(),
+                median(&turns)
+            )),
     );
     let wrong: usize = all().map(|it| it.wrong_signs).sum();
+    let told: usize = all().map(|it| it.told).sum();
+    let (_, upper) = match told {
+        0 => (0.0, 1.0),
+        _ => wilson::interval(wrong as u64, told as u64),
+    };
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
-            .with("drops", all().count()),
+            .with("drops", all().count())
+            .with("told", told)
+            .with("upper_95_share", upper)
+            .noted(format!(
+                "{wrong} of {told} told; 95 %: below {:.2} %",
+                100.0 * upper
+            )),
     );
     let names = vec![
         "rest",

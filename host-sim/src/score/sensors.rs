@@ -282,6 +282,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             let harmed = drops.iter().filter(|it| it.is_harmed).count();
             rows.push(
                 Row::at_most(&name, "harmed_share", share(harmed, drops.len()), HARMED)
+                    .of(drops.len())
                     .with("harmed", harmed)
                     .noted(format!("{harmed} of {} drops", drops.len())),
             );
@@ -296,6 +297,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 fn named(name: &str, drops: &[Seen], false_faults: usize) -> Row {
     let ages: Vec<f64> = drops.iter().filter_map(|it| it.age).collect();
     Row::at_least(name, "named_share", share(ages.len(), drops.len()), NAMED)
+        .of(drops.len())
         .with("drops", drops.len())
         .with("samples_median", median(&ages))
         .with("samples_p99", quantile(&ages, 0.99))

@@ -67,7 +67,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     })?;
     let row = |case: &str, quantity, target, of: fn(&Errors) -> Option<f64>| {
         let errors: Vec<f64> = drops.iter().flatten().filter_map(of).collect();
-        Row::at_most(case, quantity, quantile(&errors, NINE_IN_TEN), target)
+        Row::quantile_at_most(case, quantity, &errors, NINE_IN_TEN, target)
             .with("drops", errors.len())
             .with("error_median", median(&errors))
             .with("error_worst", quantile(&errors, 1.0))

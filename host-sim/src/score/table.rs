@@ -22,9 +22,11 @@ pub fn table(score: &Score, paint: Paint) -> String {
 
 fn line(row: &Row, paint: Paint) -> String {
     let verdict = if row.holds {
-        paint.good("holds ")
+        paint.good("holds    ")
+    } else if row.undecided {
+        "undecided".to_owned()
     } else {
-        paint.bad("BROKEN")
+        paint.bad("BROKEN   ")
     };
     let sense = if row.at_least { '\u{2265}' } else { '\u{2264}' };
     format!(
@@ -51,11 +53,16 @@ pub fn short(value: f64) -> String {
 
 fn summary(score: &Score, paint: Paint) -> String {
     let all = score.rows().count();
-    let broken = score.rows().filter(|row| !row.holds).count();
-    let verdict = if broken == 0 {
-        paint.good("all hold")
-    } else {
-        paint.bad(&format!("{broken} do not hold"))
+    let broken = score.rows().filter(|row| row.fails()).count();
+    let undecided = score.rows().filter(|row| row.undecided).count();
+    let verdict = match (broken, undecided) {
+        (0, 0) => paint.good("all hold"),
+        (0, _) => paint.good("none fails"),
+        _ => paint.bad(&format!("{broken} do not hold")),
     };
-    format!("{all} rows, {verdict}; {}\n", score.extent())
+    let open = match undecided {
+        0 => String::new(),
+        some => format!(", {some} undecided with so few trials"),
+    };
+    format!("{all} rows, {verdict}{open}; {}\n", score.extent())
 }
