@@ -146,6 +146,40 @@ fn what_is_wrong_with_a_text_is_told() {
     );
 }
 
+/// No column is two quantities, by number or by name.
+#[test]
+fn each_quantity_has_a_column_of_its_own() {
+    let columns = [
+        ("time", "'t'"),
+        ("ax", "'x'"),
+        ("ay", "'y'"),
+        ("speed", "'n'"),
+        ("levitated", "5"),
+    ];
+    let all = "[bx]\ncolumn = 6\nunit = 'um'\n[by]\ncolumn = 7\nunit = 'um'\n".to_owned() + MAPPING;
+    let names = ["t", "x", "y", "n", "on", "u", "v"];
+    let rows = (0..9).map(|row| format!("0,{row};1;2;3;1;4;5\n"));
+    let recording = format!("{}\n{}", names.join(";"), rows.collect::<String>());
+    assert_eq!(text(recording.as_bytes(), &mapped(&all)), Ok(9));
+    let columns: Vec<_> = columns
+        .into_iter()
+        .chain([("bx", "6"), ("by", "7")])
+        .collect();
+    for (one, column) in &columns {
+        for (other, taken) in columns.iter().filter(|it| it.0 != *one) {
+            let from = format!("[{other}]\ncolumn = {taken}");
+            assert!(all.contains(&from), "{from}");
+            let mapping = all.replace(&from, &format!("[{other}]\ncolumn = {column}"));
+            let error = text(recording.as_bytes(), &mapped(&mapping)).unwrap_err();
+            let told = error.contains("each needs a column of its own")
+                && error.starts_with("r.csv:1: ")
+                && error.contains(one)
+                && error.contains(other);
+            assert!(told, "{one} {other}: {error}");
+        }
+    }
+}
+
 #[test]
 fn what_is_wrong_with_a_mapping_is_told_with_its_line() {
     let with = |from: &str, to: &str| MAPPING.replacen(from, to, 1);

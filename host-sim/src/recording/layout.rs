@@ -3,6 +3,7 @@
 use super::mapping::{Comment, Decimal, Delimiter, TextHints};
 use super::pick::Heading;
 use super::unit::is_unit;
+use crate::stream::is_missing;
 
 /// Bytes in which header and first rows must be.
 pub const HEAD: usize = 1 << 16;
@@ -236,11 +237,6 @@ fn numeric_columns(
 /// A number, or what stands for a missing one.
 fn is_value(field: &str, decimal: Decimal) -> bool {
     is_missing(field) || is_number(field, decimal)
-}
-
-/// Whether the field says that there is no value.
-pub fn is_missing(field: &str) -> bool {
-    field.is_empty() || field.eq_ignore_ascii_case("nan")
 }
 
 fn is_number(field: &str, decimal: Decimal) -> bool {

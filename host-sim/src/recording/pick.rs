@@ -123,13 +123,39 @@ impl Pick {
                 reversed: it.reversed,
             });
         }
-        Ok(Self {
+        let pick = Self {
             positions,
             speed,
             levitated,
             time: time(mapping, found)?,
             turned: (mapping.axes == Axes::Sensors).then_some(sensors.mounting_angle),
-        })
+        };
+        pick.each_its_own(found)?;
+        Ok(pick)
+    }
+
+    /// No column is two quantities.
+    fn each_its_own(&self, found: &[Heading]) -> Result<(), String> {
+        let positions = self.positions.iter().map(|it| it.column);
+        let others = [
+            ("time", self.time.map(|it| it.0)),
+            ("speed", self.speed.map(|it| it.column)),
+            ("levitated", self.levitated.map(|it| it.column)),
+        ];
+        let others = others
+            .into_iter()
+            .filter_map(|(name, it)| Some((name, it?)));
+        let all: Vec<_> = POSITIONS.into_iter().zip(positions).chain(others).collect();
+        for (index, (name, column)) in all.iter().enumerate() {
+            if let Some((before, _)) = all[..index].iter().find(|it| it.1 == *column) {
+                let (number, named) = (column + 1, &found[*column].text);
+                let rule = "each needs a column of its own";
+                return Err(format!(
+                    "{before} and {name} are both column {number} {named:?}: {rule}"
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// What a stream of it would have.

@@ -4,13 +4,13 @@ use std::io::{Chain, Cursor, Read};
 
 use csv::ByteRecord;
 
-use super::layout::{HEAD, Layout, is_missing, text_of, with_point};
+use super::layout::{HEAD, Layout, text_of, with_point};
 use super::mapping::{Mapping, TextHints};
 use super::pick::{Pick, list};
 use super::remarks::Remarks;
 use crate::input_error::{InputError, is_utf_16, reason};
 use crate::sensors::SensorsConfig;
-use crate::stream::{Bounded, Meter, Stamp, Stamped, csv_error};
+use crate::stream::{Bounded, Meter, Stamp, Stamped, csv_error, is_missing};
 
 /// The first part of a file, and the rest of it.
 pub struct Head<R> {

@@ -16,7 +16,7 @@ pub use clock::LOOK_AHEAD;
 pub(crate) use clock::{Clock, Stamp};
 pub(crate) use even::{Even, Stamped, is_rate};
 pub use read::{Pulses, Row, StreamReader};
-pub(crate) use read::{Records, csv_error};
+pub(crate) use read::{Records, csv_error, is_missing};
 pub(crate) use survey::median_interval;
 pub use write::StreamWriter;
 

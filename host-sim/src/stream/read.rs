@@ -34,7 +34,7 @@ pub struct Row {
     pub positions: [f64; CHANNELS],
     /// rad/s; `None` without the column or where it is NaN.
     pub spin: Option<f64>,
-    /// `None` without the column.
+    /// `None` without the column or where it is empty or NaN.
     pub levitated: Option<bool>,
     /// Of inner ring and cage; `None` without the columns or where one of them is NaN.
     pub edges: [Option<Pulses>; TACHOMETERS],
@@ -188,6 +188,11 @@ pub fn csv_error(file: &str, error: &csv::Error, meter: &Meter) -> InputError {
     }
 }
 
+/// Whether a field says that there is no value.
+pub fn is_missing(field: &str) -> bool {
+    field.is_empty() || field.eq_ignore_ascii_case("nan")
+}
+
 fn parse(
     file: &str,
     record: &StringRecord,
@@ -205,9 +210,10 @@ fn parse(
     let number = |column: usize| -> Result<f64, InputError> {
         let text = &record[column];
         match text.parse::<f64>() {
-            Ok(value) if !value.is_infinite() => Ok(value),
+            _ if is_missing(text) => Ok(f64::NAN),
+            Ok(value) if value.is_finite() => Ok(value),
             _ => Err(fail(format!(
-                "{} must be a finite number or NaN, is {text:?}",
+                "{} must be a finite number, empty or NaN, is {text:?}",
                 header[column]
             ))),
         }
@@ -231,11 +237,15 @@ fn parse(
     }
     let mut levitated = None;
     if columns.levitated {
-        levitated = Some(match &record[column] {
-            "0" => false,
-            "1" => true,
-            other => return Err(fail(format!("levitated must be 0 or 1, is {other:?}"))),
-        });
+        levitated = match &record[column] {
+            "0" => Some(false),
+            "1" => Some(true),
+            other if is_missing(other) => None,
+            other => {
+                let rule = "must be 0, 1, empty or NaN";
+                return Err(fail(format!("levitated {rule}, is {other:?}")));
+            }
+        };
         column += 1;
     }
     let mut edges = [None; TACHOMETERS];
@@ -243,7 +253,7 @@ fn parse(
         let (count, age) = (number(column)?, MICRO * number(column + 1)?);
         if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
             let text = &record[column];
-            let rule = "must be a whole number from 0 to 2^53 or NaN";
+            let rule = "must be a whole number from 0 to 2^53, empty or NaN";
             return Err(fail(format!("{} {rule}, is {text:?}", header[column])));
         }
         if age < 0.0 {
