@@ -20,11 +20,17 @@ restitution = 0.8
 duration_s = 0.01
 ";
 
+/// No number is shown as a row of zeros.
+fn is_short(said: &[u8]) -> bool {
+    let mut runs = said.split(|it| !it.is_ascii_digit());
+    runs.all(|digits| digits.len() < 25)
+}
+
 /// Drops the scene `text`, which must fail with `message` and leave nothing but the scene.
 fn refuse(text: impl AsRef<[u8]>, message: &str) {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("scene.toml"), text).unwrap();
-    touchdown(folder.path())
+    let refused = touchdown(folder.path())
         .args([
             "drop",
             "scene.toml",
@@ -39,6 +45,7 @@ fn refuse(text: impl AsRef<[u8]>, message: &str) {
         .code(2)
         .stdout("")
         .stderr(contains(message));
+    assert!(is_short(&refused.get_output().stderr), "{refused}");
     assert_eq!(names(&folder), ["scene.toml"], "{message}");
 }
 
@@ -121,8 +128,22 @@ fn impossible_values_name_line_and_rule() {
         ),
         (4, "speed_rpm = 1e999", "scene.toml:4: "),
         (2, "mass_kg = 1e-300", "scene.toml:2: mass_kg must be"),
-        (3, "radius_mm = 1e300", "scene.toml:3: radius_mm must be"),
-        (4, "speed_rpm = 1e300", "scene.toml:4: speed_rpm must be"),
+        (
+            3,
+            "radius_mm = 1e300",
+            "scene.toml:3: radius_mm must be 0.01 to 100000, is 1e300\n",
+        ),
+        (4, "speed_rpm = -1e300", "scene.toml:4: speed_rpm must be"),
+        (
+            8,
+            "restitution = 1e300",
+            "scene.toml:8: restitution must be 0 to 1, is 1e300\n",
+        ),
+        (
+            10,
+            "duration_s = 1e300",
+            "scene.toml:10: duration_s must be no more than 86400, is 1e300\n",
+        ),
         (
             6,
             "clearance_mm = 1e-300",
@@ -131,6 +152,29 @@ fn impossible_values_name_line_and_rule() {
         (7, "friction = 1e300", "scene.toml:7: friction must be"),
     ] {
         refuse(replaced(line, with), message);
+    }
+}
+
+/// Every list of a scene takes as many numbers as it has to, no fewer and no more.
+#[test]
+fn lists_have_a_length() {
+    for (table, key, length) in [
+        ("[sensors]", "mounting_deg", 2),
+        ("[sensors]", "offset_um", 4),
+        ("[sensors]", "gain_error_percent", 4),
+        ("[two_plane]", "tilt_mrad", 2),
+        ("[two_plane]", "tilt_rate_rad_s", 2),
+        ("[two_plane]", "sensor_z_mm", 2),
+        ("[[magnet]]\nz_mm = 0", "force_n", 2),
+    ] {
+        let line = SCENE.lines().count() + table.lines().count() + 1;
+        for there in (0..length + 3).filter(|it| *it != length) {
+            let list = vec!["0.5"; there].join(", ");
+            refuse(
+                format!("{SCENE}{table}\n{key} = [{list}]\n"),
+                &format!("scene.toml:{line}: the list must have {length} numbers, has {there}"),
+            );
+        }
     }
 }
 
@@ -438,12 +482,12 @@ fn streams_name_line_and_rule() {
         "s.csv:4: ay_um must be a finite number",
     );
     refuse_stream(
-        format!("{header}{row}0.002,1,\n"),
-        "s.csv:4: ay_um must be a finite number",
-    );
-    refuse_stream(
         format!("{header}{row}nan,1,2\n"),
         "s.csv:4: time_s must be a finite number",
+    );
+    refuse_stream(
+        format!("{header}{row},1,2\n"),
+        "s.csv:4: time_s must be a finite number, is \"\"",
     );
     refuse_stream(
         format!("{header}{row}0.002,1\n"),
@@ -486,7 +530,10 @@ fn streams_name_line_and_rule() {
         "s.csv:2: the text is not UTF-8",
     );
     let levitated = "time_s,ax_um,ay_um,levitated\n0,1,2,yes\n";
-    refuse_stream(levitated, "s.csv:2: levitated must be 0 or 1, is \"yes\"");
+    refuse_stream(
+        levitated,
+        "s.csv:2: levitated must be 0, 1, empty or NaN, is \"yes\"",
+    );
     let mut late: String = (0..10_000)
         .map(|k| format!("{},1,2\n", f64::from(k) / 1e3))
         .collect();
@@ -494,6 +541,60 @@ fn streams_name_line_and_rule() {
     refuse_stream(
         format!("{header}{late}"),
         "s.csv:10002: ax_um must be a finite number",
+    );
+}
+
+/// What a recording leaves empty is missing, as NaN is, in every column but that of time.
+#[test]
+fn empty_cells_are_missing_values() {
+    let folder = TempDir::new().unwrap();
+    let header = "time_s,ax_um,ay_um,bx_um,by_um,speed_rpm,levitated,inner_ring_edges,inner_ring_edge_age_us";
+    let width = header.split(',').count();
+    for column in 1..width {
+        let stream = |missing: &str| {
+            let rows = (0..400).map(|row| {
+                let mut cells = vec!["1"; width];
+                let time = f64::from(row) / 1e3;
+                let time = time.to_string();
+                cells[0] = &time;
+                if row % 7 == 3 {
+                    cells[column] = missing;
+                }
+                cells.join(",") + "\n"
+            });
+            format!("{header}\n{}", rows.collect::<String>())
+        };
+        let answers = ["", "NaN"].map(|missing| {
+            fs::write(folder.path().join("s.csv"), stream(missing)).unwrap();
+            let replayed = touchdown(folder.path())
+                .args(["replay", "s.csv", "--scene", "rig", "--json", "-"])
+                .assert()
+                .code(0);
+            replayed.get_output().stdout.clone()
+        });
+        assert_eq!(answers[0], answers[1], "column {column}");
+    }
+}
+
+#[test]
+fn a_recording_of_immense_numbers_is_told_in_short_ones() {
+    let folder = TempDir::new().unwrap();
+    let rows = (0..400).map(|row| format!("{},1e300,-1e300,1e300\n", f64::from(row) / 1e3));
+    let stream = format!("time_s,ax_um,ay_um,speed_rpm\n{}", rows.collect::<String>());
+    fs::write(folder.path().join("s.csv"), stream).unwrap();
+    let replayed = touchdown(folder.path())
+        .args(["replay", "s.csv", "--scene", "rig"])
+        .assert()
+        .code(0)
+        .stderr(contains("are unit and offset right?"));
+    let said = replayed.get_output();
+    assert!(
+        is_short(&said.stderr) && is_short(&said.stdout),
+        "{replayed}"
+    );
+    refuse_stream(
+        "time_s,ax_um,ay_um\n0,1,2\n1e300,1,2\n",
+        "s.csv:3: the sample rate must be 100 to 200000 Hz, is 1e-300 Hz",
     );
 }
 

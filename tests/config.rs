@@ -159,6 +159,11 @@ fn what_is_wrong_is_said_with_its_line_before_anything_is_sent() {
             "zero_count = 5000.0",
             "c.toml:19: zero_count must be between",
         ),
+        (
+            "mounting_deg = [",
+            "mounting_deg = [0.0, ",
+            "the list must have 2 numbers, has 3",
+        ),
         ("full_scale = 4095", "full_scale = 70000", "full_scale"),
         ("\"ay\", ", "", "channels must be"),
         (

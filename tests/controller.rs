@@ -119,6 +119,8 @@ pub struct Machine {
     pub episodes: BTreeMap<u32, Vec<u8>>,
     /// What is counted over its life.
     pub lifetime: Option<Counters>,
+    /// What it says of its firmware.
+    pub firmware: &'static str,
     block: Block,
 }
 
@@ -178,6 +180,7 @@ impl Default for Machine {
             noise: Vec::new(),
             episodes: BTreeMap::new(),
             lifetime: None,
+            firmware: "0.1.0",
             block: config_block::encode(&settings()),
         }
     }
@@ -256,7 +259,8 @@ impl Drop for Controller {
 
 /// Until one of the ends is gone.
 fn session(mut stream: Box<dyn Stream>, machine: &Mutex<Machine>, plugged: &Mutex<bool>) {
-    let mut server = Server::new("0.1.0", SAMPLE_RATE);
+    let firmware = machine.lock().expect("a machine").firmware;
+    let mut server = Server::new(firmware, SAMPLE_RATE);
     let mut told = Instant::now();
     let mut bytes = [0; 512];
     while *plugged.lock().expect("a flag") {

@@ -6,6 +6,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use crate::input_error::{InputError, reason};
+use crate::plain::shown;
 
 /// Ends a command with [`Failure::status`].
 #[derive(Debug, Error, Diagnostic)]
@@ -15,7 +16,7 @@ pub enum Failure {
     #[diagnostic(transparent)]
     Input(#[from] InputError),
     /// A file that cannot be written.
-    #[error("{file}: cannot be written: {}", reason(.error))]
+    #[error("{}: cannot be written: {}", shown(.file), reason(.error))]
     Output {
         /// The file.
         file: String,
@@ -23,13 +24,13 @@ pub enum Failure {
         error: io::Error,
     },
     /// Options that contradict each other.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Usage(String),
     /// The place where the detector should run is not ready.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Target(String),
     /// A check that the command exists for did not hold.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Check(String),
 }
 

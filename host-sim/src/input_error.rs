@@ -7,6 +7,8 @@ use std::path::Path;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 
+use crate::plain::shown;
+
 /// Larger than any scene, plan or mapping, bytes.
 pub const LARGEST_TOML: u64 = 4 << 20;
 
@@ -45,15 +47,26 @@ impl InputError {
         span: std::ops::Range<usize>,
         rule: impl Into<String>,
     ) -> Self {
-        let start = span.start.min(text.len());
-        let line = 1 + text.as_bytes()[..start]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count();
-        let source = NamedSource::new(file, text.to_owned()).with_language("toml");
+        let start = text.floor_char_boundary(span.start.min(text.len()));
+        let end = text.ceil_char_boundary(span.end.clamp(start, text.len()));
+        let line = 1 + text[..start].matches('\n').count();
+        let parts = [&text[..start], &text[start..end], &text[end..]].map(shown);
+        let begins = parts[0].len();
+        let span = begins..begins + parts[1].len();
+        let source = NamedSource::new(shown(file), parts.concat());
         Self {
-            excerpt: Some(Box::new((source, (start..span.end.min(text.len())).into()))),
+            excerpt: Some(Box::new((source.with_language("toml"), span.into()))),
             ..Self::at_line(file, line as u64, rule)
+        }
+    }
+
+    /// The same of a file that another file names, which may be none of the reader's: nothing of its text is told, neither
+    /// the excerpt nor what the rule quotes.
+    pub fn of_named_file(self) -> Self {
+        Self {
+            rule: without_quotes(&self.rule),
+            excerpt: None,
+            ..self
         }
     }
 
@@ -106,7 +119,7 @@ impl InputError {
         Err(Self::of_file(&file, rule))
     }
 
-    /// The rule that is broken.
+    /// The rule that is broken; may quote the file as it is.
     pub fn rule(&self) -> &str {
         &self.rule
     }
@@ -114,6 +127,17 @@ impl InputError {
     /// The line, counted from 1.
     pub fn line(&self) -> Option<u64> {
         self.line
+    }
+}
+
+/// Dots for all from the first quotation mark or grave accent to the last.
+fn without_quotes(rule: &str) -> String {
+    const MARKS: [char; 2] = ['"', '`'];
+    match (rule.find(MARKS), rule.rfind(MARKS)) {
+        (Some(first), Some(last)) if first < last => {
+            format!("{}...{}", &rule[..=first], &rule[last..])
+        }
+        _ => rule.to_owned(),
     }
 }
 
@@ -140,9 +164,10 @@ pub fn reason(error: &std::io::Error) -> String {
 
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (file, rule) = (shown(&self.file), shown(&self.rule));
         match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.file, self.rule),
-            None => write!(f, "{}: {}", self.file, self.rule),
+            Some(line) => write!(f, "{file}:{line}: {rule}"),
+            None => write!(f, "{file}: {rule}"),
         }
     }
 }

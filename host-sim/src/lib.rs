@@ -31,6 +31,7 @@ pub mod outcome;
 pub mod output;
 pub mod paint;
 pub mod paper;
+pub mod plain;
 pub mod progress;
 pub mod recording;
 pub mod reference;

@@ -10,6 +10,7 @@ use crate::model_run::validity;
 use crate::names::{channel_name, event_name, phase_name, regime_name};
 use crate::outcome::{DetectedEvent, Detection, Outcome};
 use crate::paint::Paint;
+use crate::plain::shown;
 use crate::scene::Scene;
 
 /// Phases and impacts that are listed before the rest is summed up.
@@ -37,7 +38,8 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
 }
 
 fn heading(scene: &Scene, paint: Paint) -> String {
-    let mut words = scene.heading().split_whitespace().peekable();
+    let heading = shown(scene.heading());
+    let mut words = heading.split_whitespace().peekable();
     let mut lines = vec![words.next().unwrap_or_default().to_owned()];
     for word in words {
         let last = lines
@@ -274,7 +276,8 @@ fn samples_line(detection: &Detection) -> String {
 /// A replay: the events as they were declared.
 pub fn replay(stream: &str, detection: &Detection) -> String {
     let mut text = format!(
-        "{stream}: {} events\n{}",
+        "{}: {} events\n{}",
+        shown(stream),
         detection.events.len(),
         samples_line(detection)
     );

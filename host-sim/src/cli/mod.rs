@@ -30,6 +30,7 @@ use crate::failure::Failure;
 use crate::json;
 use crate::output::{Output, STDOUT};
 use crate::paint::Paint;
+use crate::plain::shown;
 use crate::scene::{BUILT_IN, Scene};
 use crate::{drop, fidelity, replay, report, timeline};
 
@@ -130,7 +131,7 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
         out.commit()?;
     }
     let format = replay.format.map_or(String::new(), |it| {
-        format!("{}: {it}, {} Hz\n", args.stream, replay.rate)
+        format!("{}: {it}, {} Hz\n", shown(&args.stream), replay.rate)
     });
     say(
         &names,
@@ -159,7 +160,7 @@ fn load(name: &str) -> Result<Scene, Failure> {
 
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        remark(&format!("warning: {warning}\n"));
+        remark(&format!("warning: {}\n", shown(warning)));
     }
 }
 

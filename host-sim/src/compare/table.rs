@@ -3,13 +3,14 @@
 use super::{By, Comparison, Pair};
 use crate::names::event_name;
 use crate::paint::Paint;
+use crate::plain::shown;
 
 /// Events that are listed.
 const LISTED: usize = 200;
 
 /// How they were aligned, their events side by side, and the verdict.
 pub fn table(comparison: &Comparison, paint: Paint) -> String {
-    let [a, b] = &comparison.files;
+    let [a, b] = comparison.files.each_ref().map(|it| shown(it));
     let aligned = &comparison.aligned;
     let mut text = format!("a: {a}\nb: {b}\n");
     text += &match aligned.aligned_by {

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use touchdown_core::config_block::Settings;
 
 use crate::link::{Client, LinkError, Port};
+use crate::plain::shown;
 
 /// A restart takes a second, an emulator on a busy machine longer.
 const RESTART: Duration = Duration::from_secs(30);
@@ -34,7 +35,7 @@ pub enum ChangeError {
 
 /// What is in force.
 pub fn in_force(client: &mut Client) -> Result<InForce, LinkError> {
-    let firmware = client.hello()?.firmware.to_string();
+    let firmware = shown(&client.hello()?.firmware).into_owned();
     let settings = client.settings()?;
     Ok(InForce { firmware, settings })
 }

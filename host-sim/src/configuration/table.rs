@@ -13,6 +13,7 @@ use crate::names::channel_name;
 use crate::scene::check::{MICRO, MILLI, RPM, gravity};
 use crate::scene::file::{RetainerTable, RotorTable};
 use crate::scene::flaw::Flaw;
+use crate::scene::list;
 use crate::scene::machine::{retainer, rotor};
 use crate::scene::machine_config;
 
@@ -46,6 +47,7 @@ struct SensorsTable {
     resolution_um: f64,
     zero_count: f64,
     full_scale: u16,
+    #[serde(deserialize_with = "list::exactly")]
     mounting_deg: [f64; PLANES],
     #[serde(skip_serializing_if = "Option::is_none")]
     pulses_per_turn: Option<u16>,

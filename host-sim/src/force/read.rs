@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::recording::{Axis, Hit, Hits, Recording};
 use crate::input_error::InputError;
+use crate::plain::Number;
 use crate::stream::{Clock, Stamp};
 
 /// Hz.
@@ -58,7 +59,9 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
         let common = *rate.get_or_insert(own);
         if (own / common - 1.0).abs() > SAME_RATE {
             let rule = format!(
-                "the sample rate is {own} Hz, that of the first hit {common} Hz: all hits need one rate"
+                "the sample rate is {} Hz, that of the first hit {} Hz: all hits need one rate",
+                Number(own),
+                Number(common)
             );
             return Err(InputError::at_line(&table.file, rows[0].line, rule));
         }
@@ -83,7 +86,9 @@ pub fn same_rate(recording: &Recording, hits: &Hits) -> Result<(), InputError> {
     }
     let rule = format!(
         "the sample rate is {} Hz, that of {} {} Hz: both need one rate",
-        recording.rate, hits.file, hits.rate
+        Number(recording.rate),
+        hits.file,
+        Number(hits.rate)
     );
     Err(InputError::at_line(&recording.file, 3, rule))
 }
@@ -158,9 +163,10 @@ impl Table {
             return Ok(rate);
         }
         let rule = format!(
-            "the sample rate must be {} to {} Hz, is {rate} Hz",
+            "the sample rate must be {} to {} Hz, is {} Hz",
             RATES.start(),
-            RATES.end()
+            RATES.end(),
+            Number(rate)
         );
         Err(InputError::at_line(&self.file, 3, rule))
     }

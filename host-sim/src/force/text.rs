@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::Measurement;
 use super::pulse::Pulse;
+use crate::plain::shown;
 
 #[derive(Serialize)]
 struct ForceJson<'a> {
@@ -26,7 +27,8 @@ pub fn json(measurement: &Measurement) -> serde_json::Result<String> {
 pub fn table(recording: &str, measurement: &Measurement) -> String {
     let [low, high] = measurement.band;
     let mut text = format!(
-        "{recording}: {:.0} Hz; calibrated from {low:.0} to {high:.0} Hz",
+        "{}: {:.0} Hz; calibrated from {low:.0} to {high:.0} Hz",
+        shown(recording),
         measurement.sample_rate
     );
     let coherence = measurement

@@ -7,6 +7,7 @@ use touchdown_core::controller::Busy;
 use touchdown_core::link::{Refusal, VERSION};
 
 use crate::input_error::reason;
+use crate::plain::shown;
 
 /// Why a request has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +49,7 @@ fn why(refusal: &Refusal) -> String {
         Refusal::Busy(Busy::Watching) => "it watches, so the machine may run",
         Refusal::Busy(Busy::Latched) => "a drop is latched",
         Refusal::Block => "that is no configuration of its version",
-        Refusal::Parameter(name) => return format!("{name} breaks its rule"),
+        Refusal::Parameter(name) => return format!("{} breaks its rule", shown(name)),
         Refusal::NoStore => "this board cannot keep it",
         Refusal::StoreFailed => "its flash failed",
         Refusal::NoEpisode => "there is no such episode, or it is being written",

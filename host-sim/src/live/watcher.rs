@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use super::update::{Greeting, Said, Update};
 use crate::drop_log::Episode;
 use crate::link::{Client, LinkError, Port, Told};
+use crate::plain::shown;
 
 /// Between two attempts to open the line.
 const RETRY: Duration = Duration::from_millis(500);
@@ -95,7 +96,7 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
     let hello = client.hello()?;
     let settings = client.settings()?;
     teller.tell(Said::Connected(Greeting {
-        firmware: hello.firmware.to_string(),
+        firmware: shown(&hello.firmware).into_owned(),
         sample_rate: hello.sample_rate,
         settings,
     }))?;

@@ -1,5 +1,6 @@
 //! What makes one doubt that a recording is what it is taken for: units, sign, range.
 
+use crate::plain::Number;
 use crate::scene::Scene;
 use crate::sensors::SensorsConfig;
 use crate::stream::Row;
@@ -99,7 +100,7 @@ impl Doubt {
                 "{}: the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are \
                  unit and offset right?{units}",
                 self.file,
-                self.farthest * 1e6,
+                Number(self.farthest * 1e6),
                 self.clearance * 1e6
             ));
         }
@@ -117,7 +118,7 @@ impl Doubt {
             warnings.push(format!(
                 "{}: the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
                 self.file,
-                rpm(self.fastest),
+                Number(rpm(self.fastest)),
                 rpm(self.spin)
             ));
         }

@@ -25,6 +25,7 @@ use resample::Resampled;
 use text::{Head, TextRows};
 
 use crate::input_error::{InputError, UTF_16, reason};
+use crate::plain::Number;
 use crate::scene::Scene;
 use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate};
 
@@ -179,8 +180,9 @@ impl Recording {
         } else if let Some(given) = opened.rate {
             if !is_rate(given) {
                 let rule = format!(
-                    "the sample rate must be 100 to 200000 Hz, is {given} Hz; --resample RATE makes another \
-                     of it and says so"
+                    "the sample rate must be 100 to 200000 Hz, is {} Hz; --resample RATE makes another \
+                     of it and says so",
+                    Number(given)
                 );
                 return Err(InputError::of_file(file, rule));
             }

@@ -2,6 +2,7 @@
 
 use super::remarks::Remarks;
 use crate::input_error::InputError;
+use crate::plain::Number;
 use crate::stream::{Row, Stamped, median_interval};
 
 /// Intervals from which the usual one is known.
@@ -95,13 +96,17 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
         let time = next.stamp.time;
         if time <= last {
             let rule = format!(
-                "time must increase, but {time} s follows {last} s: no rate can be made of that"
+                "time must increase, but {} s follows {} s: no rate can be made of that",
+                Number(time),
+                Number(last)
             );
             return Err(InputError::at_line(&self.file, next.line, rule));
         }
         if time - last > LONGEST_GAP {
             let rule = format!(
-                "{last} s is followed by {time} s: a gap of more than a minute is between two recordings"
+                "{} s is followed by {} s: a gap of more than a minute is between two recordings",
+                Number(last),
+                Number(time)
             );
             return Err(InputError::at_line(&self.file, next.line, rule));
         }

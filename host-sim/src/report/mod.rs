@@ -30,6 +30,7 @@ mod tests;
 
 use crate::matching::match_events;
 use crate::outcome::Outcome;
+use crate::plain::shown;
 use crate::reference::Machine;
 use crate::scene::parts::Part;
 use force::Press;
@@ -200,7 +201,7 @@ fn parts_that_move(whole: Window, subject: &Subject, outcome: &Outcome) -> Marku
 
 /// A page in the report's style.
 pub(crate) fn page(title: &str, body: &Markup) -> Markup {
-    html! {
+    let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -215,5 +216,7 @@ pub(crate) fn page(title: &str, body: &Markup) -> Markup {
                 script { (PreEscaped(include_str!("cursor.js"))) }
             }
         }
-    }
+    };
+    // Titles and names come from files: what a browser would obey is shown.
+    PreEscaped(shown(&page.into_string()).into_owned())
 }

@@ -4,6 +4,7 @@ use super::Model;
 use super::file::{ModelTable, OutputsTable, SceneFile};
 use super::flaw::Flaw;
 use super::outputs::{Auto, Fixed, Output, Request};
+use crate::plain::Number;
 
 const MICRO: f64 = 1e-6;
 const PERCENT: f64 = 1e-2;
@@ -104,7 +105,10 @@ fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Flaw> {
     for (key, given, output, unit) in tolerances {
         let Some(given) = given else { continue };
         if given <= 0.0 {
-            let rule = format!("{key} is a tolerance and must be above 0, is {given}");
+            let rule = format!(
+                "{key} is a tolerance and must be above 0, is {}",
+                Number(given)
+            );
             return Err(Flaw::new("outputs", key, rule));
         }
         asked.push(Request {

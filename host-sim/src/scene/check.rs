@@ -12,6 +12,7 @@ use super::limits;
 use super::machine::{retainer, rotor, start};
 use super::support::{BallBearingTable, SupportTable};
 use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
+use crate::plain::Number;
 use crate::sensors::{SensorsConfig, Tachometers};
 
 pub(crate) const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -71,7 +72,7 @@ pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> 
     Err(Flaw::new(
         table,
         key,
-        format!("{key} must be above 0, is {value}"),
+        format!("{key} must be above 0, is {}", Number(value)),
     ))
 }
 
@@ -86,7 +87,7 @@ pub(crate) fn zero_or_more(
     Err(Flaw::new(
         table,
         key,
-        format!("{key} must be 0 or more, is {value}"),
+        format!("{key} must be 0 or more, is {}", Number(value)),
     ))
 }
 
@@ -100,6 +101,7 @@ pub(crate) fn between(
         return Ok(value);
     }
     let (low, high) = range.into_inner();
+    let [low, high, value] = [low, high, value].map(Number);
     let rule = format!("{key} must be {low} to {high}, is {value}");
     Err(Flaw::new(table, key, rule))
 }
@@ -107,7 +109,10 @@ pub(crate) fn between(
 fn run(table: &RunTable) -> Result<Run, Flaw> {
     let duration = above_zero("run", "duration_s", table.duration_s)?;
     if duration > 86_400.0 {
-        let rule = format!("duration_s must be no more than 86400, is {duration}");
+        let rule = format!(
+            "duration_s must be no more than 86400, is {}",
+            Number(duration)
+        );
         return Err(Flaw::new("run", "duration_s", rule));
     }
     let rate = table.sample_rate_hz;
@@ -138,8 +143,9 @@ pub(crate) fn gravity(given: f64) -> Result<f64, Flaw> {
     let gravity = zero_or_more("run", "gravity_m_s2", given)?;
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
         let rule = format!(
-            "gravity_m_s2 must be 0, or {:e} or more, is {gravity:e}",
-            limits::LEAST_GRAVITY_M_S2
+            "gravity_m_s2 must be 0, or {} or more, is {}",
+            Number(limits::LEAST_GRAVITY_M_S2),
+            Number(gravity)
         );
         return Err(Flaw::new("run", "gravity_m_s2", rule));
     }

@@ -8,6 +8,7 @@ use super::flaw::Flaw;
 use super::limits;
 use super::{Contact, Materials, Scene};
 use crate::model_run::compliance;
+use crate::plain::Number;
 
 const GIGA: f64 = 1e9;
 
@@ -23,8 +24,8 @@ pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
     if step > longest {
         let rule = format!(
             "step_us must be no more than {:.4}, the limit of stability 2/omega_c of this contact, is {}",
-            longest / MICRO,
-            step / MICRO
+            Number(longest / MICRO),
+            Number(step / MICRO)
         );
         return Err(Flaw::new("model", "step_us", rule));
     }

@@ -6,6 +6,7 @@ use touchdown_core::detect::Tuning;
 
 use super::faults::FaultTable;
 use super::flaw;
+use super::list;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
 use crate::input_error::InputError;
@@ -170,8 +171,11 @@ pub(super) struct SensorsTable {
     pub range_um: f64,
     pub noise_um: f64,
     pub bandwidth_hz: Option<f64>,
+    #[serde(deserialize_with = "list::exactly")]
     pub mounting_deg: [f64; 2],
+    #[serde(deserialize_with = "list::exactly")]
     pub offset_um: [f64; 4],
+    #[serde(deserialize_with = "list::exactly")]
     pub gain_error_percent: [f64; 4],
     pub nonlinearity_percent: f64,
     pub runout_um: f64,

@@ -5,6 +5,7 @@ use super::file::{RetainerTable, RotorTable, StartTable};
 use super::flaw::Flaw;
 use super::limits;
 use super::{Retainer, Rotor, Start};
+use crate::plain::Number;
 
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 pub(super) const ON_THE_WALL: f64 = 1e-9;
@@ -23,7 +24,8 @@ pub(crate) fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
                 let (low, high) = limits::INERTIA_RATIO.into_inner();
                 let rule = format!(
                     "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
-                     ({solid:.3e}), is {inertia}"
+                     ({solid:.3e}), is {}",
+                    Number(inertia)
                 );
                 return Err(Flaw::new("rotor", "polar_inertia_kg_m2", rule));
             }
@@ -92,8 +94,8 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Flaw> {
         let key = if x.abs() > y.abs() { "x_mm" } else { "y_mm" };
         let rule = format!(
             "the start is outside the gap: {} mm from the centre, the clearance is {} mm",
-            distance / MILLI,
-            clearance / MILLI
+            Number(distance / MILLI),
+            Number(clearance / MILLI)
         );
         return Err(Flaw::new("start", key, rule));
     }

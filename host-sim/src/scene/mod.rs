@@ -9,6 +9,7 @@ mod faults;
 pub(crate) mod file;
 pub(crate) mod flaw;
 pub mod limits;
+pub(crate) mod list;
 pub(crate) mod machine;
 mod materials;
 mod model;

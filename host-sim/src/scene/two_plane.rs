@@ -5,8 +5,10 @@ use serde::Deserialize;
 use super::check::{MILLI, above_zero, between};
 use super::flaw::Flaw;
 use super::limits;
+use super::list;
 use super::machine::ON_THE_WALL;
 use super::{Retainer, Rotor, Start};
+use crate::plain::Number;
 
 /// Most rings, and most magnets.
 pub const RINGS: usize = 4;
@@ -82,8 +84,8 @@ impl TwoPlane {
                 let rule = format!(
                     "the start is outside the gap of ring {}: {:.6} mm from its centre, the clearance is {} mm",
                     ring.name,
-                    x.hypot(y) / MILLI,
-                    clearance / MILLI
+                    Number(x.hypot(y) / MILLI),
+                    Number(clearance / MILLI)
                 );
                 return Err(Flaw::new("ring", "z_mm", rule).in_row(row));
             }
@@ -102,9 +104,12 @@ pub(super) struct TwoPlaneTable {
     skew_mrad: f64,
     skew_deg: f64,
     elastic_mode_hz: Option<f64>,
+    #[serde(deserialize_with = "list::exactly")]
     tilt_mrad: [f64; 2],
+    #[serde(deserialize_with = "list::exactly")]
     tilt_rate_rad_s: [f64; 2],
     gravity_deg: f64,
+    #[serde(deserialize_with = "list::exactly_if_there")]
     sensor_z_mm: Option<[f64; 2]>,
 }
 
@@ -125,7 +130,7 @@ pub(super) struct MagnetTable {
     z_mm: f64,
     #[serde(default)]
     stiffness_n_m: f64,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "list::exactly")]
     force_n: [f64; 2],
 }
 
@@ -223,7 +228,8 @@ impl TwoPlaneTable {
         }
         let (low, high) = limits::GYROSCOPIC_RATIO.into_inner();
         let rule = format!(
-            "polar over transverse inertia must be {low:e} to {high} (a thin disc), is {ratio:.6}"
+            "polar over transverse inertia must be {low:e} to {high} (a thin disc), is {:.6}",
+            Number(ratio)
         );
         Err(Flaw::new(TABLE, key, rule))
     }

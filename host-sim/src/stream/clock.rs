@@ -4,6 +4,7 @@
 //! significant digits, with trailing zeros or without. Each stamp bounds the period; the bounds of
 //! all stamps so far must leave a period, or else the rate is not constant.
 
+use crate::plain::Number;
 use std::ops::RangeInclusive;
 
 /// Rows that are read before the rate is settled.
@@ -129,8 +130,9 @@ impl Clock {
         let interval = time - self.last;
         if interval <= 0.0 {
             return Err(format!(
-                "time_s must increase, but {time} follows {}",
-                self.last
+                "time_s must increase, but {} follows {}",
+                Number(time),
+                Number(self.last)
             ));
         }
         let since = time - self.first;

@@ -6,6 +6,7 @@ use super::clock::{Clock, LOOK_AHEAD, Stamp};
 use super::read::Row;
 use super::survey::Survey;
 use crate::input_error::InputError;
+use crate::plain::Number;
 
 /// Sample rates that the detector takes, Hz.
 pub const RATES: std::ops::RangeInclusive<f64> = 100.0..=200_000.0;
@@ -84,7 +85,10 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
             return Err(fail(first.line, rule.to_owned()));
         };
         if !is_rate(rate) {
-            let rule = format!("the sample rate must be 100 to 200000 Hz, is {rate} Hz");
+            let rule = format!(
+                "the sample rate must be 100 to 200000 Hz, is {} Hz",
+                Number(rate)
+            );
             return Err(fail(second, rule));
         }
         even.rate = rate;

@@ -16,6 +16,7 @@ use super::mapping::Mapping;
 use super::pick::{Heading, Pick, by_name};
 use super::remarks::Remarks;
 use crate::input_error::InputError;
+use crate::plain::Number;
 use crate::sensors::SensorsConfig;
 use crate::stream::{Stamp, Stamped};
 
@@ -72,7 +73,7 @@ impl<R: Read> ComtradeRows<R> {
                     "{}: channel {} is sampled {} us late, which is not undone",
                     dat.file(),
                     channel.name,
-                    channel.skew
+                    Number(channel.skew)
                 ));
             }
         }

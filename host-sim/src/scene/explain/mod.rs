@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::parts::{Part, parts};
 use super::{Rung, Scene};
+use crate::plain::shown;
 
 type Row = (&'static str, String);
 
@@ -58,14 +59,14 @@ pub fn explanation(scene: &Scene) -> Explanation {
 /// The explanation, for people.
 pub fn explain(scene: &Scene) -> String {
     let explanation = explanation(scene);
-    let mut text = format!("{}\n", explanation.heading);
+    let mut text = format!("{}\n", shown(&explanation.heading));
     if let Some(source) = &explanation.source {
-        text += &format!("source: {source}\n");
+        text += &format!("source: {}\n", shown(source));
     }
     for section in &explanation.sections {
         let _ = write!(text, "\n{}\n", section.title);
         for Named { name, value } in &section.rows {
-            let _ = writeln!(text, "  {name:<37}{value}");
+            let _ = writeln!(text, "  {name:<37}{}", shown(value));
         }
     }
     text
