@@ -7,6 +7,8 @@ pub mod controller;
 pub mod counting;
 pub mod drops;
 pub mod episode;
+#[cfg(unix)]
+pub mod file_options;
 pub mod growth;
 pub mod moment;
 pub mod rotors;

@@ -6,7 +6,11 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use crate::input_error::{InputError, reason};
+use crate::output::STDOUT;
 use crate::plain::shown;
+
+/// What an error calls standard output.
+pub const STANDARD_OUTPUT: &str = "standard output";
 
 /// Ends a command with [`Failure::status`].
 #[derive(Debug, Error, Diagnostic)]
@@ -45,8 +49,13 @@ impl Failure {
 
     /// For `map_err` on writing `file`.
     pub fn output(file: &str) -> impl Fn(io::Error) -> Self + '_ {
+        let shown = if file == STDOUT {
+            STANDARD_OUTPUT
+        } else {
+            file
+        };
         move |error| Self::Output {
-            file: file.to_owned(),
+            file: shown.to_owned(),
             error,
         }
     }

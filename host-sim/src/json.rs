@@ -181,7 +181,8 @@ fn is_none(count: &u64) -> bool {
     *count == 0
 }
 
-fn text(value: &impl Serialize) -> serde_json::Result<String> {
+/// As every command writes it: indented, with an end of line.
+pub fn text(value: &impl Serialize) -> serde_json::Result<String> {
     serde_json::to_string_pretty(value).map(|json| json + "\n")
 }
 

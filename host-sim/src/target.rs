@@ -1,5 +1,7 @@
 //! Where the detector runs.
 
+use std::path::Path;
+
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 
@@ -19,6 +21,14 @@ pub enum Target {
 }
 
 impl Target {
+    /// The image that runs.
+    pub fn image(&self) -> Option<&Path> {
+        match self {
+            Self::Host => None,
+            Self::Qemu(emulator) => Some(emulator.image()),
+        }
+    }
+
     /// Runs the monitor over `samples`.
     pub fn run(
         &self,

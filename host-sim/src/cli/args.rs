@@ -273,7 +273,7 @@ pub(super) struct ReplayArgs {
 pub(super) struct ReadingArgs {
     /// Which column is what, and in which unit: a TOML file
     #[arg(long, value_name = "FILE.toml")]
-    columns: Option<PathBuf>,
+    pub columns: Option<PathBuf>,
     /// Make samples of another rate of it, Hz: linear between neighbours, none across gaps
     #[arg(long, value_name = "RATE", value_parser = rate)]
     resample: Option<f64>,

@@ -1,20 +1,26 @@
 //! `touchdown compare`.
 
-use std::io;
 use std::path::Path;
 
 use super::args::CompareArgs;
-use super::{commit, load, one_standard_output, open, paint, say, warn};
+use super::{load, warn};
 use crate::compare::{Tolerance, compare, page, table};
 use crate::failure::Failure;
+use crate::gate::Gate;
+use crate::json;
 
 /// Compares two recordings; fails where they differ.
 pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
-    let names = [&args.json, &args.report];
-    one_standard_output(&names)?;
+    let mut out = Gate::new()
+        .reads_recording("A", &args.first)
+        .reads_recording("B", &args.second)
+        .reads("--scene", [&args.scene])
+        .reads("--columns", &args.reading.columns)
+        .reads("--columns-b", &args.columns_b)
+        .writes("--json", &args.json)
+        .writes("--report", &args.report)
+        .open()?;
     let scene = load(&args.scene)?;
-    let [json_out, page_out] = names.map(open);
-    let (mut json_out, mut page_out) = (json_out?, page_out?);
     let [first, second] = args.readings()?;
     let files = [&args.first, &args.second].map(Path::new);
     let tolerance = Tolerance {
@@ -23,15 +29,10 @@ pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
     };
     let comparison = compare(files, [&first, &second], &scene, tolerance)?;
     warn(&comparison.warnings);
-    if let Some(out) = &mut json_out {
-        let text = serde_json::to_string_pretty(&comparison).map_err(io::Error::from);
-        out.put(&(text.map_err(Failure::output(out.name()))? + "\n"))?;
-    }
-    if let Some(out) = &mut page_out {
-        out.put(&page(&scene, &comparison))?;
-    }
-    let written = commit([json_out, page_out, None])?;
-    say(&names, &(table(&comparison, paint(&names)) + &written));
+    out.json("--json", || json::text(&comparison))?;
+    out.put("--report", || page(&scene, &comparison))?;
+    let text = table(&comparison, out.paint());
+    out.finish(&text)?;
     match comparison.beyond {
         0 => Ok(()),
         _ => Err(Failure::Check(

@@ -1,18 +1,18 @@
 //! `touchdown config`.
 
-use std::io;
 use std::path::Path;
 
 use serde::Serialize;
 use touchdown_core::config_block::Settings;
 
 use super::args::ConfigArgs;
-use super::{commit, open, say};
 use crate::configuration::{
     ChangeError, Difference, Tables, differences, in_force, parse, put, text,
 };
 use crate::failure::Failure;
+use crate::gate::Gate;
 use crate::input_error::{InputError, LARGEST_TOML};
+use crate::json;
 use crate::link::{Client, LinkError, Port};
 
 /// What the command tells.
@@ -28,9 +28,12 @@ struct Told {
 
 /// Shows the configuration in force, or puts that of a file in force.
 pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
+    let mut out = Gate::new()
+        .reads("--set", &args.set)
+        .writes("--json", &args.json)
+        .open()?;
     // What is wrong with the file is said whether or not there is a controller.
     let wanted = args.set.as_deref().map(load).transpose()?;
-    let mut out = open(&args.json)?;
     let port = Port::of(&args.port);
     let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
     let mut client = Client::new(port.open().map_err(silent)?);
@@ -49,21 +52,16 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
             (wanted, changed, shown)
         }
     };
-    if let Some(out) = &mut out {
-        let told = Told {
-            port: port.to_string(),
-            firmware: before.firmware,
-            config: Tables::from(&config),
-            changed,
-        };
-        let text = serde_json::to_string_pretty(&told).map_err(io::Error::from);
-        out.put(&(text.map_err(Failure::output(out.name()))? + "\n"))?;
-    }
-    let files = commit([out, None, None])?;
+    let told = Told {
+        port: port.to_string(),
+        firmware: before.firmware,
+        config: Tables::from(&config),
+        changed,
+    };
+    out.json("--json", || json::text(&told))?;
     // What goes into a file of TOML stays TOML.
-    let files = files.lines().map(|it| format!("# {it}\n"));
-    say(&[&args.json], &(shown + &files.collect::<String>()));
-    Ok(())
+    let remark = |line: &str| format!("# {line}\n");
+    out.finish_with(|files| shown + &files.lines().map(remark).collect::<String>())
 }
 
 fn load(name: &str) -> Result<Settings, Failure> {

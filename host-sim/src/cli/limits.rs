@@ -1,25 +1,17 @@
 //! `touchdown limits`.
 
-use std::io;
-
 use super::args::LimitsArgs;
-use super::{commit, open, paint, say};
 use crate::failure::Failure;
+use crate::gate::Gate;
 use crate::limits::{Row, all_hold, json, run, table};
 
 /// Runs the extremes, says and writes what came of them; fails where a limit does not hold.
 pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
-    let mut out = open(&args.json)?;
+    let mut out = Gate::new().writes("--json", &args.json).open()?;
     let rows = run()?;
-    if let Some(out) = &mut out {
-        let json = json(&rows).map_err(io::Error::from);
-        out.put(&json.map_err(Failure::output(out.name()))?)?;
-    }
-    let files = commit([out, None, None])?;
-    say(
-        &[&args.json],
-        &(table(&rows, paint(&[&args.json])) + &files),
-    );
+    out.json("--json", || json(&rows))?;
+    let text = table(&rows, out.paint());
+    out.finish(&text)?;
     verdict(&rows)
 }
 

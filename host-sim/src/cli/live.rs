@@ -1,6 +1,6 @@
 //! `touchdown live`.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,8 +13,9 @@ use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::args::LiveArgs;
 use crate::failure::Failure;
+use crate::gate::Gate;
 use crate::link::Port;
-use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line};
+use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, record};
 use crate::output::STDOUT;
 use crate::paint::Paint;
 
@@ -30,7 +31,8 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
     }
     let port = Port::of(&args.port);
     let file = args.json.as_deref().filter(|it| *it != STDOUT);
-    let record = file.map(record).transpose()?;
+    Gate::new().claims("--json", file).open()?;
+    let record = file.map(record::open).transpose()?;
     let on_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
     let lines = args.json.as_deref() == Some(STDOUT) || !on_terminal;
     let mut session = Session {
@@ -74,13 +76,6 @@ fn stop() -> io::Result<Arc<AtomicBool>> {
         signal_hook::flag::register(signal, stop.clone())?;
     }
     Ok(stop)
-}
-
-/// What was recorded before stays.
-fn record(name: &str) -> Result<File, Failure> {
-    let mut how = OpenOptions::new();
-    let file = how.create(true).append(true).open(name);
-    file.map_err(Failure::output(name))
 }
 
 struct Session<'a> {

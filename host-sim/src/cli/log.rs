@@ -1,39 +1,51 @@
 //! `touchdown log`.
 
-use std::io;
 use std::path::Path;
 
 use super::args::{ExportFormat, LogCommand};
-use super::{commit, open, paint, say};
 use crate::drop_log::{Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream};
 use crate::failure::Failure;
+use crate::gate::{Gate, Outputs};
+use crate::json::text;
 use crate::link::Port;
-use crate::output::Output;
+use crate::paint::Paint;
+
+const OUT: &str = "--out";
+const CFG: &str = "--out (.cfg)";
+const DAT: &str = "--out (.dat)";
 
 /// Lists, shows, exports or verifies the episodes of a log.
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
         LogCommand::List { file, json } => {
+            let out = gate(file, json)?;
             let dump = source(file, Wanted::All)?;
-            tell(json, &dump, &list(&dump, paint(&[json])))
+            tell(out, &dump, |paint| list(&dump, paint))
         }
         LogCommand::Show { file, number, json } => {
+            let out = gate(file, json)?;
             let dump = source(file, wanted(*number))?;
             let episode = chosen(file, &dump, *number)?;
-            tell(json, episode, &show(episode, paint(&[json])))
+            tell(out, episode, |paint| show(episode, paint))
         }
         LogCommand::Export {
             file,
             number,
             format,
-            out,
+            out: name,
         } => {
+            let mut gate = Gate::new().reads("FILE", [file]);
+            for (option, name) in files(*format, name) {
+                gate = gate.writes(option, [name]);
+            }
+            let out = gate.open()?;
             let dump = source(file, wanted(*number))?;
             export(chosen(file, &dump, *number)?, *format, out)
         }
         LogCommand::Verify { file, json } => {
+            let out = gate(file, json)?;
             let dump = source(file, Wanted::All)?;
-            tell(json, &dump, &list(&dump, paint(&[json])))?;
+            tell(out, &dump, |paint| list(&dump, paint))?;
             if is_sound(&dump) {
                 Ok(())
             } else {
@@ -41,6 +53,11 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
             }
         }
     }
+}
+
+fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {
+    let gate = Gate::new().reads("FILE", [file]);
+    gate.writes("--json", json).open()
 }
 
 fn wanted(number: Option<u32>) -> Wanted {
@@ -55,19 +72,14 @@ fn source(name: &str, wanted: Wanted) -> Result<Dump, Failure> {
     fetch(&port, wanted).map_err(|error| Failure::Target(format!("{port}: {error}")))
 }
 
-fn tell(json: &Option<String>, what: &impl serde::Serialize, text: &str) -> Result<(), Failure> {
-    let mut out = open(json)?;
-    if let Some(out) = &mut out {
-        out.put(&pretty(what, out.name())?)?;
-    }
-    let files = commit([out, None, None])?;
-    say(&[json], &(text.to_owned() + &files));
-    Ok(())
-}
-
-fn pretty(what: &impl serde::Serialize, name: &str) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(what).map_err(io::Error::from);
-    Ok(text.map_err(Failure::output(name))? + "\n")
+fn tell(
+    mut out: Outputs,
+    what: &impl serde::Serialize,
+    told: impl FnOnce(Paint) -> String,
+) -> Result<(), Failure> {
+    out.json("--json", || text(what))?;
+    let told = told(out.paint());
+    out.finish(&told)
 }
 
 fn chosen<'a>(file: &str, dump: &'a Dump, number: Option<u32>) -> Result<&'a Episode, Failure> {
@@ -84,36 +96,36 @@ fn chosen<'a>(file: &str, dump: &'a Dump, number: Option<u32>) -> Result<&'a Epi
     })
 }
 
-fn export(episode: &Episode, format: ExportFormat, name: &str) -> Result<(), Failure> {
+/// The option of each file.
+fn files(format: ExportFormat, name: &str) -> Vec<(&'static str, String)> {
+    let ending = |it| Path::new(name).with_extension(it).display().to_string();
+    match format {
+        ExportFormat::Comtrade => vec![(CFG, ending("cfg")), (DAT, ending("dat"))],
+        ExportFormat::Csv | ExportFormat::Json => vec![(OUT, name.to_owned())],
+    }
+}
+
+fn export(episode: &Episode, format: ExportFormat, mut out: Outputs) -> Result<(), Failure> {
     let headless = || {
         let rule = "the episode has lost its header: neither rate nor scale are known";
         Failure::Usage(rule.to_owned())
     };
-    let mut outputs = [None, None, None];
     match format {
-        ExportFormat::Json => {
-            let mut out = Output::create(name)?;
-            out.put(&pretty(episode, name)?)?;
-            outputs[0] = Some(out);
-        }
+        ExportFormat::Json => out.json(OUT, || text(episode))?,
         ExportFormat::Csv => {
-            let mut out = Output::create(name)?;
-            if !stream(episode, &mut out).map_err(Failure::output(name))? {
+            let Some(file) = out.file(OUT) else {
+                return Ok(());
+            };
+            let name = file.name().to_owned();
+            if !stream(episode, file).map_err(Failure::output(&name))? {
                 return Err(headless());
             }
-            outputs[0] = Some(out);
         }
         ExportFormat::Comtrade => {
-            let texts = comtrade(episode).ok_or_else(headless)?;
-            for ((place, ending), text) in outputs.iter_mut().zip(["cfg", "dat"]).zip(texts) {
-                let path = Path::new(name).with_extension(ending);
-                let mut out = Output::create(&path.display().to_string())?;
-                out.put(&text)?;
-                *place = Some(out);
-            }
+            let [cfg, dat] = comtrade(episode).ok_or_else(headless)?;
+            out.put(CFG, || cfg)?;
+            out.put(DAT, || dat)?;
         }
     }
-    let files = commit(outputs)?;
-    say(&[&Some(name.to_owned())], &files);
-    Ok(())
+    out.finish("")
 }

@@ -1,6 +1,6 @@
 //! `touchdown rig`.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
@@ -10,29 +10,35 @@ use super::args::RigArgs;
 use super::load;
 use crate::emulator::Emulator;
 use crate::failure::Failure;
+use crate::gate::{Gate, say};
+use crate::interrupt::TemporaryFolder;
 use crate::names::channel_name;
 use crate::rig::{Options, Order, Rig};
 use crate::sensors::Failing;
 
 const CHANNELS: u8 = 4;
 const LOOK: Duration = Duration::from_millis(50);
+/// What the rig and its emulator write in their folder.
+const FILES: [&str; 6] = ["log", "settings", "replay", "answer", "out", "err"];
 
 /// Starts a rig and takes orders from standard input until `quit`; its end is none.
 pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
-    let scene = load(&args.scene)?;
     let emulator = Emulator::find(args.image.as_deref())?;
-    let made = || tempfile::tempdir().map_err(Failure::output("a folder"));
     let (folder, _temporary) = match &args.keep {
-        Some(folder) => {
-            std::fs::create_dir_all(folder).map_err(Failure::output(folder))?;
-            (PathBuf::from(folder), None)
-        }
+        Some(folder) => (PathBuf::from(folder), None),
         None => {
-            let folder = made()?;
-            (folder.path().to_owned(), Some(folder))
+            let made = TemporaryFolder::new().map_err(Failure::output("a folder"))?;
+            (made.path().to_owned(), Some(made))
         }
     };
     let log = folder.join("log");
+    Gate::new()
+        .reads("SCENE", [&args.scene])
+        .reads("--image", [emulator.image()])
+        .makes_folder(&folder.display().to_string())
+        .claims("--keep", FILES.map(|it| folder.join(it)))
+        .open()?;
+    let scene = load(&args.scene)?;
     let rig = Rig::start(
         scene,
         emulator,
@@ -43,12 +49,12 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
             fast: args.fast,
         },
     )?;
-    tell(&format!(
+    say(&format!(
         "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n\
          lift, drop, fault CHANNEL KIND, repair, noise PART, cut, quit\n",
         rig.address(),
         log.display()
-    ));
+    ))?;
     obey(&rig, &lines())?;
     rig.stop()
 }
@@ -68,7 +74,7 @@ fn obey(rig: &Rig, lines: &Receiver<String>) -> Result<(), Failure> {
             Ok(None) if line.trim() == "quit" => return Ok(()),
             Ok(None) => {}
             Ok(Some(order)) => drop(rig.order(order)),
-            Err(rule) => tell(&format!("{}: {rule}\n", line.trim())),
+            Err(rule) => say(&format!("{}: {rule}\n", line.trim()))?,
         }
     }
     Ok(())
@@ -119,12 +125,6 @@ fn failing(kind: &str) -> Result<Failing, &'static str> {
         "swapped" => Failing::Swapped,
         _ => return Err("the kinds are open, short, dropped, stuck, reversed, swapped"),
     })
-}
-
-/// A reader that has gone away is no failure.
-fn tell(text: &str) {
-    let mut out = io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 #[cfg(test)]

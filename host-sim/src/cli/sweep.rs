@@ -1,13 +1,11 @@
 //! `touchdown sweep`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
-use super::{commit, open, paint, remark, say};
 use crate::failure::Failure;
-use crate::output::Output;
-use crate::sweep::{Part, Plan, found, run, table, write};
+use crate::gate::{Gate, Outputs, remark};
+use crate::sweep::{Part, Plan, RESULTS, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
 pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
@@ -19,6 +17,10 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             "sweep needs a plan: touchdown sweep PLAN.toml".to_owned(),
         ));
     };
+    if args.shard.is_some() && args.json.is_some() {
+        let rule = "a part has no result of its own: give --json to sweep merge";
+        return Err(Failure::Usage(rule.to_owned()));
+    }
     let plan = Plan::load(name)?;
     let folder = args.out.clone().unwrap_or_else(|| {
         let stem = Path::new(name)
@@ -27,13 +29,13 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             .to_string_lossy();
         format!("{stem}-sweep")
     });
-    if args.shard.is_some() && args.json.is_some() {
-        let rule = "a part has no result of its own: give --json to sweep merge";
-        return Err(Failure::Usage(rule.to_owned()));
-    }
-    fs::create_dir_all(&folder).map_err(Failure::output(&folder))?;
-    let json_out = open(&args.json)?;
     let parts = args.shard.map_or_else(|| Part::all(&plan), |it| vec![it]);
+    let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
+    let out = gate(&folder, &args.json)
+        .reads("PLAN", [name])
+        .reads("the plan's scene", &plan.scene_file)
+        .claims("--out", &paths)
+        .open()?;
     let had = run(&plan, &parts, Path::new(&folder))?;
     if had > 0 {
         remark(&format!("{folder} had {had} drops already\n"));
@@ -42,36 +44,32 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         let text = format!(
             "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
         );
-        say(&[], &text);
-        return Ok(());
+        return out.finish(&text);
     }
-    let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
-    finish(&plan, &paths, &folder, &args.json, json_out)
+    finish(&plan, &paths, &folder, out)
 }
 
 fn merge(args: &MergeArgs) -> Result<(), Failure> {
-    let json_out = open(&args.json)?;
     let (plan, parts) = found(&args.folders)?;
     let folder = args.folders.first().cloned().unwrap_or_default();
-    finish(&plan, &parts, &folder, &args.json, json_out)
+    let out = gate(&folder, &args.json).reads("FOLDER", &parts).open()?;
+    finish(&plan, &parts, &folder, out)
 }
 
-fn finish(
-    plan: &Plan,
-    parts: &[PathBuf],
-    folder: &str,
-    json_name: &Option<String>,
-    mut json_out: Option<Output>,
-) -> Result<(), Failure> {
+/// Of what every sweep writes.
+fn gate(folder: &str, json: &Option<String>) -> Gate {
+    Gate::new()
+        .makes_folder(folder)
+        .claims("--out", RESULTS.map(|it| Path::new(folder).join(it)))
+        .writes("--json", json)
+}
+
+fn finish(plan: &Plan, parts: &[PathBuf], folder: &str, mut out: Outputs) -> Result<(), Failure> {
     let written = write(plan, parts, Path::new(folder))?;
-    if let Some(out) = &mut json_out {
-        out.put(&written.json)?;
-    }
-    let mut text = table(plan, &written.points, paint(&[json_name]));
+    out.put("--json", || written.json)?;
+    let mut text = table(plan, &written.points, out.paint());
     for name in &written.names {
         text += &format!("wrote {name}\n");
     }
-    let files = commit([json_out, None, None])?;
-    say(&[json_name], &(text + &files));
-    Ok(())
+    out.finish(&text)
 }

@@ -12,6 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::conduct::Conduct;
+use crate::interrupt::{Registered, TemporaryFolder, kill_on_signal};
 use crate::link::LinkError;
 use crate::monitor_run::Answer;
 use defmt_decoder::{DecodeError, Table};
@@ -101,13 +102,18 @@ impl Emulator {
         Ok(Self { image })
     }
 
+    /// The image.
+    pub fn image(&self) -> &Path {
+        &self.image
+    }
+
     /// Runs the image over `samples`.
     pub fn run(
         &self,
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<Answer, EmulatorError> {
-        let folder = tempfile::tempdir().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let replay = folder.path().join("replay");
         let count = write_replay(&replay, config, samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
@@ -126,7 +132,7 @@ impl Emulator {
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(Answer, Conduct), EmulatorError> {
-        let folder = tempfile::tempdir().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let count = write_replay(&folder.path().join("replay"), config, samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
@@ -153,7 +159,7 @@ impl Emulator {
     ) -> Result<Vec<String>, EmulatorError> {
         let elf = read(&self.image)?;
         let (out, err) = (folder.join("out"), folder.join("err"));
-        let child = self
+        let (child, _registered) = self
             .start(folder, "none", arguments, &out, &err)
             .map_err(|e| EmulatorError::Io("start QEMU", e))?;
         let status = wait(child, limit)?;
@@ -172,8 +178,8 @@ impl Emulator {
         arguments: &[&str],
         out: &Path,
         err: &Path,
-    ) -> io::Result<Child> {
-        Command::new(QEMU)
+    ) -> io::Result<(Child, Registered)> {
+        let child = Command::new(QEMU)
             .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
             .args(["-serial", serial, "-semihosting-config"])
             .args(arguments)
@@ -183,7 +189,9 @@ impl Emulator {
             .stdin(Stdio::null())
             .stdout(File::create(out)?)
             .stderr(File::create(err)?)
-            .spawn()
+            .spawn()?;
+        let registered = kill_on_signal(&child)?;
+        Ok((child, registered))
     }
 
     fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use touchdown_core::wire::Switching;
 
 use super::{Emulator, EmulatorError, decode_answer, read};
+use crate::interrupt::Registered;
 use crate::link::Client;
 use crate::monitor_run::Answer;
 
@@ -28,6 +29,7 @@ pub struct Session {
     folder: PathBuf,
     child: Child,
     line: Option<TcpStream>,
+    _registered: Registered,
 }
 
 impl Emulator {
@@ -39,12 +41,14 @@ impl Emulator {
         let port = socket.local_addr().map_err(failed("open a socket"))?.port();
         let serial = format!("tcp:127.0.0.1:{port}");
         let (out, err) = (folder.join("out"), folder.join("err"));
-        let child = self.start(folder, &serial, &[FILES], &out, &err);
+        let started = self.start(folder, &serial, &[FILES], &out, &err);
+        let (child, registered) = started.map_err(failed("start QEMU"))?;
         let mut session = Session {
             emulator: self.clone(),
             folder: folder.to_owned(),
-            child: child.map_err(failed("start QEMU"))?,
+            child,
             line: None,
+            _registered: registered,
         };
         session.line = Some(session.accept(&socket)?);
         Ok(session)

@@ -1,6 +1,6 @@
 //! The plan of a sweep: `PLAN.toml`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
@@ -47,6 +47,8 @@ fn default_seed() -> u64 {
 pub struct Plan {
     /// Its file.
     pub name: String,
+    /// The file of its scene; none of a built-in one.
+    pub scene_file: Option<PathBuf>,
     /// One line.
     pub title: String,
     /// Drops a point of the grid.
@@ -86,7 +88,9 @@ impl Plan {
             let rule = format!("scene {scene:?}: {}", error.rule());
             InputError::at_span(path, &text, file.scene.span(), rule)
         })?;
-        Self::of_texts(path, &text, &scene_text)
+        let mut plan = Self::of_texts(path, &text, &scene_text)?;
+        plan.scene_file = Some(PathBuf::from(name)).filter(|it| it.is_file());
+        Ok(plan)
     }
 
     /// The plan `text` over the scene `scene_text`; errors name it `name`.
@@ -94,7 +98,7 @@ impl Plan {
         let file = parsed(name, text)?;
         let fail = |span, rule: String| InputError::at_span(name, text, span, rule);
         let scene_name = file.scene.get_ref();
-        let scene = Scene::parse(scene_name, scene_text)?;
+        let scene = Scene::parse(scene_name, scene_text).map_err(InputError::of_named_file)?;
         if scene.auto.is_some() {
             let rule = format!(
                 "scene {scene_name:?} leaves the model open (fidelity = \"auto\"): a sweep needs one rung, which \
@@ -111,6 +115,7 @@ impl Plan {
         })?;
         let mut plan = Self {
             name: name.to_owned(),
+            scene_file: None,
             title: file.title.unwrap_or(heading),
             drops: *file.drops.get_ref(),
             seed: file.seed,

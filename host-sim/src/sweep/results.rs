@@ -14,8 +14,11 @@ use super::record::Record;
 use super::summary::{Gathered, Point};
 use crate::failure::Failure;
 use crate::input_error::{InputError, reason};
-use crate::output::Output;
+use crate::output::{Output, commit};
 use crate::progress;
+
+/// Names of what a sweep writes beside its parts.
+pub const RESULTS: [&str; 4] = ["drops.csv", "points.csv", "sweep.json", "sweep.html"];
 
 /// What was written.
 pub struct Written {
@@ -116,9 +119,7 @@ pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Written, F
         outputs.push(out);
     }
     let names = outputs.iter().map(|out| out.name().to_owned()).collect();
-    for out in outputs {
-        out.commit()?;
-    }
+    commit(outputs)?;
     Ok(Written {
         names,
         points,
