@@ -334,11 +334,9 @@ pub fn there() -> BTreeMap<String, BTreeSet<String>> {
             .get_arguments()
             .filter(|it| it.get_action().takes_values());
         let ids: BTreeSet<_> = values.map(|it| it.get_id().to_string()).collect();
-        let subcommands = command
-            .get_subcommands()
-            .filter(|it| it.get_name() != "help");
-        let groups = subcommands.clone().next().is_some() && ids.is_empty();
-        if !groups {
+        let subcommands = command.get_subcommands();
+        let subcommands: Vec<_> = subcommands.filter(|it| it.get_name() != "help").collect();
+        if subcommands.is_empty() || !ids.is_empty() {
             all.insert(path.to_owned(), ids);
         }
         for subcommand in subcommands {

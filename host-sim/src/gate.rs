@@ -1,7 +1,7 @@
 //! What a command reads and what it writes, told before anything is computed, so that no output replaces an
 //! input or another output.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -168,7 +168,7 @@ impl Named {
     #[cfg(unix)]
     fn standard_output() -> Option<Self> {
         use std::os::fd::AsFd;
-        let file = File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
+        let file = fs::File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
         let there = file.metadata().ok().filter(fs::Metadata::is_file)?;
         Some(Self {
             shown: STANDARD_OUTPUT.to_owned(),

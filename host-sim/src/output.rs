@@ -256,3 +256,47 @@ fn hidden(ending: &'static str) -> tempfile::Builder<'static, 'static> {
     }
     names
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_take_its_name_leaves_the_others_as_they_were() {
+        for old in [None, Some("old")] {
+            let folder = tempfile::tempdir().unwrap();
+            let [first, second] = ["first", "second"].map(|it| folder.path().join(it));
+            old.map(|old| fs::write(&first, old).unwrap());
+            let open = |it: &PathBuf| {
+                let mut out = Output::create(&it.display().to_string()).unwrap();
+                out.put("new").unwrap();
+                out
+            };
+            let outputs = vec![open(&first), open(&second)];
+            fs::create_dir(&second).unwrap();
+            let failure = commit(outputs).unwrap_err();
+            assert!(failure.to_string().contains("second"), "{failure}");
+            assert_eq!(fs::read_to_string(&first).ok().as_deref(), old);
+            fs::remove_dir(&second).unwrap();
+            let left = fs::read_dir(folder.path()).unwrap().count();
+            assert_eq!(left, usize::from(old.is_some()));
+
+            commit(vec![open(&first), open(&second)]).unwrap();
+            assert_eq!(fs::read_to_string(&first).unwrap(), "new");
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_also_where_it_leads_nowhere_yet() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        std::os::unix::fs::symlink("there", at.join("link")).unwrap();
+        let mut out = Output::create(&at.join("link").display().to_string()).unwrap();
+        out.put("new").unwrap();
+        out.commit().unwrap();
+        assert!(at.join("link").is_symlink());
+        assert_eq!(fs::read_to_string(at.join("there")).unwrap(), "new");
+    }
+}
