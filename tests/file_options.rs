@@ -349,8 +349,7 @@ pub fn there() -> BTreeMap<String, BTreeSet<String>> {
     all
 }
 
-const PLAN: &str =
-    "scene = \"my.toml\"\ndrops = 4\n[[parameter]]\nkey = \"run.duration_s\"\nvalues = [0.1]\n";
+const PLAN: &str = "scene = \"my.toml\"\ndrops = 4\n[start]\nwithin = 0.5\n[[parameter]]\nkey = \"run.duration_s\"\nvalues = [0.1]\n";
 
 /// The columns of a stream.
 const MAP: &str =

@@ -60,7 +60,7 @@ impl Held {
         });
         let mut command = row.run(at, &words);
         command.env("TMPDIR", at.join("tmp"));
-        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("it starts");
         until("its files are open", || {
             assert_eq!(child.try_wait().expect("a child"), None, "{command:?}");
@@ -76,14 +76,15 @@ impl Held {
         }
     }
 
-    /// Its end; the input is a file again.
-    fn end(mut self) -> ExitStatus {
-        let status = self.child.wait().expect("its end");
+    /// Its end and its errors; the input is a file again.
+    fn end(self) -> (ExitStatus, String) {
+        let ended = self.child.wait_with_output().expect("its end");
         if let Some((path, bytes)) = self.pipe {
             fs::remove_file(&path).expect("it was there");
             fs::write(path, bytes).expect("an input");
         }
-        status
+        let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+        (ended.status, told)
     }
 }
 
@@ -131,7 +132,8 @@ fn a_signal_leaves_nothing_behind() {
             let before = contents(at);
             let held = Held::start(at, row, &names(row));
             signal(held.child.id(), name);
-            assert_eq!(held.end().signal(), Some(number), "{}: {name}", row.words);
+            let (status, _) = held.end();
+            assert_eq!(status.signal(), Some(number), "{}: {name}", row.words);
             assert!(before == contents(at), "{}: {name}", row.words);
         }
     }
@@ -182,8 +184,10 @@ fn a_signal_at_any_moment_leaves_whole_files_or_none() {
                 assert_eq!(at.join(one).exists(), at.join(other).exists(), "{words}");
             }
             for file in ["o", "p", "q", "o.cfg", "o.dat", "touchdown-report.html"] {
-                let left = fs::read(at.join(file)).unwrap_or(vec![b'\n']);
-                assert_eq!(left.last(), Some(&b'\n'), "{words}: {file} is cut off");
+                // A page ends with a tag, all else with a line.
+                let left = fs::read_to_string(at.join(file)).unwrap_or("\n".to_owned());
+                let whole = left.ends_with('\n') || left.ends_with("</html>");
+                assert!(whole, "{words}: {file} is cut off");
                 let _ = fs::remove_file(at.join(file));
             }
             let _ = fs::remove_dir_all(at.join("f"));
@@ -295,7 +299,10 @@ fn files_take_their_names_together_or_not_at_all() {
                 fs::create_dir(at.join(failing)).expect("a folder");
                 signal(held.child.id(), "CONT");
                 held.feed();
-                assert_eq!(held.end().code(), Some(2), "{} {failing}", row.words);
+                let (status, told) = held.end();
+                assert_eq!(status.code(), Some(2), "{} {failing}", row.words);
+                let why = format!("{failing}: cannot be written: is a folder");
+                assert!(told.contains(&why), "{}: {told}", row.words);
                 assert_eq!(hidden(at), [""; 0], "{} {failing}", row.words);
                 for name in others {
                     let now = fs::read_to_string(at.join(name)).ok();
