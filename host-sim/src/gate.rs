@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, STANDARD_OUTPUT};
-use crate::interrupt::{Registered, on_signal};
+use crate::interrupt::{self, Registered};
 use crate::output::{self, Output, STDOUT};
 use crate::paint::Paint;
 
@@ -91,12 +91,14 @@ impl Gate {
         let mut new = Vec::new();
         for folder in &self.folders {
             let is_new = !Path::new(folder).exists();
-            let made = fs::create_dir_all(folder).and_then(|()| {
+            let made = interrupt::make(|| {
+                fs::create_dir_all(folder)?;
                 let path = folder.clone();
                 // Only if it is still empty.
-                on_signal(move || _ = fs::remove_dir(path))
+                Ok(((), move || _ = fs::remove_dir(path)))
             });
-            new.extend(Some(made.map_err(Failure::output(folder))?).filter(|_| is_new));
+            let ((), registered) = made.map_err(Failure::output(folder))?;
+            new.extend(is_new.then_some(registered));
         }
         let open = |(option, file): &(_, String)| Ok((*option, Output::create(file)?));
         let files = self.opened.iter().map(open);

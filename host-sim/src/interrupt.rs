@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
-use std::process::Child;
+use std::process::{Child, Command};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::TempDir;
@@ -15,8 +15,8 @@ type Undo = Box<dyn FnOnce() + Send>;
 
 /// By the order in which they were registered.
 static LEFT: Mutex<BTreeMap<u64, Undo>> = Mutex::new(BTreeMap::new());
-/// Held while files take their names.
-static COMMIT: Mutex<()> = Mutex::new(());
+/// Held while something is made and registered, and while files take their names.
+static HELD: Mutex<()> = Mutex::new(());
 
 /// Something to undo, for as long as this lives.
 pub struct Registered(u64);
@@ -33,34 +33,38 @@ impl Drop for Registered {
     }
 }
 
-/// Undoes something where a signal ends the program.
-pub fn on_signal(undo: impl FnOnce() + Send + 'static) -> io::Result<Registered> {
+/// No signal ends the program while what this returns lives.
+pub fn hold() -> io::Result<MutexGuard<'static, ()>> {
     #[cfg(unix)]
     unix::watch()?;
+    Ok(locked(&HELD))
+}
+
+/// Makes something that is undone where a signal ends the program.
+pub fn make<T, U: FnOnce() + Send + 'static>(
+    make: impl FnOnce() -> io::Result<(T, U)>,
+) -> io::Result<(T, Registered)> {
+    let _whole = hold()?;
+    let (made, undo) = make()?;
     let mut left = locked(&LEFT);
     let number = left.last_key_value().map_or(0, |(last, _)| last + 1);
     left.insert(number, Box::new(undo));
-    Ok(Registered(number))
+    Ok((made, Registered(number)))
 }
 
-/// Ends a process where a signal ends the program.
-#[cfg(unix)]
-pub fn kill_on_signal(child: &Child) -> io::Result<Registered> {
-    use rustix::process::{Pid, Signal, kill_process};
-    let process = Pid::from_child(child);
-    // One that has ended is as good.
-    on_signal(move || _ = kill_process(process, Signal::KILL))
-}
-
-/// Nothing but the terminal sends signals here, and it sends them to both.
-#[cfg(not(unix))]
-pub fn kill_on_signal(_: &Child) -> io::Result<Registered> {
-    on_signal(|| ())
-}
-
-/// No signal ends the program while what this returns lives.
-pub fn hold() -> MutexGuard<'static, ()> {
-    locked(&COMMIT)
+/// Starts a process that ends where a signal ends the program.
+pub fn spawn(command: &mut Command) -> io::Result<(Child, Registered)> {
+    make(|| {
+        let child = command.spawn()?;
+        #[cfg(unix)]
+        let process = rustix::process::Pid::from_child(&child);
+        let end = move || {
+            // One that has ended is as good. Elsewhere the terminal ends both.
+            #[cfg(unix)]
+            let _ = rustix::process::kill_process(process, rustix::process::Signal::KILL);
+        };
+        Ok((child, end))
+    })
 }
 
 /// A panic elsewhere is no reason to leave anything behind.
@@ -78,11 +82,14 @@ pub struct TemporaryFolder {
 impl TemporaryFolder {
     /// A new one.
     pub fn new() -> io::Result<Self> {
-        let folder = tempfile::tempdir()?;
-        let path = folder.path().to_owned();
+        let (folder, registered) = make(|| {
+            let folder = tempfile::tempdir()?;
+            let path = folder.path().to_owned();
+            Ok((folder, move || _ = std::fs::remove_dir_all(path)))
+        })?;
         Ok(Self {
             folder,
-            _registered: on_signal(move || _ = std::fs::remove_dir_all(path))?,
+            _registered: registered,
         })
     }
 
@@ -101,7 +108,7 @@ mod unix {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    use super::{COMMIT, LEFT, Mutex, locked};
+    use super::{HELD, LEFT, Mutex, locked};
 
     static WATCHED: Mutex<bool> = Mutex::new(false);
 
@@ -117,7 +124,7 @@ mod unix {
         thread::Builder::new().spawn(move || {
             for signal in signals.forever() {
                 // Never given back: the program ends here.
-                let _commit = locked(&COMMIT);
+                let _whole = locked(&HELD);
                 let mut left = locked(&LEFT);
                 while let Some((_, undo)) = left.pop_last() {
                     undo();

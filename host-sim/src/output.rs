@@ -110,13 +110,16 @@ impl Write for Output {
 
 impl Part {
     fn new(target: PathBuf) -> io::Result<Self> {
-        let (file, path) = hidden(".part").tempfile_in(folder(&target))?.into_parts();
-        let left = path.to_path_buf();
+        let ((file, path), registered) = interrupt::make(|| {
+            let made = hidden(".part").tempfile_in(folder(&target))?.into_parts();
+            let left = made.1.to_path_buf();
+            Ok((made, move || _ = fs::remove_file(left)))
+        })?;
         Ok(Self {
             file,
             path,
             target,
-            _registered: interrupt::on_signal(move || _ = fs::remove_file(left))?,
+            _registered: registered,
         })
     }
 
@@ -161,7 +164,10 @@ pub fn commit(outputs: Vec<Output>) -> Result<(), Failure> {
         synced.map_err(Failure::output(&out.name))?;
         parts.extend(out.part.map(|part| (out.name, part)));
     }
-    let _whole = interrupt::hold();
+    if parts.is_empty() {
+        return Ok(());
+    }
+    let _whole = interrupt::hold().map_err(Failure::output("the files"))?;
     let mut named = Vec::new();
     let done = parts.into_iter().try_for_each(|(name, part)| {
         named.push(part.rename().map_err(Failure::output(&name))?);

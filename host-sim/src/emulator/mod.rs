@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::conduct::Conduct;
-use crate::interrupt::{Registered, TemporaryFolder, kill_on_signal};
+use crate::interrupt::{Registered, TemporaryFolder, spawn};
 use crate::link::LinkError;
 use crate::monitor_run::Answer;
 use defmt_decoder::{DecodeError, Table};
@@ -179,7 +179,8 @@ impl Emulator {
         out: &Path,
         err: &Path,
     ) -> io::Result<(Child, Registered)> {
-        let child = Command::new(QEMU)
+        let mut command = Command::new(QEMU);
+        command
             .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
             .args(["-serial", serial, "-semihosting-config"])
             .args(arguments)
@@ -188,10 +189,8 @@ impl Emulator {
             .current_dir(folder)
             .stdin(Stdio::null())
             .stdout(File::create(out)?)
-            .stderr(File::create(err)?)
-            .spawn()?;
-        let registered = kill_on_signal(&child)?;
-        Ok((child, registered))
+            .stderr(File::create(err)?);
+        spawn(&mut command)
     }
 
     fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
