@@ -9,7 +9,7 @@ use touchdown_sim::drop_log::Dump;
 use touchdown_sim::recording::{Mapping, Reading, Recording};
 use touchdown_sim::scene::Scene;
 use touchdown_sim::stream::StreamReader;
-use touchdown_sim::sweep::{Plan, journals};
+use touchdown_sim::sweep::{Plan, found};
 
 const MAPPING: &str = "\
 [time]
@@ -428,7 +428,7 @@ proptest! {
     }
 
     #[test]
-    fn any_plan_and_journal_are_read_or_refused(
+    fn any_plan_and_part_are_read_or_refused(
         bytes in damaged(b"scene = 'rig'\ndrops = 10\nseed = 1\n[[parameter]]\nkey = 'retainer.friction'\nvalues = [0.1, 0.2]\n")
     ) {
         let text = String::from_utf8_lossy(&bytes);
@@ -437,8 +437,8 @@ proptest! {
             prop_assert!(error.to_string().contains(':'), "{error}");
         }
         let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("part-1-of-1.sweep"), [b"tdsweep1", &bytes[..]].concat()).unwrap();
+        fs::write(folder.path().join("part-1-of-1.csv"), [b"# ", &bytes[..]].concat()).unwrap();
         let folders = [folder.path().display().to_string()];
-        prop_assert!(journals(&folders).is_err());
+        prop_assert!(found(&folders).is_err());
     }
 }

@@ -219,6 +219,21 @@ fn plans_that_make_no_sense_are_refused() {
             4,
             "unknown key",
         ),
+        (
+            "scene = \"rig\"\ndrops = 1\n[[parameter]]\nkey = \"retainer.friction\"\nuniform = [0.1, 0.2, 0.3]",
+            5,
+            "must have 2 numbers, has 3",
+        ),
+        (
+            "scene = \"rig\"\ndrops = 1\n[[parameter]]\nkey = \"retainer.friction\"\nlog_uniform = [0.1]",
+            5,
+            "must have 2 numbers, has 1",
+        ),
+        (
+            "scene = \"rig\"\ndrops = 1\n[[parameter]]\nkey = \"retainer.friction\"\nnormal = [0.1, 0.2, 0.3]",
+            5,
+            "must have 2 numbers, has 3",
+        ),
         ("drops = 1", 1, "missing required key"),
         ("scene = 1", 1, "expected a string"),
     ] {
@@ -230,5 +245,24 @@ fn plans_that_make_no_sense_are_refused() {
             "{text}: {error}"
         );
         assert!(error.contains(rule), "{text}: {error}");
+    }
+}
+
+/// A plan may name any file of the machine as its scene: none of its text is shown.
+#[test]
+fn a_scene_that_a_plan_names_is_not_quoted() {
+    let folder = folder(2);
+    let at = folder.path();
+    for secret in [
+        "root:hunter2:0",
+        "hunter2 = 1\n",
+        "[rotor]\nmass_kg = \"hunter2\"\n",
+    ] {
+        fs::write(at.join("other"), secret).expect("a file");
+        fs::write(at.join("bad.toml"), "scene = \"other\"").expect("a plan");
+        let run = touchdown(at).args(["sweep", "bad.toml"]).assert();
+        let error = String::from_utf8(run.code(2).get_output().stderr.clone()).expect("text");
+        assert!(error.contains("other:"), "{error}");
+        assert!(!error.contains("hunter2"), "{error}");
     }
 }

@@ -9,6 +9,7 @@ use crate::failure::{Failure, STANDARD_OUTPUT};
 use crate::interrupt::{self, Registered};
 use crate::output::{self, Output, STDOUT};
 use crate::paint::Paint;
+use crate::plain::shown;
 
 /// The files of a command, by the options that name them.
 #[derive(Debug, Default)]
@@ -239,7 +240,9 @@ impl Outputs {
         let aside = self.is_taken();
         let files: Vec<_> = self.files.into_iter().map(|(_, out)| out).collect();
         let named = files.iter().filter(|out| out.name() != STDOUT);
-        let told: String = named.map(|out| format!("wrote {}\n", out.name())).collect();
+        let told: String = named
+            .map(|out| format!("wrote {}\n", shown(out.name())))
+            .collect();
         output::commit(files)?;
         let text = text(&told);
         if aside {

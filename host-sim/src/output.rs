@@ -272,7 +272,9 @@ mod tests {
         for old in [None, Some("old")] {
             let folder = tempfile::tempdir().unwrap();
             let [first, second] = ["first", "second"].map(|it| folder.path().join(it));
-            old.map(|old| fs::write(&first, old).unwrap());
+            if let Some(old) = old {
+                fs::write(&first, old).unwrap();
+            }
             let open = |it: &PathBuf| {
                 let mut out = Output::create(&it.display().to_string()).unwrap();
                 out.put("new").unwrap();

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
 use crate::failure::Failure;
 use crate::gate::{Gate, Outputs, remark};
+use crate::plain::shown;
 use crate::sweep::{Part, Plan, RESULTS, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
@@ -69,7 +70,7 @@ fn finish(plan: &Plan, parts: &[PathBuf], folder: &str, mut out: Outputs) -> Res
     out.put("--json", || written.json)?;
     let mut text = table(plan, &written.points, out.paint());
     for name in &written.names {
-        text += &format!("wrote {name}\n");
+        text += &format!("wrote {}\n", shown(name));
     }
     out.finish(&text)
 }

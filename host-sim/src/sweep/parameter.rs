@@ -5,6 +5,8 @@ use rand_distr::{Distribution as _, Normal};
 use serde::Deserialize;
 use toml::{Spanned, Value};
 
+use crate::scene::list;
+
 /// As it is written in the plan.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,8 +18,11 @@ pub(super) struct ParameterTable {
     steps: Option<u32>,
     #[serde(default)]
     log: bool,
+    #[serde(default, deserialize_with = "list::exactly_if_there")]
     uniform: Option<[f64; 2]>,
+    #[serde(default, deserialize_with = "list::exactly_if_there")]
     log_uniform: Option<[f64; 2]>,
+    #[serde(default, deserialize_with = "list::exactly_if_there")]
     normal: Option<[f64; 2]>,
 }
 

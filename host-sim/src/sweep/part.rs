@@ -3,7 +3,7 @@
 //! Its first line is a comment with version, plan and scene as JSON. The table of its drops follows.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 use super::columns::columns;
 use super::plan::Plan;
 use crate::failure::Failure;
-use crate::input_error::{InputError, reason};
+use crate::input_error::{InputError, LARGEST_TOML, reason};
+use crate::stream::Bounded;
 
 /// Drops of a block. Blocks are dealt to the parts in turn, so that each part has its share of slow drops.
 const BLOCK: u64 = 256;
@@ -21,6 +22,9 @@ const BLOCK: u64 = 256;
 const BLOCKS_PER_PART: u64 = 4;
 /// Most parts of a run without `--shard`.
 const MOST_PARTS: u64 = 64;
+
+/// Longest first line: a plan and a scene, of which no letter takes more than six in JSON.
+const LONGEST_LINE: u64 = 13 * LARGEST_TOML;
 
 /// One part of a sweep, `part` of `parts`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +47,7 @@ struct Origin {
 pub(super) struct PartReader {
     name: String,
     columns: usize,
-    rows: StringRecordsIntoIter<BufReader<File>>,
+    rows: StringRecordsIntoIter<Bounded<BufReader<File>>>,
 }
 
 impl Part {
@@ -118,7 +122,7 @@ impl PartReader {
             columns: columns(plan).len(),
             rows: csv::ReaderBuilder::new()
                 .flexible(true)
-                .from_reader(file)
+                .from_reader(Bounded::new(file))
                 .into_records(),
             name,
         })
@@ -171,7 +175,9 @@ fn opened(path: &Path) -> Result<(Origin, BufReader<File>), Failure> {
     let unread = |error: std::io::Error| InputError::of_file(&name, reason(&error));
     let mut file = BufReader::new(File::open(path).map_err(unread)?);
     let mut line = Vec::new();
-    file.read_until(b'\n', &mut line).map_err(unread)?;
+    (file.by_ref().take(LONGEST_LINE))
+        .read_until(b'\n', &mut line)
+        .map_err(unread)?;
     let origin = line
         .strip_prefix(b"# ")
         .and_then(|it| serde_json::from_slice(it).ok());

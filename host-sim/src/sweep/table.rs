@@ -4,6 +4,7 @@ use super::columns::text;
 use super::plan::Plan;
 use super::summary::Point;
 use crate::paint::Paint;
+use crate::plain::shown;
 
 /// Points that are printed; all are in `points.csv`.
 const SHOWN: usize = 40;
@@ -13,7 +14,7 @@ pub fn table(plan: &Plan, points: &[Point], paint: Paint) -> String {
     let names: Vec<_> = (plan.listed.iter())
         .map(|(key, _)| key.rsplit('.').next().unwrap_or(key))
         .collect();
-    let mut text = paint.bold(&format!("{}: {} drops\n", plan.title, plan.size()));
+    let mut text = paint.bold(&format!("{}: {} drops\n", shown(&plan.title), plan.size()));
     let mut head: String = names.iter().map(|name| format!("{name:>16}")).collect();
     head += "   whirl %     95 % interval  backward %  after ms  impact mm/s";
     text += &(paint.bold(&head) + "\n");
@@ -28,7 +29,7 @@ pub fn table(plan: &Plan, points: &[Point], paint: Paint) -> String {
 
 fn line(plan: &Plan, point: &Point) -> String {
     let values: String = (plan.values(point.point).into_iter())
-        .map(|value| format!("{:>16}", short(&text(value))))
+        .map(|value| format!("{:>16}", shown(&short(&text(value)))))
         .collect();
     let thousand =
         |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.1}", 1e3 * value));

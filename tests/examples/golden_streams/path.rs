@@ -68,7 +68,7 @@ impl Path {
     }
 
     /// Back to the scene's start, from where it is.
-    pub fn is_lifted(self, seconds: f64) -> Self {
+    pub fn lifted(self, seconds: f64) -> Self {
         let start = self.held();
         let last = self.motions.last().expect("a motion").planes;
         self.moves(seconds, |time| {

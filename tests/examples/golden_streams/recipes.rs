@@ -184,7 +184,7 @@ fn floating() -> Vec<(&'static str, Path)> {
             Path::new(&again)
                 .floats(0.2)
                 .drops()
-                .is_lifted(0.04)
+                .lifted(0.04)
                 .floats(0.4)
                 .drops(),
         ),
