@@ -292,7 +292,9 @@ fn files_take_their_names_together_or_not_at_all() {
                 }
                 let others: Vec<_> = names.iter().filter(|it| *it != failing).collect();
                 for name in &others {
-                    old.map(|old| fs::write(at.join(name), old).expect("a file"));
+                    if let Some(old) = old {
+                        fs::write(at.join(name), old).expect("a file");
+                    }
                 }
                 let mut held = Held::start(at, &row, &names);
                 signal(held.child.id(), "STOP");
