@@ -4,11 +4,13 @@ use std::fs;
 
 use proptest::prelude::*;
 use serde_json::Value;
+use touchdown_core::event::EventKind;
 use touchdown_core::log::block::BLOCK_BYTES;
+use touchdown_core::log::header::Header;
 use touchdown_core::log::reader::Verdict;
-use touchdown_sim::drop_log::{Dump, is_sound};
+use touchdown_sim::drop_log::{Dump, is_sound, stream};
 use touchdown_tests::binary::touchdown;
-use touchdown_tests::episode::{SAMPLES, dump, episode};
+use touchdown_tests::episode::{SAMPLES, dump, episode, header, sealed};
 
 fn json(folder: &std::path::Path, arguments: &[&str]) -> Value {
     let run = touchdown(folder).arg("log").args(arguments).assert();
@@ -86,9 +88,14 @@ fn damage_is_counted_and_told() {
     cut.truncate(7);
     fs::write(at.join("flash.bin"), dump(&[torn, cut, episode(3)])).expect("a dump");
     let all = json(at, &["list", "flash.bin", "--json", "-"]);
-    let verdicts = [0, 1, 2].map(|k| all["episodes"][k]["verdict"].clone());
-    assert_eq!(verdicts, ["damaged", "incomplete", "whole"]);
+    let of = |key: &str| [0, 1, 2].map(|k| all["episodes"][k][key].clone());
+    assert_eq!(of("verdict"), ["damaged", "incomplete", "whole"]);
+    assert_eq!(of("damaged"), [true, false, false]);
+    // It was counted at the next start, so nobody writes it still.
+    assert_eq!(of("complete"), ["yes", "cut_off", "yes"]);
     assert_eq!(all["episodes"][0]["report"]["missing"], 1);
+    let damage = serde_json::json!([{ "page": 5, "what": "broken" }]);
+    assert_eq!(all["episodes"][0]["damage"], damage);
     touchdown(at)
         .args(["log", "verify", "flash.bin"])
         .assert()
@@ -98,6 +105,98 @@ fn damage_is_counted_and_told() {
     touchdown(at).args(run).assert().success();
     let stream = fs::read_to_string(at.join("s.csv")).expect("a stream");
     assert_eq!(stream.matches("NaN,NaN,NaN,NaN").count(), 30);
+}
+
+fn sound(bytes: &[u8]) -> bool {
+    is_sound(&Dump::of(bytes))
+}
+
+#[test]
+fn damage_is_told_from_a_cut_of_power() {
+    let end = episode(1).len();
+    // The page that was being written, wherever that was.
+    for length in 2..end {
+        let mut cut = episode(1);
+        cut.truncate(length);
+        cut[length - 1][200..].fill(0xff);
+        assert!(sound(&dump(&[cut])), "{length}");
+    }
+    // Any page before it, or one more behind it.
+    for page in 2..6 {
+        let mut cut = episode(1);
+        cut.truncate(8);
+        cut[page][100] ^= 1;
+        assert!(!sound(&dump(&[cut])), "{page}");
+    }
+    let mut both = episode(1);
+    both[end - 1][100] ^= 1;
+    assert!(sound(&dump(&[both.clone()])), "a copy is there");
+    both[end - 2][100] ^= 1;
+    assert!(!sound(&dump(&[both])), "both endings");
+    let mut first = episode(1);
+    first[..3].iter_mut().for_each(|page| page[9] ^= 1);
+    assert!(!sound(&dump(&[first])), "all that tell whose it is");
+}
+
+#[test]
+fn a_slot_that_is_given_up_is_no_damage() {
+    let mut bytes = dump(&[episode(1), episode(2)]);
+    let slot = 8192..8192 + 49_152;
+    let marks = slot.end - BLOCK_BYTES;
+    bytes[marks..marks + 8].fill(0);
+    for sector in 0..=12 {
+        bytes[slot.start..slot.start + sector * 4096].fill(0xff);
+        let found = Dump::of(&bytes);
+        let numbers: Vec<_> = found.episodes.iter().map(|it| it.sequence).collect();
+        assert_eq!((numbers, is_sound(&found)), (vec![2], true), "{sector}");
+    }
+}
+
+#[test]
+fn headers_that_no_recorder_writes_are_damage() {
+    let with = |change: &dyn Fn(&mut Header)| {
+        let mut header = header();
+        change(&mut header);
+        dump(&[sealed(1, &header)])
+    };
+    assert!(sound(&with(&|_| ())));
+    let changes: [&dyn Fn(&mut Header); 7] = [
+        &|it| it.sample_rate = 0.0,
+        &|it| it.sample_rate = f32::NAN,
+        &|it| it.resolution = f32::INFINITY,
+        &|it| it.zero_count = f32::NAN,
+        &|it| it.decimation = 0,
+        &|it| it.fitted = 0,
+        &|it| it.first = it.trigger + 1,
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let bytes = with(change);
+        assert!(!sound(&bytes), "{number}");
+        let found = &Dump::of(&bytes).episodes[0];
+        assert_eq!(stream(found, Vec::new()).ok(), Some(false), "{number}");
+    }
+}
+
+#[test]
+fn one_number_in_two_slots_is_damage() {
+    assert!(!sound(&dump(&[episode(1), episode(2), episode(1)])));
+    assert!(sound(&dump(&[episode(1), episode(2), episode(3)])));
+}
+
+/// Written by the first format's firmware in a drop of the built-in rig.
+#[test]
+fn a_dump_of_format_1_stays_readable() {
+    let bytes = include_bytes!("data/log-format-1.bin");
+    for slots in [0, 1, 2, 41] {
+        let mut bytes = bytes.to_vec();
+        bytes.resize(bytes.len() + slots * 49_152, 0xff);
+        let dump = Dump::of(&bytes);
+        assert_eq!(dump.episodes.len(), 1);
+        let episode = &dump.episodes[0];
+        assert_eq!((episode.sequence, episode.damaged), (1, false));
+        assert_eq!(episode.events[0].event, EventKind::FreeFall);
+        assert!(episode.samples.iter().flatten().count() > 4_000);
+    }
 }
 
 #[test]
@@ -139,6 +238,9 @@ proptest! {
         let found = &dump.episodes[0];
         prop_assert_eq!(found.report.broken, 1);
         prop_assert!(found.samples.iter().flatten().count() + 30 >= SAMPLES);
-        prop_assert_eq!(is_sound(&dump), found.verdict == Verdict::Whole);
+        // Only header and ending have a copy.
+        let copied = page < 2 || page + 2 >= count;
+        prop_assert_eq!(is_sound(&dump), copied);
+        prop_assert_eq!(found.verdict == Verdict::Whole, copied);
     }
 }

@@ -35,7 +35,12 @@ pub fn header() -> Header {
 
 /// A fall declared 0.75 ms after it began; counts that go up by one a sample.
 pub fn episode(sequence: u32) -> Vec<[u8; BLOCK_BYTES]> {
-    let mut blocks = vec![Block::of(Kind::Header, &header().encode()); 2];
+    sealed(sequence, &header())
+}
+
+/// The same with a header of its own.
+pub fn sealed(sequence: u32, header: &Header) -> Vec<[u8; BLOCK_BYTES]> {
+    let mut blocks = vec![Block::of(Kind::Header, &header.encode()); 2];
     let mut done = 0;
     while done < SAMPLES {
         let left = (done..SAMPLES).map(|k| [2048 + k as u16, 2047, 2048, 2000]);

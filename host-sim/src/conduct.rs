@@ -4,11 +4,10 @@ use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::controller::{Fault, Mode, Outputs};
 use touchdown_core::link::{Hello, State};
-use touchdown_core::log::reader::Verdict;
 use touchdown_core::wire::Switching;
 
 use crate::detection::Timebase;
-use crate::drop_log::{Dump, Episode};
+use crate::drop_log::{Completeness, Dump, Episode};
 use crate::names::event_name;
 use crate::paint::Paint;
 
@@ -125,11 +124,10 @@ impl Controller {
 }
 
 fn logged(episode: &Episode) -> String {
-    let state = match episode.verdict {
-        Verdict::Whole => "whole",
-        Verdict::Incomplete => "open at the end of the run",
-        Verdict::Damaged => "damaged",
-        Verdict::Empty => "empty",
+    let state = match (episode.damaged, episode.complete) {
+        (true, _) => "damaged",
+        (false, Completeness::Yes) => "whole",
+        (false, Completeness::Open | Completeness::CutOff) => "open at the end of the run",
     };
     format!(
         "log: episode {}, {}; {} samples, {} events, {state}\n",

@@ -1,9 +1,5 @@
 //! The whole controller on the desktop: what the emulator's image runs, over flash in RAM.
 
-use embedded_storage::nor_flash::{
-    ErrorType, MultiwriteNorFlash, NorFlash, NorFlashErrorKind, ReadNorFlash, check_erase,
-    check_read, check_write,
-};
 use touchdown_core::config_block::{self, Block, Settings, Wiring};
 use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::error::ConfigError;
@@ -23,6 +19,7 @@ use touchdown_firmware::store::bytes_of;
 
 use crate::conduct::Conduct;
 use crate::monitor_run::{Answer, MOST_NOTICES};
+use crate::ram_nor::RamNor;
 
 type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
 
@@ -31,7 +28,8 @@ pub fn run(
     config: &MonitorConfig,
     samples: impl Iterator<Item = Sample>,
 ) -> Result<(Answer, Conduct), ConfigError> {
-    let mut log = RamLog::mount(RamNor::new()).expect("room for the slots");
+    let mut log =
+        RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
     let mut desk = Desk::new(config);
     let mut memory = Box::new(Memory::EMPTY);
     let identity = Identity::new(&desk.block, log.boot());
@@ -45,6 +43,7 @@ pub fn run(
         recorder.set_severity(app.state().severity());
         recorder.set_phase(app.state().phase());
         recorder.take(&sample, &notices);
+        recorder.keep(app.state());
         if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
             desk.report(&outlook);
             recorder.hear(&outlook);
@@ -179,52 +178,3 @@ impl Device for Remote<'_> {
         self.log
     }
 }
-
-/// NOR flash in RAM: what is programmed only clears bits.
-struct RamNor(Vec<u8>);
-
-impl RamNor {
-    fn new() -> Self {
-        Self(vec![0xff; bytes_of(EMULATED_SLOTS)])
-    }
-}
-
-impl ErrorType for RamNor {
-    type Error = NorFlashErrorKind;
-}
-
-impl ReadNorFlash for RamNor {
-    const READ_SIZE: usize = 1;
-
-    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        check_read(self, offset, bytes.len())?;
-        bytes.copy_from_slice(&self.0[offset as usize..][..bytes.len()]);
-        Ok(())
-    }
-
-    fn capacity(&self) -> usize {
-        self.0.len()
-    }
-}
-
-impl NorFlash for RamNor {
-    const WRITE_SIZE: usize = 1;
-    const ERASE_SIZE: usize = 4096;
-
-    fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
-        check_erase(self, from, to)?;
-        self.0[from as usize..to as usize].fill(0xff);
-        Ok(())
-    }
-
-    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
-        check_write(self, offset, bytes.len())?;
-        let held = &mut self.0[offset as usize..][..bytes.len()];
-        held.iter_mut()
-            .zip(bytes)
-            .for_each(|(held, new)| *held &= new);
-        Ok(())
-    }
-}
-
-impl MultiwriteNorFlash for RamNor {}

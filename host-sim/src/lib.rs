@@ -35,6 +35,7 @@ pub mod paint;
 pub mod paper;
 pub mod plain;
 pub mod progress;
+pub mod ram_nor;
 pub mod recording;
 pub mod reference;
 pub mod regions;

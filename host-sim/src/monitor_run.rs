@@ -3,7 +3,8 @@
 use touchdown_core::error::ConfigError;
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::Lookout;
-use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
+use touchdown_core::learnt::Learnt;
+use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
 use touchdown_core::wire::Summary;
@@ -31,8 +32,24 @@ pub fn run(
     config: &MonitorConfig,
     samples: impl Iterator<Item = Sample>,
 ) -> Result<Answer, ConfigError> {
+    go_on(config, MonitorState::default(), samples)
+}
+
+/// The same from what it had `learnt` before them on.
+pub fn resume(
+    config: &MonitorConfig,
+    learnt: &Learnt,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<Answer, ConfigError> {
+    go_on(config, learnt.into(), samples)
+}
+
+fn go_on(
+    config: &MonitorConfig,
+    mut state: MonitorState,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<Answer, ConfigError> {
     let monitor = Monitor::try_new(config)?;
-    let mut state = monitor.start();
     let mut lookout = Lookout::try_new(&config.detector)?;
     let mut fingerprint = Fingerprint::default();
     let (mut notices, mut left_out) = (Vec::new(), 0);

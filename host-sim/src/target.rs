@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 
@@ -39,6 +40,24 @@ impl Target {
             Self::Host => monitor_run::run(config, samples)
                 .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
             Self::Qemu(emulator) => Ok(emulator.run(config, samples)?),
+        }
+    }
+
+    /// The same from what the monitor had `learnt` before them on, which the image cannot be handed.
+    pub fn resume(
+        &self,
+        config: &MonitorConfig,
+        learnt: &Learnt,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<Answer, Failure> {
+        match self {
+            Self::Host => monitor_run::resume(config, learnt, samples)
+                .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
+            Self::Qemu(_) => Err(Failure::Usage(
+                "the stream says what the detector had learnt (its column learnt), which the emulator's image \
+                 cannot be handed; leave out --on qemu, or the column"
+                    .to_owned(),
+            )),
         }
     }
 

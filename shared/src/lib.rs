@@ -17,6 +17,8 @@ pub mod event;
 pub mod forecast;
 pub mod health;
 #[cfg(feature = "serde")]
+pub mod learnt;
+#[cfg(feature = "serde")]
 pub mod link;
 pub mod log;
 pub mod model;

@@ -52,12 +52,14 @@ pub struct Seen {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
-    health: HealthState,
+    pub(crate) health: HealthState,
     tachometers: TachometersState,
     position: Option<[f32; 2]>,
     inner_ring: Option<Speed>,
-    detector: DetectorState,
-    spin: Option<f32>,
+    pub(crate) detector: DetectorState,
+    pub(crate) spin: Option<f32>,
+    #[cfg(feature = "serde")]
+    pub(crate) levitated: Option<bool>,
     severity: SeverityState,
 }
 
@@ -104,6 +106,10 @@ impl Monitor {
             .health
             .update(&mut state.health, &self.sensing, sample, phases);
         state.spin = sample.spin.filter(|spin| spin.is_finite());
+        #[cfg(feature = "serde")]
+        {
+            state.levitated = sample.levitated;
+        }
         let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
@@ -222,6 +228,21 @@ impl MonitorState {
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
         self.detector.is_armed()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<&crate::learnt::Learnt> for MonitorState {
+    /// The state before the sample that follows, which gets number 0.
+    fn from(it: &crate::learnt::Learnt) -> Self {
+        let (spin, levitated) = it.told;
+        Self {
+            health: it.health,
+            detector: DetectorState::from(&it.detector),
+            spin,
+            levitated,
+            ..Self::default()
+        }
     }
 }
 

@@ -67,6 +67,7 @@ mod image {
         recorder.set_severity(app.state().severity());
         recorder.set_phase(app.state().phase());
         recorder.take(sample, notices);
+        recorder.keep(app.state());
         if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
             recorder.hear(&outlook);
         }

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::learnt::Learnt;
 use touchdown_core::link::Recent;
 use touchdown_core::log::block::{Block, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
@@ -36,6 +37,7 @@ struct Trigger {
 struct Fetched {
     blocks: u16,
     headers: u8,
+    learnt: u8,
     samples: usize,
     notices: usize,
     severity: bool,
@@ -48,6 +50,10 @@ pub(super) struct Capture {
     /// Place of the first sample in the ring.
     first: usize,
     held: usize,
+    /// Samples since the last mark; the first sample is at the mark before, or at none.
+    fresh: usize,
+    /// Which of the two snapshots is that of the first sample.
+    oldest: usize,
     /// Tick of the last sample.
     newest: u64,
     trigger: Option<Trigger>,
@@ -64,6 +70,8 @@ impl Capture {
     pub(super) const EMPTY: Self = Self {
         first: 0,
         held: 0,
+        fresh: 0,
+        oldest: 0,
         newest: 0,
         trigger: None,
         closing: None,
@@ -75,6 +83,7 @@ impl Capture {
         fetched: Fetched {
             blocks: 0,
             headers: 0,
+            learnt: 0,
             samples: 0,
             notices: 0,
             severity: false,
@@ -135,11 +144,37 @@ impl Capture {
             *place = counts;
         }
         self.newest = tick;
-        if self.trigger.is_none() && self.held == plan.before {
-            self.first = wrapped(self.first + 1);
-        } else {
-            self.held += 1;
+        self.held += 1;
+        self.fresh += 1;
+        if self.trigger.is_none() && self.fresh == plan.before {
+            self.mark();
         }
+    }
+
+    /// A mark behind the last sample; what was before the last mark goes.
+    fn mark(&mut self) {
+        let old = self.held - self.fresh;
+        if old > 0 {
+            self.first = wrapped(self.first + old);
+            self.held = self.fresh;
+            self.oldest = 1 - self.oldest;
+        }
+        self.fresh = 0;
+    }
+
+    /// Which snapshot is to be taken now, if one is.
+    pub(super) fn due(&self) -> Option<usize> {
+        let is_due = self.trigger.is_none() && self.fresh == 0;
+        is_due.then_some(if self.held == 0 {
+            self.oldest
+        } else {
+            1 - self.oldest
+        })
+    }
+
+    /// Which snapshot is that of the first sample.
+    pub(super) fn oldest(&self) -> usize {
+        self.oldest
     }
 
     /// Begins an episode, or goes on with one that has ended but is still being recorded. Whether a contact
@@ -149,7 +184,7 @@ impl Capture {
         let trigger = self.trigger.get_or_insert(Trigger {
             kind,
             tick,
-            planned: self.held + plan.after,
+            planned: (self.held + plan.after).min(CAPACITY),
             lands: false,
         });
         if lands && !trigger.lands {
@@ -179,11 +214,17 @@ impl Capture {
     }
 
     /// The next block, if it is ready.
-    pub(super) fn fetch(&mut self, buffer: &[Counts; CAPACITY], plan: &Plan) -> Option<Block> {
+    pub(super) fn fetch(
+        &mut self,
+        buffer: &[Counts; CAPACITY],
+        learnt: Option<&Learnt>,
+        plan: &Plan,
+    ) -> Option<Block> {
         let trigger = self.trigger.filter(|_| self.held > 0)?;
         let complete = self.is_full() && self.fetched.samples == self.held;
         let block = self
             .header(&trigger, plan)
+            .or_else(|| self.learnt(learnt?))
             .or_else(|| self.waveform(buffer))
             .or_else(|| self.events(complete && self.closing.is_some()))
             .or_else(|| {
@@ -218,6 +259,12 @@ impl Capture {
             full_scale: config.full_scale,
         };
         Some(Block::of(Kind::Header, &header.encode()))
+    }
+
+    fn learnt(&mut self, learnt: &Learnt) -> Option<Block> {
+        let block = learnt.part(self.fetched.learnt)?;
+        self.fetched.learnt += 1;
+        Some(block)
     }
 
     /// A whole block, or what is left of the last one.

@@ -1,18 +1,22 @@
 //! Records drops in RAM, for the store to write down.
 //!
-//! Two buffers: samples go into one, as a history of the last 50 ms until a drop is declared, then
-//! until 200 ms after it. From then on they go into the other. A block can be fetched as soon as its
+//! Two buffers: samples go into one, as a history of the last 50 to 100 ms until a drop is declared, then
+//! until the buffer is full or 200 ms after it. The history begins where the monitor's state was kept, so that
+//! the episode can be replayed. From then on they go into the other. A block can be fetched as soon as its
 //! samples are there, so what a failing supply leaves is all but the last few milliseconds.
 
 mod capture;
 
+use core::mem::MaybeUninit;
+
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::learnt::Learnt;
 use touchdown_core::link::Recent;
 use touchdown_core::log::block::Block;
 use touchdown_core::log::ending::Closing;
 use touchdown_core::log::waveform::{self, Counts};
-use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::real;
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
@@ -20,14 +24,14 @@ use touchdown_core::severity::Severity;
 use self::capture::Capture;
 
 /// Samples of a buffer.
-pub const CAPACITY: usize = 5_000;
+pub const CAPACITY: usize = 4_660;
 /// Recorded samples per second at most, Hz: so a buffer lasts for what is recorded.
 const FASTEST: f32 = 20_000.0;
 
 const BUFFERS: usize = 2;
-/// Recorded before the trigger, s.
+/// Recorded before the trigger, s, at least; at most twice that.
 const BEFORE: f32 = 0.05;
-/// Recorded after the trigger, s.
+/// Recorded after the trigger, s, at most.
 const AFTER: f32 = 0.2;
 /// Without a notice for so long, s, a drop is over.
 const QUIET: f32 = 1.0;
@@ -37,11 +41,21 @@ const LONGEST: f32 = 10.0;
 const GRAVITY: f32 = 9.806_65;
 
 /// The buffers: 80 kB, all zero at first, for a static.
-pub struct Memory([[Counts; CAPACITY]; BUFFERS]);
+pub struct Memory {
+    counts: [[Counts; CAPACITY]; BUFFERS],
+    // Without values of their own: these would take as much flash.
+    learnt: MaybeUninit<Snapshots>,
+}
+
+/// What had been learnt at the last two marks of each buffer.
+type Snapshots = [[Option<Learnt>; 2]; BUFFERS];
 
 impl Memory {
     /// Empty buffers.
-    pub const EMPTY: Self = Self([[[0; 4]; CAPACITY]; BUFFERS]);
+    pub const EMPTY: Self = Self {
+        counts: [[[0; 4]; CAPACITY]; BUFFERS],
+        learnt: MaybeUninit::uninit(),
+    };
 }
 
 /// What the recorder is told of the machine: the same in every header.
@@ -103,7 +117,7 @@ impl Plan {
         let whole = (rate / FASTEST) as u16;
         let decimation = whole.saturating_add(u16::from(f32::from(whole) * FASTEST < rate));
         let samples = |time: f32| (time * rate / f32::from(decimation)) as usize;
-        let before = samples(BEFORE).clamp(1, CAPACITY / 2);
+        let before = samples(BEFORE).clamp(1, CAPACITY / 4);
         Self {
             identity,
             config: Scaling {
@@ -115,7 +129,7 @@ impl Plan {
             },
             decimation,
             before,
-            after: samples(AFTER).clamp(1, CAPACITY - before),
+            after: samples(AFTER).max(1),
             quiet: (QUIET * rate) as u64,
             longest: (LONGEST * rate) as u64,
             fall_speed: real::sqrt(2.0 * GRAVITY * config.detector.machine.clearance),
@@ -135,7 +149,8 @@ enum Drop {
 
 /// Records drops.
 pub struct Recorder<'m> {
-    memory: &'m mut Memory,
+    counts: &'m mut [[Counts; CAPACITY]; BUFFERS],
+    learnt: &'m mut Snapshots,
     plan: Plan,
     captures: [Capture; BUFFERS],
     tick: u64,
@@ -156,7 +171,10 @@ impl<'m> Recorder<'m> {
     /// For samples that the monitor takes with `config`, which it has accepted.
     pub fn new(memory: &'m mut Memory, config: &MonitorConfig, identity: Identity) -> Self {
         Self {
-            memory,
+            counts: &mut memory.counts,
+            learnt: memory
+                .learnt
+                .write([const { [const { None }; 2] }; BUFFERS]),
             plan: Plan::new(config, identity),
             captures: [const { Capture::EMPTY }; BUFFERS],
             tick: 0,
@@ -184,6 +202,18 @@ impl<'m> Recorder<'m> {
         self.tick += 1;
     }
 
+    /// The monitor's state after the tick, after the tick's [`Self::take`]: now and then what it has learnt is kept.
+    pub fn keep(&mut self, state: &MonitorState) {
+        // Of a tick's state, every tick's samples are needed.
+        if self.plan.decimation == 1
+            && let Some(at) = self.recording
+            && let Some(due) = self.captures.get(at).and_then(Capture::due)
+            && let Some(place) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
+        {
+            *place = Learnt::of(state);
+        }
+    }
+
     /// What the forecast says between two ticks.
     pub fn hear(&mut self, notice: &Notice) {
         self.note(notice);
@@ -197,10 +227,13 @@ impl<'m> Recorder<'m> {
             self.fetching = next;
         }
         let at = self.fetching;
-        let (capture, counts) = (self.captures.get_mut(at)?, self.memory.0.get(at)?);
-        let block = capture.fetch(counts, &self.plan);
+        let (capture, counts) = (self.captures.get_mut(at)?, self.counts.get(at)?);
+        let learnt = self.learnt.get_mut(at)?;
+        let first = learnt.get(capture.oldest()).and_then(Option::as_ref);
+        let block = capture.fetch(counts, first, &self.plan);
         if capture.is_fetched() {
             *capture = Capture::EMPTY;
+            *learnt = [const { None }; 2];
             // Where samples had nowhere to go, they have now.
             self.recording.get_or_insert(at);
         }
@@ -225,7 +258,7 @@ impl<'m> Recorder<'m> {
     /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
     pub fn recent(&self, step: u16) -> Recent {
         let counts = self.recording.and_then(|at| {
-            let (capture, buffer) = (self.captures.get(at)?, self.memory.0.get(at)?);
+            let (capture, buffer) = (self.captures.get(at)?, self.counts.get(at)?);
             Some((capture.newest(), capture.recent(buffer, step)))
         });
         let step = u32::from(step) * u32::from(self.plan.decimation);
@@ -247,7 +280,7 @@ impl<'m> Recorder<'m> {
         let Some(at) = self.recording else {
             return;
         };
-        let (Some(capture), Some(buffer)) = (self.captures.get_mut(at), self.memory.0.get_mut(at))
+        let (Some(capture), Some(buffer)) = (self.captures.get_mut(at), self.counts.get_mut(at))
         else {
             return;
         };

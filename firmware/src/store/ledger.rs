@@ -1,7 +1,7 @@
 //! The lifetime counters in flash: records one after another in two sectors, each record twice. The
 //! older sector is erased only when the newer one is full, so the newest record is always there.
 
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 use touchdown_core::log::counters::{COUNTERS_BYTES, Counters};
 
 use super::layout::{COUNTER_SECTORS, Layout, SECTOR_BYTES};
@@ -23,7 +23,7 @@ pub(super) struct Ledger {
 
 impl Ledger {
     /// Finds the newest record.
-    pub(super) fn mount<F: NorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
+    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
         let mut ledger = Self {
             layout,
             counters: Counters::default(),

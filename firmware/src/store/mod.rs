@@ -8,7 +8,7 @@ mod layout;
 mod ledger;
 mod slots;
 
-use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash};
+use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash, ReadNorFlash};
 use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind};
 use touchdown_core::log::counters::Counters;
 use touchdown_core::log::ending::Ending;
@@ -16,6 +16,7 @@ use touchdown_core::log::ending::Ending;
 use self::layout::{BLOCKS_PER_SLOT, Layout, SECTORS_PER_SLOT};
 pub use self::layout::{EPISODE_BYTES, bytes_of};
 use self::ledger::Ledger;
+pub use self::slots::Slot;
 use self::slots::Slots;
 
 /// Slots that must stay unlocked: one to write to, one to erase meanwhile, one to keep.
@@ -41,6 +42,16 @@ pub enum LockError<E> {
     WornOut,
     /// Of the flash.
     Flash(E),
+}
+
+/// The lifetime counters of the log in `flash`, as [`Store::mount`] finds them, before it counts anything itself.
+pub fn counters<F: ReadNorFlash>(flash: &mut F, base: u32) -> Result<Counters, F::Error> {
+    Ok(*Ledger::mount(flash, Layout { base })?.counters())
+}
+
+/// What is in slot `slot` of the log in `flash`, as [`Store::mount`] finds it.
+pub fn slot<F: ReadNorFlash>(flash: &mut F, base: u32, slot: usize) -> Result<Slot, F::Error> {
+    slots::found(flash, Layout { base }, slot)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Which episode is in which slot.
 
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::ReadNorFlash;
 use touchdown_core::log::block::{BLOCK_BYTES, Kind, Page};
 use touchdown_core::log::ending::Ending;
 use touchdown_core::log::marks::{MARKS_BYTES, Marks};
@@ -10,26 +10,25 @@ use super::layout::{BLOCKS_PER_SLOT, Layout};
 /// Pages of which one tells whose slot it is: so many may be damaged but one.
 const FIRST_PAGES: u32 = 3;
 
-/// Number of the slot's episode, from 1; 0 if it has none.
-#[derive(Clone, Copy, Debug, Default)]
-struct Slot {
-    sequence: u32,
-    locked: bool,
+/// What a slot holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Slot {
+    /// Number of its episode, from 1; 0 if it has none.
+    pub sequence: u32,
+    /// Not to be overwritten.
+    pub locked: bool,
+    /// Its episode has been given up: what is left of it is none.
+    pub released: bool,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Slots<const SLOTS: usize>([Slot; SLOTS]);
 
 impl<const SLOTS: usize> Slots<SLOTS> {
-    pub(super) fn mount<F: NorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
+    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
         let mut slots = [Slot::default(); SLOTS];
         for (number, slot) in slots.iter_mut().enumerate() {
-            let marks = marks(flash, layout, number)?;
-            if marks.released {
-                continue;
-            }
-            slot.sequence = owner(flash, layout, number)?;
-            slot.locked = marks.locked && slot.sequence != 0;
+            *slot = found(flash, layout, number)?;
         }
         Ok(Self(slots))
     }
@@ -103,13 +102,36 @@ impl<const SLOTS: usize> Slots<SLOTS> {
 
     fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
         if let Some(slot) = self.0.get_mut(slot) {
-            *slot = Slot { sequence, locked };
+            *slot = Slot {
+                sequence,
+                locked,
+                released: false,
+            };
         }
     }
 }
 
+/// What is in a slot.
+pub(super) fn found<F: ReadNorFlash>(
+    flash: &mut F,
+    layout: Layout,
+    slot: usize,
+) -> Result<Slot, F::Error> {
+    let marks = marks(flash, layout, slot)?;
+    let sequence = if marks.released {
+        0
+    } else {
+        owner(flash, layout, slot)?
+    };
+    Ok(Slot {
+        sequence,
+        locked: marks.locked && sequence != 0,
+        released: marks.released,
+    })
+}
+
 /// Marks of a slot.
-pub(super) fn marks<F: NorFlash>(
+pub(super) fn marks<F: ReadNorFlash>(
     flash: &mut F,
     layout: Layout,
     slot: usize,
@@ -120,7 +142,7 @@ pub(super) fn marks<F: NorFlash>(
 }
 
 /// Ending of episode `sequence` in `slot`, if it has one.
-pub(super) fn ending<F: NorFlash>(
+pub(super) fn ending<F: ReadNorFlash>(
     flash: &mut F,
     layout: Layout,
     slot: usize,
@@ -141,7 +163,7 @@ pub(super) fn ending<F: NorFlash>(
 }
 
 /// Episode that the first pages of a slot belong to; 0 for none.
-fn owner<F: NorFlash>(flash: &mut F, layout: Layout, slot: usize) -> Result<u32, F::Error> {
+fn owner<F: ReadNorFlash>(flash: &mut F, layout: Layout, slot: usize) -> Result<u32, F::Error> {
     let mut bytes = [0; BLOCK_BYTES];
     for block in 0..FIRST_PAGES {
         flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, &mut bytes)?;

@@ -128,7 +128,7 @@ pub fn read(bytes: &[u8]) -> Read {
                 assert!(events.notices().all(|it| it.is_some()));
                 read.notices += events.notices().count();
             }
-            Item::Severity(..) | Item::Ending(_) => {}
+            Item::Learnt(_) | Item::Severity(..) | Item::Ending(_) => {}
         }
     }
     read.report = reader.finish();

@@ -107,7 +107,7 @@ fn files(format: ExportFormat, name: &str) -> Vec<(&'static str, String)> {
 
 fn export(episode: &Episode, format: ExportFormat, mut out: Outputs) -> Result<(), Failure> {
     let headless = || {
-        let rule = "the episode has lost its header: neither rate nor scale are known";
+        let rule = "the episode's header is lost or impossible: neither rate nor scale are known";
         Failure::Usage(rule.to_owned())
     };
     match format {

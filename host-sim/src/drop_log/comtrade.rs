@@ -9,10 +9,10 @@ use crate::names::channel_name;
 /// What stands for a missing value.
 const MISSING: u32 = 99_999;
 
-/// Texts of the .cfg and the .dat file; `None` without a header. The monitor has no calendar: dates count from
+/// Texts of the .cfg and the .dat file; `None` without a header, or with an impossible one. The monitor has no calendar: dates count from
 /// 1 January 1970 at its last reset.
 pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
-    let header = episode.header.as_ref()?;
+    let header = episode.scale()?;
     let fitted: Vec<usize> = (0..CHANNELS)
         .filter(|it| header.fitted & (1 << it) != 0)
         .collect();

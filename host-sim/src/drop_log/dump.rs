@@ -1,21 +1,18 @@
 //! A dump of the flash, or a file of one episode.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use embedded_storage::nor_flash::ReadNorFlash;
 use serde::Serialize;
-use touchdown_core::log::block::BLOCK_BYTES;
-use touchdown_core::log::counters::{COUNTERS_BYTES, Counters};
-use touchdown_core::log::marks::{MARKS_BYTES, Marks};
-use touchdown_core::log::reader::Verdict;
+use touchdown_core::log::block::{BLOCK_BYTES, Page};
+use touchdown_core::log::counters::Counters;
+use touchdown_firmware::store::{self, EPISODE_BYTES, Slot, bytes_of};
 
-use super::episode::Episode;
+use super::episode::{Completeness, Episode};
 use crate::input_error::InputError;
+use crate::ram_nor::RamNor;
 
-/// Bytes of the counters at the beginning of a dump.
-const COUNTERS: usize = 8192;
-/// Bytes of a slot, and of its pages without the marks.
-const SLOT: usize = 49_152;
-const PAGES: usize = SLOT - BLOCK_BYTES;
 /// Larger than any flash that the log is kept on, bytes.
 const LARGEST: u64 = 256 << 20;
 
@@ -41,33 +38,84 @@ pub fn read(path: &str) -> Result<Dump, InputError> {
 impl Dump {
     /// From the bytes of a file.
     pub fn of(bytes: &[u8]) -> Self {
-        let (head, slots) = bytes.split_at(bytes.len().min(COUNTERS));
-        let counters = newest(head);
-        let is_dump =
-            counters.is_some() || (!slots.is_empty() && head.iter().all(|it| *it == 0xff));
-        let mut episodes: Vec<Episode> = if is_dump {
-            slots.chunks(SLOT).enumerate().map(slot).collect()
-        } else {
-            vec![Episode::of(bytes)]
-        };
-        episodes.retain(|it| it.verdict != Verdict::Empty && it.report.sequence.is_some());
+        // Where a dump has its counters, the pages of one episode are.
+        let head = &bytes[..bytes.len().min(bytes_of(0))];
+        if bytes.len() <= bytes_of(0) || is_block(head) {
+            let episode = Some(Episode::of(bytes)).filter(|it| it.report.sequence.is_some());
+            return Self {
+                counters: newest(&mut flash(head, 0)),
+                episodes: Vec::from_iter(episode),
+            };
+        }
+        let slots = (bytes.len() - bytes_of(0)).div_ceil(bytes_of(1) - bytes_of(0));
+        let mut flash = flash(bytes, slots);
+        let counters = newest(&mut flash);
+        let mut episodes: Vec<Episode> = (0..slots)
+            .filter_map(|slot| held(&mut flash, slot))
+            .collect();
         episodes.sort_by_key(|it| it.sequence);
+        mark_twins(&mut episodes);
+        for it in &mut episodes {
+            // At the next start an episode that was cut off is counted.
+            let is_new = counters.is_none_or(|counters| counters.episodes < it.sequence);
+            if it.complete == Completeness::CutOff && is_new {
+                it.complete = Completeness::Open;
+            }
+        }
         Self { counters, episodes }
     }
 }
 
-fn newest(head: &[u8]) -> Option<Counters> {
-    let (cells, _) = head.as_chunks::<COUNTERS_BYTES>();
-    let whole = cells.iter().filter_map(Counters::decode);
-    whole.max_by_key(|it| it.generation)
+/// The bytes as a flash of so many whole slots, erased where the file ends before.
+fn flash(bytes: &[u8], slots: usize) -> RamNor {
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes_of(slots), 0xff);
+    RamNor(bytes)
 }
 
-fn slot((number, bytes): (usize, &[u8])) -> Episode {
-    let (pages, marks) = bytes.split_at(bytes.len().min(PAGES));
-    let marks = marks.first_chunk::<MARKS_BYTES>().map(Marks::decode);
-    Episode {
-        slot: Some(number),
-        locked: marks.is_some_and(|it| it.locked),
-        ..Episode::of(pages)
+fn is_block(bytes: &[u8]) -> bool {
+    let (pages, _) = bytes.as_chunks::<BLOCK_BYTES>();
+    let mut opened = pages.iter().map(Page::open);
+    opened.any(|it| matches!(it, Page::Sealed(_)))
+}
+
+fn newest(flash: &mut RamNor) -> Option<Counters> {
+    let counters = store::counters(flash, 0).expect("within the flash");
+    (counters.generation > 0).then_some(counters)
+}
+
+/// The episode in a slot, if the store finds one there, or would but for damage.
+fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
+    let slot: Slot = store::slot(flash, 0, number).expect("within the flash");
+    let mut pages = vec![0; EPISODE_BYTES];
+    let address = bytes_of(number) as u32;
+    flash.read(address, &mut pages).expect("within the flash");
+    // An erasure goes from the first page to the last.
+    let is_erased = pages[..BLOCK_BYTES].iter().all(|it| *it == 0xff);
+    if slot.released || (slot.sequence == 0 && is_erased) {
+        return None;
+    }
+    let mut episode = Episode::of(&pages);
+    episode.report.sequence?;
+    episode.slot = Some(number);
+    episode.locked = slot.locked;
+    if slot.sequence != episode.sequence {
+        let flaw = "its first pages are lost, so the controller does not know it";
+        episode.flaw(flaw.to_owned());
+    }
+    Some(episode)
+}
+
+fn mark_twins(episodes: &mut [Episode]) {
+    let mut slots: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for it in episodes.iter() {
+        slots.entry(it.sequence).or_default().extend(it.slot);
+    }
+    for it in episodes {
+        let own = it.slot;
+        let others = slots[&it.sequence].iter();
+        for slot in others.filter(|slot| Some(**slot) != own) {
+            it.flaw(format!("slot {slot} has an episode of the same number"));
+        }
     }
 }

@@ -4,8 +4,10 @@ use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::log::ending::Ending;
 use touchdown_core::log::header::Header;
-use touchdown_core::log::reader::{Item, MOST_BLOCKS, Reader, Report, Verdict};
+use touchdown_core::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_core::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK};
+
+use crate::stream::{of_field, to_field};
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -16,8 +18,16 @@ pub struct Episode {
     pub slot: Option<usize>,
     /// Not to be overwritten.
     pub locked: bool,
-    /// Whether it is all there.
+    /// Damaged, or else whether it has its ending.
     pub verdict: Verdict,
+    /// Whether it was recorded to its end.
+    pub complete: Completeness,
+    /// Whether something of it is broken, missing, foreign, unknown or impossible.
+    pub damaged: bool,
+    /// Its damaged pages.
+    pub damage: Vec<Damage>,
+    /// What else is wrong with it.
+    pub flaws: Vec<String>,
     /// What it is a record of.
     pub header: Option<Header>,
     /// What it added up to.
@@ -26,11 +36,25 @@ pub struct Episode {
     pub events: Vec<Event>,
     /// Pages by their state.
     pub report: Report,
+    /// What had been learnt before the first sample, as in a stream; none where the episode does not say.
+    pub learnt: Option<String>,
     /// Version and bytes of the severity.
     pub severity: Option<(u8, Vec<u8>)>,
     /// Counts of each sample; none where its block is missing.
     #[serde(skip)]
     pub samples: Vec<Option<Counts>>,
+}
+
+/// Whether an episode was recorded to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Completeness {
+    /// It has its ending.
+    Yes,
+    /// Power went before its end.
+    CutOff,
+    /// Still being written, or cut off by a loss of power after which nothing has been switched on yet.
+    Open,
 }
 
 /// An event, its times since the trigger.
@@ -51,11 +75,12 @@ impl Episode {
     pub fn of(pages: &[u8]) -> Self {
         let mut reader = Reader::new(pages);
         let (mut header, mut ending, mut severity) = (None, None, None);
-        let (mut notices, mut samples) = (Vec::new(), Vec::new());
+        let (mut notices, mut samples, mut parts) = (Vec::new(), Vec::new(), Vec::new());
         for item in reader.by_ref() {
             match item {
                 Item::Header(it) => header = Some(it),
                 Item::Ending(it) => ending = Some(it),
+                Item::Learnt(part) => parts.push(part),
                 Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
                 Item::Events(it) => notices.extend(it.notices().flatten()),
                 Item::Waveform(it) => {
@@ -71,21 +96,47 @@ impl Episode {
                 }
             }
         }
-        let report = reader.finish();
-        Self {
+        let mut damage = Vec::new();
+        let report = reader.finish_with(|it| damage.push(it));
+        let mut episode = Self {
             sequence: report.sequence.unwrap_or(0),
             slot: None,
             locked: false,
             verdict: report.verdict(),
+            complete: if report.ended {
+                Completeness::Yes
+            } else {
+                Completeness::CutOff
+            },
+            damaged: report.verdict() == Verdict::Damaged,
+            damage,
+            flaws: Vec::new(),
             events: header
                 .as_ref()
                 .map_or(Vec::new(), |it| events(it, &notices)),
             header,
+            learnt: learnt(&parts),
             ending,
             report,
             severity,
             samples,
+        };
+        for flaw in episode.header.as_ref().map_or(Vec::new(), impossible) {
+            episode.flaw(flaw);
         }
+        episode
+    }
+
+    /// Counts as damage whatever its pages say.
+    pub(super) fn flaw(&mut self, flaw: String) {
+        self.flaws.push(flaw);
+        self.damaged = true;
+        self.verdict = Verdict::Damaged;
+    }
+
+    /// The header, where rate and scale can be what they are.
+    pub fn scale(&self) -> Option<&Header> {
+        self.header.as_ref().filter(|it| impossible(it).is_empty())
     }
 
     /// Of a sample, since the trigger, s.
@@ -106,6 +157,50 @@ impl Episode {
         let from_zero = f64::from(count) - f64::from(header.zero_count);
         there.then_some(from_zero * f64::from(header.resolution))
     }
+}
+
+/// Nothing where a part is missing.
+fn learnt(parts: &[&[u8]]) -> Option<String> {
+    let field = to_field(parts.iter().copied());
+    of_field(&field).map(|_| field)
+}
+
+/// What a header of no recorder says.
+fn impossible(header: &Header) -> Vec<String> {
+    let positive = |value: f32| value.is_finite() && value > 0.0;
+    let rules = [
+        (
+            positive(header.sample_rate),
+            "sample_rate",
+            header.sample_rate,
+        ),
+        (positive(header.resolution), "resolution", header.resolution),
+        (
+            header.zero_count.is_finite(),
+            "zero_count",
+            header.zero_count,
+        ),
+        (
+            header.decimation > 0,
+            "decimation",
+            f32::from(header.decimation),
+        ),
+        (
+            header.full_scale > 0,
+            "full_scale",
+            f32::from(header.full_scale),
+        ),
+        (
+            (1..16).contains(&header.fitted),
+            "fitted",
+            f32::from(header.fitted),
+        ),
+        (header.first <= header.trigger, "first", header.first as f32),
+    ];
+    let broken = rules.into_iter().filter(|(holds, ..)| !holds);
+    broken
+        .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
+        .collect()
 }
 
 fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {

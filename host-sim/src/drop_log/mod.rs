@@ -8,36 +8,37 @@ mod text;
 
 pub use comtrade::comtrade;
 pub use dump::{Dump, read};
-pub use episode::{Episode, Event};
+pub use episode::{Completeness, Episode, Event};
 pub use fetch::{Wanted, fetch};
 pub use text::{list, show};
 
 use std::io::Write;
 
+use touchdown_core::learnt::Learnt;
 use touchdown_core::sample::CHANNELS;
 
-use crate::stream::{Columns, Row, StreamWriter};
+use crate::stream::{Columns, Row, StreamWriter, of_field};
 
 /// Whether no episode of the log is damaged. One that was cut off is not.
 pub fn is_sound(dump: &Dump) -> bool {
-    use touchdown_core::log::reader::Verdict;
-    dump.episodes
-        .iter()
-        .all(|it| it.verdict != Verdict::Damaged)
+    !dump.episodes.iter().any(|it| it.damaged)
 }
 
-/// The episode as a stream; time 0 is the trigger. False where it has no header.
+/// The episode as a stream, with spin and levitation signal as they were before it; time 0 is the trigger. False where it has no header, or an impossible one.
 pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
-    let Some(header) = &episode.header else {
+    let Some(header) = episode.scale() else {
         return Ok(false);
     };
+    let learnt = episode.learnt.as_deref().and_then(of_field);
+    let spin = learnt.as_ref().and_then(Learnt::spin).map(f64::from);
+    let levitated = learnt.as_ref().and_then(Learnt::levitated);
     let columns = Columns {
         planes: if header.fitted & 0b1100 == 0 { 1 } else { 2 },
-        speed: false,
-        levitated: false,
+        speed: spin.is_some(),
+        levitated: levitated.is_some(),
         edges: [false; 2],
     };
-    let mut writer = StreamWriter::new(out, columns)?;
+    let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
     for (number, counts) in episode.samples.iter().enumerate() {
         let mut positions = [f64::NAN; CHANNELS];
         for (channel, position) in positions.iter_mut().enumerate() {
@@ -48,8 +49,8 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
         writer.write(&Row {
             time: episode.time(header, number),
             positions,
-            spin: None,
-            levitated: None,
+            spin,
+            levitated,
             edges: [None; 2],
         })?;
     }

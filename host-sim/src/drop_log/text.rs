@@ -1,10 +1,10 @@
 //! The log for people.
 
 use touchdown_core::log::ending::Closing;
-use touchdown_core::log::reader::{Report, Verdict};
+use touchdown_core::log::reader::DamageKind;
 
 use super::dump::Dump;
-use super::episode::Episode;
+use super::episode::{Completeness, Episode};
 use crate::names::event_name;
 use crate::paint::Paint;
 
@@ -36,11 +36,11 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
 
 fn line(episode: &Episode, paint: Paint) -> String {
     let header = episode.header.as_ref();
-    let state = format!("{:<11}", verdict(episode.verdict));
-    let state = match episode.verdict {
-        Verdict::Whole => paint.good(&state),
-        Verdict::Damaged => paint.bad(&state),
-        Verdict::Empty | Verdict::Incomplete => state,
+    let state = format!("{:<11}", complete(episode.complete));
+    let state = match (episode.damaged, episode.complete) {
+        (true, _) => paint.bad(&state),
+        (false, Completeness::Yes) => paint.good(&state),
+        (false, _) => state,
     };
     let at = header.map(|it| it.trigger as f64 / f64::from(it.sample_rate));
     let or = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
@@ -54,42 +54,53 @@ fn line(episode: &Episode, paint: Paint) -> String {
         episode.events.len(),
         or(episode.ending.map(|it| format!("{:.2}", it.index))),
         if episode.locked { "  locked" } else { "" },
-        damage(&episode.report),
+        damage(episode),
     )
 }
 
-fn damage(report: &Report) -> String {
-    let parts = [
-        (report.missing, "missing"),
-        (report.broken, "broken"),
-        (report.stray, "stray"),
-        (report.unknown, "unknown"),
-    ];
-    let parts = parts.iter().filter(|(count, _)| *count > 0);
-    let parts: Vec<_> = parts
-        .map(|(count, what)| format!("{count} {what}"))
-        .collect();
-    if parts.is_empty() {
-        String::new()
-    } else {
-        format!("  pages: {}", parts.join(", "))
+/// Nothing, or what is damaged.
+fn damage(episode: &Episode) -> String {
+    if !episode.damaged {
+        return String::new();
     }
+    let kinds = [
+        (DamageKind::Missing, "missing"),
+        (DamageKind::Broken, "broken"),
+        (DamageKind::Stray, "stray"),
+        (DamageKind::Unknown, "unknown"),
+    ];
+    let mut parts = Vec::new();
+    for (kind, name) in kinds {
+        let pages = episode.damage.iter().filter(|it| it.what == kind);
+        let pages: Vec<_> = pages.map(|it| it.page.to_string()).collect();
+        if !pages.is_empty() {
+            let word = if pages.len() == 1 { "page" } else { "pages" };
+            parts.push(format!("{word} {} {name}", pages.join(", ")));
+        }
+    }
+    parts.extend(episode.flaws.iter().cloned());
+    if episode.report.rest > 0 {
+        parts.push(format!(
+            "{} bytes behind the last page",
+            episode.report.rest
+        ));
+    }
+    format!("  damaged: {}", parts.join("; "))
 }
 
-fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Empty => "empty",
-        Verdict::Whole => "whole",
-        Verdict::Incomplete => "incomplete",
-        Verdict::Damaged => "damaged",
+fn complete(complete: Completeness) -> &'static str {
+    match complete {
+        Completeness::Yes => "complete",
+        Completeness::CutOff => "cut off",
+        Completeness::Open => "open",
     }
 }
 
 /// One episode.
 pub fn show(episode: &Episode, paint: Paint) -> String {
     let mut text = paint.bold(&format!("Episode {}: ", episode.sequence));
-    text += verdict(episode.verdict);
-    text += &damage(&episode.report);
+    text += complete(episode.complete);
+    text += &damage(episode);
     text.push('\n');
     if let Some(header) = &episode.header {
         let name = String::from_utf8_lossy(&header.firmware);

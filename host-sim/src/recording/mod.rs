@@ -24,10 +24,12 @@ use remarks::Remarks;
 use resample::Resampled;
 use text::{Head, TextRows};
 
+use touchdown_core::learnt::Learnt;
+
 use crate::input_error::{InputError, UTF_16, reason};
 use crate::plain::Number;
 use crate::scene::Scene;
-use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate};
+use crate::stream::{Before, Columns, Even, Meter, Records, Row, Stamped, is_rate};
 
 /// How a recording is to be read.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +53,8 @@ pub struct Recording {
     pub start: f64,
     /// What it is, for people; none for a stream.
     pub format: Option<String>,
+    /// What the detector had learnt before the first sample, where the stream says.
+    pub learnt: Option<Box<Learnt>>,
     /// Bytes of the file.
     pub size: u64,
     rows: Rows,
@@ -69,6 +73,7 @@ struct Opened {
     /// Line of the header.
     header: u64,
     format: Option<String>,
+    learnt: Before,
     size: u64,
 }
 
@@ -120,6 +125,7 @@ impl Recording {
                     rate: rows.rate(),
                     header: layout.before.1.max(1),
                     format: Some(format_of(layout)),
+                    learnt: Before::default(),
                     size,
                     rows: Box::new(rows),
                 }
@@ -140,6 +146,7 @@ impl Recording {
                     rate: None,
                     header: 1,
                     format: None,
+                    learnt: records.learnt(),
                     size,
                     rows: Box::new(records),
                 }
@@ -203,6 +210,8 @@ impl Recording {
             rate,
             start,
             format: opened.format,
+            // Another rate would make something else of it.
+            learnt: (opened.learnt.take()).filter(|_| reading.resample.is_none()),
             size: opened.size,
             rows,
             meter: opened.meter,
@@ -264,6 +273,7 @@ fn of_comtrade<R: Read + 'static>(
         rate: cfg.rate(),
         header: 1,
         format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data.name())),
+        learnt: Before::default(),
         size,
         rows: Box::new(rows),
     })

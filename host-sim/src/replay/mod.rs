@@ -81,6 +81,7 @@ pub fn recording(
         .tachometers
         .and_then(|tachometers| columns.of_tachometers(tachometers));
     config.detector.sample_rate = rate as f32;
+    let learnt = recording.learnt.take();
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
     let mut analyser = Analyser::new(rate);
@@ -93,11 +94,18 @@ pub fn recording(
         analyser: &mut analyser,
         seen: 0,
     };
-    let answer = target.run(&config, samples)?;
+    let answer = match &learnt {
+        Some(learnt) => target.resume(&config, learnt, samples)?,
+        None => target.run(&config, samples)?,
+    };
     match flaw {
         Some(flaw) => Err(flaw.into()),
         None => Ok(Replay {
-            format: recording.format.take(),
+            format: if learnt.is_some() {
+                Some(EPISODE.to_owned())
+            } else {
+                recording.format.take()
+            },
             rate,
             start: recording.start,
             detection: detection(&answer, timebase),
@@ -107,6 +115,9 @@ pub fn recording(
         }),
     }
 }
+
+/// A stream that says what had been learnt.
+const EPISODE: &str = "an episode of a drop log, from what the detector had learnt before it";
 
 /// Before the first fall or impact, and after it, s.
 const AROUND: [f64; 2] = [0.02, 0.2];

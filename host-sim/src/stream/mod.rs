@@ -2,11 +2,12 @@
 //!
 //! Header `time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]`, then, for the optical sensors of a
 //! ball bearing, `[,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]`: edges so
-//! far (which may wrap at 65536) and the time since the last one.
+//! far (which may wrap at 65536) and the time since the last one. An episode of the drop log has `[,learnt]` at the end.
 
 mod bounded;
 mod clock;
 mod even;
+mod learnt;
 mod read;
 mod survey;
 mod write;
@@ -15,8 +16,10 @@ pub(crate) use bounded::{Bounded, LONGEST, Meter};
 pub use clock::LOOK_AHEAD;
 pub(crate) use clock::{Clock, Stamp};
 pub(crate) use even::{Even, Stamped, is_rate};
+pub(crate) use learnt::LEARNT;
+pub use learnt::{of_field, to_field};
+pub(crate) use read::{Before, Records, csv_error, is_missing};
 pub use read::{Pulses, Row, StreamReader};
-pub(crate) use read::{Records, csv_error, is_missing};
 pub(crate) use survey::median_interval;
 pub use write::StreamWriter;
 

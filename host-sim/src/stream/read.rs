@@ -1,14 +1,18 @@
 //! Reads a recorded stream, strictly: a row that breaks a rule ends it.
 
+use std::cell::RefCell;
 use std::io::Read;
+use std::rc::Rc;
 
 use csv::StringRecord;
+use touchdown_core::learnt::Learnt;
 use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 
 use super::Columns;
 use super::bounded::{Bounded, Meter};
 use super::clock::Stamp;
 use super::even::{Even, Stamped};
+use super::learnt::{LEARNT, of_field};
 use crate::input_error::{InputError, reason};
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -88,9 +92,14 @@ pub struct Records<R> {
     meter: Meter,
     columns: Columns,
     header: Vec<&'static str>,
+    learnt: Before,
     record: StringRecord,
+    begun: bool,
     finished: bool,
 }
+
+/// What had been learnt before the first row; none before that is read, or without that column.
+pub type Before = Rc<RefCell<Option<Box<Learnt>>>>;
 
 impl<R: Read> Records<R> {
     /// Reads the header of `bytes`.
@@ -105,21 +114,26 @@ impl<R: Read> Records<R> {
             .headers()
             .map_err(|error| csv_error(file, &error, &meter))?;
         let names: Vec<_> = header.iter().collect();
-        let Some(columns) = Columns::of_header(&names) else {
+        let known = names.strip_suffix(&[LEARNT]).unwrap_or(&names);
+        let Some(columns) = Columns::of_header(known) else {
             let rule = format!(
                 "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]\
-                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us], is {:?}",
+                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us][,learnt], is {:?}",
                 names.join(",")
             );
             return Err(InputError::at_line(file, 1, rule));
         };
+        let mut header = columns.header();
+        header.extend((known.len() < names.len()).then_some(LEARNT));
         Ok(Self {
             file: file.to_owned(),
             records,
             meter,
             columns,
-            header: columns.header(),
+            header,
+            learnt: Before::default(),
             record: StringRecord::new(),
+            begun: false,
             finished: false,
         })
     }
@@ -127,6 +141,11 @@ impl<R: Read> Records<R> {
     /// The columns.
     pub fn columns(&self) -> Columns {
         self.columns
+    }
+
+    /// What had been learnt before the first row, once that is read.
+    pub fn learnt(&self) -> Before {
+        self.learnt.clone()
     }
 
     /// How far it is read.
@@ -140,7 +159,28 @@ impl<R: Read> Records<R> {
             self.check_end()?;
             return Ok(None);
         }
-        parse(&self.file, &self.record, self.columns, &self.header).map(Some)
+        let row = parse(&self.file, &self.record, self.columns, &self.header)?;
+        if self.header.last() == Some(&LEARNT) {
+            self.learn()?;
+        }
+        Ok(Some(row))
+    }
+
+    /// The last field of a row: only the first one's has something in it.
+    fn learn(&mut self) -> Result<(), InputError> {
+        let text = &self.record[self.header.len() - 1];
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        if text.is_empty() {
+            return Ok(());
+        }
+        let fail = |rule: &str| InputError::at_line(&self.file, line(&self.record), rule);
+        if !is_first {
+            return Err(fail("learnt has a value in the first row only"));
+        }
+        let learnt = of_field(text);
+        let rule = "learnt is not what `touchdown log export` of this version writes";
+        *self.learnt.borrow_mut() = Some(Box::new(learnt.ok_or_else(|| fail(rule))?));
+        Ok(())
     }
 
     /// A number that lost its last digits is still a number: only the newline shows that the last

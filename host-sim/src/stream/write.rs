@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Columns, Row};
+use super::{Columns, LEARNT, Row};
 
 const RPM: f64 = std::f64::consts::TAU / 60.0;
 const MICRO: f64 = 1e-6;
@@ -11,13 +11,26 @@ const MICRO: f64 = 1e-6;
 pub struct StreamWriter<W> {
     out: W,
     columns: Columns,
+    /// What the first row has of the last column; none without that column.
+    learnt: Option<String>,
 }
 
 impl<W: Write> StreamWriter<W> {
     /// Writes the header.
-    pub fn new(mut out: W, columns: Columns) -> io::Result<Self> {
-        writeln!(out, "{}", columns.header().join(","))?;
-        Ok(Self { out, columns })
+    pub fn new(out: W, columns: Columns) -> io::Result<Self> {
+        Self::of_learnt(out, columns, None)
+    }
+
+    /// The same, of a stream that says what had been learnt before it.
+    pub fn of_learnt(mut out: W, columns: Columns, learnt: Option<String>) -> io::Result<Self> {
+        let mut names = columns.header();
+        names.extend(learnt.is_some().then_some(LEARNT));
+        writeln!(out, "{}", names.join(","))?;
+        Ok(Self {
+            out,
+            columns,
+            learnt,
+        })
     }
 
     /// Writes one row.
@@ -37,6 +50,9 @@ impl<W: Write> StreamWriter<W> {
                 Some(pulses) => write!(self.out, ",{},{}", pulses.count, pulses.age / MICRO)?,
                 None => write!(self.out, ",NaN,NaN")?,
             }
+        }
+        if let Some(learnt) = &mut self.learnt {
+            write!(self.out, ",{}", std::mem::take(learnt))?;
         }
         writeln!(self.out)
     }

@@ -1,5 +1,8 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
+#[cfg(feature = "serde")]
+mod learnt;
+
 use crate::detect::config::{DetectorConfig, MachineConfig};
 use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
 use crate::detect::ladder::sum;

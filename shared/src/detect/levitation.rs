@@ -15,6 +15,7 @@ pub(crate) struct Learning {
 
 /// What has been learnt.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Levitation {
     count: u32,
     armed: bool,

@@ -41,6 +41,8 @@ mod track;
 mod wall;
 
 pub use config::{DetectorConfig, MachineConfig, Tuning};
+#[cfg(feature = "serde")]
+pub(crate) use detector::Afloat;
 pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};
 pub use ladder::Phase;

@@ -12,6 +12,7 @@ const CLIP: f32 = 25.0;
 
 /// Running estimate of the variance of one axis of one plane.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Noise {
     last: [[f32; 2]; 3],
     filled: u8,

@@ -36,7 +36,8 @@ pub(crate) struct Release {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Candidate {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Candidate {
     /// Samples since its instant.
     age: f32,
     sum: [f32; 2],
@@ -45,7 +46,9 @@ struct Candidate {
 
 /// The bank.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ReleaseBank {
+    #[cfg_attr(feature = "serde", serde(skip))]
     candidates: [Candidate; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
@@ -73,6 +76,18 @@ impl ReleaseBank {
             let part = loudness.max(SHIFTED[0] + SHIFTED[1] * it.age);
             it.statistic(scale) > threshold * part
         })
+    }
+
+    /// The instants, used or not.
+    #[cfg(feature = "serde")]
+    pub(crate) fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    /// The instants, used or not.
+    #[cfg(feature = "serde")]
+    pub(crate) fn candidates_mut(&mut self) -> &mut [Candidate] {
+        &mut self.candidates
     }
 
     /// Forgets what was learnt as well.

@@ -51,6 +51,7 @@ pub(crate) struct Watch {
 
 /// What is known of a channel.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Watched {
     position: f32,
     velocity: f32,

@@ -20,6 +20,7 @@ pub(crate) struct Float {
 
 /// What is known of a plane.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Floating {
     place: [f32; 2],
     home: Option<[f32; 2]>,

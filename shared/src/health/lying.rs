@@ -27,6 +27,7 @@ pub(crate) struct Lie {
 
 /// What has been seen of it.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Lying {
     looks: u16,
     /// All the time.

@@ -56,7 +56,14 @@ pub struct Health {
 /// What is known of the sensors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HealthState {
-    channels: [Watched; CHANNELS],
+    pub(crate) channels: [Watched; CHANNELS],
+    pub(crate) planes: PlanesState,
+}
+
+/// What is known of the planes.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct PlanesState {
     pairing: Pairing,
     floating: [Floating; PLANES],
     lying: [Lying; PLANES],
@@ -142,17 +149,20 @@ impl Health {
         }
         reading.planes = sensing.place(counts);
         // One channel a tick.
-        state.turn = state.turn.wrapping_add(1);
-        if let Some(it) = state.channels.get_mut(usize::from(state.turn) % CHANNELS) {
+        state.planes.turn = state.planes.turn.wrapping_add(1);
+        if let Some(it) = state
+            .channels
+            .get_mut(usize::from(state.planes.turn) % CHANNELS)
+        {
             self.watch.refine(it);
         }
-        state.wait += 1;
-        if state.wait >= self.look_every {
-            state.wait = 0;
+        state.planes.wait += 1;
+        if state.planes.wait >= self.look_every {
+            state.planes.wait = 0;
             self.look(state, &mut reading, phases, sample.spin);
         }
         reading.moved = self.pair.take(
-            &mut state.pairing,
+            &mut state.planes.pairing,
             &reading.planes,
             reading.unusable == 0,
             floats,
@@ -209,7 +219,7 @@ impl Health {
     ) {
         let planes = reading.planes;
         for (index, (plane, phase)) in planes.into_iter().zip(phases).enumerate() {
-            let Some(it) = state.lying.get_mut(index) else {
+            let Some(it) = state.planes.lying.get_mut(index) else {
                 continue;
             };
             let Some(position) = plane else {
@@ -223,7 +233,7 @@ impl Health {
                 Place::Top => (1, FaultKind::Reversed),
                 Place::Side => (0, FaultKind::Swapped),
                 Place::Beyond(_) if self.fitted == 0b1111 => {
-                    (state.pairing.axis(), FaultKind::Gain)
+                    (state.planes.pairing.axis(), FaultKind::Gain)
                 }
                 Place::Beyond(axis) => (usize::from(axis), FaultKind::Gain),
             };
@@ -232,11 +242,11 @@ impl Health {
             state.tell(reading, 2 * index + axis, kind, spare);
         }
         if phases != [Phase::Levitated; PLANES] {
-            state.floating = Default::default();
-            state.drifted = false;
+            state.planes.floating = Default::default();
+            state.planes.drifted = false;
             return;
         }
-        for (it, plane) in state.floating.iter_mut().zip(planes) {
+        for (it, plane) in state.planes.floating.iter_mut().zip(planes) {
             match plane {
                 Some(position) => self.float.take(it, position),
                 None => *it = Floating::default(),
@@ -249,7 +259,7 @@ impl Health {
 
     /// Whether a plane orbits the other way round than the rotor turns.
     fn senses(&self, state: &mut HealthState, reading: &mut Reading, spin: f32) {
-        let sense = state.floating.map(|it| it.sense);
+        let sense = state.planes.floating.map(|it| it.sense);
         let turning = if spin > 0.0 { 1 } else { -1 };
         match sense {
             [0, 0] => {}
@@ -276,10 +286,10 @@ impl Health {
 
     /// Whether one plane has wandered off while the other has not.
     fn drifts(&self, state: &mut HealthState, reading: &mut Reading) {
-        if state.drifted || self.fitted != 0b1111 {
+        if state.planes.drifted || self.fitted != 0b1111 {
             return;
         }
-        let ways = state.floating.map(|it| it.drift());
+        let ways = state.planes.floating.map(|it| it.drift());
         let [a, b] = ways.map(|[x, y]| x * x + y * y);
         let far = self.tolerance * self.tolerance;
         let index = match (a > far, b > far) {
@@ -288,7 +298,7 @@ impl Health {
             _ => return,
         };
         let [x, y] = ways.get(index).copied().unwrap_or_default();
-        state.drifted = true;
+        state.planes.drifted = true;
         let axis = usize::from(y.abs() > x.abs());
         state.tell(reading, 2 * index + axis, FaultKind::Drift, false);
     }
@@ -327,6 +337,6 @@ impl HealthState {
             put(f32::from(it.condition as u8));
             it.words().into_iter().for_each(&mut put);
         }
-        self.pairing.words().into_iter().for_each(put);
+        self.planes.pairing.words().into_iter().for_each(put);
     }
 }

@@ -15,6 +15,7 @@ pub(crate) struct Pair {
 
 /// What is known of the two.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pairing {
     /// Half the difference, a - b, m.
     half: [f32; 2],

@@ -15,6 +15,8 @@ pub const PAYLOAD_BYTES: usize = BLOCK_BYTES - HEAD_BYTES - 4;
 pub enum Kind {
     /// [`super::header::Header`].
     Header = b'H',
+    /// A part of [`crate::learnt::Learnt`].
+    Learnt = b'L',
     /// [`super::waveform::Waveform`].
     Waveform = b'W',
     /// Notices: [`crate::wire::encode_record`], one after another.
@@ -26,8 +28,9 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Header,
+        Self::Learnt,
         Self::Waveform,
         Self::Events,
         Self::Severity,

@@ -63,7 +63,7 @@ impl Header {
     /// From bytes; `None` if they are too few, of another format or of an unknown trigger.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut fields = Fields(bytes);
-        if fields.u16()? != FORMAT {
+        if !(1..=FORMAT).contains(&fields.u16()?) {
             return None;
         }
         let decimation = fields.u16()?;

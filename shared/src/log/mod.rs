@@ -17,8 +17,8 @@ pub mod waveform;
 
 use crate::checksum::CRC;
 
-/// Version of the format; in every header.
-pub const FORMAT: u16 = 1;
+/// Version of the format; in every header. Version 1 has no [`block::Kind::Learnt`], and is read as well.
+pub const FORMAT: u16 = 2;
 
 fn checksum(bytes: &[u8]) -> u32 {
     CRC.checksum(bytes)

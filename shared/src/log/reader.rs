@@ -17,6 +17,8 @@ pub const COPIES: usize = 2;
 pub enum Item<'a> {
     /// What it is a record of; comes twice.
     Header(Header),
+    /// A part of what had been learnt.
+    Learnt(&'a [u8]),
     /// Samples.
     Waveform(Waveform<'a>),
     /// Notices.
@@ -54,8 +56,33 @@ pub enum Verdict {
     Whole,
     /// It has no ending: cut off, or still being written.
     Incomplete,
-    /// It has an ending, but not all that was recorded.
+    /// Something is broken, missing, foreign or unknown, whether it has an ending or not.
     Damaged,
+}
+
+/// What is wrong with a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum DamageKind {
+    /// Neither erased nor a block.
+    Broken,
+    /// Its block is not there.
+    Missing,
+    /// A block of another episode, or a second time.
+    Stray,
+    /// A right block whose content is of no known kind or version.
+    Unknown,
+}
+
+/// A page that costs the episode something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Damage {
+    /// Place in the episode, from 0.
+    pub page: usize,
+    /// What is wrong with it.
+    pub what: DamageKind,
 }
 
 /// What reading found. Every page is counted in one of the first five.
@@ -76,6 +103,9 @@ pub struct Report {
     pub missing: u32,
     /// Those of them that are the copy of a header or ending that is there.
     pub spared: u32,
+    /// Pages that cost the episode something: no copy, and not the page that a cut of power has torn.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub damaged: u32,
     /// Bytes after the last page.
     pub rest: u32,
     /// Number of the episode, if it has a block.
@@ -87,11 +117,10 @@ pub struct Report {
 impl Report {
     /// Whether the episode is all there.
     pub fn verdict(&self) -> Verdict {
-        let damage = self.missing - self.spared + self.stray + self.unknown + self.rest;
         match (self.sequence, self.ended) {
-            (None, _) if damage + self.broken == 0 => Verdict::Empty,
-            (Some(_), true) if damage == 0 => Verdict::Whole,
-            (Some(_), true) => Verdict::Damaged,
+            _ if self.damaged + self.rest > 0 => Verdict::Damaged,
+            (None, _) if self.broken == 0 => Verdict::Empty,
+            (Some(_), true) => Verdict::Whole,
             _ => Verdict::Incomplete,
         }
     }
@@ -100,8 +129,12 @@ impl Report {
 /// Goes through the pages of an episode. Any bytes will do; it takes a time in proportion to them.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
-    pages: core::slice::Iter<'a, [u8; BLOCK_BYTES]>,
+    pages: core::iter::Enumerate<core::slice::Iter<'a, [u8; BLOCK_BYTES]>>,
     seen: [bool; MOST_BLOCKS],
+    /// By page.
+    wrong: [Option<DamageKind>; MOST_BLOCKS],
+    /// Behind the last page that is not erased.
+    end: usize,
     report: Report,
     last: usize,
     headed: bool,
@@ -113,8 +146,10 @@ impl<'a> Reader<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
         let (pages, rest) = bytes.as_chunks();
         Self {
-            pages: pages.iter(),
+            pages: pages.iter().enumerate(),
             seen: [false; MOST_BLOCKS],
+            wrong: [None; MOST_BLOCKS],
+            end: 0,
             report: Report {
                 rest: rest.len() as u32,
                 ..Report::default()
@@ -126,25 +161,57 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads to the end; what all of it was.
-    pub fn finish(mut self) -> Report {
+    pub fn finish(self) -> Report {
+        self.finish_with(|_| ())
+    }
+
+    /// The same, and each page that is damaged, in their order.
+    pub fn finish_with(mut self, mut tell: impl FnMut(Damage)) -> Report {
         while self.next().is_some() {}
         let should = self.expected.unwrap_or(self.last).min(MOST_BLOCKS);
-        for (index, seen) in self.seen.iter().take(should).enumerate() {
+        let pages = self.seen.iter().zip(&self.wrong).enumerate();
+        for (page, (seen, wrong)) in pages {
             let copied =
-                (self.headed && index < COPIES) || (self.report.ended && index + COPIES >= should);
-            self.report.missing += u32::from(!seen);
-            self.report.spared += u32::from(!seen && copied);
+                (self.headed && page < COPIES) || (self.report.ended && page + COPIES >= should);
+            let missing = page < should && !seen;
+            self.report.missing += u32::from(missing);
+            self.report.spared += u32::from(missing && copied);
+            // The page that was being written when power went: right behind the last block, and nothing behind it.
+            let torn = !self.report.ended && page == self.last && page + 1 == self.end;
+            let what = match wrong {
+                Some(DamageKind::Broken) if torn || (missing && copied) => None,
+                None if missing && !copied => Some(DamageKind::Missing),
+                what => *what,
+            };
+            if let Some(what) = what {
+                self.report.damaged += 1;
+                tell(Damage { page, what });
+            }
         }
         self.report
     }
 
-    fn take(&mut self, sealed: &Sealed<'a>) -> Option<Item<'a>> {
+    /// What is wrong with a page; of those that are too many for an episode only how many.
+    fn spot(&mut self, page: usize, what: DamageKind) {
+        match self.wrong.get_mut(page) {
+            Some(wrong) => *wrong = Some(what),
+            None => self.report.damaged += 1,
+        }
+        match what {
+            DamageKind::Broken => self.report.broken += 1,
+            DamageKind::Stray => self.report.stray += 1,
+            DamageKind::Unknown => self.report.unknown += 1,
+            DamageKind::Missing => {}
+        }
+    }
+
+    fn take(&mut self, page: usize, sealed: &Sealed<'a>) -> Option<Item<'a>> {
         let index = usize::from(sealed.index);
         let sequence = *self.report.sequence.get_or_insert(sealed.sequence);
         match self.seen.get_mut(index) {
             Some(seen) if !*seen && sequence == sealed.sequence => *seen = true,
             _ => {
-                self.report.stray += 1;
+                self.spot(page, DamageKind::Stray);
                 return None;
             }
         }
@@ -160,7 +227,7 @@ impl<'a> Reader<'a> {
         }
         match item {
             Some(_) => self.report.blocks += 1,
-            None => self.report.unknown += 1,
+            None => self.spot(page, DamageKind::Unknown),
         }
         item
     }
@@ -171,11 +238,16 @@ impl<'a> Iterator for Reader<'a> {
 
     fn next(&mut self) -> Option<Item<'a>> {
         loop {
-            match Page::open(self.pages.next()?) {
+            let (page, bytes) = self.pages.next()?;
+            let opened = Page::open(bytes);
+            if opened != Page::Blank {
+                self.end = page + 1;
+            }
+            match opened {
                 Page::Blank => self.report.blank += 1,
-                Page::Broken => self.report.broken += 1,
+                Page::Broken => self.spot(page, DamageKind::Broken),
                 Page::Sealed(sealed) => {
-                    if let Some(item) = self.take(&sealed) {
+                    if let Some(item) = self.take(page, &sealed) {
                         return Some(item);
                     }
                 }
@@ -188,6 +260,7 @@ fn read<'a>(sealed: &Sealed<'a>) -> Option<Item<'a>> {
     let bytes = sealed.payload;
     match sealed.kind? {
         Kind::Header => Header::decode(bytes).map(Item::Header),
+        Kind::Learnt => Some(Item::Learnt(bytes)),
         Kind::Waveform => Waveform::decode(bytes).map(Item::Waveform),
         Kind::Events => match bytes.as_chunks() {
             (records, []) => Some(Item::Events(Events(records))),

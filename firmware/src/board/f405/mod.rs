@@ -319,6 +319,7 @@ pub fn on_converted() {
         tick.recorder.set_severity(tick.app.state().severity());
         tick.recorder.set_phase(tick.app.state().phase());
         tick.recorder.take(&sample, notices);
+        tick.recorder.keep(tick.app.state());
     });
 }
 

@@ -148,6 +148,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
                 recorder.set_severity(app.state().severity());
                 recorder.set_phase(app.state().phase());
                 recorder.take(&sample, &notices);
+                recorder.keep(app.state());
                 if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
                     board.report(&outlook);
                     recorder.hear(&outlook);

@@ -85,6 +85,7 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
             recorder.set_severity(app.state().severity());
             recorder.set_phase(app.state().phase());
             recorder.take(sample, &notices);
+            recorder.keep(app.state());
         });
         told += notices.len() as u32;
         tally.add(instructions);

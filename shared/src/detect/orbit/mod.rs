@@ -2,9 +2,13 @@
 //! by runout. Searched for until found, then followed, so that what is left is noise.
 
 mod follow;
+#[cfg(feature = "serde")]
+mod learnt;
 mod search;
 
 use self::follow::{Follow, Orbit};
+#[cfg(feature = "serde")]
+pub(crate) use self::learnt::Followed;
 use self::search::{Search, Searching};
 
 /// Parts of the arming time that an orbit is searched for and fitted in. The rest shows what is left of it.
