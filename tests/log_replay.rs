@@ -151,5 +151,7 @@ fn what_was_learnt_comes_back() {
     assert!(Learnt::of_parts(parts().chain(parts())).is_none());
     // Nothing has been learnt yet.
     let monitor = Monitor::try_new(&scene.monitor_config()).expect("valid");
-    assert!(Learnt::of(&monitor.start()).is_none());
+    let mut learnt = learnt;
+    learnt.update(&monitor.start());
+    assert!(!learnt.is_known());
 }

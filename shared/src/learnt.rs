@@ -25,6 +25,7 @@ const FIRST_INSTANTS: u8 = 2;
 /// What has been learnt.
 #[derive(Clone, Debug, Default)]
 pub struct Learnt {
+    known: bool,
     /// Spin, rad/s, where it is measured, and whether the magnetic bearings are on, where that is wired.
     pub(crate) told: (Option<f32>, Option<bool>),
     pub(crate) health: HealthState,
@@ -32,13 +33,25 @@ pub struct Learnt {
 }
 
 impl Learnt {
-    /// What `state` has learnt; nothing unless the rotor floats and the monitor is armed.
-    pub fn of(state: &MonitorState) -> Option<Self> {
-        Some(Self {
-            told: (state.spin, state.levitated),
-            health: state.health,
-            detector: state.detector.afloat()?,
-        })
+    /// Takes over what `state` has learnt, in place, as it is a kilobyte; forgets all unless the rotor floats and the
+    /// monitor is armed.
+    pub fn update(&mut self, state: &MonitorState) {
+        self.known = state.detector.is_afloat();
+        if self.known {
+            self.told = (state.spin, state.levitated);
+            self.health.clone_from(&state.health);
+            self.detector.update(&state.detector);
+        }
+    }
+
+    /// As if nothing had been learnt.
+    pub fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Whether anything has been learnt.
+    pub fn is_known(&self) -> bool {
+        self.known
     }
 
     /// Spin when it was learnt, rad/s, where it is measured.
@@ -75,7 +88,10 @@ impl Learnt {
 
     /// From the payloads of all parts, in their order; nothing where one is missing or of another version.
     pub fn of_parts<'a>(parts: impl Iterator<Item = &'a [u8]>) -> Option<Self> {
-        let mut learnt = Self::default();
+        let mut learnt = Self {
+            known: true,
+            ..Self::default()
+        };
         let mut number = 0;
         for part in parts {
             match part {

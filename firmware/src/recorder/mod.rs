@@ -170,11 +170,15 @@ pub struct Recorder<'m> {
 impl<'m> Recorder<'m> {
     /// For samples that the monitor takes with `config`, which it has accepted.
     pub fn new(memory: &'m mut Memory, config: &MonitorConfig, identity: Identity) -> Self {
+        let learnt = memory
+            .learnt
+            .write([const { [const { None }; 2] }; BUFFERS]);
+        for place in learnt.iter_mut().flatten() {
+            *place = Some(Learnt::default());
+        }
         Self {
             counts: &mut memory.counts,
-            learnt: memory
-                .learnt
-                .write([const { [const { None }; 2] }; BUFFERS]),
+            learnt,
             plan: Plan::new(config, identity),
             captures: [const { Capture::EMPTY }; BUFFERS],
             tick: 0,
@@ -208,9 +212,9 @@ impl<'m> Recorder<'m> {
         if self.plan.decimation == 1
             && let Some(at) = self.recording
             && let Some(due) = self.captures.get(at).and_then(Capture::due)
-            && let Some(place) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
+            && let Some(Some(place)) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
         {
-            *place = Learnt::of(state);
+            place.update(state);
         }
     }
 
@@ -229,11 +233,14 @@ impl<'m> Recorder<'m> {
         let at = self.fetching;
         let (capture, counts) = (self.captures.get_mut(at)?, self.counts.get(at)?);
         let learnt = self.learnt.get_mut(at)?;
-        let first = learnt.get(capture.oldest()).and_then(Option::as_ref);
+        let first = learnt
+            .get(capture.oldest())
+            .and_then(Option::as_ref)
+            .filter(|it| it.is_known());
         let block = capture.fetch(counts, first, &self.plan);
         if capture.is_fetched() {
             *capture = Capture::EMPTY;
-            *learnt = [const { None }; 2];
+            learnt.iter_mut().flatten().for_each(Learnt::forget);
             // Where samples had nowhere to go, they have now.
             self.recording.get_or_insert(at);
         }

@@ -30,23 +30,25 @@ pub(crate) struct Place {
 }
 
 impl DetectorState {
-    /// Nothing unless the rotor floats as one and all of it has been learnt.
-    pub(crate) fn afloat(&self) -> Option<Afloat> {
+    /// Whether the rotor floats as one, and all of it has been learnt.
+    pub(crate) fn is_afloat(&self) -> bool {
         let floats = self.rotor.phase == Phase::Levitated && self.levitation.is_armed();
-        if !floats || self.ends.are_alone() || self.pending.is_some() {
-            return None;
-        }
-        Some(Afloat {
-            place: Place {
-                next_number: self.next_number,
-                noise: self.noise,
-                levitation: self.levitation,
-                level: self.listener.level(),
-                ends: self.ends.together(),
-            },
-            orbit: self.orbit.followed(),
-            release: self.release,
-        })
+        floats && !self.ends.are_alone() && self.pending.is_none()
+    }
+}
+
+impl Afloat {
+    /// Takes over what `state` knows.
+    pub(crate) fn update(&mut self, state: &DetectorState) {
+        self.place = Place {
+            next_number: state.next_number,
+            noise: state.noise,
+            levitation: state.levitation,
+            level: state.listener.level(),
+            ends: state.ends.together(),
+        };
+        self.orbit = state.orbit.followed();
+        self.release.clone_from(&state.release);
     }
 }
 
