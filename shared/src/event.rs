@@ -1,7 +1,6 @@
 //! What the detector reports.
 
-use crate::forecast::Outlook;
-use crate::health::Fault;
+use crate::fault::Fault;
 
 /// A moment on the sample clock, in 1/256 of a sample period; sample 0 is the first one seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -151,6 +150,32 @@ pub enum Notice {
     },
     /// What lies ahead, where that is news.
     Outlook(Outlook),
+}
+
+/// When a whirl begins, and how it grows; s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Onset {
+    /// From the sample that the outlook was made at to the start of the contact that whirls; negative
+    /// where it has begun.
+    pub time_left: f32,
+    /// From the beginning to unbounded growth without gravity, t* = rho0/(mu |v_t|) with v_t along the
+    /// wall at the beginning; infinite without friction.
+    pub growth_time: f32,
+}
+
+/// What lies ahead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// Sample of the estimate.
+    pub from: Moment,
+    /// Sample after which it was ready.
+    pub made_at: u64,
+    /// Of whirl with the spin, 0 to 1.
+    pub probability_forward: f32,
+    /// Of whirl against the spin, 0 to 1.
+    pub probability_backward: f32,
+    /// Mean over the runs that whirl, where any does.
+    pub onset: Option<Onset>,
 }
 
 /// Most notices that one tick can give.

@@ -8,12 +8,14 @@
 //! bounded, allocates nothing and never panics.
 
 pub mod checksum;
+pub mod config;
 #[cfg(feature = "serde")]
 pub mod config_block;
 pub mod controller;
 pub mod detect;
 pub mod error;
 pub mod event;
+pub mod fault;
 pub mod forecast;
 pub mod health;
 #[cfg(feature = "serde")]
@@ -23,10 +25,12 @@ pub mod link;
 pub mod log;
 pub mod model;
 pub mod monitor;
+pub mod phase;
 pub mod real;
 pub mod sample;
 pub mod scales;
 pub mod sensing;
 pub mod severity;
 pub mod tachometer;
+mod vector;
 pub mod wire;

@@ -158,6 +158,11 @@ impl Monitor {
         }
     }
 
+    /// A slice of the forecast after a tick, where the two take turns.
+    pub fn look(&self, state: &MonitorState, lookout: &mut Lookout) -> Option<Notice> {
+        lookout.work(&self.sight(state, lookout.asks()))
+    }
+
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
         let Some(tachometers) = &self.tachometers else {
             return Retainer::Fixed;

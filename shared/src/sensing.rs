@@ -2,7 +2,7 @@
 //! axes.
 
 use crate::error::ConfigError;
-use crate::health::Found;
+use crate::fault::Found;
 use crate::real::sin_cos;
 use crate::sample::{CHANNELS, Sample};
 

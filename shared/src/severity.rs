@@ -2,7 +2,8 @@
 //!
 //! An episode begins where the rotor is released; what it adds up to stays until the next one begins.
 
-use crate::detect::{DetectorConfig, MachineConfig};
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::Strain;
 use crate::error::ConfigError;
 use crate::event::{Event, EventKind, Moment, Notice};
 use crate::real::sqrt;
@@ -54,24 +55,6 @@ pub(crate) struct SeverityState {
     speeds: f32,
     was_released: bool,
     was_in_contact: bool,
-}
-
-/// The rotor after a tick.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Strain {
-    /// In flight or in contact.
-    pub(crate) is_released: bool,
-    /// Speed of the centre and the error of each component, m/s.
-    pub(crate) speed: f32,
-    pub(crate) speed_error: f32,
-    /// Samples since permanent contact began, while in it.
-    pub(crate) contact_age: Option<u32>,
-    /// Rate of a declared whirl, rad/s.
-    pub(crate) whirl: Option<f32>,
-    /// As seen in the impacts.
-    pub(crate) restitution: f32,
-    /// Sum of the speeds into the wall that the series has yet to come, m/s.
-    pub(crate) ahead: f32,
 }
 
 impl Severeness {
@@ -148,24 +131,6 @@ impl Severeness {
         let per_speed = self.machine.mass * (1.0 + restitution);
         state.so_far.impulse = per_speed * state.so_far.impact_speed;
         state.so_far.total_impulse = per_speed * state.speeds;
-    }
-}
-
-impl Strain {
-    /// The greater of each, of two ends.
-    pub(crate) fn worse(&self, other: &Self) -> Self {
-        let faster = if self.speed >= other.speed {
-            self
-        } else {
-            other
-        };
-        let whirls = [self.whirl, other.whirl].into_iter().flatten();
-        Self {
-            is_released: self.is_released || other.is_released,
-            contact_age: self.contact_age.max(other.contact_age),
-            whirl: whirls.reduce(|a, b| if a.abs() >= b.abs() { a } else { b }),
-            ..*faster
-        }
     }
 }
 

@@ -7,8 +7,8 @@
 
 use crate::controller::Outputs;
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use crate::forecast::{Onset, Outlook};
-use crate::health::{Condition, Fault, FaultKind};
+use crate::event::{Onset, Outlook};
+use crate::fault::{Condition, Fault, FaultKind};
 use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use crate::severity::Severity;
 

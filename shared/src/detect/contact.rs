@@ -2,15 +2,16 @@
 
 use core::f32::consts::TAU;
 
-use crate::detect::config::{DetectorConfig, MachineConfig};
-use crate::detect::flight::{Fix, direction};
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::estimate::Place;
+use crate::detect::fix::Fix;
 use crate::detect::lift_off::LiftOff;
 use crate::detect::signals::{Retainer, Signals};
-use crate::detect::slip::{Slip, Verdict};
+use crate::detect::slip::{Kind, Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
-use crate::forecast::Place;
 use crate::real::sqrt;
+use crate::vector::direction;
 
 /// Slip, m/s, that a speed sensor resolves.
 const SLIP_RESOLUTION: f32 = 0.02;
@@ -37,13 +38,6 @@ pub(crate) struct ContactTest {
     period: f32,
     threshold: f32,
     still_samples: u32,
-}
-
-/// Sliding or rolling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Sliding,
-    Rolling,
 }
 
 /// What the contact is known to have become.

@@ -6,24 +6,27 @@ mod learnt;
 
 #[cfg(feature = "serde")]
 pub(crate) use self::learnt::Afloat;
-use crate::detect::config::DetectorConfig;
+use crate::config::DetectorConfig;
 use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
-use crate::detect::flight::{Fix, FlightTest, Listener, direction};
-use crate::detect::ladder::{Fall, Ladder, Phase, Rungs, square, sum};
+use crate::detect::estimate::Estimate;
+use crate::detect::fix::Fix;
+use crate::detect::flight::{FlightTest, Listener};
+use crate::detect::ladder::{Fall, Ladder, Rungs};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
 use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
+use crate::detect::strain::Strain;
 use crate::detect::teller::{Pending, Teller};
 use crate::error::ConfigError;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
-use crate::forecast::Estimate;
+use crate::phase::Phase;
 use crate::real::ln;
 use crate::sensing::{PLANES, Reading};
-use crate::severity::Strain;
+use crate::vector::{direction, square, sum};
 
 /// Standard deviations by which a rotor has moved for certain.
 const MOVED: f32 = 8.0;

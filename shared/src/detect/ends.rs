@@ -8,15 +8,17 @@ mod learnt;
 
 #[cfg(feature = "serde")]
 pub(crate) use self::learnt::Together;
-use crate::detect::config::{DetectorConfig, Tuning};
+use crate::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
-use crate::detect::flight::Fix;
-use crate::detect::ladder::{Ladder, Lifting, Phase, Rungs, is_home, square};
+use crate::detect::fix::Fix;
+use crate::detect::ladder::{Ladder, Lifting, Rungs, is_home};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::signals::Signals;
 use crate::detect::teller::{Pending, Teller};
 use crate::event::{Motion, Plane};
+use crate::phase::Phase;
 use crate::sensing::PLANES;
+use crate::vector::square;
 
 /// Standard deviations by which the ends are apart for certain.
 const APART: f32 = 8.0;

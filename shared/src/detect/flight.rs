@@ -3,14 +3,15 @@
 #[cfg(feature = "serde")]
 mod learnt;
 
-use crate::detect::config::{DetectorConfig, MachineConfig};
-use crate::detect::jump::{Approach, Jump, JumpBank, JumpTest};
-use crate::detect::ladder::sum;
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::fix::Fix;
+use crate::detect::jump::{Approach, JumpBank, JumpTest};
 use crate::detect::next_impact::NextImpact;
 use crate::detect::series::{Bounce, Known, Series};
+use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
-use crate::event::Moment;
 use crate::real::{root, sqrt};
+use crate::vector::{direction, sum};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -172,17 +173,6 @@ struct Hit {
     launch_speed: f32,
     /// From the centre, m.
     radius: f32,
-}
-
-/// A position as the sensors give it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Fix {
-    /// When.
-    pub(crate) now: Moment,
-    /// m.
-    pub(crate) position: [f32; 2],
-    /// Of one axis, m^2.
-    pub(crate) variance: f32,
 }
 
 impl FlightTest {
@@ -471,20 +461,10 @@ impl FlightTest {
     }
 }
 
-/// Unit vector from the centre and distance, m.
-pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
-    let radius = sqrt(x * x + y * y);
-    if radius > 0.0 {
-        ([x / radius, y / radius], radius)
-    } else {
-        ([0.0, -1.0], 0.0)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::detect::config::Tuning;
+    use crate::config::Tuning;
     use crate::detect::noise::white;
     use crate::detect::series::tests::MACHINE;
 

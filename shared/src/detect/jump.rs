@@ -4,8 +4,8 @@
 //! For each instant the bank follows what a unit jump there would have done to the filter's error,
 //! so the test knows that the filter has begun to follow the jump.
 
-use crate::detect::config::{MOST_INSTANTS, Tuning};
-use crate::detect::track::Innovation;
+use crate::config::{MOST_INSTANTS, Tuning};
+use crate::detect::track::{Innovation, Jump};
 
 /// Standard deviation of a value that lies anywhere in a span of 1.
 const UNIFORM: f32 = 0.288_675_13;
@@ -76,23 +76,6 @@ impl JumpBank {
     fn candidates(&self) -> &[Candidate] {
         self.candidates.get(..self.live).unwrap_or_default()
     }
-}
-
-/// A jump that the test found.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Jump {
-    /// Samples since, to a fraction.
-    pub(crate) age: f32,
-    /// The same, for a date alone.
-    pub(crate) dated: f32,
-    /// m/s.
-    pub(crate) change: [f32; 2],
-    /// Variance of each axis of `change`, (m/s)^2.
-    pub(crate) variance: f32,
-    /// What a unit of it has left in the filter.
-    pub(crate) effect: [f32; 2],
-    /// Standard deviation of `age`, s.
-    pub(crate) timing: f32,
 }
 
 /// What an impact now would be like, along the outward normal.

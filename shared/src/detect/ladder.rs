@@ -2,17 +2,21 @@
 //!
 //! The rotor as a whole has one; so has each end while the two move apart.
 
-use crate::detect::config::{DetectorConfig, MachineConfig};
-use crate::detect::contact::{ContactTest, Finding, Kind, Regime, Touching};
-use crate::detect::flight::{Airborne, Fix, FlightTest, Landing, UNKNOWN_SPEED, direction};
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::contact::{ContactTest, Finding, Regime, Touching};
+use crate::detect::estimate::{Estimate, Place};
+use crate::detect::fix::Fix;
+use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
 use crate::detect::levitation::Levitation;
 use crate::detect::signals::Signals;
+use crate::detect::slip::Kind;
 use crate::detect::still::Still;
+use crate::detect::strain::Strain;
 use crate::detect::teller::{Pending, Teller};
 use crate::event::{EventKind, Moment};
-use crate::forecast::{Estimate, Place};
+use crate::phase::Phase;
 use crate::real::sqrt;
-use crate::severity::Strain;
+use crate::vector::{direction, square};
 
 /// Standard deviations within which a caught rotor has come back.
 const CAUGHT: f32 = 4.0;
@@ -20,32 +24,6 @@ const CAUGHT: f32 = 4.0;
 const FALLS: f32 = 0.5;
 /// Faster than a controller puts a rotor down, m/s.
 const LANDING_SPEED: f32 = 0.01;
-
-/// Phase of the rotor, or of one end of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Phase {
-    /// Switched on, not judged yet.
-    #[default]
-    Starting = 0,
-    /// Floating.
-    Levitated = 1,
-    /// In flight, before the first impact or after a lift-off.
-    FreeFall = 2,
-    /// Between impacts.
-    Impact = 3,
-    /// Permanent contact with slip, or not yet known.
-    Sliding = 4,
-    /// Permanent contact without.
-    Rolling = 5,
-}
-
-impl Phase {
-    /// Whether in permanent contact.
-    pub const fn is_contact(self) -> bool {
-        matches!(self, Self::Sliding | Self::Rolling)
-    }
-}
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -397,15 +375,4 @@ impl Ladder {
 /// Whether `fix` is within noise of `home` (m), around which the rotor floats with this variance (m^2).
 pub(crate) fn is_home(fix: &Fix, home: [f32; 2], variance: f32) -> bool {
     square(fix.position, home) <= CAUGHT * CAUGHT * variance.max(fix.variance)
-}
-
-/// Square of the distance, m^2.
-pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
-    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-    dx * dx + dy * dy
-}
-
-/// Of two ways, m.
-pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
-    [a[0] + b[0], a[1] + b[1]]
 }

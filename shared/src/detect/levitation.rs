@@ -1,7 +1,7 @@
 //! What is learnt while the rotor floats: where, and how quietly.
 
-use crate::detect::config::Tuning;
-use crate::detect::ladder::sum;
+use crate::config::Tuning;
+use crate::vector::sum;
 
 /// Seconds that the learnt position follows after arming.
 const FOLLOW_TIME: f32 = 0.5;

@@ -19,10 +19,11 @@
 //! | `signals` | what it is told besides the position |
 //! | `teller` | the notices of a tick |
 
-mod config;
 mod contact;
 mod detector;
 mod ends;
+mod estimate;
+mod fix;
 mod flight;
 mod jump;
 mod ladder;
@@ -36,17 +37,20 @@ mod series;
 mod signals;
 mod slip;
 mod still;
+mod strain;
 mod teller;
 mod track;
 mod wall;
 
-pub use config::{DetectorConfig, MachineConfig, Tuning};
+pub use crate::config::{DetectorConfig, MachineConfig, Tuning};
+pub use crate::phase::Phase;
 #[cfg(feature = "serde")]
 pub(crate) use detector::Afloat;
 pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};
-pub use ladder::Phase;
+pub use estimate::{Estimate, Place};
 #[cfg(test)]
 pub(crate) use noise::white;
 pub use signals::{Retainer, Signals};
 pub use slip::Slip;
+pub(crate) use strain::Strain;

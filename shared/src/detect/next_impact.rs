@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use crate::detect::config::MachineConfig;
+use crate::config::MachineConfig;
 use crate::detect::series::{Bounce, Known, Series};
 use crate::event::Moment;
 

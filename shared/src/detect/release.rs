@@ -7,7 +7,7 @@
 //! What a healthy machine does is no white noise: an unbalance orbit, runout or hum raise the statistic
 //! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
 
-use crate::detect::config::{MOST_INSTANTS, Tuning};
+use crate::config::{MOST_INSTANTS, Tuning};
 use crate::real::sqrt;
 
 /// Mean of the largest statistic of the bank in white noise, as the test below measures it.

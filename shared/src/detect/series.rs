@@ -3,7 +3,7 @@
 //! From launch speed v under a wall that presses with a, the rest of a series lasts
 //! 2 v/(a (1 - restitution)): its end is known long before the bounces vanish in the noise.
 
-use crate::detect::config::MachineConfig;
+use crate::config::MachineConfig;
 use crate::event::Moment;
 
 /// Weight of the configured restitution against that of one clear impact.

@@ -1,6 +1,11 @@
 //! What the slip measured with an inner ring that turns says: sliding or rolling.
 
-use crate::detect::contact::Kind;
+/// Sliding or rolling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sliding,
+    Rolling,
+}
 
 /// Slip of the rotor's surface on the wall, counter-clockwise positive: v_t + r omega - R W.
 #[derive(Clone, Copy, Debug, PartialEq)]

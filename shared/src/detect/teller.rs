@@ -1,7 +1,7 @@
 //! What a tick says.
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
-use crate::health::{Fault, Found};
+use crate::fault::{Fault, Found};
 use crate::sensing::PLANES;
 
 /// A declared fall that is neither confirmed nor withdrawn.

@@ -1,6 +1,5 @@
 //! Position and velocity in flight: a Kalman filter of a ballistic path, the same for both axes.
 
-use crate::detect::jump::Jump;
 use crate::real::sqrt;
 
 /// Coefficients.
@@ -35,6 +34,23 @@ pub(crate) struct Innovation {
     pub(crate) variance: f32,
     /// Gains of position and velocity (1/s).
     pub(crate) gain: [f32; 2],
+}
+
+/// A jump that the test found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Jump {
+    /// Samples since, to a fraction.
+    pub(crate) age: f32,
+    /// The same, for a date alone.
+    pub(crate) dated: f32,
+    /// m/s.
+    pub(crate) change: [f32; 2],
+    /// Variance of each axis of `change`, (m/s)^2.
+    pub(crate) variance: f32,
+    /// What a unit of it has left in the filter.
+    pub(crate) effect: [f32; 2],
+    /// Standard deviation of `age`, s.
+    pub(crate) timing: f32,
 }
 
 impl Ballistic {

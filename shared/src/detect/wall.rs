@@ -4,7 +4,7 @@
 //! rolling, with the same gains. Whichever predicts the samples better is true: the difference of
 //! their log-likelihoods is summed up as a CUSUM in each direction.
 
-use crate::detect::config::{MachineConfig, Tuning};
+use crate::config::{MachineConfig, Tuning};
 use crate::real::sqrt;
 
 /// Time over which an error of the equations keeps its sign, s.

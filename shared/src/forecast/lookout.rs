@@ -1,10 +1,11 @@
 //! The forecast as a task of its own, below the tick: what it is handed, and when it starts anew.
 
-use crate::detect::DetectorConfig;
+use crate::config::DetectorConfig;
+use crate::detect::Estimate;
 use crate::error::ConfigError;
 use crate::event::Notice;
-use crate::forecast::{Estimate, Forecast, ForecastState, Outlook};
-use crate::monitor::{Monitor, MonitorState};
+use crate::event::Outlook;
+use crate::forecast::{Forecast, ForecastState};
 
 /// What the tick hands over.
 #[derive(Clone, Copy, Debug)]
@@ -54,11 +55,6 @@ impl Lookout {
         }
         self.forecast.work(state, sight.sample)?;
         state.news().map(Notice::Outlook)
-    }
-
-    /// A slice after a tick of `monitor`, where tick and forecast take turns.
-    pub fn look(&mut self, monitor: &Monitor, state: &MonitorState) -> Option<Notice> {
-        self.work(&monitor.sight(state, self.asks()))
     }
 
     /// The last forecast of this episode.

@@ -7,18 +7,17 @@
 //! | file | says |
 //! |---|---|
 //! | `lookout` | what the tick hands over, and when a forecast starts |
-//! | `estimate` | where the rotor is, and how well that is known |
 //! | `points` | from where the runs start |
 //! | `run` | what becomes of one of them |
 //! | `threshold` | whether a rotor on the wall whirls, in closed form |
 
-mod estimate;
 mod lookout;
 mod points;
 mod run;
 mod threshold;
 
-use crate::detect::{DetectorConfig, Tuning};
+use crate::config::{DetectorConfig, Tuning};
+use crate::detect::{Estimate, Place};
 use crate::error::ConfigError;
 use crate::event::Moment;
 use crate::forecast::points::POINTS;
@@ -27,7 +26,7 @@ use crate::model::{Rigid, RigidConfig};
 use crate::real::Poly32;
 use crate::scales::Scales;
 
-pub use estimate::{Estimate, Place};
+pub use crate::event::{Onset, Outlook};
 pub use lookout::{Lookout, Sight};
 
 /// Speed of a rotor without weight that the magnets let go, m/s: sets the scales where gravity is 0.
@@ -57,32 +56,6 @@ struct ForecastState {
     tally: Tally,
     last: Option<Outlook>,
     told: Option<[f32; 2]>,
-}
-
-/// When a whirl begins, and how it grows; s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Onset {
-    /// From the sample that the outlook was made at to the start of the contact that whirls; negative
-    /// where it has begun.
-    pub time_left: f32,
-    /// From the beginning to unbounded growth without gravity, t* = rho0/(mu |v_t|) with v_t along the
-    /// wall at the beginning; infinite without friction.
-    pub growth_time: f32,
-}
-
-/// What lies ahead.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlook {
-    /// Sample of the estimate.
-    pub from: Moment,
-    /// Sample after which it was ready.
-    pub made_at: u64,
-    /// Of whirl with the spin, 0 to 1.
-    pub probability_forward: f32,
-    /// Of whirl against the spin, 0 to 1.
-    pub probability_backward: f32,
-    /// Mean over the runs that whirl, where any does.
-    pub onset: Option<Onset>,
 }
 
 /// What the runs came to.

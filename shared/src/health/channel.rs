@@ -3,7 +3,7 @@
 //! A critically damped alpha-beta-gamma filter foresees the next count; with the squares of its innovations
 //! on average, a value that is off is off by the detector's own measure of certainty.
 
-use super::fault::{Condition, FaultKind, Found};
+use crate::fault::{Condition, FaultKind, Found};
 use crate::real::{ln, sqrt};
 
 /// Part of an innovation that the filter keeps after a sample. Chosen: an orbit of 30 um at 500 Hz and

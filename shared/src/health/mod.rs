@@ -2,25 +2,24 @@
 //!
 //! | file | says |
 //! |---|---|
-//! | `fault` | what can be wrong, and what it leaves |
 //! | `channel` | one channel against its own past: gone, stuck, a spike, a shift |
 //! | `pair` | how one plane goes on without the other |
 //! | `floating` | a plane of a floating rotor: drift, and the way round of its orbit |
 //! | `lying` | a plane of a rotor on the wall: whether it lies where it can |
 
 mod channel;
-mod fault;
 mod floating;
 mod lying;
 mod pair;
 
-pub use fault::{Condition, Fault, FaultKind, Found};
+pub use crate::fault::{Condition, Fault, FaultKind, Found};
 
 use self::channel::{Look, Watch, Watched};
 use self::floating::{Float, Floating};
 use self::lying::{Lie, Lying, Place};
 use self::pair::{Pair, Pairing};
-use crate::detect::{DetectorConfig, Phase};
+use crate::config::DetectorConfig;
+use crate::phase::Phase;
 use crate::real::{ln, sqrt};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};

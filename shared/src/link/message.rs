@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Faults, Mode, Outputs};
-use crate::detect::Phase;
 use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
+use crate::phase::Phase;
 use crate::wire::NOTICE_BYTES;
 
 /// Most bytes of a log chunk.

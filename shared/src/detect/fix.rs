@@ -1,0 +1,14 @@
+//! A position as the sensors give it.
+
+use crate::event::Moment;
+
+/// A position as the sensors give it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fix {
+    /// When.
+    pub(crate) now: Moment,
+    /// m.
+    pub(crate) position: [f32; 2],
+    /// Of one axis, m^2.
+    pub(crate) variance: f32,
+}
