@@ -163,7 +163,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
             }
         }
         let before = lookout.last().map(|it| it.made_at);
-        lookout.look(&monitor, &state);
+        monitor.look(&state, &mut lookout);
         let outlook = lookout.last().filter(|it| Some(it.made_at) != before);
         let (Some(&outlook), None) = (outlook, case.whirl) else {
             continue;

@@ -55,7 +55,7 @@ fn go_on(
     let (mut notices, mut left_out) = (Vec::new(), 0);
     for sample in samples {
         let said = monitor.update(&mut state, &sample);
-        let outlook = lookout.look(&monitor, &state);
+        let outlook = monitor.look(&state, &mut lookout);
         for notice in said.into_iter().chain(outlook) {
             if notices.len() < MOST_NOTICES {
                 notices.push(notice);

@@ -145,7 +145,7 @@ impl Drop {
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
         while let Some((sample, instant)) = feed.next() {
             notices.extend(monitor.update(&mut state, &sample));
-            notices.extend(lookout.look(&monitor, &state));
+            notices.extend(monitor.look(&state, &mut lookout));
             instants.extend(instant.map(|instant| Instant {
                 told: state.phase(),
                 ..instant

@@ -466,6 +466,7 @@ mod tests {
     use super::*;
     use crate::config::Tuning;
     use crate::detect::noise::white;
+    use crate::event::Moment;
     use crate::detect::series::tests::MACHINE;
 
     fn test(sample_rate: f32) -> FlightTest {

@@ -5,7 +5,7 @@
 use crate::model::law::Law;
 use crate::model::precision::Precision;
 use crate::model::series::{Series, horner, reach, value};
-use crate::model::sum::Sum;
+use crate::model::wall::{Mode, WallState};
 use crate::real::Real;
 
 /// Iterations of the search for an event: secant steps kept inside a bracket.
@@ -14,15 +14,6 @@ const ITERATIONS: usize = 60;
 const PASSAGE_ITERATIONS: usize = 6;
 /// Parts of the span at whose ends an event is looked for.
 const PARTS: i32 = 2;
-
-/// How the contact point moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Mode<R> {
-    /// With slip; friction over normal force, signed along the wall (counter-clockwise).
-    Sliding(R),
-    /// Without.
-    Rolling,
-}
 
 /// Whether the contact point grips the wall at the start of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,24 +24,6 @@ pub(crate) enum Grip {
     Caught,
     /// Friction has just ceased to suffice: it slides.
     Breaks,
-}
-
-/// Where the rotor is on the wall, and how fast.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WallState<R> {
-    pub(crate) sin: Sum<R>,
-    pub(crate) cos: Sum<R>,
-    /// Velocity along the wall.
-    pub(crate) tangential: Sum<R>,
-    /// Surface speed of the spin.
-    pub(crate) spin: Sum<R>,
-}
-
-impl<R: Real> WallState<R> {
-    /// Velocity of the contact point along the wall: exactly 0 where it rolls.
-    fn slip(&self) -> R {
-        self.spin.plus(self.tangential.value()) + self.tangential.rest()
-    }
 }
 
 /// Why a series ends.

@@ -1,7 +1,7 @@
 //! From change to change: what ends a motion, and what follows it.
 
 use crate::model::clock::Instant;
-use crate::model::contact::{Contact, Ending, Grip, Mode, WallState};
+use crate::model::contact::{Contact, Ending, Grip};
 use crate::model::flight::{Flight, Landing};
 use crate::model::kinematics::{Change, Happening, Kinematics, Touch};
 use crate::model::law::Law;
@@ -10,6 +10,7 @@ use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
 use crate::model::state::{Motion, RigidState};
 use crate::model::turns::Turns;
+use crate::model::wall::{Mode, WallState};
 use crate::model::whirl::whirl;
 
 /// Most impacts followed in one step; beyond it the rest of a bounce series is summed. Chosen, because a

@@ -44,6 +44,7 @@ mod turns;
 #[cfg(feature = "rungs")]
 mod two_plane;
 mod vector;
+mod wall;
 mod whirl;
 
 pub use clock::Instant;

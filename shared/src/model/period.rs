@@ -12,12 +12,13 @@
 //! follows is the stretch at hand, n P later: same sine, cosine and speed. Its error is n times that of P.
 
 use crate::model::clock::Instant;
-use crate::model::contact::{Contact, Ending, Mode};
+use crate::model::contact::{Contact, Ending};
 use crate::model::precision::Precision;
 use crate::model::rigid::Rigid;
 use crate::model::series::reach;
 use crate::model::state::{Motion, RigidState};
 use crate::model::sum::Sum;
+use crate::model::wall::Mode;
 
 /// Most periods passed over at once: a count that f32 still holds exactly.
 const MOST_PERIODS: f64 = 16_777_216.0;

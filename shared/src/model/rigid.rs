@@ -2,12 +2,17 @@
 
 use crate::error::ConfigError;
 use crate::model::clock::{Instant, StepLength};
-use crate::model::kinematics::{Happening, Kinematics};
+use crate::model::contact::Grip;
+use crate::model::flight::{Flight, Landing};
+use crate::model::kinematics::{Happening, Kinematics, Touch};
 use crate::model::law::Law;
 use crate::model::precision::Precision;
-use crate::model::start::Start;
-use crate::model::state::{RigidState, Solved};
+use crate::model::start::{Start, on_wall};
+use crate::model::state::{Motion, RigidState, Solved};
 use crate::model::stepper::Stepper;
+use crate::model::sum::Sum;
+use crate::model::turns::Turns;
+use crate::model::wall::Mode;
 use crate::real::Real;
 use crate::scales::{Scales, not_negative, positive};
 
@@ -144,5 +149,117 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
 
     fn solved(&self, state: &RigidState<R>) -> Solved {
         state.solved()
+    }
+}
+
+impl<R: Precision> Rigid<R> {
+    /// The state at time 0, and what happens there; `spin` is the surface speed.
+    pub fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) -> Result<RigidState<R>, ConfigError> {
+        start.check(spin)?;
+        let mut state = RigidState {
+            now: Instant::default(),
+            motion: Motion::Flight {
+                flight: Flight::free([R::ZERO; 2], [R::ZERO; 2]),
+                to: Landing::NEVER,
+            },
+            begun: Instant::default(),
+            ends: Instant::NEVER,
+            spin: Sum::new(spin),
+            turns: Turns::default(),
+            shortened: 0,
+            solved: Solved::default(),
+        };
+        match *start {
+            Start::Free { position, velocity } => self.start_free(&mut state, position, velocity),
+            Start::Wall {
+                sin,
+                cos,
+                tangential,
+            } => {
+                let onto = state.on_wall(sin, cos, tangential);
+                self.enter_contact(&mut state, onto, Grip::Open, &mut sink);
+            }
+        }
+        self.follow(&mut state, &mut sink, |_| false);
+        Ok(state)
+    }
+
+    fn start_free(&self, state: &mut RigidState<R>, position: [R; 2], velocity: [R; 2]) {
+        let [x, y] = position;
+        let distance = (x * x + y * y).sqrt();
+        if distance < R::ONE - on_wall() {
+            self.fly(state, Flight::free(position, velocity), |flight, law| {
+                flight.landing_from_free(law)
+            });
+            return;
+        }
+        let (sin, cos) = (x / distance, -y / distance);
+        let normal = velocity[0] * sin - velocity[1] * cos;
+        let tangential = velocity[0] * cos + velocity[1] * sin;
+        if normal >= R::ZERO {
+            state.motion = Motion::Flight {
+                flight: Flight::from_wall(sin, cos, -normal, tangential),
+                to: Landing {
+                    after: R::ZERO,
+                    normal,
+                },
+            };
+            state.ends = state.begun;
+        } else {
+            self.launch(state, sin, cos, -normal, tangential);
+        }
+    }
+}
+
+impl<R: Precision> Rigid<R> {
+    /// The rotor now.
+    pub fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
+        let overdue = state.ends.is_reached_at(state.now);
+        let until = if overdue { state.ends } else { state.now };
+        self.kinematics_after(state, self.step.time(until.since(state.begun)))
+    }
+
+    pub(crate) fn kinematics_after(&self, state: &RigidState<R>, time: R) -> Kinematics<R> {
+        let law = &self.law;
+        let on_wall = |[sin, cos, speed, spin, angle]: [R; 5], touch, turns: i64| Kinematics {
+            position: [sin, -cos],
+            velocity: [speed * cos, speed * sin],
+            spin,
+            touch,
+            turns: (turns, angle),
+        };
+        match &state.motion {
+            Motion::Flight { flight, to } => {
+                // The clock resolves a step, a fast flight less: never past its landing.
+                let (position, velocity) = flight.at(time.least(to.after), law);
+                Kinematics {
+                    position,
+                    velocity,
+                    spin: state.spin.value(),
+                    touch: Touch::None,
+                    turns: (0, R::ZERO),
+                }
+            }
+            Motion::Settling { onto, .. } => {
+                let [sin, cos] = [onto.sin, onto.cos].map(Sum::value);
+                let [speed, spin] = [onto.tangential, onto.spin].map(Sum::value);
+                on_wall([sin, cos, speed, spin, R::ZERO], Touch::None, 0)
+            }
+            Motion::Contact(contact) => {
+                let mut point = contact.at(time.least(contact.span), law);
+                let (whole, rest) = state.turns.parts();
+                point[4] += rest;
+                let touch = match contact.mode {
+                    Mode::Sliding(_) => Touch::Sliding,
+                    Mode::Rolling => Touch::Rolling,
+                };
+                on_wall(point, touch, whole)
+            }
+        }
     }
 }

@@ -6,9 +6,9 @@
 //! changes its speed by no more than that speed: at the speeds of whirl the terms would overflow in
 //! f32 otherwise.
 
-use crate::model::contact::{Mode, WallState};
 use crate::model::law::Law;
 use crate::model::precision::Precision;
+use crate::model::wall::{Mode, WallState};
 
 /// Shortenings of a series' span until its last terms are small enough.
 const SHORTENINGS: usize = 64;

@@ -1,11 +1,12 @@
 //! The rotor's state: the present motion, from its beginning to its end.
 
 use crate::model::clock::Instant;
-use crate::model::contact::{Contact, Mode, WallState};
+use crate::model::contact::Contact;
 use crate::model::flight::{Flight, Landing};
 use crate::model::precision::Precision;
 use crate::model::sum::Sum;
 use crate::model::turns::Turns;
+use crate::model::wall::{Mode, WallState};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Motion<R: Precision> {

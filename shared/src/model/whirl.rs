@@ -4,9 +4,9 @@
 //! v = v0/(1 - mu_s v0 t), until slip ends at v = (v0 - beta W)/(1 + beta). Within a turn, height is
 //! paid for in speed. Speed and spin are right to 1/v^2; the angle is no longer predictable.
 
-use crate::model::contact::{Mode, WallState};
 use crate::model::law::Law;
 use crate::model::sum::Sum;
+use crate::model::wall::{Mode, WallState};
 use crate::real::Real;
 
 /// The wall state after `time` of whirl, the angle turned (rad), and whether slip has ended.

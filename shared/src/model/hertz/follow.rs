@@ -3,11 +3,12 @@
 use super::state::Touching;
 use super::{Hertz, HertzState, Scheme, Shape, tell};
 use crate::model::clock::Instant;
-use crate::model::contact::{Grip, Mode, WallState, mode_of};
+use crate::model::contact::{Grip, mode_of};
 use crate::model::kinematics::{Change, Happening, Pulse};
 use crate::model::precision::Precision;
 use crate::model::start::Start;
 use crate::model::sum::Sum;
+use crate::model::wall::{Mode, WallState};
 
 impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
     /// The state at time 0. On the wall the rotor starts in the compression that its motion holds.

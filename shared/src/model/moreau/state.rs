@@ -1,12 +1,13 @@
 //! The rotor's state: where it is and how fast, in the gap or along the wall.
 
 use crate::model::clock::Instant;
-use crate::model::contact::{Grip, Mode, WallState, mode_of};
+use crate::model::contact::{Grip, mode_of};
 use crate::model::kinematics::{Kinematics, Touch};
 use crate::model::law::Law;
 use crate::model::start::Start;
 use crate::model::sum::Sum;
 use crate::model::turns::Turns;
+use crate::model::wall::{Mode, WallState};
 use crate::real::Real;
 
 /// In the gap. Compensated: in f32 a short step moves the rotor by less than half of a last digit.

@@ -17,6 +17,7 @@ mod config;
 mod ends;
 mod energy;
 mod follow;
+mod free;
 mod jam;
 mod passage;
 mod press;

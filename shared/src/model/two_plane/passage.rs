@@ -6,9 +6,10 @@
 //! = b + impulses with the 2 x 2 complex matrix A, and what an impulse at one ring moves at another in
 //! the step is a complex number, its mobility.
 
+use super::TwoPlane;
+use super::free::{Free, Inverse};
 use super::press::Press;
 use super::state::TwoPlaneState;
-use super::{Ring, TwoPlane};
 use crate::model::precision::Precision;
 use crate::model::vector::Vector;
 use crate::real::Real;
@@ -16,43 +17,6 @@ use crate::real::Real;
 /// Heat below 0, in friction times the speed of the axis, from which rings jam. Chosen, because a ring that
 /// rolls a quarter of a radian in a stretch slips by less in its mean.
 const MOST_GAINED: f64 = 0.01;
-
-/// The inverse of A: symmetric.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Inverse<R> {
-    direct: Vector<R>,
-    cross: Vector<R>,
-    tilting: Vector<R>,
-}
-
-impl<R: Real> Inverse<R> {
-    pub(super) fn apply(&self, [force, moment]: [Vector<R>; 2]) -> [Vector<R>; 2] {
-        [
-            self.direct * force + self.cross * moment,
-            self.cross * force + self.tilting * moment,
-        ]
-    }
-
-    /// Displacement at ring `to` by a unit at ring `from`.
-    pub(super) fn mobility(&self, to: &Ring<R>, from: &Ring<R>) -> Vector<R> {
-        self.direct
-            + self.cross.times(to.zeta + from.zeta)
-            + self.tilting.times(to.zeta * from.zeta)
-    }
-}
-
-/// What is known of a stretch before the contacts are.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Free<R> {
-    pub(super) time: R,
-    pub(super) inverse: Inverse<R>,
-    /// Of p and psi, without contact.
-    pub(super) moved: [Vector<R>; 2],
-    /// Of their rates.
-    pub(super) kick: [Vector<R>; 2],
-    /// Mean force and moment of the unbalance.
-    pub(super) unbalance: [Vector<R>; 2],
-}
 
 /// A stretch.
 #[derive(Clone, Copy, Debug)]

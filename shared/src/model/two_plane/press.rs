@@ -5,7 +5,7 @@
 //! moves; friction as [`keep`] knows it, by displacement, is turned back by the mobility's angle.
 
 use super::TwoPlane;
-use super::passage::Free;
+use super::free::Free;
 use super::settle::{PASSES, Settling};
 use super::state::TwoPlaneState;
 use crate::model::hold::{Rub, keep};
