@@ -5,6 +5,7 @@ mod faults;
 mod firmware;
 mod flash;
 mod golden;
+mod house;
 mod instructions;
 mod machine;
 mod setup;
@@ -43,6 +44,8 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Measure size, structure and names of the crates; fails above the limits of house.toml
+    House,
     /// Check that the image fits the chip, then program and start it by probe-rs
     Flash {
         /// Image, in place of the one for silicon that `cargo xtask firmware` builds
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
         Task::Budget { json } => budget::run(json.as_deref()),
+        Task::House => house::run(),
         Task::Flash {
             image,
             chip,

@@ -1,0 +1,127 @@
+//! The house: size, structure and names of the crates, held against `house.toml`.
+
+mod cycles;
+mod source;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use serde::Deserialize;
+
+use self::cycles::cycles;
+use self::source::Source;
+use crate::workspace;
+
+/// How many of the longest functions and of the names that occur twice are shown.
+const SHOWN: usize = 12;
+
+/// What `house.toml` allows.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Budget {
+    /// Lines of all crates together.
+    product_lines: usize,
+    /// Lines of a function that is not in the list of longer ones.
+    function_lines: usize,
+    /// How many functions may be longer than that.
+    longer_functions: usize,
+    /// Type names that more than one file defines.
+    shared_type_names: usize,
+    /// Crates by their folder.
+    crates: BTreeMap<String, Crate>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Crate {
+    /// Lines without tests.
+    lines: usize,
+}
+
+/// Prints the figures; an error names each that is above its limit.
+pub fn run() -> anyhow::Result<()> {
+    let path = workspace().join("house.toml");
+    let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let budget: Budget = toml::from_str(&text).with_context(|| path.display().to_string())?;
+    let mut broken = Vec::new();
+    let mut all = Vec::new();
+    let mut limit = |what: &str, is: usize, most: usize| {
+        let mark = if is > most { "ABOVE" } else { "" };
+        println!("{what:<34}{is:>8}{most:>10}  {mark}");
+        if is > most {
+            broken.push(format!("{what}: {is}, the limit is {most}"));
+        }
+    };
+    println!("{:<34}{:>8}{:>10}", "", "now", "limit");
+    for (folder, its) in &budget.crates {
+        let sources = Source::of_crate(&workspace().join(folder).join("src"))?;
+        let lines = sources.iter().map(|it| it.lines).sum();
+        limit(&format!("lines of {folder}"), lines, its.lines);
+        let circles = cycles(&sources);
+        limit(&format!("import cycles in {folder}"), circles.len(), 0);
+        for circle in circles {
+            println!("    {}", circle.join(", "));
+        }
+        all.extend(sources);
+    }
+    let product = all.iter().map(|it| it.lines).sum();
+    limit("lines of the product", product, budget.product_lines);
+    let functions = longest(&all);
+    let longer = (functions.iter())
+        .filter(|(lines, ..)| *lines > budget.function_lines)
+        .count();
+    let what = format!("functions above {} lines", budget.function_lines);
+    limit(&what, longer, budget.longer_functions);
+    let names = shared_names(&all);
+    let shared = names.len();
+    limit(
+        "type names in several files",
+        shared,
+        budget.shared_type_names,
+    );
+    println!("\nlongest functions");
+    for (lines, name, path) in functions.iter().take(SHOWN) {
+        println!("{lines:>6}  {name}  {}", shown(path));
+    }
+    println!("\ntype names in most files");
+    for (name, files) in names.iter().take(SHOWN) {
+        println!("{:>6}  {name}", files.len());
+    }
+    ensure!(
+        broken.is_empty(),
+        "above house.toml:\n{}",
+        broken.join("\n")
+    );
+    Ok(())
+}
+
+fn shown(path: &Path) -> std::path::Display<'_> {
+    path.strip_prefix(workspace()).unwrap_or(path).display()
+}
+
+/// All functions, the longest first.
+fn longest(sources: &[Source]) -> Vec<(usize, &str, &Path)> {
+    let mut all: Vec<_> = (sources.iter())
+        .flat_map(|source| {
+            let functions = source.functions.iter();
+            functions.map(|(name, lines)| (*lines, name.as_str(), source.path.as_path()))
+        })
+        .collect();
+    all.sort_by(|a, b| b.cmp(a));
+    all
+}
+
+/// Type names that more than one file defines, and those files; most files first.
+fn shared_names(sources: &[Source]) -> Vec<(&str, Vec<&Path>)> {
+    let mut files: BTreeMap<&str, Vec<&Path>> = BTreeMap::new();
+    for source in sources {
+        for name in &source.types {
+            files.entry(name).or_default().push(&source.path);
+        }
+    }
+    let mut shared: Vec<_> = files.into_iter().filter(|(_, it)| it.len() > 1).collect();
+    shared.sort_by_key(|(_, files)| std::cmp::Reverse(files.len()));
+    shared
+}

@@ -1,0 +1,196 @@
+//! What one source file has: lines, functions, type names and imports, without its tests.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use proc_macro2::Span;
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+
+/// A file of a crate.
+#[derive(Debug)]
+pub struct Source {
+    /// Its file.
+    pub path: PathBuf,
+    /// Module path from the crate's root; empty for the root.
+    pub module: Vec<String>,
+    /// Lines, those of test modules left out.
+    pub lines: usize,
+    /// Each function with its lines.
+    pub functions: Vec<(String, usize)>,
+    /// Structs, enums, traits and type aliases.
+    pub types: Vec<String>,
+    /// Paths that it imports, or names from the root, as written.
+    pub imports: Vec<Vec<String>>,
+}
+
+impl Source {
+    /// Every file of the crate whose sources are in `folder`.
+    pub fn of_crate(folder: &Path) -> anyhow::Result<Vec<Self>> {
+        let mut sources = Vec::new();
+        collect(folder, folder, &mut sources)?;
+        sources.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(sources)
+    }
+
+    fn read(root: &Path, path: &Path) -> anyhow::Result<Self> {
+        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        Self::parse(root, path, &text).with_context(|| path.display().to_string())
+    }
+
+    fn parse(root: &Path, path: &Path, text: &str) -> anyhow::Result<Self> {
+        let file = syn::parse_file(text)?;
+        let mut found = Found::default();
+        found.visit_file(&file);
+        Ok(Self {
+            path: path.to_owned(),
+            module: module_of(root, path),
+            lines: text.lines().count() - found.test_lines,
+            functions: found.functions,
+            types: found.types,
+            imports: found.imports,
+        })
+    }
+}
+
+fn collect(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> anyhow::Result<()> {
+    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(root, &path, sources)?;
+        } else if path.extension().is_some_and(|it| it == "rs")
+            && path.file_name().is_some_and(|it| it != "tests.rs")
+        {
+            sources.push(Source::read(root, &path)?);
+        }
+    }
+    Ok(())
+}
+
+fn module_of(root: &Path, path: &Path) -> Vec<String> {
+    let within = path.strip_prefix(root).unwrap_or(path).with_extension("");
+    let mut module: Vec<_> = within
+        .iter()
+        .map(|it| it.to_string_lossy().into_owned())
+        .collect();
+    if module.last().is_some_and(|it| it == "mod")
+        || (module.len() == 1 && ["lib", "main"].contains(&module[0].as_str()))
+    {
+        module.pop();
+    }
+    module
+}
+
+#[derive(Default)]
+struct Found {
+    test_lines: usize,
+    functions: Vec<(String, usize)>,
+    types: Vec<String>,
+    imports: Vec<Vec<String>>,
+}
+
+impl Found {
+    fn function(&mut self, name: &syn::Ident, all: Span) {
+        self.functions.push((name.to_string(), lines(all)));
+    }
+}
+
+fn lines(span: Span) -> usize {
+    span.end().line - span.start().line + 1
+}
+
+fn is_test(attributes: &[syn::Attribute]) -> bool {
+    attributes.iter().any(|it| {
+        it.path().is_ident("test")
+            || (it.path().is_ident("cfg")
+                && (it.parse_args::<syn::Ident>()).is_ok_and(|argument| argument == "test"))
+    })
+}
+
+impl<'a> Visit<'a> for Found {
+    fn visit_item(&mut self, item: &'a syn::Item) {
+        let (attributes, name) = match item {
+            syn::Item::Mod(it) => (&it.attrs, None),
+            syn::Item::Fn(it) => (&it.attrs, None),
+            syn::Item::Struct(it) => (&it.attrs, Some(&it.ident)),
+            syn::Item::Enum(it) => (&it.attrs, Some(&it.ident)),
+            syn::Item::Trait(it) => (&it.attrs, Some(&it.ident)),
+            syn::Item::Type(it) => (&it.attrs, Some(&it.ident)),
+            syn::Item::Impl(it) => (&it.attrs, None),
+            syn::Item::Use(it) => (&it.attrs, None),
+            syn::Item::Const(it) => (&it.attrs, None),
+            _ => return visit::visit_item(self, item),
+        };
+        if is_test(attributes) {
+            self.test_lines += lines(item.span());
+            return;
+        }
+        self.types.extend(name.map(ToString::to_string));
+        visit::visit_item(self, item);
+    }
+
+    fn visit_item_fn(&mut self, item: &'a syn::ItemFn) {
+        self.function(&item.sig.ident, item.span());
+        visit::visit_item_fn(self, item);
+    }
+
+    fn visit_impl_item_fn(&mut self, item: &'a syn::ImplItemFn) {
+        if is_test(&item.attrs) {
+            self.test_lines += lines(item.span());
+            return;
+        }
+        self.function(&item.sig.ident, item.span());
+        visit::visit_impl_item_fn(self, item);
+    }
+
+    fn visit_item_use(&mut self, item: &'a syn::ItemUse) {
+        flatten(&item.tree, &mut Vec::new(), &mut self.imports);
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        let names: Vec<_> = (path.segments.iter())
+            .map(|it| it.ident.to_string())
+            .collect();
+        if names.len() > 1 && ["crate", "super", "self"].contains(&names[0].as_str()) {
+            self.imports.push(names);
+        }
+        visit::visit_path(self, path);
+    }
+}
+
+fn flatten(tree: &syn::UseTree, before: &mut Vec<String>, imports: &mut Vec<Vec<String>>) {
+    match tree {
+        syn::UseTree::Path(it) => {
+            before.push(it.ident.to_string());
+            flatten(&it.tree, before, imports);
+            before.pop();
+        }
+        syn::UseTree::Group(it) => it.items.iter().for_each(|it| flatten(it, before, imports)),
+        syn::UseTree::Glob(_) => imports.push(before.clone()),
+        syn::UseTree::Name(syn::UseName { ident })
+        | syn::UseTree::Rename(syn::UseRename { ident, .. }) => {
+            let mut path = before.clone();
+            path.push(ident.to_string());
+            imports.push(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tests_do_not_count_and_do_not_hide() {
+        let text = "use super::b::{C, d::E};\nfn long() {\n    crate::x::y();\n}\n#[cfg(test)]\nmod tests {\n    \
+                    use super::*;\n    struct Hidden;\n}\nstruct After;\n";
+        let source = Source::parse(Path::new("src"), Path::new("src/a/mod.rs"), text).unwrap();
+        assert_eq!(source.module, ["a"]);
+        assert_eq!(source.lines, 5);
+        assert_eq!(source.functions, [("long".to_owned(), 3)]);
+        assert_eq!(source.types, ["After"]);
+        let imports: Vec<_> = source.imports.iter().map(|it| it.join("::")).collect();
+        assert_eq!(imports, ["super::b::C", "super::b::d::E", "crate::x::y"]);
+    }
+}
