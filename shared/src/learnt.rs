@@ -8,7 +8,7 @@ use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::detect::Afloat;
+use crate::detect::{Afloat, DetectorState};
 use crate::health::HealthState;
 use crate::log::block::{Block, Kind};
 use crate::monitor::MonitorState;
@@ -124,6 +124,17 @@ impl Learnt {
             _ => return None,
         }
         Some(())
+    }
+}
+
+impl From<&Learnt> for MonitorState {
+    /// The state before the sample that follows, which gets number 0.
+    fn from(it: &Learnt) -> Self {
+        let mut state = Self::default();
+        (state.spin, state.levitated) = it.told;
+        state.health = it.health;
+        state.detector = DetectorState::from(&it.detector);
+        state
     }
 }
 

@@ -236,21 +236,6 @@ impl MonitorState {
     }
 }
 
-#[cfg(feature = "serde")]
-impl From<&crate::learnt::Learnt> for MonitorState {
-    /// The state before the sample that follows, which gets number 0.
-    fn from(it: &crate::learnt::Learnt) -> Self {
-        let (spin, levitated) = it.told;
-        Self {
-            health: it.health,
-            detector: DetectorState::from(&it.detector),
-            spin,
-            levitated,
-            ..Self::default()
-        }
-    }
-}
-
 /// Fingerprint of the state over a run: equal on two machines only if every tick left the same
 /// bits. Not part of the tick.
 #[derive(Clone)]

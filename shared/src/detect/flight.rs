@@ -466,8 +466,8 @@ mod tests {
     use super::*;
     use crate::config::Tuning;
     use crate::detect::noise::white;
-    use crate::event::Moment;
     use crate::detect::series::tests::MACHINE;
+    use crate::event::Moment;
 
     fn test(sample_rate: f32) -> FlightTest {
         let config = DetectorConfig {

@@ -20,7 +20,7 @@ pub fn text(stream: &Stream) -> String {
     let (mut notices, mut marks) = (String::new(), String::new());
     for (number, sample) in (0..).zip(&stream.samples) {
         let said = monitor.update(&mut state, sample);
-        let outlook = lookout.look(&monitor, &state);
+        let outlook = monitor.look(&state, &mut lookout);
         for notice in said.iter().chain(&outlook) {
             writeln!(notices, "{number:6}  {}", line(notice)).expect("a string");
         }

@@ -3,11 +3,12 @@
 use super::DetectorState;
 use crate::detect::ends::Together;
 use crate::detect::flight::Listener;
-use crate::detect::ladder::{Phase, Rungs};
+use crate::detect::ladder::Rungs;
 use crate::detect::levitation::Levitation;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::Followed;
 use crate::detect::release::ReleaseBank;
+use crate::phase::Phase;
 
 /// All that outlasts a tick, but for a search for an orbit under way.
 #[derive(Clone, Copy, Debug, Default)]
