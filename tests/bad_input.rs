@@ -412,7 +412,10 @@ fn outputs_that_cannot_be_written() {
             &["--json", "-", "--stream", "-"],
             "two outputs go to standard output",
         ),
-        (&["--json", "a", "--stream", "a"], "two outputs go to a"),
+        (
+            &["--json", "a", "--stream", "a"],
+            "each output needs a file of its own",
+        ),
         (
             &["--json", "old.json", "--report", "none/a.html"],
             "none/a.html: cannot be written",

@@ -216,7 +216,12 @@ fn two_planes_are_checked() {
             "[1e5, 0]",
             "tilt_rate_rad_s must be",
         ),
-        ("two_plane", "tilt_rate_rad_s", "[0]", "invalid length"),
+        (
+            "two_plane",
+            "tilt_rate_rad_s",
+            "[0]",
+            "the list must have 2 numbers, has 1",
+        ),
         ("two_plane", "gravity_deg", "1e6", "gravity_deg must be"),
         (
             "two_plane",

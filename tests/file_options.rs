@@ -83,13 +83,7 @@ const NONE: Row = Row {
 };
 
 /// What a sweep leaves in its folder.
-const SWEEP: &[&str] = &[
-    "drops.csv",
-    "drops.parquet",
-    "points.csv",
-    "sweep.json",
-    "sweep.html",
-];
+const SWEEP: &[&str] = &["drops.csv", "points.csv", "sweep.json", "sweep.html"];
 
 /// All commands; one whose inputs exclude each other stands here twice.
 pub const ROWS: &[Row] = &[
@@ -205,13 +199,13 @@ pub const ROWS: &[Row] = &[
         words: "sweep plan.toml --shard 1/2",
         inputs: &[("plan", "plan.toml")],
         beside: &["my.toml"],
-        outputs: &[Folder("--out", &["part-1-of-2.sweep"])],
+        outputs: &[Folder("--out", &["part-1-of-2.csv"])],
         ..NONE
     },
     Row {
         command: "sweep merge",
         words: "sweep merge run",
-        inputs: &[("folders", "run/part-1-of-1.sweep")],
+        inputs: &[("folders", "run/part-1-of-1.csv")],
         outputs: &[File("--json")],
         ..NONE
     },

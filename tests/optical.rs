@@ -572,7 +572,7 @@ fn damaged_pulse_columns_are_refused() {
         ("-1,2", "cage_edges must be a whole number"),
         ("0.5,2", "cage_edges must be a whole number"),
         ("1,-2", "cage_edge_age_us must be 0 or more"),
-        ("x,2", "cage_edges must be a finite number or NaN"),
+        ("x,2", "cage_edges must be a finite number, empty or NaN"),
     ] {
         let error = read(row).unwrap_err();
         assert!(error.contains(rule), "{row}: {error}");

@@ -199,7 +199,7 @@ fn files_that_no_option_names_are_outputs_too() {
         "log export flash.bin --format comtrade --out f.cfg",
         "sweep merge run --json run/points.csv",
         "sweep plan.toml --json plan-sweep/sweep.json",
-        "sweep plan.toml --out run --json run/part-1-of-1.sweep",
+        "sweep plan.toml --out run --json run/part-1-of-1.csv",
     ] {
         let mut command = Command::new(program());
         command.args(words.split(' ')).current_dir(at);

@@ -224,6 +224,12 @@ impl Outputs {
         out.put(&text.map_err(Failure::output(out.name()))?)
     }
 
+    /// Further outputs, which take their names with the others.
+    pub fn add(&mut self, option: &'static str, outputs: Vec<Output>) {
+        self.files
+            .extend(outputs.into_iter().map(|out| (option, out)));
+    }
+
     /// The output of an option, if that is given.
     pub fn file(&mut self, option: &str) -> Option<&mut Output> {
         let mut files = self.files.iter_mut();

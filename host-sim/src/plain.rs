@@ -42,7 +42,7 @@ fn is_obeyed(letter: char) -> bool {
 pub struct Number(pub f64);
 
 /// Numbers of this size are written without exponent.
-const PLAIN: std::ops::Range<f64> = 1e-5..1e12;
+const PLAIN: std::ops::Range<f64> = 1e-6..1e12;
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
 use crate::failure::Failure;
 use crate::gate::{Gate, Outputs, remark};
-use crate::plain::shown;
 use crate::sweep::{Part, Plan, RESULTS, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
@@ -66,11 +65,9 @@ fn gate(folder: &str, json: &Option<String>) -> Gate {
 }
 
 fn finish(plan: &Plan, parts: &[PathBuf], folder: &str, mut out: Outputs) -> Result<(), Failure> {
-    let written = write(plan, parts, Path::new(folder))?;
-    out.put("--json", || written.json)?;
-    let mut text = table(plan, &written.points, out.paint());
-    for name in &written.names {
-        text += &format!("wrote {}\n", shown(name));
-    }
+    let results = write(plan, parts, Path::new(folder))?;
+    out.put("--json", || results.json)?;
+    out.add("--out", results.outputs);
+    let text = table(plan, &results.points, out.paint());
     out.finish(&text)
 }

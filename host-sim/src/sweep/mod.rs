@@ -18,7 +18,7 @@ mod table;
 
 pub use part::Part;
 pub use plan::Plan;
-pub use results::{RESULTS, Written, found, write};
+pub use results::{RESULTS, Results, found, write};
 pub use run::run;
 pub use summary::Point;
 pub use table::table;

@@ -14,16 +14,16 @@ use super::record::Record;
 use super::summary::{Gathered, Point};
 use crate::failure::Failure;
 use crate::input_error::{InputError, reason};
-use crate::output::{Output, commit};
+use crate::output::Output;
 use crate::progress;
 
 /// Names of what a sweep writes beside its parts.
 pub const RESULTS: [&str; 4] = ["drops.csv", "points.csv", "sweep.json", "sweep.html"];
 
-/// What was written.
-pub struct Written {
-    /// The files.
-    pub names: Vec<String>,
+/// What the parts come to.
+pub struct Results {
+    /// The files, which have not got their names yet.
+    pub outputs: Vec<Output>,
     /// Each point of the grid.
     pub points: Vec<Point>,
     /// `sweep.json`.
@@ -75,8 +75,8 @@ pub fn found(folders: &[String]) -> Result<(Plan, Vec<PathBuf>), Failure> {
     Ok((plan, paths))
 }
 
-/// Writes the results to `folder` from the parts at `paths`, all of them in their order.
-pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Written, Failure> {
+/// Writes the results for `folder` from the parts at `paths`, all of them in their order.
+pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Results, Failure> {
     let mut parts = (paths.iter())
         .map(|path| PartReader::open(path, plan))
         .collect::<Result<Vec<_>, _>>()?;
@@ -118,10 +118,8 @@ pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Written, F
         out.put(&text)?;
         outputs.push(out);
     }
-    let names = outputs.iter().map(|out| out.name().to_owned()).collect();
-    commit(outputs)?;
-    Ok(Written {
-        names,
+    Ok(Results {
+        outputs,
         points,
         json,
     })
