@@ -194,7 +194,7 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "gravity_m_s2 = 5e-324",
-            "scene.toml:11: gravity_m_s2 must be 0, or 1e-6 or more",
+            "scene.toml:11: gravity_m_s2 must be 0, or 0.000001 or more",
         ),
         (
             "sample_rate_hz = 99",
