@@ -6,19 +6,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use tempfile::TempDir;
 use touchdown_tests::binary::touchdown;
-
-const SCENE: &str = "\
-[rotor]
-mass_kg = 3.42
-radius_mm = 24.0
-speed_rpm = -30000.0
-[retainer]
-clearance_mm = 0.3
-friction = 0.1
-restitution = 0.8
-[run]
-duration_s = 0.01
-";
+use touchdown_tests::minimal_scene::SCENE;
 
 /// No number is shown as a row of zeros.
 fn is_short(said: &[u8]) -> bool {

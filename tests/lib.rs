@@ -10,6 +10,7 @@ pub mod episode;
 #[cfg(unix)]
 pub mod file_options;
 pub mod growth;
+pub mod minimal_scene;
 pub mod moment;
 pub mod rotors;
 pub mod supports;

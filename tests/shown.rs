@@ -11,6 +11,7 @@ use touchdown_sim::link::LinkError;
 use touchdown_sim::recording::{Mapping, Reading, Recording};
 use touchdown_sim::scene::Scene;
 use touchdown_tests::binary::touchdown;
+use touchdown_tests::minimal_scene::SCENE;
 
 /// Clears the screen, sets the window's title, changes the colour, turns the text round.
 const OBEYED: &str = "\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\u{202e}tac\u{2066}";
@@ -19,18 +20,6 @@ const IN_TOML: &str = "\\u001b[2J\\u001b]0;x\\u0007\u{9b}31m\u{202e}tac\u{2066}"
 /// As it is shown.
 const SHOWN: &str = r"\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\u{202e}tac\u{2066}";
 
-const SCENE: &str = "\
-[rotor]
-mass_kg = 3.42
-radius_mm = 24.0
-speed_rpm = -30000.0
-[retainer]
-clearance_mm = 0.3
-friction = 0.1
-restitution = 0.8
-[run]
-duration_s = 0.01
-";
 const RINGS: &str =
     "[two_plane]\nrotor_length_mm = 326\n[[ring]]\nz_mm = -120\n[[ring]]\nz_mm = 120\n";
 
