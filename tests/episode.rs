@@ -30,6 +30,7 @@ pub fn header() -> Header {
         resolution: 0.5e-6,
         zero_count: 2047.5,
         full_scale: 4095,
+        pulsed: 0,
     }
 }
 

@@ -5,13 +5,14 @@ use std::io::Sink;
 
 use touchdown_core::learnt::Learnt;
 use touchdown_core::log::block::Kind;
+use touchdown_core::log::header::Header;
 use touchdown_core::monitor::Monitor;
 use touchdown_sim::drop;
 use touchdown_sim::drop_log::{Dump, Episode, stream};
 use touchdown_sim::outcome::DetectedEvent;
 use touchdown_sim::replay;
 use touchdown_sim::scene::{BUILT_IN, Scene};
-use touchdown_sim::stream::{of_field, to_field};
+use touchdown_sim::stream::{StreamReader, of_field, to_field, to_sample};
 use touchdown_sim::target::Target;
 use touchdown_tests::binary::touchdown;
 
@@ -62,10 +63,6 @@ fn assert_same(name: &str, told: &[DetectedEvent], again: &[DetectedEvent]) {
 fn every_built_in_scene_replays_as_it_was_told() {
     for built_in in BUILT_IN {
         let name = built_in.name;
-        // Its ring's pulses are not recorded.
-        if name == "ball-bearing" {
-            continue;
-        }
         let scene = Scene::load(name).expect("built-in scene");
         let (dump, events) = dropped(&scene);
         let episode = dump.episodes.first().expect("an episode");
@@ -82,22 +79,66 @@ fn every_built_in_scene_replays_as_it_was_told() {
     }
 }
 
-/// Sliding or rolling against a ring that turns is told by its pulses, which are not recorded: all before the first
-/// permanent contact is the same.
+/// The export has the very pulses that the monitor saw, and none where an episode has none, as in earlier formats.
 #[test]
-fn without_the_pulses_of_a_ring_the_bounces_replay() {
-    use touchdown_core::event::EventKind::{FreeFall, Impact};
+fn pulses_are_handed_on_where_they_are_known() {
     let scene = Scene::load("ball-bearing").expect("built-in scene");
     let (dump, events) = dropped(&scene);
-    let episode = dump.episodes.first().expect("an episode");
-    assert!(episode.learnt.is_some());
-    let (told, replayed) = (told(episode, events), replayed(episode, &scene));
-    let bounces = told
-        .iter()
-        .take_while(|it| matches!(it.event, FreeFall | Impact));
-    let count = bounces.count();
-    assert!(count > 5, "{count}");
-    assert_same("ball-bearing", &told[..count], &replayed[..count]);
+    let mut episode = dump.episodes[0].clone();
+    let header = episode.header.expect("a header");
+    let known = episode.samples_with_pulses.expect("pulse sensors");
+    assert_eq!(known, episode.samples.len());
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let rate = f64::from(header.sample_rate);
+    let mut reader = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    for (row, shown) in reader.by_ref().zip(&episode.pulses) {
+        let sample = to_sample(&row.expect("a row"), &scene.sensors, rate);
+        assert_eq!(Some(sample.edges), *shown);
+    }
+    // Cut short: what is beyond has no value.
+    episode.pulses.truncate(100);
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let rows = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let rows = rows.map(|row| row.expect("a row").edges != [None; 2]);
+    assert_eq!(rows.filter(|it| *it).count(), 100);
+    // As it was before there were pulses.
+    let old = Header {
+        pulsed: 0,
+        ..header
+    };
+    episode.header = Some(old);
+    episode.pulses.clear();
+    let learnt = episode.learnt.take().expect("learnt");
+    let parts: Vec<_> = learnt.split('-').collect();
+    assert_eq!(parts.len(), 10);
+    episode.learnt = Some(parts[..8].join("-"));
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let head = String::from_utf8_lossy(&out);
+    assert!(
+        head.starts_with("time_s,ax_um,ay_um,bx_um,by_um,speed_rpm,learnt\n"),
+        "{}",
+        &head[..60]
+    );
+    let told = told(&episode, events);
+    assert_eq!(replayed(&episode, &scene)[0].event, told[0].event);
+}
+
+#[test]
+fn what_the_pulse_channels_knew_comes_back() {
+    let scene = Scene::load("ball-bearing").expect("built-in scene");
+    let (dump, _) = dropped(&scene);
+    let field = dump.episodes[0].learnt.clone().expect("learnt");
+    let learnt = of_field(&field).expect("is read");
+    let parts: Vec<_> = (0..).map_while(|it| learnt.part(it)).collect();
+    assert_eq!(to_field(parts.iter().map(|it| it.payload())), field);
+    // A part more or less is of no known episode.
+    let parts = || parts.iter().map(|it| it.payload());
+    assert!(Learnt::of_parts(parts().take(8)).is_some());
+    assert!(Learnt::of_parts(parts().take(9)).is_none());
+    assert!(Learnt::of_parts(parts().chain(parts().take(1))).is_none());
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
     let log = Dump::of(&outcome.conduct.flash);
     let episode = &log.episodes[0];
     assert_eq!(episode.verdict, Verdict::Whole);
-    assert_eq!(episode.samples.iter().flatten().count(), 4_660);
+    assert_eq!(episode.samples.iter().flatten().count(), 4_500);
     assert_eq!(log.counters.expect("counters").landings, 1);
     assert_eq!(outcome.conduct.state.sample + 1, outcome.detection.samples);
 }

@@ -5,12 +5,14 @@ mod common;
 use common::rig::{IDENTITY, Read, Rig, config, read};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::learnt::{PARTS, RING_PARTS};
 use touchdown_core::log::block::{BLOCK_BYTES, Kind};
 use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::reader::{Item, Reader, Verdict};
-use touchdown_core::monitor::Monitor;
-use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::sample::{Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
+use touchdown_core::tachometer::TachometersConfig;
 use touchdown_firmware::recorder::{CAPACITY, Memory, Recorder};
 use touchdown_firmware::store::EPISODE_BYTES;
 
@@ -200,10 +202,10 @@ fn the_longest_episode_fits_its_slot() {
     quiet(&mut rig, 21_000);
     let bytes = fetch(&mut rig);
     assert_eq!(read(&bytes).report.verdict(), Verdict::Whole);
-    assert_eq!(bytes.len() / BLOCK_BYTES, 2 + 156 + 10 + 1 + 2);
-    // And what a monitor had learnt, which this one has not.
-    let learnt = BLOCK_BYTES * usize::from(touchdown_core::learnt::PARTS);
-    assert!(bytes.len() + learnt <= EPISODE_BYTES);
+    assert_eq!(bytes.len() / BLOCK_BYTES, 2 + 150 + 10 + 1 + 2);
+    // And what a monitor had learnt, which this one has not, and the most blocks of pulses.
+    let learnt = BLOCK_BYTES * usize::from(PARTS + RING_PARTS);
+    assert!(bytes.len() + learnt + 15 * BLOCK_BYTES <= EPISODE_BYTES);
 }
 
 #[test]
@@ -356,4 +358,110 @@ fn ticks_are_numbered_as_the_monitor_does() {
     let header = read(&fetch(&mut rig)).header.expect("no drop");
     assert_eq!(Some(header.trigger), declared);
     assert!((8_000..8_400).contains(&header.trigger));
+}
+
+type Shown = [Option<Edges>; TACHOMETERS];
+
+/// Of a ring whose channels have an edge every so many samples; the second one is silent for a while.
+fn shown(tick: u16, every: [u16; TACHOMETERS]) -> Shown {
+    let edges = every.map(|every| {
+        let since = tick % every;
+        let age = if since == 0 { tick as u8 | 1 } else { 255 };
+        // It goes round within the episode.
+        let count = (u16::MAX - 60).wrapping_add(tick / every);
+        Some(Edges { count, age })
+    });
+    let is_silent = (2_400..2_450).contains(&tick);
+    [edges[0], edges[1].filter(|_| !is_silent)]
+}
+
+/// The pages of a drop at tick 2600 with such a ring; its blocks are fetched every so many ticks.
+fn ring_dropped(config: &MonitorConfig, every: [u16; TACHOMETERS], fetched: u16) -> Vec<u8> {
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let mut rig = Rig::new(20_000.0, 1);
+    rig.recorder = Recorder::new(memory, config, IDENTITY);
+    rig.recorder.set_phase(Phase::Levitated);
+    let mut blocks = Vec::new();
+    for tick in 0..30_000 {
+        let sample = Sample {
+            counts: [tick, 1, 2, 3],
+            valid: 0x0f,
+            spin: None,
+            levitated: None,
+            edges: shown(tick, every),
+        };
+        let fall = rig.declared(EventKind::FreeFall);
+        let notices: &[_] = if tick == 2_600 { &[fall] } else { &[] };
+        rig.recorder.take(&sample, notices);
+        if tick % fetched == 0 {
+            blocks.extend(std::iter::from_fn(|| rig.recorder.fetch()));
+        }
+    }
+    blocks.extend(std::iter::from_fn(|| rig.recorder.fetch()));
+    let blocks = blocks.iter().enumerate();
+    let pages = blocks.map(|(index, block)| block.seal(1, index as u16));
+    pages.collect::<Vec<_>>().concat()
+}
+
+/// Samples, and those of which the pulses are known; all of these are as they were.
+fn known(pages: &[u8], every: [u16; TACHOMETERS]) -> (usize, Vec<u16>) {
+    let read = read(pages);
+    assert_eq!(read.report.verdict(), Verdict::Whole);
+    assert!(pages.len() <= EPISODE_BYTES - BLOCK_BYTES * usize::from(PARTS + RING_PARTS));
+    let first = read.header.unwrap().first as u16;
+    let mut known = Vec::new();
+    for item in Reader::new(pages) {
+        let Item::Pulses(block) = item else {
+            continue;
+        };
+        for (number, edges) in (block.from..block.to).zip(block.samples()) {
+            assert_eq!(edges, shown(first + number, every), "{number}");
+            known.push(number);
+        }
+    }
+    assert!(known.is_sorted_by(|a, b| a < b));
+    (read.samples.len(), known)
+}
+
+fn with_ring() -> MonitorConfig {
+    MonitorConfig {
+        tachometers: Some(TachometersConfig {
+            marks: [Some(12), Some(5)],
+            cage_ratio: 0.4,
+            bore_radius: 24e-3,
+            edge_error: 0.01,
+            window: 0.005,
+        }),
+        ..config(20_000.0)
+    }
+}
+
+#[test]
+fn the_pulses_of_the_recorded_samples_are_kept() {
+    for (every, fetched) in [([40, 97], 1), ([80, 97], 20_000), ([20, 20_000], 7)] {
+        let pages = ring_dropped(&with_ring(), every, fetched);
+        let (samples, known) = known(&pages, every);
+        assert_eq!((samples, known.len()), (CAPACITY, CAPACITY), "{every:?}");
+        assert_eq!(read(&pages).header.unwrap().pulsed, 0b11);
+    }
+}
+
+/// The samples are all there, and of the pulses is told of which samples they are known.
+#[test]
+fn pulses_without_room_cost_no_sample() {
+    for (every, fetched) in [([3, 3], 1), ([1, 2], 1), ([17, 11], 20_000)] {
+        let (samples, known) = known(&ring_dropped(&with_ring(), every, fetched), every);
+        assert_eq!(samples, CAPACITY, "{every:?}");
+        assert!((100..CAPACITY).contains(&known.len()), "{}", known.len());
+        let (first, last) = (known[0], known[known.len() - 1]);
+        assert_eq!(usize::from(last - first) + 1, known.len(), "{every:?}");
+    }
+}
+
+#[test]
+fn without_a_pulse_sensor_nothing_is_said_of_pulses() {
+    let pages = ring_dropped(&config(20_000.0), [40, 97], 1);
+    assert_eq!(pages[8], 2);
+    let mut items = Reader::new(&pages);
+    assert!(items.all(|it| !matches!(it, Item::Pulses(_))));
 }

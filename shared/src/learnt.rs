@@ -1,7 +1,7 @@
 //! What the monitor has learnt of a floating rotor, in parts that fit a block of the drop log: a monitor
 //! that starts with it says of the samples behind it what the one that learnt it said.
 //!
-//! Not in it: a search for an orbit under way, and the pulses of a ball bearing's rings.
+//! Not in it: a search for an orbit under way.
 
 use heapless::Vec;
 use postcard::ser_flavors::Flavor;
@@ -9,14 +9,20 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::detect::{Afloat, DetectorState};
+use crate::event::Moment;
 use crate::health::HealthState;
 use crate::log::block::{Block, Kind};
 use crate::monitor::MonitorState;
+use crate::sample::TACHOMETERS;
+use crate::tachometer::TachometersState;
+use crate::tachometer::learnt::{self, Rings};
 
 /// Version of the parts.
 pub const VERSION: u8 = 1;
 /// Parts, each a block.
 pub const PARTS: u8 = 8;
+/// Further parts where a pulse channel has shown a value, one a channel.
+pub const RING_PARTS: u8 = TACHOMETERS as u8;
 
 /// Instants of the release's bank that a part has, and the first part that has some.
 const INSTANTS: usize = 12;
@@ -30,6 +36,7 @@ pub struct Learnt {
     pub(crate) told: (Option<f32>, Option<bool>),
     pub(crate) health: HealthState,
     pub(crate) detector: Afloat,
+    pub(crate) rings: Rings,
 }
 
 impl Learnt {
@@ -41,6 +48,8 @@ impl Learnt {
             self.told = (state.spin, state.levitated);
             self.health.clone_from(&state.health);
             self.detector.update(&state.detector);
+            let next = Moment::of_sample(state.samples());
+            learnt::update(&mut self.rings, &state.tachometers, next);
         }
     }
 
@@ -64,7 +73,7 @@ impl Learnt {
         self.told.1
     }
 
-    /// Part `number`, from 0, as a block; nothing beyond [`PARTS`].
+    /// Part `number`, from 0, as a block; nothing beyond the last.
     pub fn part(&self, number: u8) -> Option<Block> {
         let [a, b, c, d] = &self.health.channels;
         let release = &self.detector.release;
@@ -81,6 +90,9 @@ impl Learnt {
             5 => put(room, &(a, b)),
             6 => put(room, &(c, d)),
             7 => put(room, &self.health.planes),
+            8.. if learnt::are_known(&self.rings) => {
+                put(room, self.rings.get(usize::from(number - PARTS))?)
+            }
             _ => None,
         }?;
         Some(block)
@@ -100,7 +112,7 @@ impl Learnt {
             }
             number += 1;
         }
-        (number == PARTS).then_some(learnt)
+        (number == PARTS || number == PARTS + RING_PARTS).then_some(learnt)
     }
 
     fn take(&mut self, number: u8, body: &[u8]) -> Option<()> {
@@ -121,7 +133,7 @@ impl Learnt {
                 channels.copy_from_slice(&[first, second]);
             }
             7 => self.health.planes = get(body)?,
-            _ => return None,
+            _ => *self.rings.get_mut(usize::from(number - PARTS))? = get(body)?,
         }
         Some(())
     }
@@ -134,6 +146,7 @@ impl From<&Learnt> for MonitorState {
         (state.spin, state.levitated) = it.told;
         state.health = it.health;
         state.detector = DetectorState::from(&it.detector);
+        state.tachometers = TachometersState::from(&it.rings);
         state
     }
 }

@@ -53,7 +53,7 @@ pub struct MonitorState {
     samples: u64,
     faults: u64,
     pub(crate) health: HealthState,
-    tachometers: TachometersState,
+    pub(crate) tachometers: TachometersState,
     position: Option<[f32; 2]>,
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,

@@ -7,8 +7,10 @@ use touchdown_core::log::counters::{COUNTERS_BYTES, Counters};
 use touchdown_core::log::ending::{Closing, Ending};
 use touchdown_core::log::header::Header;
 use touchdown_core::log::marks::{MARKS_BYTES, Marks};
+use touchdown_core::log::pulses::{Pulse, Pulses};
 use touchdown_core::log::reader::{Item, Reader, Report, Verdict};
 use touchdown_core::log::waveform::{SAMPLES_PER_BLOCK, Waveform};
+use touchdown_core::sample::Edges;
 use touchdown_core::wire::{self, Record};
 
 const SEQUENCE: u32 = 42;
@@ -26,6 +28,7 @@ const HEADER: Header = Header {
     resolution: 0.5e-6,
     zero_count: 2_048.0,
     full_scale: 4_095,
+    pulsed: 0,
 };
 const IMPACT: Notice = Notice::Declared(Event {
     number: 7,
@@ -170,11 +173,65 @@ fn foreign_and_repeated_blocks_are_strays() {
 }
 
 #[test]
+fn a_block_of_pulses_says_what_was_shown_at_each_sample() {
+    let edges = |count, age| Some(Edges { count, age });
+    let pulse = |sample, channel, edges| Pulse {
+        sample,
+        channel,
+        edges,
+    };
+    let told = [
+        pulse(11, 0, edges(0, 17)),
+        pulse(11, 1, edges(5, 0)),
+        pulse(13, 0, None),
+    ];
+    let block = Pulses::block(10..14, &[Some(u16::MAX), None], told.into_iter());
+    let page = block.seal(1, 0);
+    let items: Vec<_> = Reader::new(&page).collect();
+    let [Item::Pulses(pulses)] = items[..] else {
+        panic!("no pulses");
+    };
+    assert_eq!((pulses.from, pulses.to), (10, 14));
+    let shown: Vec<_> = pulses.samples().collect();
+    assert_eq!(
+        shown,
+        [
+            [edges(u16::MAX, 255), None],
+            [edges(0, 17), edges(5, 0)],
+            [edges(0, 255), edges(5, 255)],
+            [None, edges(5, 255)],
+        ]
+    );
+    // Another version, a channel that is none, a sample outside, half a pulse.
+    for (at, byte) in [(0, 2), (1, 4), (15, 2), (10, 9)] {
+        let mut payload = block.payload().to_vec();
+        payload[at] = byte;
+        assert_eq!(Pulses::decode(&payload), None, "{at}");
+    }
+    assert_eq!(Pulses::decode(&block.payload()[..13]), None);
+    let many = Pulses::block(
+        0..99,
+        &[None; 2],
+        (0..99).map(|it| pulse(it, 0, edges(it, 0))),
+    );
+    let decoded = Pulses::decode(many.payload()).unwrap();
+    assert_eq!(decoded.samples().last(), Some([edges(38, 255), None]));
+}
+
+#[test]
 fn another_format_is_not_guessed_at() {
     let mut header = HEADER.encode();
     header[0] = 1;
     assert_eq!(Header::decode(&header), Some(HEADER));
     header[0] = 3;
+    assert_eq!(Header::decode(&header), Some(HEADER));
+    let pulsed = Header {
+        pulsed: 2,
+        ..HEADER
+    };
+    assert_eq!(pulsed.encode()[0], 3);
+    assert_eq!(Header::decode(&pulsed.encode()), Some(pulsed));
+    header[0] = 4;
     assert_eq!(Header::decode(&header), None);
     let page = Block::of(Kind::Header, &header).seal(1, 0);
     assert_eq!(report(&page).unknown, 1);

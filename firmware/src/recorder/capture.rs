@@ -10,9 +10,11 @@ use touchdown_core::log::header::Header;
 use touchdown_core::log::reader;
 use touchdown_core::log::severity;
 use touchdown_core::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
 use touchdown_core::wire::{self, NOTICE_BYTES, Record};
 
+use super::pulses::{Pulses, Ring};
 use super::{CAPACITY, Plan};
 
 /// Notices of an episode; those beyond are counted.
@@ -56,6 +58,7 @@ pub(super) struct Capture {
     oldest: usize,
     /// Tick of the last sample.
     newest: u64,
+    pulses: Pulses,
     trigger: Option<Trigger>,
     closing: Option<(Closing, u64)>,
     notices: Vec<[u8; NOTICE_BYTES], NOTICES>,
@@ -73,6 +76,7 @@ impl Capture {
         fresh: 0,
         oldest: 0,
         newest: 0,
+        pulses: Pulses::EMPTY,
         trigger: None,
         closing: None,
         notices: Vec::new(),
@@ -151,9 +155,16 @@ impl Capture {
         }
     }
 
+    /// What the pulse channels show at the sample that is recorded next.
+    pub(super) fn pulse(&mut self, ring: &mut Ring, sample: &Sample) {
+        let is_history = self.trigger.is_none();
+        self.pulses.take(ring, self.held, sample, is_history);
+    }
+
     /// A mark behind the last sample; what was before the last mark goes.
     fn mark(&mut self) {
         let old = self.held - self.fresh;
+        self.pulses.mark(old);
         if old > 0 {
             self.first = wrapped(self.first + old);
             self.held = self.fresh;
@@ -217,6 +228,7 @@ impl Capture {
     pub(super) fn fetch(
         &mut self,
         buffer: &[Counts; CAPACITY],
+        ring: &Ring,
         learnt: Option<&Learnt>,
         plan: &Plan,
     ) -> Option<Block> {
@@ -226,6 +238,7 @@ impl Capture {
             .header(&trigger, plan)
             .or_else(|| self.learnt(learnt?))
             .or_else(|| self.waveform(buffer))
+            .or_else(|| self.pulses(ring, plan))
             .or_else(|| self.events(complete && self.closing.is_some()))
             .or_else(|| {
                 let (closing, last) = self.closing.filter(|_| complete)?;
@@ -257,6 +270,7 @@ impl Capture {
             resolution: config.resolution,
             zero_count: config.zero_count,
             full_scale: config.full_scale,
+            pulsed: plan.pulsed,
         };
         Some(Block::of(Kind::Header, &header.encode()))
     }
@@ -279,6 +293,11 @@ impl Capture {
         let (block, taken) = Waveform::block(start as u32, samples);
         self.fetched.samples += taken;
         Some(block)
+    }
+
+    fn pulses(&mut self, ring: &Ring, plan: &Plan) -> Option<Block> {
+        let is_last = self.is_full();
+        (plan.pulsed != 0).then(|| self.pulses.fetch(ring, self.held, is_last))?
     }
 
     /// A whole block, or at the end what is left.

@@ -6,6 +6,7 @@
 //! samples are there, so what a failing supply leaves is all but the last few milliseconds.
 
 mod capture;
+mod pulses;
 
 use core::mem::MaybeUninit;
 
@@ -15,16 +16,18 @@ use touchdown_core::learnt::Learnt;
 use touchdown_core::link::Recent;
 use touchdown_core::log::block::Block;
 use touchdown_core::log::ending::Closing;
+use touchdown_core::log::pulses::PULSE_BYTES;
 use touchdown_core::log::waveform::{self, Counts};
 use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::real;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
 
 use self::capture::Capture;
+use self::pulses::{ROOM, Ring};
 
 /// Samples of a buffer.
-pub const CAPACITY: usize = 4_660;
+pub const CAPACITY: usize = 4_500;
 /// Recorded samples per second at most, Hz: so a buffer lasts for what is recorded.
 const FASTEST: f32 = 20_000.0;
 
@@ -40,21 +43,23 @@ const LONGEST: f32 = 10.0;
 /// Standard gravity, m/s^2.
 const GRAVITY: f32 = 9.806_65;
 
-/// The buffers: 80 kB, all zero at first, for a static.
+/// The buffers: 79 kB, all zero at first, for a static.
 pub struct Memory {
     counts: [[Counts; CAPACITY]; BUFFERS],
+    pulses: [Ring; BUFFERS],
     // Without values of their own: these would take as much flash.
-    learnt: MaybeUninit<Snapshots>,
+    learnt: Snapshots<MaybeUninit<Learnt>>,
 }
 
 /// What had been learnt at the last two marks of each buffer.
-type Snapshots = [[Option<Learnt>; 2]; BUFFERS];
+type Snapshots<T> = [[T; 2]; BUFFERS];
 
 impl Memory {
     /// Empty buffers.
     pub const EMPTY: Self = Self {
         counts: [[[0; 4]; CAPACITY]; BUFFERS],
-        learnt: MaybeUninit::uninit(),
+        pulses: [[[0; PULSE_BYTES]; ROOM]; BUFFERS],
+        learnt: [const { [const { MaybeUninit::uninit() }; 2] }; BUFFERS],
     };
 }
 
@@ -92,6 +97,8 @@ pub(crate) struct Plan {
     identity: Identity,
     config: Scaling,
     decimation: u16,
+    /// Pulse channels that are recorded, bit i: where every tick's sample is.
+    pulsed: u8,
     before: usize,
     after: usize,
     quiet: u64,
@@ -128,6 +135,7 @@ impl Plan {
                 full_scale: config.sensing.full_scale,
             },
             decimation,
+            pulsed: if decimation == 1 { pulsed(config) } else { 0 },
             before,
             after: samples(AFTER).max(1),
             quiet: (QUIET * rate) as u64,
@@ -135,6 +143,23 @@ impl Plan {
             fall_speed: real::sqrt(2.0 * GRAVITY * config.detector.machine.clearance),
         }
     }
+}
+
+/// Pulse channels that are fitted, bit i.
+fn pulsed(config: &MonitorConfig) -> u8 {
+    let marks = config
+        .tachometers
+        .map_or([None; TACHOMETERS], |it| it.marks);
+    let bits = (0..)
+        .zip(marks)
+        .map(|(channel, marks)| u8::from(marks.is_some()) << channel);
+    bits.sum()
+}
+
+/// In a frame of its own: what is learnt takes over a kilobyte.
+#[inline(never)]
+fn nothing_learnt(place: &mut MaybeUninit<Learnt>) -> &mut Learnt {
+    place.write(Learnt::default())
 }
 
 /// The drop that goes on.
@@ -150,7 +175,8 @@ enum Drop {
 /// Records drops.
 pub struct Recorder<'m> {
     counts: &'m mut [[Counts; CAPACITY]; BUFFERS],
-    learnt: &'m mut Snapshots,
+    pulses: &'m mut [Ring; BUFFERS],
+    learnt: Snapshots<&'m mut Learnt>,
     plan: Plan,
     captures: [Capture; BUFFERS],
     tick: u64,
@@ -170,15 +196,11 @@ pub struct Recorder<'m> {
 impl<'m> Recorder<'m> {
     /// For samples that the monitor takes with `config`, which it has accepted.
     pub fn new(memory: &'m mut Memory, config: &MonitorConfig, identity: Identity) -> Self {
-        let learnt = memory
-            .learnt
-            .write([const { [const { None }; 2] }; BUFFERS]);
-        for place in learnt.iter_mut().flatten() {
-            *place = Some(Learnt::default());
-        }
+        let learnt = memory.learnt.each_mut();
         Self {
             counts: &mut memory.counts,
-            learnt,
+            pulses: &mut memory.pulses,
+            learnt: learnt.map(|places| places.each_mut().map(nothing_learnt)),
             plan: Plan::new(config, identity),
             captures: [const { Capture::EMPTY }; BUFFERS],
             tick: 0,
@@ -196,7 +218,7 @@ impl<'m> Recorder<'m> {
     pub fn take(&mut self, sample: &Sample, notices: &[Notice]) {
         if self.skip == 0 {
             self.skip = self.plan.decimation;
-            self.record(waveform::counts(sample));
+            self.record(sample);
         }
         self.skip -= 1;
         for notice in notices {
@@ -212,7 +234,7 @@ impl<'m> Recorder<'m> {
         if self.plan.decimation == 1
             && let Some(at) = self.recording
             && let Some(due) = self.captures.get(at).and_then(Capture::due)
-            && let Some(Some(place)) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
+            && let Some(place) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
         {
             place.update(state);
         }
@@ -232,15 +254,16 @@ impl<'m> Recorder<'m> {
         }
         let at = self.fetching;
         let (capture, counts) = (self.captures.get_mut(at)?, self.counts.get(at)?);
+        let pulses = self.pulses.get(at)?;
         let learnt = self.learnt.get_mut(at)?;
         let first = learnt
             .get(capture.oldest())
-            .and_then(Option::as_ref)
+            .map(|it| &**it)
             .filter(|it| it.is_known());
-        let block = capture.fetch(counts, first, &self.plan);
+        let block = capture.fetch(counts, pulses, first, &self.plan);
         if capture.is_fetched() {
             *capture = Capture::EMPTY;
-            learnt.iter_mut().flatten().for_each(Learnt::forget);
+            learnt.iter_mut().for_each(|it| it.forget());
             // Where samples had nowhere to go, they have now.
             self.recording.get_or_insert(at);
         }
@@ -283,7 +306,7 @@ impl<'m> Recorder<'m> {
         self.captures.get(at).is_none_or(Capture::is_idle)
     }
 
-    fn record(&mut self, counts: Counts) {
+    fn record(&mut self, sample: &Sample) {
         let Some(at) = self.recording else {
             return;
         };
@@ -291,7 +314,12 @@ impl<'m> Recorder<'m> {
         else {
             return;
         };
-        capture.record(buffer, counts, &self.plan, self.tick);
+        if self.plan.pulsed != 0
+            && let Some(ring) = self.pulses.get_mut(at)
+        {
+            capture.pulse(ring, sample);
+        }
+        capture.record(buffer, waveform::counts(sample), &self.plan, self.tick);
         if capture.is_full() {
             let other = (at + 1) % BUFFERS;
             self.recording = self.is_idle(other).then_some(other);

@@ -7,7 +7,7 @@ use touchdown_core::log::marks::RELEASE_BYTES;
 pub(super) const SECTOR_BYTES: u32 = 4096;
 /// Sectors of the counters.
 pub(super) const COUNTER_SECTORS: u32 = 2;
-/// Sectors of a slot: 179 blocks at most and a page of marks.
+/// Sectors of a slot: 190 blocks at most and a page of marks.
 pub(super) const SECTORS_PER_SLOT: u32 = 12;
 /// Pages of a slot but the last, which has the marks.
 pub(super) const BLOCKS_PER_SLOT: u32 = SECTORS_PER_SLOT * SECTOR_BYTES / BLOCK_BYTES as u32 - 1;

@@ -69,7 +69,8 @@ impl Rig {
         self.recorder.take(&sample, &notices);
     }
 
-    fn declared(&mut self, kind: EventKind) -> Notice {
+    /// An event of `kind` in the tick to come.
+    pub fn declared(&mut self, kind: EventKind) -> Notice {
         self.number += 1;
         let now = self.fed.len() as u64;
         Notice::Declared(Event {
@@ -128,7 +129,7 @@ pub fn read(bytes: &[u8]) -> Read {
                 assert!(events.notices().all(|it| it.is_some()));
                 read.notices += events.notices().count();
             }
-            Item::Learnt(_) | Item::Severity(..) | Item::Ending(_) => {}
+            Item::Learnt(_) | Item::Pulses(_) | Item::Severity(..) | Item::Ending(_) => {}
         }
     }
     read.report = reader.finish();

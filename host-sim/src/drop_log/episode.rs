@@ -4,8 +4,10 @@ use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::log::ending::Ending;
 use touchdown_core::log::header::Header;
+use touchdown_core::log::pulses::Pulses;
 use touchdown_core::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_core::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK};
+use touchdown_core::sample::{Edges, TACHOMETERS};
 
 use crate::stream::{of_field, to_field};
 
@@ -43,7 +45,15 @@ pub struct Episode {
     /// Counts of each sample; none where its block is missing.
     #[serde(skip)]
     pub samples: Vec<Option<Counts>>,
+    /// What the pulse channels showed at each sample; none where no block tells.
+    #[serde(skip)]
+    pub pulses: Vec<Option<Shown>>,
+    /// Samples of which that is known; none for a machine without such channels.
+    pub samples_with_pulses: Option<usize>,
 }
+
+/// What the pulse channels show at a sample.
+pub type Shown = [Option<Edges>; TACHOMETERS];
 
 /// Whether an episode was recorded to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -76,6 +86,7 @@ impl Episode {
         let mut reader = Reader::new(pages);
         let (mut header, mut ending, mut severity) = (None, None, None);
         let (mut notices, mut samples, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+        let mut pulses = Vec::new();
         for item in reader.by_ref() {
             match item {
                 Item::Header(it) => header = Some(it),
@@ -83,6 +94,7 @@ impl Episode {
                 Item::Learnt(part) => parts.push(part),
                 Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
                 Item::Events(it) => notices.extend(it.notices().flatten()),
+                Item::Pulses(it) => take_pulses(&mut pulses, &it),
                 Item::Waveform(it) => {
                     let start = it.start as usize;
                     if start < MOST_BLOCKS * SAMPLES_PER_BLOCK {
@@ -114,12 +126,16 @@ impl Episode {
             events: header
                 .as_ref()
                 .map_or(Vec::new(), |it| events(it, &notices)),
-            header,
             learnt: learnt(&parts),
             ending,
             report,
             severity,
+            samples_with_pulses: (header.as_ref())
+                .filter(|it| it.pulsed != 0)
+                .map(|_| pulses.iter().flatten().count()),
+            header,
             samples,
+            pulses,
         };
         for flaw in episode.header.as_ref().map_or(Vec::new(), impossible) {
             episode.flaw(flaw);
@@ -159,6 +175,14 @@ impl Episode {
     }
 }
 
+fn take_pulses(pulses: &mut Vec<Option<Shown>>, block: &Pulses<'_>) {
+    let (from, to) = (usize::from(block.from), usize::from(block.to));
+    pulses.resize(pulses.len().max(to), None);
+    for (place, shown) in pulses[from.min(to)..to].iter_mut().zip(block.samples()) {
+        *place = Some(shown);
+    }
+}
+
 /// Nothing where a part is missing.
 fn learnt(parts: &[&[u8]]) -> Option<String> {
     let field = to_field(parts.iter().copied());
@@ -194,6 +218,11 @@ fn impossible(header: &Header) -> Vec<String> {
             (1..16).contains(&header.fitted),
             "fitted",
             f32::from(header.fitted),
+        ),
+        (
+            header.pulsed < 1 << TACHOMETERS,
+            "pulsed",
+            f32::from(header.pulsed),
         ),
         (header.first <= header.trigger, "first", header.first as f32),
     ];

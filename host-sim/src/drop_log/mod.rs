@@ -15,16 +15,16 @@ pub use text::{list, show};
 use std::io::Write;
 
 use touchdown_core::learnt::Learnt;
-use touchdown_core::sample::CHANNELS;
+use touchdown_core::sample::{CHANNELS, Edges};
 
-use crate::stream::{Columns, Row, StreamWriter, of_field};
+use crate::stream::{Columns, Pulses, Row, StreamWriter, of_field};
 
 /// Whether no episode of the log is damaged. One that was cut off is not.
 pub fn is_sound(dump: &Dump) -> bool {
     !dump.episodes.iter().any(|it| it.damaged)
 }
 
-/// The episode as a stream, with spin and levitation signal as they were before it; time 0 is the trigger. False where it has no header, or an impossible one.
+/// The episode as a stream, with spin and levitation signal as they were before it and the pulses that are known; time 0 is the trigger. False where it has no header, or an impossible one.
 pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
     let Some(header) = episode.scale() else {
         return Ok(false);
@@ -36,8 +36,11 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
         planes: if header.fitted & 0b1100 == 0 { 1 } else { 2 },
         speed: spin.is_some(),
         levitated: levitated.is_some(),
-        edges: [false; 2],
+        edges: std::array::from_fn(|channel| {
+            header.pulsed & (1 << channel) != 0 && !episode.pulses.is_empty()
+        }),
     };
+    let rate = f64::from(header.sample_rate);
     let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
     for (number, counts) in episode.samples.iter().enumerate() {
         let mut positions = [f64::NAN; CHANNELS];
@@ -46,12 +49,19 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
                 .position(header, counts, channel)
                 .unwrap_or(f64::NAN);
         }
+        let shown = episode.pulses.get(number).copied().flatten();
+        let shown = shown.unwrap_or_default();
         writer.write(&Row {
             time: episode.time(header, number),
             positions,
             spin,
             levitated,
-            edges: [None; 2],
+            edges: shown.map(|edges| {
+                edges.map(|Edges { count, age }| Pulses {
+                    count: count.into(),
+                    age: f64::from(age) / (256.0 * rate),
+                })
+            }),
         })?;
     }
     writer.finish()?;

@@ -120,6 +120,12 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             header.resolution * 1e6,
         );
     }
+    if let Some(known) = episode.samples_with_pulses
+        && known < episode.samples.len()
+    {
+        let all = episode.samples.len();
+        text += &format!("pulses incomplete: known of {known} of {all} samples\n");
+    }
     if let Some(ending) = &episode.ending {
         let why = match ending.closing {
             Closing::Levitated => "floats again",

@@ -19,6 +19,8 @@ pub enum Kind {
     Learnt = b'L',
     /// [`super::waveform::Waveform`].
     Waveform = b'W',
+    /// [`super::pulses::Pulses`].
+    Pulses = b'P',
     /// Notices: [`crate::wire::encode_record`], one after another.
     Events = b'E',
     /// A version, then that version's bytes.
@@ -28,10 +30,11 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 7] = [
         Self::Header,
         Self::Learnt,
         Self::Waveform,
+        Self::Pulses,
         Self::Events,
         Self::Severity,
         Self::Ending,

@@ -1,7 +1,7 @@
 //! The first block of an episode.
 
-use super::FORMAT;
 use super::fields::{Fields, Row};
+use super::{FORMAT, FORMAT_WITHOUT_PULSES};
 use crate::event::EventKind;
 
 /// Bytes of a header.
@@ -37,13 +37,21 @@ pub struct Header {
     pub zero_count: f32,
     /// Greatest count of the converter.
     pub full_scale: u16,
+    /// Bit i is set if the pulses of channel i of [`crate::sample::TACHOMETERS`] are recorded.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub pulsed: u8,
 }
 
 impl Header {
     /// As bytes.
     pub fn encode(&self) -> [u8; HEADER_BYTES] {
+        let format = if self.pulsed == 0 {
+            FORMAT_WITHOUT_PULSES
+        } else {
+            FORMAT
+        };
         Row::new()
-            .put(&FORMAT.to_le_bytes())
+            .put(&format.to_le_bytes())
             .put(&self.decimation.to_le_bytes())
             .put(&self.full_scale.to_le_bytes())
             .put(&[self.fitted, self.trigger_kind as u8])
@@ -56,14 +64,15 @@ impl Header {
             .put(&self.sample_rate.to_le_bytes())
             .put(&self.resolution.to_le_bytes())
             .put(&self.zero_count.to_le_bytes())
-            .put(&[0; 4])
+            .put(&[self.pulsed, 0, 0, 0])
             .bytes()
     }
 
     /// From bytes; `None` if they are too few, of another format or of an unknown trigger.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut fields = Fields(bytes);
-        if !(1..=FORMAT).contains(&fields.u16()?) {
+        let format = fields.u16()?;
+        if !(1..=FORMAT).contains(&format) {
             return None;
         }
         let decimation = fields.u16()?;
@@ -84,6 +93,7 @@ impl Header {
             sample_rate: fields.f32()?,
             resolution: fields.f32()?,
             zero_count: fields.f32()?,
+            pulsed: fields.u8().filter(|_| format == FORMAT).unwrap_or(0),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The bytes of the drop log, as firmware writes and desktop reads them: `docs/log.md`.
 //!
-//! An episode is a sequence of [`block::Block`]s of one flash page each: header, waveform, events,
+//! An episode is a sequence of [`block::Block`]s of one flash page each: header, waveform, pulses, events,
 //! severity, ending. Each block carries its episode, its place and a checksum, so any part of an
 //! episode is known for what it is. The ending comes last: without it the episode is incomplete.
 
@@ -10,6 +10,7 @@ pub mod ending;
 mod fields;
 pub mod header;
 pub mod marks;
+pub mod pulses;
 pub mod reader;
 #[cfg(feature = "serde")]
 pub mod severity;
@@ -17,8 +18,10 @@ pub mod waveform;
 
 use crate::checksum::CRC;
 
-/// Version of the format; in every header. Version 1 has no [`block::Kind::Learnt`], and is read as well.
-pub const FORMAT: u16 = 2;
+/// Version of the format, in the header of an episode with pulses. All earlier ones are read as well.
+pub const FORMAT: u16 = 3;
+/// Version in the header of an episode without pulses. Version 1 has no [`block::Kind::Learnt`].
+pub const FORMAT_WITHOUT_PULSES: u16 = 2;
 
 fn checksum(bytes: &[u8]) -> u32 {
     CRC.checksum(bytes)

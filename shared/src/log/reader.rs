@@ -3,6 +3,7 @@
 use super::block::{BLOCK_BYTES, Kind, Page, Sealed};
 use super::ending::Ending;
 use super::header::Header;
+use super::pulses::Pulses;
 use super::waveform::Waveform;
 use crate::event::Notice;
 use crate::wire::{self, NOTICE_BYTES, Record};
@@ -21,6 +22,8 @@ pub enum Item<'a> {
     Learnt(&'a [u8]),
     /// Samples.
     Waveform(Waveform<'a>),
+    /// Pulses.
+    Pulses(Pulses<'a>),
     /// Notices.
     Events(Events<'a>),
     /// How severe it was: a version and that version's bytes.
@@ -262,6 +265,7 @@ fn read<'a>(sealed: &Sealed<'a>) -> Option<Item<'a>> {
         Kind::Header => Header::decode(bytes).map(Item::Header),
         Kind::Learnt => Some(Item::Learnt(bytes)),
         Kind::Waveform => Waveform::decode(bytes).map(Item::Waveform),
+        Kind::Pulses => Pulses::decode(bytes).map(Item::Pulses),
         Kind::Events => match bytes.as_chunks() {
             (records, []) => Some(Item::Events(Events(records))),
             _ => None,

@@ -11,7 +11,7 @@ use crate::sample::Edges;
 use crate::tachometer::Speed;
 
 /// Earlier edges that are kept.
-const KEPT: usize = 16;
+pub(super) const KEPT: usize = 16;
 /// Relative error that the roundings of f32 leave in a mean speed.
 const ROUNDING: f32 = 5e-7;
 
@@ -30,14 +30,15 @@ pub(crate) struct Channel {
 
 /// An edge.
 #[derive(Clone, Copy, Debug, Default)]
-struct Edge {
-    count: u16,
-    at: Moment,
+pub(super) struct Edge {
+    pub(super) count: u16,
+    pub(super) at: Moment,
 }
 
 /// Two mean speeds.
 #[derive(Clone, Copy, Debug)]
-struct Trend {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Trend {
     /// In the latest stretch, rad/s.
     rate: f32,
     /// Above that of the stretch before, rad/s.
@@ -54,11 +55,11 @@ struct Trend {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ChannelState {
     /// The last edge; before any, the first sample.
-    last: Option<Edge>,
-    kept: [Edge; KEPT],
-    filled: usize,
-    newest: usize,
-    trend: Option<Trend>,
+    pub(super) last: Option<Edge>,
+    pub(super) kept: [Edge; KEPT],
+    pub(super) filled: usize,
+    pub(super) newest: usize,
+    pub(super) trend: Option<Trend>,
 }
 
 impl Channel {
@@ -176,7 +177,7 @@ impl Channel {
 
 impl ChannelState {
     /// The kept edge that is `steps` before the newest one.
-    fn back(&self, steps: usize) -> Option<Edge> {
+    pub(super) fn back(&self, steps: usize) -> Option<Edge> {
         if steps >= self.filled {
             return None;
         }

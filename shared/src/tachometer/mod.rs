@@ -4,6 +4,8 @@
 //! drives it.
 
 mod channel;
+#[cfg(feature = "serde")]
+pub(crate) mod learnt;
 
 use crate::error::ConfigError;
 use crate::event::Moment;

@@ -80,6 +80,7 @@ const HEADER: Header = Header {
     resolution: 0.5e-6,
     zero_count: 2_048.0,
     full_scale: 4_095,
+    pulsed: 0,
 };
 const ENDING: Ending = Ending {
     closing: Closing::Quiet,
