@@ -405,7 +405,7 @@ pub(super) struct ScoreArgs {
     hours: Option<f64>,
     /// A look in seconds: 2 drops and 2 s of each case
     #[arg(long, conflicts_with_all = ["seeds", "seconds", "hours"])]
-    quick: bool,
+    pub quick: bool,
     /// Each row with its case, values, target and verdict, by group, as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
