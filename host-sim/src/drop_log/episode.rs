@@ -6,7 +6,7 @@ use touchdown_core::log::ending::Ending;
 use touchdown_core::log::header::Header;
 use touchdown_core::log::pulses::Pulses;
 use touchdown_core::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
-use touchdown_core::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK};
+use touchdown_core::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_core::sample::{Edges, TACHOMETERS};
 
 use crate::stream::{of_field, to_field};
@@ -47,13 +47,10 @@ pub struct Episode {
     pub samples: Vec<Option<Counts>>,
     /// What the pulse channels showed at each sample; none where no block tells.
     #[serde(skip)]
-    pub pulses: Vec<Option<Shown>>,
+    pub pulses: Vec<Option<[Option<Edges>; TACHOMETERS]>>,
     /// Samples of which that is known; none for a machine without such channels.
     pub samples_with_pulses: Option<usize>,
 }
-
-/// What the pulse channels show at a sample.
-pub type Shown = [Option<Edges>; TACHOMETERS];
 
 /// Whether an episode was recorded to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -95,17 +92,7 @@ impl Episode {
                 Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
                 Item::Events(it) => notices.extend(it.notices().flatten()),
                 Item::Pulses(it) => take_pulses(&mut pulses, &it),
-                Item::Waveform(it) => {
-                    let start = it.start as usize;
-                    if start < MOST_BLOCKS * SAMPLES_PER_BLOCK {
-                        let end = start + it.samples().len();
-                        samples.resize(samples.len().max(end), None);
-                        let places = samples.iter_mut().skip(start);
-                        places
-                            .zip(it.samples())
-                            .for_each(|(to, from)| *to = Some(from));
-                    }
-                }
+                Item::Waveform(it) => take_samples(&mut samples, &it),
             }
         }
         let mut damage = Vec::new();
@@ -175,7 +162,19 @@ impl Episode {
     }
 }
 
-fn take_pulses(pulses: &mut Vec<Option<Shown>>, block: &Pulses<'_>) {
+fn take_samples(samples: &mut Vec<Option<Counts>>, block: &Waveform<'_>) {
+    let start = block.start as usize;
+    if start < MOST_BLOCKS * SAMPLES_PER_BLOCK {
+        let end = start + block.samples().len();
+        samples.resize(samples.len().max(end), None);
+        let places = samples.iter_mut().skip(start);
+        places
+            .zip(block.samples())
+            .for_each(|(to, from)| *to = Some(from));
+    }
+}
+
+fn take_pulses(pulses: &mut Vec<Option<[Option<Edges>; TACHOMETERS]>>, block: &Pulses<'_>) {
     let (from, to) = (usize::from(block.from), usize::from(block.to));
     pulses.resize(pulses.len().max(to), None);
     for (place, shown) in pulses[from.min(to)..to].iter_mut().zip(block.samples()) {
