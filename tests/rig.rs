@@ -188,7 +188,7 @@ fn brown_out_while_logging_leaves_earlier_episodes_whole_and_the_new_one_whole_o
     talk.hello().expect("answers");
     let mut whole: BTreeMap<u32, Vec<EventKind>> = BTreeMap::new();
     let (mut open, mut counted) = (0, 0);
-    let cuts = [1, 3, 10, 40, 90, 140, 160, 172];
+    let cuts = [1, 3, 10, 40, 90, 140, 154, 166];
     for (number, pages) in (2..).zip(cuts) {
         rig.order(Order::Lift);
         state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
