@@ -3,12 +3,12 @@
 use touchdown_core::config_block::Patrol;
 use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
-use touchdown_core::error::ConfigError;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::forecast::Sight;
 use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
+use touchdown_rotor::error::ConfigError;
 
 use crate::blind::Blind;
 use crate::board::Board;
@@ -84,7 +84,7 @@ impl App {
     }
 
     /// What follows from the notices of a tick, outputs included.
-    pub(crate) fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
+    pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
         let mut dropped = false;
         for notice in notices {
             dropped |= self.is_drop(notice);
@@ -100,7 +100,7 @@ impl App {
 
     /// The monitor and its state, for who counts the parts of a tick.
     #[cfg(target_os = "none")]
-    pub(crate) fn monitor(&mut self) -> (&Monitor, &mut MonitorState) {
+    pub fn monitor(&mut self) -> (&Monitor, &mut MonitorState) {
         (&self.monitor, &mut self.state)
     }
 

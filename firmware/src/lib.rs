@@ -9,8 +9,6 @@ pub mod ad7606;
 pub mod app;
 mod blind;
 pub mod board;
-#[cfg(target_os = "none")]
-pub mod count;
 pub mod crash;
 pub mod drop_log;
 #[cfg(target_os = "none")]

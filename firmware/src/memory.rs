@@ -6,9 +6,9 @@
 use core::mem::MaybeUninit;
 
 use touchdown_core::controller::Faults;
-use touchdown_core::error::ConfigError;
 use touchdown_core::forecast::Lookout;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_rotor::error::ConfigError;
 
 use crate::app::App;
 use crate::recorder::{self, Identity, Recorder};
@@ -42,8 +42,9 @@ impl Memory {
     }
 }
 
+/// The application, in `place`; `found` is what was wrong at power-on.
 #[inline(never)]
-pub(crate) fn application<'a>(
+pub fn application<'a>(
     place: &'a mut MaybeUninit<App>,
     config: &MonitorConfig,
     found: Faults,

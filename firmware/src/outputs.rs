@@ -1,4 +1,4 @@
-//! What each state means for the outputs: the table of docs/firmware.md.
+//! What each state means for the outputs: the table of docs/build/firmware.md.
 
 use touchdown_core::controller::{Faults, Mode, Outputs};
 
@@ -47,10 +47,10 @@ pub const fn outputs(condition: &Condition) -> Outputs {
 mod tests {
     use super::*;
 
-    /// The table of docs/firmware.md: mode, then the outputs in the order of their bits, each `on`,
+    /// The table of docs/build/firmware.md: mode, then the outputs in the order of their bits, each `on`,
     /// `off` or on only where something holds.
     fn table() -> Vec<(String, Vec<String>)> {
-        let text = include_str!("../../docs/firmware.md");
+        let text = include_str!("../../docs/build/firmware.md");
         let rows = text.split("| mode | run |").nth(1).expect("the table");
         let rows = rows.lines().skip(2).take_while(|row| row.starts_with('|'));
         rows.map(|row| {

@@ -1,4 +1,4 @@
-//! Each fault of docs/firmware.md brings the outputs to safety within the ticks stated there.
+//! Each fault of docs/build/firmware.md brings the outputs to safety within the ticks stated there.
 
 use touchdown_core::config_block::{self, Block, Patrol};
 use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};

@@ -6,8 +6,8 @@ use std::io::Cursor;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_sim::recording::{Reading, Recording};
-use touchdown_sim::scene::Scene;
+use touchdown_files::recording::{Reading, Recording};
+use touchdown_scene::Scene;
 
 static RIG: LazyLock<Scene> = LazyLock::new(|| Scene::load("rig").expect("built-in scene"));
 /// A recording may be stretched to more samples than it has rows.

@@ -4,8 +4,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use touchdown_core::checksum::CRC;
-use touchdown_sim::drop_log::{Dump, comtrade, is_sound, list, show, stream};
-use touchdown_sim::paint::Paint;
+use touchdown_files::drop_log::{Dump, comtrade, is_sound, list, show, stream};
+use touchdown_base::paint::Paint;
 
 /// Bytes of the lifetime counters, of one record of them, and of a block.
 const HEAD: usize = 8192;

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use tempfile::TempDir;
-use touchdown_sim::force::read;
+use touchdown_force::read;
 
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| TempDir::new().expect("a folder"));
 static FILE: LazyLock<PathBuf> = LazyLock::new(|| FOLDER.path().join("fuzz.csv"));

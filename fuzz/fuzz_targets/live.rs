@@ -10,7 +10,7 @@ use touchdown_core::config_block::{self, Settings, Wiring};
 use touchdown_core::link::Reply;
 use touchdown_core::wire::{Record, decode_record};
 use touchdown_firmware::board::default_config;
-use touchdown_sim::drop_log::Episode;
+use touchdown_files::drop_log::Episode;
 use touchdown_sim::live::{Greeting, Said, Update, View, Watched, draw, line};
 
 /// Lines and columns of the terminal.

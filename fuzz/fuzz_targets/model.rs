@@ -5,7 +5,7 @@
 
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
-use touchdown_core::model::{Kinematics, Precision, Rigid, RigidConfig, Start};
+use touchdown_rotor::{Kinematics, Precision, Rigid, RigidConfig, Start};
 
 /// Steps of each input.
 const STEPS: u32 = 8;

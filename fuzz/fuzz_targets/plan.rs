@@ -5,8 +5,8 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_sim::scene::Scene;
-use touchdown_sim::sweep::Plan;
+use touchdown_scene::Scene;
+use touchdown_sweep::Plan;
 
 static RIG: LazyLock<String> = LazyLock::new(|| Scene::text("rig").expect("built-in").into_owned());
 

@@ -3,7 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_sim::scene::{Scene, explain};
+use touchdown_scene::Scene;
+use touchdown_run::explain::explain;
 
 fuzz_target!(|text: &str| {
     if let Ok(scene) = Scene::parse("fuzz", text) {

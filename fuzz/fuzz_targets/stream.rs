@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_sim::stream::StreamReader;
+use touchdown_files::stream::StreamReader;
 
 fuzz_target!(|bytes: &[u8]| {
     match StreamReader::new("fuzz", bytes) {

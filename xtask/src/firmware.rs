@@ -11,50 +11,56 @@ use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
 
-/// For chip and emulator.
-const IMAGES: [&str; 4] = [
-    "touchdown-firmware",
-    "touchdown-qemu",
-    "touchdown-count-tick",
-    "touchdown-crash",
+/// An image: its package, name and profile.
+struct Image {
+    package: &'static str,
+    name: &'static str,
+    profile: &'static str,
+}
+
+const FIRMWARE: &str = "touchdown-firmware";
+const COUNT: &str = "touchdown-count";
+/// Small below the tick, fast in it.
+const PROFILE: &str = "firmware";
+/// As fast as can be: for what the model costs.
+const FASTEST: &str = "release";
+
+/// All images that run.
+const IMAGES: [Image; 5] = [
+    image(FIRMWARE, "touchdown-firmware", PROFILE),
+    image(FIRMWARE, "touchdown-qemu", PROFILE),
+    image(FIRMWARE, "touchdown-crash", PROFILE),
+    image(COUNT, "touchdown-count-tick", PROFILE),
+    image(COUNT, "touchdown-count", FASTEST),
 ];
 /// The budget looks at it; without a stack, as it is never run.
-const NEVER_RUN: &str = "touchdown-tick";
-/// Their profile: small below the tick, fast in it.
-const PROFILE: &str = "firmware";
-/// They count what the model costs, as fast as it can be.
-const COUNTING: [&str; 2] = ["touchdown-count-rigid", "touchdown-count"];
-/// Profile of these.
-const FASTEST: &str = "release";
-/// Folder of the first of these, built without the other rungs in the library, for comparison.
-const WITHOUT_RUNGS: &str = "without-rungs";
+const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
 const RAM_START: u64 = 0x2000_0000;
+
+const fn image(package: &'static str, name: &'static str, profile: &'static str) -> Image {
+    Image {
+        package,
+        name,
+        profile,
+    }
+}
 
 /// Builds all images.
 pub fn build() -> anyhow::Result<()> {
     println!("Firmware: building for {TARGET}");
-    let images = images();
-    let without = images.join(WITHOUT_RUNGS);
-    fs::create_dir_all(&without).context("cannot make a folder for images")?;
-    let counting = folder(FASTEST);
-    let copy = |name: &str, to: &Path| {
-        let copied = fs::copy(counting.join(name), to.join(name));
-        copied.context("cannot copy an image").map(|_| ())
-    };
-    // This one first: the other takes its name.
-    cargo(FASTEST, &COUNTING[..1], &["--no-default-features"])?;
-    copy(COUNTING[0], &without)?;
-    cargo(FASTEST, &COUNTING, &[])?;
-    for name in COUNTING {
-        copy(name, &images)?;
+    for image in IMAGES.iter().chain([&NEVER_RUN]) {
+        cargo(image, &[])?;
+        if image.profile != PROFILE {
+            let from = folder(image.profile).join(image.name);
+            fs::copy(from, images().join(image.name)).context("cannot copy an image")?;
+        }
     }
-    cargo(PROFILE, &[&IMAGES[..], &[NEVER_RUN]].concat(), &[])?;
-    for name in IMAGES.iter().chain(&COUNTING) {
-        let image = images.join(name);
-        let (flash, ram) = size(&image)?;
+    for image in IMAGES {
+        let path = images().join(image.name);
+        let (flash, ram) = size(&path)?;
         println!(
             "  {}: {flash} bytes of flash, {ram} bytes of RAM and the stack",
-            image.display()
+            path.display()
         );
     }
     Ok(())
@@ -65,12 +71,12 @@ pub const PLANTED: &str = "planted";
 
 /// Builds the images that the budget looks at with a panic, an f64 and a slow path planted.
 pub fn build_planted() -> anyhow::Result<()> {
-    let names = ["touchdown-tick", "touchdown-count-tick"];
-    cargo(PROFILE, &names, &["--features", "plants"])?;
     let planted = images().join(PLANTED);
     fs::create_dir_all(&planted).context("cannot make a folder for images")?;
-    for name in names {
-        fs::copy(images().join(name), planted.join(name)).context("cannot copy an image")?;
+    for image in [NEVER_RUN, image(COUNT, "touchdown-count-tick", PROFILE)] {
+        cargo(&image, &["--features", "plants"])?;
+        let built = images().join(image.name);
+        fs::copy(built, planted.join(image.name)).context("cannot copy an image")?;
     }
     Ok(())
 }
@@ -84,16 +90,14 @@ pub enum Extra {
     StackSizes,
 }
 
-/// Builds one image.
+/// Builds one image, for chip or emulator.
 pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
+    let known = IMAGES.iter().find(|image| image.name == name);
+    let package = known
+        .with_context(|| format!("{name} is no image"))?
+        .package;
     let mut cargo = Machine::look().toolchain.cargo("rustc");
-    cargo.args([
-        "--quiet",
-        "--profile",
-        PROFILE,
-        "--package",
-        "touchdown-firmware",
-    ]);
+    cargo.args(["--quiet", "--profile", PROFILE, "--package", package]);
     cargo.args(["--bin", name]).current_dir(workspace());
     if extra == Extra::StackSizes {
         // The flag is for nightly compilers; this one is stable.
@@ -114,13 +118,12 @@ fn folder(profile: &str) -> PathBuf {
     target_directory().join(TARGET).join(profile)
 }
 
-fn cargo(profile: &str, images: &[&str], arguments: &[&str]) -> anyhow::Result<()> {
+fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
     let status = Machine::look()
         .toolchain
         .cargo("build")
-        .args(["--quiet", "--profile", profile])
-        .args(["--package", "touchdown-firmware"])
-        .args(images.iter().flat_map(|name| ["--bin", *name]))
+        .args(["--quiet", "--profile", image.profile])
+        .args(["--package", image.package, "--bin", image.name])
         .args(arguments)
         .current_dir(workspace())
         .status()

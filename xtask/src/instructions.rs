@@ -16,8 +16,8 @@ pub fn count() -> anyhow::Result<()> {
             "--package",
             "touchdown-tests",
         ])
-        .args(["--test", "instructions", "--", "--exact"])
-        .arg("tables_are_current_and_counts_repeat")
+        .args(["--test", "chip", "--", "--exact"])
+        .arg("instructions::tables_are_current_and_counts_repeat")
         .env("TOUCHDOWN_WRITE_TABLES", "1")
         .current_dir(workspace())
         .status()

@@ -1,12 +1,14 @@
 //! Counts tests in what `cargo test` prints.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Tests by target.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Tests that each target with integration tests ran.
     layers: BTreeMap<String, u32>,
+    /// Target and module of each test that ran.
+    modules: BTreeSet<(String, String)>,
     /// The layer whose output is being read.
     current: Option<String>,
     /// Passed, in all targets.
@@ -32,10 +34,31 @@ impl Tally {
             if let (Some(layer), Some(count)) = (&self.current, count) {
                 self.layers.insert(layer.clone(), count);
             }
+        } else if let Some(rest) = line.strip_prefix("test ")
+            && let Some((name, result)) = rest.split_once(" ... ")
+        {
+            self.test(name, result);
         } else if let Some(rest) = line.strip_prefix("test result: ") {
             self.passed += number_before(rest, " passed");
             self.failed += number_before(rest, " failed");
         }
+    }
+
+    fn test(&mut self, name: &str, result: &str) {
+        let module = name.split_once("::").map(|(module, _)| module);
+        if let (Some(layer), Some(module)) = (&self.current, module)
+            && result != "ignored"
+        {
+            self.modules.insert((layer.clone(), module.to_owned()));
+        }
+    }
+
+    /// Those of `modules` (target and name) of which no test ran.
+    pub fn silent(&self, modules: Vec<(String, String)>) -> Vec<String> {
+        let silent = modules.into_iter().filter(|it| !self.modules.contains(it));
+        silent
+            .map(|(target, name)| format!("{target} {name}"))
+            .collect()
     }
 
     /// Layers that ran no test.
@@ -107,6 +130,23 @@ test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; fini
         let tally = tally(OUTPUT);
         assert_eq!(tally.layers(), 2);
         assert_eq!(tally.empty_layers(), ["analytic.rs"]);
+    }
+
+    #[test]
+    fn a_module_without_a_test_that_ran_is_silent() {
+        let tally = tally(
+            "     Running claims/chip/main.rs (target/debug/deps/chip-0)\n\
+             running 3 tests\n\
+             test qemu::same_bits ... ok\n\
+             test rig::a_drop ... FAILED\n\
+             test math::slow ... ignored\n",
+        );
+        let modules = ["qemu", "rig", "math", "gone"];
+        let modules = modules.map(|it| ("claims/chip/main.rs".to_owned(), it.to_owned()));
+        assert_eq!(
+            tally.silent(modules.to_vec()),
+            ["claims/chip/main.rs math", "claims/chip/main.rs gone"]
+        );
     }
 
     #[test]

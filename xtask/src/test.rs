@@ -1,5 +1,6 @@
 //! Runs every test on the desktop, those that need the emulator included.
 
+use std::fs;
 use std::io::{self, BufRead, BufReader};
 
 use anyhow::{Context, ensure};
@@ -34,7 +35,26 @@ pub fn run() -> anyhow::Result<()> {
 
     let empty = tally.empty_layers();
     ensure!(empty.is_empty(), "ran no tests: {}", empty.join(", "));
+    let silent = tally.silent(claims()?);
+    ensure!(silent.is_empty(), "ran no tests: {}", silent.join(", "));
     ensure!(tally.layers() > 0, "ran no test layer at all");
     ensure!(status.success(), "cargo test failed ({status})");
     Ok(())
+}
+
+/// The files of `tests/claims`: target, as cargo calls it, and module.
+fn claims() -> anyhow::Result<Vec<(String, String)>> {
+    let mut claims = Vec::new();
+    for subject in fs::read_dir(workspace().join("tests/claims"))? {
+        let subject = subject?;
+        let target = format!("claims/{}/main.rs", subject.file_name().to_string_lossy());
+        for file in fs::read_dir(subject.path())? {
+            let module = file?.path().with_extension("");
+            let module = module.file_name().unwrap_or_default().to_string_lossy();
+            if module != "main" {
+                claims.push((target.clone(), module.into_owned()));
+            }
+        }
+    }
+    Ok(claims)
 }

@@ -79,5 +79,7 @@ mod image {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    println!("touchdown-crash is an image for QEMU's netduinoplus2: tests/last_acts.rs runs it");
+    println!(
+        "touchdown-crash is an image for QEMU's netduinoplus2: tests/claims/chip/last_acts.rs runs it"
+    );
 }

@@ -19,9 +19,9 @@ use touchdown_core::log::ending::Closing;
 use touchdown_core::log::pulses::PULSE_BYTES;
 use touchdown_core::log::waveform::{self, Counts};
 use touchdown_core::monitor::{MonitorConfig, MonitorState};
-use touchdown_core::real;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
+use touchdown_rotor::real;
 
 use self::capture::Capture;
 use self::pulses::{ROOM, Ring};

@@ -2,7 +2,7 @@
 //!
 //! [`Store::work`] does at most one program or erase a call, so that a low-priority task can call it
 //! and nothing waits for it. In flash there are two sectors of counters and then slots of twelve
-//! sectors, an episode each: `docs/log.md` says what makes them safe against a cut of power.
+//! sectors, an episode each: `docs/formats/log.md` says what makes them safe against a cut of power.
 
 mod layout;
 mod ledger;

@@ -5,7 +5,7 @@
 mod common;
 mod controller;
 #[macro_use]
-#[path = "../../../shared/tests/golden/stream.rs"]
+#[path = "../../../shared/core/tests/golden/stream.rs"]
 mod stream;
 
 use expect_test::expect_file;

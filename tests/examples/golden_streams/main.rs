@@ -5,7 +5,7 @@
 mod deflated;
 mod path;
 mod recipes;
-#[path = "../../../shared/tests/golden/stream.rs"]
+#[path = "../../../shared/core/tests/golden/stream.rs"]
 mod stream;
 
 use crate::stream::{NAMES, Stream};

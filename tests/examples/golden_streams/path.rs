@@ -1,8 +1,8 @@
 //! The way of a rotor from sample to sample, and what its sensors make of it.
 
-use touchdown_sim::scene::Scene;
-use touchdown_sim::sensors::{Faults, Motion, SensorFault, Sensors};
-use touchdown_sim::truth::{Moving, Truth};
+use touchdown_scene::Scene;
+use touchdown_scene::sensors::{Faults, Motion, SensorFault, Sensors};
+use touchdown_truth::{Moving, Truth};
 
 use crate::stream::Stream;
 

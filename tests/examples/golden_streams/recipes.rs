@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use touchdown_sim::scene::Scene;
-use touchdown_sim::sensors::{Failing, SensorFault};
+use touchdown_scene::Scene;
+use touchdown_scene::sensors::{Failing, SensorFault};
 
 use crate::path::{Path, smooth};
 

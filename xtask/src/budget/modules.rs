@@ -70,10 +70,12 @@ fn module(path: &str) -> String {
         let name = rest.split('/').next().unwrap_or(rest);
         name.trim_end_matches(".rs").to_owned()
     };
-    for (folder, package) in [("shared/src/", "core"), ("firmware/src/", "firmware")] {
-        if let Some((_, rest)) = path.split_once(folder) {
-            return format!("{package}: {}", first(rest));
-        }
+    if let Some((_, rest)) = path.split_once("shared/") {
+        let (package, rest) = rest.split_once("/src/").unwrap_or((rest, rest));
+        return format!("{package}: {}", first(rest));
+    }
+    if let Some((_, rest)) = path.split_once("firmware/src/") {
+        return format!("firmware: {}", first(rest));
     }
     // ~/.cargo/registry/src/INDEX/NAME-VERSION/src/...
     if let Some((_, rest)) = path.split_once("/registry/src/") {
@@ -96,8 +98,8 @@ mod tests {
     #[test]
     fn files_belong_to_modules_and_packages() {
         for (path, name) in [
-            ("/work/shared/src/detect/flight.rs", "core: detect"),
-            ("/work/shared/src/monitor.rs", "core: monitor"),
+            ("/work/shared/core/src/detect/flight.rs", "core: detect"),
+            ("/work/shared/core/src/monitor.rs", "core: monitor"),
             ("/firmware/src/board/f405/mod.rs", "firmware: board"),
             (
                 "/home/.cargo/registry/src/index.crates.io-1949/postcard-1.1.3/src/de/mod.rs",

@@ -1,6 +1,7 @@
 //! The house: size, structure and names of the crates, held against `house.toml`.
 
 mod cycles;
+mod layers;
 mod source;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use anyhow::{Context, ensure};
 use serde::Deserialize;
 
 use self::cycles::cycles;
+use self::layers::{beyond, members};
 use self::source::Source;
 use crate::workspace;
 
@@ -37,9 +39,14 @@ struct Budget {
 #[serde(deny_unknown_fields)]
 struct Crate {
     /// Lines without tests.
+    #[serde(default)]
     lines: usize,
     /// Circles of imports between its files.
+    #[serde(default)]
     cycles: usize,
+    /// Crates that it may use.
+    #[serde(default)]
+    uses: Vec<String>,
 }
 
 /// Prints the figures; an error names each that is above its limit.
@@ -48,6 +55,7 @@ pub fn run() -> anyhow::Result<()> {
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let budget: Budget = toml::from_str(&text).with_context(|| path.display().to_string())?;
     let mut broken = Vec::new();
+    let mut strays = Vec::new();
     let mut all = Vec::new();
     let mut limit = |what: &str, is: usize, most: usize| {
         let mark = if is > most { "ABOVE" } else { "" };
@@ -57,8 +65,19 @@ pub fn run() -> anyhow::Result<()> {
         }
     };
     println!("{:<34}{:>8}{:>10}", "", "now", "limit");
-    for (folder, its) in &budget.crates {
-        let sources = Source::of_crate(&workspace().join(folder).join("src"))?;
+    for member in members()? {
+        let folder = &member.folder;
+        let its = budget.crates.get(folder);
+        let its = its.with_context(|| format!("{folder} is not in house.toml"))?;
+        for crate_ in beyond(&member, &its.uses) {
+            strays.push(format!("{folder} must not use {crate_}"));
+        }
+        let folder_of_sources = workspace().join(folder).join("src");
+        if !folder_of_sources.is_dir() {
+            // The tests: no lines of the product, but the rule of the layers.
+            continue;
+        }
+        let sources = Source::of_crate(&folder_of_sources)?;
         let lines = sources.iter().map(|it| it.lines).sum();
         limit(&format!("lines of {folder}"), lines, its.lines);
         let circles = cycles(&sources);
@@ -92,9 +111,10 @@ pub fn run() -> anyhow::Result<()> {
     for (name, files) in names.iter().take(SHOWN) {
         println!("{:>6}  {name}", files.len());
     }
+    broken.extend(strays);
     ensure!(
         broken.is_empty(),
-        "above house.toml:\n{}",
+        "against house.toml:\n{}",
         broken.join("\n")
     );
     Ok(())

@@ -25,11 +25,11 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::config_block::{self, Block, BlockError, Settings};
 use touchdown_core::controller::{Fault, Faults, Outputs};
-use touchdown_core::error::ConfigError;
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::Lookout;
 use touchdown_core::link::Server;
 use touchdown_core::sample::Sample;
+use touchdown_rotor::error::ConfigError;
 
 use self::chip::{Chip, Cycles, Spi};
 use self::clocks::{APB2_HZ, CORE_HZ};

@@ -1,7 +1,5 @@
 //! The files of the desktop that the command line names, and those of replay and answer.
 
-use core::ffi::CStr;
-
 use semihosting::experimental::env;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
@@ -10,14 +8,13 @@ use touchdown_core::sample::Sample;
 use touchdown_core::wire::{self, Record};
 
 use super::Failure;
+use super::name::Name;
 use super::nor::NorFile;
 use super::settings::SettingsFile;
 use crate::board::BLOCK_SAMPLES;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
-const NAME_BYTES: usize = 256;
-
 /// What the command line names.
 pub struct Files {
     /// First.
@@ -47,25 +44,6 @@ impl Files {
             log: log.map(|name| NorFile::open(name.get())).transpose()?,
             settings: settings.map(SettingsFile),
         })
-    }
-}
-
-/// A file's name, with the zero that ends it.
-pub struct Name([u8; NAME_BYTES]);
-
-impl Name {
-    fn new(name: &str) -> Option<Self> {
-        let mut bytes = [0; NAME_BYTES];
-        let (bytes_of_name, [_, ..]) = bytes.split_at_mut_checked(name.len())? else {
-            return None;
-        };
-        bytes_of_name.copy_from_slice(name.as_bytes());
-        Some(Self(bytes))
-    }
-
-    /// The name.
-    pub fn get(&self) -> &CStr {
-        CStr::from_bytes_until_nul(&self.0).unwrap_or_default()
     }
 }
 

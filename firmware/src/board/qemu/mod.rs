@@ -3,6 +3,7 @@
 
 mod counter;
 mod files;
+mod name;
 mod nor;
 mod remote;
 mod settings;

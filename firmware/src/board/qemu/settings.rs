@@ -5,7 +5,7 @@ use semihosting::io::{Read, Write};
 use touchdown_core::config_block::{self, BLOCK_BYTES, Block, BlockError, Settings};
 use touchdown_core::link::Refusal;
 
-use super::files::Name;
+use super::name::Name;
 
 /// The file; where it is not there, nothing is stored.
 pub struct SettingsFile(pub Name);

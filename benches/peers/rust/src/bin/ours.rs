@@ -8,13 +8,13 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 use serde_json::{Value, json};
-use touchdown_core::error::ConfigError;
-use touchdown_core::model::{Change, Happening, Kinematics, Precision, Stepper};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Change, Happening, Kinematics, Precision, Stepper};
 use touchdown_peers::{Sample, answer, contact, median_time, write_samples};
-use touchdown_sim::history;
-use touchdown_sim::model_run::{Subject, Use, with_model};
-use touchdown_sim::reference::Reference;
-use touchdown_sim::scene::Scene;
+use touchdown_base::history;
+use touchdown_run::model::{Subject, Use, with_model};
+use touchdown_truth::reference::Reference;
+use touchdown_scene::Scene;
 
 fn scene(variant: &str, model: &str, duration: f64) -> Scene {
     let (friction, restitution) = contact(variant);

@@ -1,0 +1,187 @@
+//! How many instructions a tick and its parts take: an image for the emulator that writes a table of
+//! counts to the file `tick.csv` of the desktop.
+//!
+//! Each stream is played twice: once for the whole ticks, once part by part. The parts add up to a
+//! little more or less than the whole, which the compiler optimises as one.
+
+mod scenes;
+
+use core::hint::black_box;
+use core::mem::MaybeUninit;
+
+use touchdown_core::config_block::{self, Block, Settings, Wiring};
+use touchdown_core::controller::{Faults, Outputs};
+use touchdown_core::event::{Notice, Notices};
+
+use self::scenes::{SCENES, Scene};
+use touchdown_firmware::board::qemu::Counter;
+
+use crate::table::{Table, Tally};
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::Board;
+use touchdown_firmware::memory;
+use touchdown_firmware::recorder::{self, Identity, Recorder};
+
+/// All but the forecast, which is below the tick, are parts of it.
+const PARTS: [&str; 6] = [
+    "sensing and health",
+    "detector",
+    "forecast slice",
+    "severity",
+    "recorder",
+    "outputs",
+];
+
+/// Places of the samples and of the application, for a static: the stack has no room for them.
+pub struct Memory {
+    samples: recorder::Memory,
+    app: MaybeUninit<App>,
+}
+
+impl Memory {
+    /// Nothing in its place yet.
+    pub const EMPTY: Self = Self {
+        samples: recorder::Memory::EMPTY,
+        app: MaybeUninit::uninit(),
+    };
+}
+
+/// Counts everything and exits the emulator.
+pub fn main(memory: &'static mut Memory) -> ! {
+    let counter = Counter::take();
+    let mut table = Table::create(c"tick.csv");
+    table.line(format_args!("compiler,{}", env!("COMPILER")));
+    for scene in SCENES.iter().filter(|it| is_played(it.name)) {
+        let name = scene.name;
+        let mut write = |part, tally: Tally| {
+            let Tally { calls, sum, worst } = tally;
+            table.line(format_args!("{part}|{name}|{calls}|{sum}|{worst}"));
+        };
+        let (whole, notices) = whole(&counter, scene, memory);
+        write("tick", whole);
+        let parts = parts(&counter, scene, memory);
+        PARTS
+            .into_iter()
+            .zip(parts)
+            .for_each(|(part, tally)| write(part, tally));
+        table.line(format_args!("notices|{name}|{notices}"));
+    }
+    semihosting::process::exit(0)
+}
+
+// Frames of their own, here and below: the recorders of both do not fit the stack at once.
+#[inline(never)]
+fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
+    let mut board = board(scene);
+    let mut notices = Notices::new();
+    let mut tally = Tally::default();
+    let mut told = 0;
+    scene.play(|sample| {
+        let sample = black_box(sample);
+        let ((), instructions) = counter.count(|| {
+            app.tick(&mut board, sample, 0, &mut notices);
+            recorder.set_severity(app.state().severity());
+            recorder.set_phase(app.state().phase());
+            recorder.take(sample, &notices);
+            recorder.keep(app.state());
+        });
+        told += notices.len() as u32;
+        tally.add(instructions);
+        // What the loop below the tick does.
+        recorder.fetch();
+    });
+    (tally, told)
+}
+
+#[inline(never)]
+fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
+    let Memory { samples, app } = memory;
+    let app = application(scene, app);
+    let mut recorder = recorder(scene, samples);
+    let mut board = board(scene);
+    let mut lookout = memory::lookout(&scene.config()).expect("a valid configuration");
+    let mut notices = Notices::new();
+    let mut tallies = [Tally::default(); PARTS.len()];
+    scene.play(|sample| {
+        let sample = black_box(sample);
+        let (monitor, state) = app.monitor();
+        let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
+        let seen = black_box(&seen);
+        let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
+        let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
+        let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
+        let ((), recording) = counter.count(|| {
+            recorder.set_severity(app.state().severity());
+            recorder.set_phase(app.state().phase());
+            recorder.take(sample, &notices);
+        });
+        let (outlook, forecast) = counter.count(|| lookout.work(&app.sight(lookout.asks())));
+        if let Some(outlook) = outlook {
+            recorder.hear(&outlook);
+        }
+        let counts = [sensing, detector, forecast, severity, recording, outputs];
+        tallies
+            .iter_mut()
+            .zip(counts)
+            .for_each(|(tally, it)| tally.add(it));
+        recorder.fetch();
+    });
+    tallies
+}
+
+fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut App {
+    memory::application(place, &scene.config(), Faults::NONE).expect("a valid configuration")
+}
+
+#[inline(never)]
+fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m> {
+    Recorder::new(samples, &scene.config(), Identity::new(&[], 0))
+}
+
+#[inline(never)]
+fn board(scene: &Scene) -> Idle {
+    Idle(config_block::encode(&Settings {
+        monitor: scene.config(),
+        wiring: Wiring::default(),
+    }))
+}
+
+/// A board whose registers take nothing.
+struct Idle(Block);
+
+impl Board for Idle {
+    fn report(&mut self, notice: &Notice) {
+        black_box(notice);
+    }
+
+    fn drive(&mut self, outputs: Outputs) {
+        #[cfg(feature = "plants")]
+        plant(outputs);
+        black_box(outputs);
+    }
+
+    fn config(&self) -> &[u8] {
+        &self.0
+    }
+
+    fn feed(&mut self) {}
+}
+
+/// All streams; with plants the one that typical ticks are taken from is enough.
+fn is_played(name: &str) -> bool {
+    !cfg!(feature = "plants") || name == "orbit, speed known"
+}
+
+/// A path that is slow only where nothing may run: here the self-test. For the tests of the check.
+#[cfg(feature = "plants")]
+#[inline(never)]
+fn plant(outputs: Outputs) {
+    if outputs == Outputs::SAFE {
+        (0..20_000).for_each(|it| {
+            black_box(it);
+        });
+    }
+}

@@ -1,0 +1,272 @@
+//! What the counted ticks see: a rotor that floats and falls, by the rigid rung, with runout and noise.
+
+use core::f32::consts::TAU;
+
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use touchdown_core::sensing::PLANES;
+use touchdown_core::tachometer::TachometersConfig;
+use touchdown_rotor::real::{Poly32, Real};
+use touchdown_rotor::{Rigid, RigidConfig, Start, Stepper};
+
+use touchdown_firmware::board::default_config;
+
+/// Sample at which no plane is released.
+const NEVER: u32 = u32::MAX;
+/// Standard deviation of the noise, m.
+const NOISE: f32 = 1e-6;
+
+/// A stream of samples.
+#[derive(Clone, Copy)]
+pub(super) struct Scene {
+    pub(super) name: &'static str,
+    samples: u32,
+    /// Amplitudes of orbit and runout of the third order, m.
+    orbit: f32,
+    runout: f32,
+    speed_known: bool,
+    levitation_known: bool,
+    /// Sample at which each plane is released, and its velocity sideways, m/s.
+    release: [u32; PLANES],
+    kick: [f64; PLANES],
+    friction: f64,
+    /// An inner ring that is watched.
+    ring: bool,
+    /// Instants of each bank, where not the default.
+    instants: Option<u8>,
+    /// Sensors that fail.
+    fail: fn(u32, &mut Sample),
+}
+
+const FLOATING: Scene = Scene {
+    name: "levitated",
+    samples: 10_000,
+    orbit: 0.0,
+    runout: 0.0,
+    speed_known: false,
+    levitation_known: false,
+    release: [NEVER; PLANES],
+    kick: [0.0; PLANES],
+    friction: 0.1,
+    ring: false,
+    instants: None,
+    fail: |_, _| {},
+};
+const TURNING: Scene = Scene {
+    name: "orbit, speed known",
+    orbit: 20e-6,
+    runout: 5e-6,
+    speed_known: true,
+    ..FLOATING
+};
+const DROP: Scene = Scene {
+    name: "drop",
+    samples: 24_000,
+    release: [6_000; PLANES],
+    ..TURNING
+};
+
+/// The streams, those that typical ticks are taken from first.
+pub(super) const SCENES: [Scene; 14] = [
+    FLOATING,
+    TURNING,
+    Scene {
+        name: "orbit, speed unknown",
+        speed_known: false,
+        ..TURNING
+    },
+    DROP,
+    Scene {
+        name: "drop without orbit, speed unknown",
+        speed_known: false,
+        orbit: 0.0,
+        ..DROP
+    },
+    Scene {
+        name: "drop, 8 instants",
+        instants: Some(8),
+        ..DROP
+    },
+    Scene {
+        name: "drop into whirl",
+        friction: 0.4,
+        kick: [-0.05; PLANES],
+        ..DROP
+    },
+    Scene {
+        name: "commanded drop",
+        levitation_known: true,
+        ..DROP
+    },
+    Scene {
+        name: "at the wall from the start",
+        release: [0; PLANES],
+        ..DROP
+    },
+    Scene {
+        name: "ball bearing",
+        ring: true,
+        ..DROP
+    },
+    Scene {
+        name: "ends apart",
+        release: [6_000, 6_060],
+        kick: [0.03, -0.03],
+        ..DROP
+    },
+    Scene {
+        name: "ends apart, speed unknown",
+        release: [6_000, 6_200],
+        kick: [0.05, -0.01],
+        speed_known: false,
+        friction: 0.3,
+        ..DROP
+    },
+    Scene {
+        name: "sensors fail while floating",
+        samples: 14_000,
+        fail: |at, sample| match at {
+            4_000..6_000 => sample.counts[0] = 2_048,
+            7_000..7_500 => sample.valid &= 0b1101,
+            8_000..9_000 => sample.counts[2] = 4_095,
+            10_000..11_000 if at % 50 < 2 => sample.counts[3] = 3_500,
+            12_000..13_000 => sample.counts[1] = sample.counts[1].wrapping_add((at / 8) as u16),
+            _ => {}
+        },
+        ..TURNING
+    },
+    Scene {
+        name: "sensors fail in a drop",
+        fail: |at, sample| match at {
+            5_900.. if at % 700 < 30 => sample.valid &= 0b1011,
+            8_000.. => sample.counts[0] = 2_048,
+            _ => {}
+        },
+        ..DROP
+    },
+];
+
+impl Scene {
+    /// The configuration of the monitor.
+    pub(super) fn config(&self) -> MonitorConfig {
+        MonitorConfig {
+            tachometers: self.ring.then_some(TachometersConfig {
+                marks: [Some(12), None],
+                cage_ratio: 0.4,
+                bore_radius: 24e-3,
+                edge_error: 0.01,
+                window: 0.005,
+            }),
+            ..self.of_instants()
+        }
+    }
+
+    fn of_instants(&self) -> MonitorConfig {
+        let mut config = default_config();
+        if let Some(instants) = self.instants {
+            config.detector.tuning.release_instants = instants;
+            config.detector.tuning.impact_instants = instants;
+        }
+        config
+    }
+
+    /// Calls `take` with every sample.
+    pub(super) fn play(&self, mut take: impl FnMut(&Sample)) {
+        let machine = default_config().detector.machine;
+        let rate = default_config().detector.sample_rate;
+        let model = self.rotor();
+        let scales = *model.scales();
+        let spin = f64::from(machine.spin) / scales.spin;
+        let fallen: Rigid<Poly32> = model.rounded();
+        let mut planes = [const { None }; PLANES];
+        let mut noise = Noise(1);
+        for at in 0..self.samples {
+            let angle = machine.spin / rate * at as f32 % TAU;
+            let (sin, cos) = sin_cos(angle);
+            let place = [self.orbit * cos, self.orbit * sin];
+            let (sin, cos) = sin_cos(3.0 * angle);
+            let runout = [self.runout * cos, self.runout * sin];
+            let mut counts = [0; CHANNELS];
+            for (plane, pair) in counts.chunks_exact_mut(2).enumerate() {
+                if at == self.release[plane] {
+                    let along = [-place[1], place[0]].map(|x| f64::from(x * machine.spin));
+                    let start = Start::Free {
+                        position: place.map(|x| f64::from(x) / scales.length),
+                        velocity: [
+                            (along[0] + self.kick[plane]) / scales.speed,
+                            along[1] / scales.speed,
+                        ],
+                    };
+                    let start = start.rounded();
+                    let spin = Poly32::lit(spin);
+                    planes[plane] = Stepper::start(&fallen, &start, spin, |_| ()).ok();
+                }
+                let seen = match &mut planes[plane] {
+                    Some(state) => {
+                        Stepper::step(&fallen, state, |_| ());
+                        let unit = scales.length;
+                        let position = Stepper::kinematics(&fallen, state).position;
+                        position.map(|x| (x.to_f64() * unit) as f32)
+                    }
+                    None => place,
+                };
+                for ((count, seen), runout) in pair.iter_mut().zip(seen).zip(runout) {
+                    let shown = seen + runout + NOISE * noise.next();
+                    *count = (2_048.5 + shown * (4_096.0 / 2_000e-6)) as u16;
+                }
+            }
+            let turned = (0.05 * at as f32) as u16;
+            let edges = Edges {
+                count: turned / 4,
+                age: (turned % 4) as u8 * 64,
+            };
+            let mut sample = Sample {
+                counts,
+                valid: 0b1111,
+                spin: self.speed_known.then_some(machine.spin),
+                levitated: self.levitation_known.then_some(at < self.release[0]),
+                edges: [self.ring.then_some(edges), None],
+            };
+            const { assert!(TACHOMETERS == 2) };
+            (self.fail)(at, &mut sample);
+            take(&sample);
+        }
+    }
+
+    fn rotor(&self) -> Rigid<f64> {
+        let machine = default_config().detector.machine;
+        let radius = f64::from(machine.rotor_radius);
+        let mass = f64::from(machine.mass);
+        Rigid::try_new(&RigidConfig {
+            mass,
+            radius,
+            polar_inertia: f64::from(machine.inertia_ratio) * mass * radius * radius,
+            clearance: f64::from(machine.clearance),
+            friction: self.friction,
+            restitution: f64::from(machine.restitution),
+            gravity: f64::from(machine.gravity),
+            speed: 1.0,
+            step: 1.0 / f64::from(default_config().detector.sample_rate),
+        })
+        .expect("a valid rotor")
+    }
+}
+
+fn sin_cos(angle: f32) -> (f32, f32) {
+    let (sin, cos) = Poly32::lit(f64::from(angle)).sin_cos();
+    (sin.to_f64() as f32, cos.to_f64() as f32)
+}
+
+/// Sum of four even numbers (linear congruence), variance 1.
+struct Noise(u32);
+
+impl Noise {
+    fn next(&mut self) -> f32 {
+        let even = || {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (self.0 >> 8) as f32 / 16_777_216.0 - 0.5
+        };
+        let sum: f32 = core::iter::repeat_with(even).take(4).sum();
+        1.732_050_8 * sum
+    }
+}

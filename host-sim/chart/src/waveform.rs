@@ -1,0 +1,80 @@
+//! Recorded displacement of a channel against time.
+
+use maud::{Markup, html};
+
+use crate::plot::{Axis, Chart};
+
+const HEIGHT: f64 = 150.0;
+const MICRO: f64 = 1e6;
+/// Strokes of a kind that a chart gets.
+const STROKES: usize = 400;
+const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
+
+/// Takes the points of a curve, s and m.
+pub type Line<'a> = &'a mut dyn FnMut(f64, f64);
+
+/// A curve: its class, and what hands out its points.
+pub type Curve<'a> = (&'static str, &'a dyn Fn(Line<'_>));
+
+/// What is drawn of a channel.
+pub struct Waveform<'a> {
+    /// 0 to 3.
+    pub channel: usize,
+    /// First and last moment, s.
+    pub span: [f64; 2],
+    /// Name of the time axis, in s.
+    pub time: &'static str,
+    /// For who does not see it.
+    pub description: &'static str,
+    /// m.
+    pub clearance: f64,
+    /// Later ones lie over earlier ones.
+    pub curves: &'a [Curve<'a>],
+    /// Events at the top, and impacts at the bottom, s.
+    pub strokes: [&'a [f64]; 2],
+}
+
+/// Draws it, with dashed lines at the clearance.
+pub fn waveform(shown: &Waveform<'_>) -> Markup {
+    let name = CHANNELS[shown.channel];
+    let mut farthest = shown.clearance;
+    for (_, points) in shown.curves {
+        // A missing value is not farther.
+        points(&mut |_, place| farthest = farthest.max(place.abs()));
+    }
+    let [from, to] = shown.span;
+    let x = Axis::new(from, to, shown.time, 6.0);
+    let reach = 1.12 * farthest * MICRO;
+    let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
+    let chart = Chart {
+        title: name,
+        description: shown.description,
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let mut wall = chart.pen();
+    for side in [-1.0, 1.0] {
+        wall.lift();
+        wall.line_to(x.lo, side * shown.clearance * MICRO);
+        wall.line_to(x.hi, side * shown.clearance * MICRO);
+    }
+    let curve = |(class, points): &Curve<'_>| {
+        let mut pen = chart.pen();
+        points(&mut |time, place| pen.line_to(time, place * MICRO));
+        pen.finish(class)
+    };
+    let curves = html! {
+        (wall.finish("wall"))
+        @for it in shown.curves { (curve(it)) }
+    };
+    let strokes = shown.strokes.map(|times| {
+        let seen = times.iter().filter(|it| x.shows(**it)).take(STROKES);
+        seen.map(|it| x.percent(*it)).collect::<Vec<_>>()
+    });
+    let front = html! {
+        @for at in &strokes[0] { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
+        @for at in &strokes[1] { line.hit x1=(at) x2=(at) y1=(HEIGHT - 9.0) y2=(HEIGHT) {} }
+    };
+    chart.draw(&html! {}, &curves, &front)
+}

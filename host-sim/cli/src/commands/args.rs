@@ -1,0 +1,652 @@
+//! Options and arguments.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use touchdown_core::detect::Tuning;
+
+use super::help;
+use touchdown_base::failure::Failure;
+use touchdown_files::recording::{Mapping, Reading};
+use touchdown_files::stream::is_rate;
+use touchdown_lab::paper::DROPS;
+use touchdown_lab::score::{GROUPS, Plan};
+use touchdown_run::emulator::Emulator;
+use touchdown_run::target::Target;
+use touchdown_sweep::Part;
+
+const EXAMPLES: &str = "\
+Examples:
+  touchdown                             drop the rig of the source paper, write a report
+  touchdown drop backward-whirl         another built-in scene
+  touchdown drop my.toml --json -       all numbers, to standard output
+  touchdown drop my.toml --stream s.csv
+                                        what the sensors would have recorded
+  touchdown replay s.csv --scene my.toml
+                                        a recording through the same detector
+  touchdown compare a.csv b.csv --scene my.toml
+                                        two recordings: what differs, and by how much
+  touchdown trade my.toml               what each way of computing costs, and how wrong it is
+  touchdown paper                       the source paper's numbers: printed, right, ours
+  touchdown scene explain my.toml       what is modelled and what is left out
+  touchdown limits                      how the model holds at its extremes
+  touchdown score --quick               latency, misses and false alarms of the detector
+  touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
+  touchdown rig --keep rig              the firmware in an emulator, with its link on a socket
+  touchdown log list flash.bin          the drops that the firmware recorded
+  touchdown live /dev/ttyACM0           what the controller sees and does now
+  touchdown config /dev/ttyACM0         what it was configured with; --set changes it
+  touchdown force r.csv --calibration c.csv
+                                        the contact force from measured accelerations
+
+Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
+
+const PAPER: &str = "\
+printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
+         speed rotors in retainer bearings\"; - where they give no number
+right:   from a closed form, or where there is none from the independent reference
+ours:    measured on runs of the model under test; - where no run can tell
+
+A note on each row says where its numbers come from and how close ours has to be; it is
+in the page and the JSON. Whirl is counted over random drops: the paper concludes that a
+large gap avoids it, which its own equations do not bear out.
+
+Examples:
+  touchdown paper --drops 100         with fewer random drops
+  touchdown paper --json paper.json
+
+Exit status: 0 ours is right in every row, whatever is printed; 1 it is not.";
+
+const FORCE: &str = "\
+The recording, one row a sample at a constant rate, 5 kHz to 1 MHz:
+  time_s,ax_m_s2[,ay_m_s2]            accelerometers, x right, y up
+
+The calibration, at the same rate: hits of an instrumented hammer along one axis, as
+many as there are. Each is recorded until its motion has died out; a new number in
+`hit` begins the next. Without `hit` all is one hit:
+  [hit,]time_s,force_n,ax_m_s2        or ay_m_s2 for hits along y
+One calibration stands for both axes; with two, each axis has its own.
+
+Both, and each hit, begin with 6 ms or more in which nothing happens: there zero and
+noise are measured.
+
+What comes out is the force on the retainer through both its contacts and its flights,
+0 in the flights. A steady force, as of a rotor that lies still, moves no accelerometer
+and is not seen.
+
+Examples, to see it work:
+  touchdown force --example try
+  touchdown force try/recording.csv --calibration try/calibration.csv --report try/force.html
+
+try/truth.json has what is right. docs/use/force.md tells how it is done and how exact it is.
+Exit status: 0 done, contacts or none; 2 bad usage or input.";
+
+const SWEEP: &str = "\
+A plan:
+  scene = \"rig\"                  a built-in scene, or a file beside the plan
+  drops = 1000                   a point of the grid
+  seed = 1
+  [start]                        random starts; without it the scene's
+  within = 0.5                   of the clearance
+  speed_mm_s = 20                up to, in any direction
+  [[parameter]]                  an axis of the grid
+  key = \"retainer.friction\"
+  from = 0.05
+  to = 0.4
+  steps = 8                      or values = [...]; log = true for equal factors
+  [[parameter]]                  drawn anew for each drop
+  key = \"retainer.restitution\"
+  uniform = [0.3, 0.8]           or log_uniform = [...], normal = [mean, deviation]
+
+The folder gets drops.csv (one row a drop), points.csv, sweep.json and sweep.html, made from
+part-K-of-N.csv. A sweep that was killed goes on after the last whole part when it is run
+again. The same plan gives the same bytes on any number of cores and in any number of parts.
+
+Examples:
+  touchdown sweep plan.toml
+  touchdown sweep plan.toml --out run --shard 1/2
+  touchdown sweep plan.toml --out run --shard 2/2
+  touchdown sweep merge run
+
+As a Slurm job array: benches/slurm/sweep.sbatch.
+
+Exit status: 0 done; 2 bad usage or input.";
+
+/// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
+/// runs the detector over it.
+///
+/// Without a command: drops the rig of the source paper, writes touchdown-report.html to the
+/// current folder and prints the timeline.
+#[derive(Debug, Parser)]
+#[command(name = "touchdown", version, after_help = EXAMPLES)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Drop a rotor: simulate, sense, detect
+    #[command(after_help = help::DROP)]
+    Drop(DropArgs),
+    /// Run the detector over a recording: CSV of any style, or COMTRADE
+    #[command(after_help = help::REPLAY)]
+    Replay(ReplayArgs),
+    /// Compare two recordings: events, speeds, regime, waveforms
+    #[command(after_help = help::COMPARE)]
+    Compare(CompareArgs),
+    /// Measure accuracy against cost: every rung, scheme, precision, math and step
+    #[command(after_help = help::TRADE)]
+    Trade(TradeArgs),
+    /// Check every number of the source paper: as printed, as right, as ours
+    #[command(after_help = PAPER)]
+    Paper(PaperArgs),
+    /// Drop a rotor thousands of times over parameters: how probable whirl is, when, and how hard
+    #[command(after_help = SWEEP)]
+    Sweep(SweepArgs),
+    /// Run the firmware's image over a machine that falls when told, with its link on a socket
+    #[cfg(unix)]
+    #[command(after_help = help::RIG)]
+    Rig(RigArgs),
+    /// List, show, export or verify the drops that the firmware recorded
+    #[command(after_help = help::LOG)]
+    Log {
+        #[command(subcommand)]
+        what: LogCommand,
+    },
+    /// Watch a controller over its serial link
+    #[command(after_help = help::LIVE)]
+    Live(LiveArgs),
+    /// Show a controller's configuration, or set another one over its serial link
+    #[command(after_help = help::CONFIG)]
+    Config(ConfigArgs),
+    /// Recover the contact force from accelerations, with a device calibrated by known hits
+    #[command(after_help = FORCE)]
+    Force(ForceArgs),
+    /// Run the model at its extremes: what was measured, the limit, and whether it holds
+    ///
+    /// Steps of 1 us to 1 ms; restitution, friction, gap, spin and gravity at their ends; starts on,
+    /// along and into the wall; the cases between two motions; a whole bounce series or an endless
+    /// growth of whirl in one step; 10^9 ticks; NaN, infinity and the smallest numbers. Each in f64 and
+    /// in f32.
+    ///
+    /// Every measure is held against the independent reference, a closed form or a law of physics;
+    /// "used" is how much of the limit it takes. rho0 is the gap, T = sqrt(rho0/g), V = sqrt(g rho0);
+    /// the target of an impact is 1e-14 + 20 A 2.2e-16 (f64) and 5e-6 + 50 A 6e-8 (f32) in these units,
+    /// A being the growth of a change at the start. Where the rotor spins, the limit of the energy
+    /// contains the last digit of its spin.
+    ///
+    /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
+    #[command(after_help = help::LIMITS)]
+    Limits(LimitsArgs),
+    /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
+    ///
+    /// Truth is the independent reference, and what was put in; bounds are closed forms at one false
+    /// alarm in 10^9 samples. docs/know/score.md says what each group does. The same seeds give the same
+    /// numbers on any number of cores.
+    ///
+    /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
+    #[command(after_help = help::SCORE)]
+    Score(ScoreArgs),
+    /// Look at scenes
+    #[command(after_help = help::SCENE)]
+    Scene {
+        #[command(subcommand)]
+        what: SceneCommand,
+    },
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+}
+
+#[derive(Args, Clone, Debug, Default)]
+pub(super) struct DropArgs {
+    /// Scene file, or name of a built-in scene (`touchdown scene list`)
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// Impacts, phases, regime and detected events as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Report as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    /// What the sensors read, as CSV that `replay` takes
+    #[arg(long, value_name = "FILE")]
+    pub stream: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+pub(super) struct RigArgs {
+    /// Scene file, or name of a built-in scene: the machine and its drop
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// Port of the link's socket; any that is free for 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub port: u16,
+    /// Folder where the drop log's flash, `log`, and the stored configuration, `settings`, stay
+    #[arg(long, value_name = "FOLDER")]
+    pub keep: Option<String>,
+    /// Part of the link's bytes that are flipped, lost or invented
+    #[arg(long, value_name = "PART", default_value_t = 0.0, value_parser = share)]
+    pub noise: f64,
+    /// As fast as the emulator can, not at the pace of the samples
+    #[arg(long)]
+    pub fast: bool,
+    /// Firmware image, in place of the one that `cargo xtask firmware` builds
+    #[arg(long, value_name = "FILE")]
+    pub image: Option<PathBuf>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ReplayArgs {
+    /// Recording: a stream, that is CSV with the header
+    /// time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated], one row a sample, constant rate; for a
+    /// ball bearing also [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]. With
+    /// --columns any other text. Or COMTRADE: .cfg with .dat, or .cff
+    #[arg(value_name = "FILE")]
+    pub stream: String,
+    /// Scene with the rotor, retainer, gravity, sensors and detector
+    #[arg(long)]
+    pub scene: String,
+    /// Detected events as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Report as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+/// How a recording is read.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ReadingArgs {
+    /// Which column is what, and in which unit: a TOML file
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns: Option<PathBuf>,
+    /// Make samples of another rate of it, Hz: linear between neighbours, none across gaps
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    resample: Option<f64>,
+}
+
+impl ReadingArgs {
+    /// With the mapping read.
+    pub fn load(&self) -> Result<Reading, Failure> {
+        let mapping = self.columns.as_deref().map(Mapping::load);
+        Ok(Reading {
+            mapping: mapping.transpose()?,
+            resample: self.resample,
+        })
+    }
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct CompareArgs {
+    /// A recording, as for `replay`
+    #[arg(value_name = "A")]
+    pub first: String,
+    /// The recording to hold against it
+    #[arg(value_name = "B")]
+    pub second: String,
+    /// Scene with the rotor, retainer, gravity, sensors and detector
+    #[arg(long)]
+    pub scene: String,
+    /// Most that an onset may differ, ms
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = not_negative)]
+    pub within_ms: f64,
+    /// Most that the speed of an impact may differ, % of the faster
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = not_negative)]
+    pub within_percent: f64,
+    /// Events side by side as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Both as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// The same as --columns for B, where it is not written like A
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns_b: Option<PathBuf>,
+}
+
+impl CompareArgs {
+    /// How each is read.
+    pub fn readings(&self) -> Result<[Reading; 2], Failure> {
+        let first = self.reading.load()?;
+        let mut second = first.clone();
+        if let Some(path) = &self.columns_b {
+            second.mapping = Some(Mapping::load(path)?);
+        }
+        Ok([first, second])
+    }
+}
+
+/// A tolerance.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|it: &f64| it.is_finite() && *it >= 0.0);
+    number.ok_or_else(|| "a number, 0 or more".to_owned())
+}
+
+/// A sample rate.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| is_rate(*rate));
+    rate.ok_or_else(|| "100 to 200000 Hz".to_owned())
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct TradeArgs {
+    /// Scene file, or name of a built-in scene (`touchdown scene list`)
+    #[arg(default_value = "rig")]
+    pub scene: String,
+    /// The whole table as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Table and drawing as one HTML page
+    #[arg(long, value_name = "FILE", default_value = "touchdown-trade.html")]
+    pub report: String,
+    /// The drawing alone
+    #[arg(long, value_name = "FILE", default_value = "touchdown-trade.svg")]
+    pub svg: String,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct PaperArgs {
+    /// All rows with their notes, and the counts of the random drops, as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Numbers and figures as one HTML page
+    #[arg(long, value_name = "FILE", default_value = "touchdown-paper.html")]
+    pub report: String,
+    /// Random drops of each gap, friction and restitution
+    #[arg(long, value_name = "N", default_value_t = DROPS,
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub drops: u32,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct LimitsArgs {
+    /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ScoreArgs {
+    /// Drops of each case
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    seeds: u64,
+    /// Seed of the first drop; the others count up
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    first_seed: u64,
+    /// Only these groups, by name, with commas between
+    #[arg(long, value_name = "GROUP", value_delimiter = ',',
+          value_parser = PossibleValuesParser::new(GROUPS.iter().map(|group| group.name)))]
+    only: Vec<String>,
+    /// Levitation of each case, s
+    #[arg(long, default_value_t = 60.0, conflicts_with = "hours")]
+    seconds: f64,
+    /// The same in hours, for the long run
+    #[arg(long)]
+    hours: Option<f64>,
+    /// A look in seconds: 2 drops and 2 s of each case
+    #[arg(long, conflicts_with_all = ["seeds", "seconds", "hours"])]
+    pub quick: bool,
+    /// Each row with its case, values, target and verdict, by group, as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Rows and pictures as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+impl ScoreArgs {
+    /// What is asked for.
+    pub fn plan(&self) -> Result<Plan, Failure> {
+        let seconds = self.hours.map_or(self.seconds, |hours| 3600.0 * hours);
+        if !(1.0..=1e7).contains(&seconds) {
+            let rule = format!("levitation of 1 to 10 000 000 s a case, not {seconds}");
+            return Err(Failure::Usage(rule));
+        }
+        let wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|it| it == name);
+        let names = GROUPS.iter().map(|group| group.name);
+        let quick = self.quick.then_some((2, 2.0));
+        let (seeds, seconds) = quick.unwrap_or((self.seeds, seconds));
+        Ok(Plan {
+            groups: names.filter(|name| wanted(name)).collect(),
+            seeds,
+            first_seed: self.first_seed,
+            seconds,
+            tuning: Tuning::default(),
+        })
+    }
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct SweepArgs {
+    #[command(subcommand)]
+    pub command: Option<SweepCommand>,
+    /// The plan: a scene, and which of its keys take which values
+    #[arg(value_name = "PLAN", required = true)]
+    pub plan: Option<String>,
+    /// Folder for parts and results; by default the plan's name with -sweep
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<String>,
+    /// Run part K of N, as a job of an array; the parts may share a folder
+    #[arg(long, value_name = "K/N", value_parser = part)]
+    pub shard: Option<Part>,
+    /// Points with probabilities and intervals as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(super) enum SweepCommand {
+    /// Put the parts of a sweep together; the result is that of one run, to the byte
+    #[command(after_help = help::MERGE)]
+    Merge(MergeArgs),
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct MergeArgs {
+    /// Folders with parts; the first takes the results
+    #[arg(value_name = "FOLDER", required = true)]
+    pub folders: Vec<String>,
+    /// Points with probabilities and intervals as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct LiveArgs {
+    /// Serial device, tcp:HOST:PORT or unix:PATH
+    pub port: String,
+    /// All that is heard as lines of JSON, added to the end of FILE; `-`, or no FILE, is standard
+    /// output, in place of the view
+    #[arg(long, visible_alias = "record", value_name = "FILE", num_args = 0..=1,
+          default_missing_value = "-")]
+    pub json: Option<String>,
+    /// Stop after this time, s
+    #[arg(long, value_name = "S")]
+    pub seconds: Option<f64>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ConfigArgs {
+    /// Serial device, tcp:HOST:PORT or unix:PATH
+    pub port: String,
+    /// Set this configuration: a file as this command prints it. The controller restarts with it
+    #[arg(long, value_name = "FILE.toml")]
+    pub set: Option<String>,
+    /// The configuration in force, and what changed, as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(super) enum LogCommand {
+    /// Each episode with its state, trigger and severity, and the lifetime counters
+    #[command(after_help = help::LOG_LIST)]
+    List {
+        /// A dump of the log's flash, a file of one episode, or a controller's port
+        file: String,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+    /// One episode with its events
+    #[command(after_help = help::LOG_SHOW)]
+    Show {
+        /// A dump of the log's flash, a file of one episode, or a controller's port
+        file: String,
+        /// Its number; the newest without
+        number: Option<u32>,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+    /// One episode as a stream that `replay` reads, as COMTRADE or as JSON
+    #[command(after_help = help::LOG_EXPORT)]
+    Export {
+        /// A dump of the log's flash, a file of one episode, or a controller's port
+        file: String,
+        /// Its number; the newest without
+        number: Option<u32>,
+        /// What to write
+        #[arg(long, value_enum, default_value_t)]
+        format: ExportFormat,
+        /// Where to; `-` is standard output. COMTRADE takes the name with .cfg and .dat
+        #[arg(long, value_name = "FILE")]
+        out: String,
+    },
+    /// List, and fail where an episode is damaged; one that was cut off is not
+    #[command(after_help = help::LOG_VERIFY)]
+    Verify {
+        /// A dump of the log's flash, a file of one episode, or a controller's port
+        file: String,
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+}
+
+/// What `log export` writes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExportFormat {
+    /// A stream: time from the trigger, displacements
+    #[default]
+    Csv,
+    /// IEEE C37.111-1999, ASCII data
+    Comtrade,
+    /// Header, events, severity, ending
+    Json,
+}
+
+/// A number from 0 to 1.
+#[cfg(unix)]
+fn share(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|it| (0.0..=1.0).contains(it));
+    number.ok_or_else(|| "a number from 0 to 1".to_owned())
+}
+
+/// `K/N`.
+fn part(text: &str) -> Result<Part, String> {
+    let rule = || format!("K/N with 1 <= K <= N <= {}, as in 2/8", Part::MOST);
+    let (part, parts) = text.split_once('/').ok_or_else(rule)?;
+    let [part, parts] = [part, parts].map(|it| it.parse::<u64>().map_err(|_| rule()));
+    let part = Part {
+        part: part?,
+        parts: parts?,
+    };
+    if (1..=part.parts).contains(&part.part) && part.parts <= Part::MOST {
+        Ok(part)
+    } else {
+        Err(rule())
+    }
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ForceArgs {
+    /// Recorded accelerations: CSV with the header time_s,ax_m_s2[,ay_m_s2]
+    #[arg(required_unless_present = "example")]
+    pub recording: Option<String>,
+    /// Known hits: CSV with the header [hit,]time_s,force_n,ax_m_s2 (or ay_m_s2); once or twice
+    #[arg(long, value_name = "FILE", required_unless_present = "example")]
+    pub calibration: Vec<String>,
+    /// Pulses, band and rate as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Force, contacts and device as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    /// Write calibration.csv, recording.csv and truth.json to a folder: simulated, to try this on
+    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    pub example: Option<String>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Say what a scene models, what it leaves out, and the numbers that decide how it goes
+    #[command(after_help = help::EXPLAIN)]
+    Explain {
+        /// Scene file, or name of a built-in scene
+        scene: String,
+        /// The same as JSON, section by section; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+    /// List the built-in scenes
+    #[command(after_help = help::SCENES)]
+    List {
+        /// The same as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
+}
+
+#[derive(Args, Clone, Debug, Default)]
+pub(super) struct Place {
+    /// Where the detector runs
+    #[arg(long, value_enum, default_value_t)]
+    on: On,
+    /// Firmware image for `--on qemu`, in place of the one that `cargo xtask firmware` builds
+    #[arg(long, value_name = "FILE")]
+    image: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum On {
+    /// In this process
+    #[default]
+    Host,
+    /// The firmware image, in the emulator
+    Qemu,
+}
+
+impl Place {
+    pub fn target(&self) -> Result<Target, Failure> {
+        match (self.on, &self.image) {
+            (On::Host, None) => Ok(Target::Host),
+            (On::Host, Some(_)) => Err(Failure::Usage("--image needs --on qemu".to_owned())),
+            (On::Qemu, image) => Ok(Target::Qemu(Emulator::find(image.as_deref())?)),
+        }
+    }
+}

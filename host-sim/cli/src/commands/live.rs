@@ -1,0 +1,191 @@
+//! `touchdown live`.
+
+use std::fs::File;
+use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
+
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+#[cfg(unix)]
+use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+
+use super::args::LiveArgs;
+use crate::gate::Gate;
+use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, record};
+use touchdown_base::failure::Failure;
+use touchdown_base::failure::STDOUT;
+use touchdown_base::paint::Paint;
+use touchdown_files::link::Port;
+
+/// Between two pictures.
+const PICTURE: Duration = Duration::from_millis(50);
+/// Between two looks at the clock while nothing comes.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Watches a controller until `q`, the end of the time, or of who reads the lines.
+pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
+    if args.seconds.is_some_and(|it| it.is_nan() || it <= 0.0) {
+        return Err(Failure::Usage("--seconds must be above 0".to_owned()));
+    }
+    let port = Port::of(&args.port);
+    let file = args.json.as_deref().filter(|it| *it != STDOUT);
+    Gate::new().claims("--json", file).open()?;
+    let record = file.map(record::open).transpose()?;
+    let on_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
+    let lines = args.json.as_deref() == Some(STDOUT) || !on_terminal;
+    let mut session = Session {
+        watched: Watched::new(port.to_string()),
+        watcher: Watcher::start(port),
+        record: record.zip(file),
+        end: args.seconds.unwrap_or(f64::INFINITY),
+        heard: false,
+    };
+    if lines {
+        session.lines()?;
+    } else {
+        let view = View {
+            record: file.map(str::to_owned),
+            paint: Paint::wanted(),
+            ..View::default()
+        };
+        let fail = Failure::output("the terminal");
+        let stop = stop().map_err(&fail)?;
+        let mut terminal = ratatui::try_init().map_err(&fail)?;
+        let ended = session.show(&mut terminal, view, &stop);
+        ratatui::restore();
+        ended?;
+    }
+    if session.heard || session.watcher.now() < session.end {
+        return Ok(());
+    }
+    let why = match session.watched.link() {
+        Link::Down(_, why) => why,
+        Link::New | Link::Up(_) => "no answer in that time",
+    };
+    let port = session.watched.port();
+    Err(Failure::Target(format!("{port}: {why}")))
+}
+
+/// True once the process is to end: killed in between, it would leave the terminal raw.
+fn stop() -> io::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    for signal in [SIGTERM, SIGHUP, SIGINT, SIGQUIT] {
+        signal_hook::flag::register(signal, stop.clone())?;
+    }
+    Ok(stop)
+}
+
+struct Session<'a> {
+    watched: Watched,
+    watcher: Watcher,
+    record: Option<(File, &'a str)>,
+    /// s.
+    end: f64,
+    heard: bool,
+}
+
+impl Session<'_> {
+    /// Takes an update in and records it; the line, unless it says nothing new.
+    fn take(&mut self, update: &Update) -> Result<Option<String>, Failure> {
+        let known = self.watched.link().clone();
+        self.watched.take(update);
+        self.heard |= matches!(update.said, Said::Connected(_));
+        if *self.watched.link() == known && matches!(update.said, Said::Lost(_)) {
+            return Ok(None);
+        }
+        let line = line(update, &self.watched) + "\n";
+        if let Some((file, name)) = &mut self.record {
+            file.write_all(line.as_bytes())
+                .map_err(Failure::output(name))?;
+        }
+        Ok(Some(line))
+    }
+
+    fn lines(&mut self) -> Result<(), Failure> {
+        let mut out = io::stdout();
+        while self.watcher.now() < self.end {
+            let Some(update) = self.watcher.next(LOOK) else {
+                continue;
+            };
+            let Some(line) = self.take(&update)? else {
+                continue;
+            };
+            match out.write_all(line.as_bytes()) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+                written => written.map_err(Failure::output(STDOUT))?,
+            }
+        }
+        Ok(())
+    }
+
+    fn show(
+        &mut self,
+        terminal: &mut DefaultTerminal,
+        mut view: View,
+        stop: &AtomicBool,
+    ) -> Result<(), Failure> {
+        let fail = Failure::output("the terminal");
+        let mut held: Option<(Watched, f64)> = None;
+        while self.watcher.now() < self.end && !stop.load(Relaxed) {
+            let updates: Vec<_> = self.watcher.updates().collect();
+            for update in &updates {
+                self.take(update)?;
+            }
+            let now = self.watcher.now();
+            let (watched, at) = held
+                .as_ref()
+                .map_or((&self.watched, now), |it| (&it.0, it.1));
+            terminal
+                .draw(|frame| draw(frame, &view, watched, at))
+                .map_err(&fail)?;
+            if !event::poll(PICTURE).map_err(&fail)? {
+                continue;
+            }
+            let Event::Key(key) = event::read().map_err(&fail)? else {
+                continue;
+            };
+            match Key::of(&key) {
+                Key::Quit => return Ok(()),
+                Key::Hold => {
+                    held = match held {
+                        Some(_) => None,
+                        None => Some((self.watched.clone(), now)),
+                    };
+                    view.held = held.is_some();
+                }
+                Key::Plane => view.plane = 1 - view.plane,
+                Key::Clear => self.watched.forget_trail(),
+                Key::Other => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+enum Key {
+    Quit,
+    Hold,
+    Plane,
+    Clear,
+    Other,
+}
+
+impl Key {
+    fn of(key: &KeyEvent) -> Self {
+        if key.kind != KeyEventKind::Press {
+            return Self::Other;
+        }
+        match key.code {
+            KeyCode::Char('q') | KeyCode::Esc => Self::Quit,
+            // The terminal passes it on as a key.
+            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Self::Quit,
+            KeyCode::Char(' ') => Self::Hold,
+            KeyCode::Char('p') => Self::Plane,
+            KeyCode::Char('x') => Self::Clear,
+            _ => Self::Other,
+        }
+    }
+}

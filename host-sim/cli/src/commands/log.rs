@@ -1,0 +1,133 @@
+//! `touchdown log`.
+
+use std::path::Path;
+
+use super::args::{ExportFormat, LogCommand};
+use crate::gate::{Gate, Outputs};
+use touchdown_base::failure::Failure;
+use touchdown_base::paint::Paint;
+use touchdown_files::drop_log::{
+    Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream,
+};
+use touchdown_files::link::Port;
+use touchdown_page::json::text;
+
+const OUT: &str = "--out";
+const CFG: &str = "--out (.cfg)";
+const DAT: &str = "--out (.dat)";
+
+/// Lists, shows, exports or verifies the episodes of a log.
+pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
+    match command {
+        LogCommand::List { file, json } => {
+            let out = gate(file, json)?;
+            let dump = source(file, Wanted::All)?;
+            tell(out, &dump, |paint| list(&dump, paint))
+        }
+        LogCommand::Show { file, number, json } => {
+            let out = gate(file, json)?;
+            let dump = source(file, wanted(*number))?;
+            let episode = chosen(file, &dump, *number)?;
+            tell(out, episode, |paint| show(episode, paint))
+        }
+        LogCommand::Export {
+            file,
+            number,
+            format,
+            out: name,
+        } => {
+            let mut gate = Gate::new().reads("FILE", [file]);
+            for (option, name) in files(*format, name) {
+                gate = gate.writes(option, [name]);
+            }
+            let out = gate.open()?;
+            let dump = source(file, wanted(*number))?;
+            export(chosen(file, &dump, *number)?, *format, out)
+        }
+        LogCommand::Verify { file, json } => {
+            let out = gate(file, json)?;
+            let dump = source(file, Wanted::All)?;
+            tell(out, &dump, |paint| list(&dump, paint))?;
+            if is_sound(&dump) {
+                Ok(())
+            } else {
+                Err(Failure::Check(format!("{file}: an episode is damaged")))
+            }
+        }
+    }
+}
+
+fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {
+    let gate = Gate::new().reads("FILE", [file]);
+    gate.writes("--json", json).open()
+}
+
+fn wanted(number: Option<u32>) -> Wanted {
+    number.map_or(Wanted::Newest, Wanted::Number)
+}
+
+/// The log in a file, or as much of a controller's as is wanted.
+fn source(name: &str, wanted: Wanted) -> Result<Dump, Failure> {
+    let Some(port) = Port::if_no_file(name) else {
+        return Ok(read(name)?);
+    };
+    fetch(&port, wanted).map_err(|error| Failure::Target(format!("{port}: {error}")))
+}
+
+fn tell(
+    mut out: Outputs,
+    what: &impl serde::Serialize,
+    told: impl FnOnce(Paint) -> String,
+) -> Result<(), Failure> {
+    out.json("--json", || text(what))?;
+    let told = told(out.paint());
+    out.finish(&told)
+}
+
+fn chosen<'a>(file: &str, dump: &'a Dump, number: Option<u32>) -> Result<&'a Episode, Failure> {
+    let mut all = dump.episodes.iter().rev();
+    let found = match number {
+        Some(number) => all.find(|it| it.sequence == number),
+        None => all.next(),
+    };
+    found.ok_or_else(|| {
+        let what = number.map_or("no episode".to_owned(), |it| format!("no episode {it}"));
+        Failure::Usage(format!(
+            "{file}: {what}; touchdown log list {file} shows what there is"
+        ))
+    })
+}
+
+/// The option of each file.
+fn files(format: ExportFormat, name: &str) -> Vec<(&'static str, String)> {
+    let ending = |it| Path::new(name).with_extension(it).display().to_string();
+    match format {
+        ExportFormat::Comtrade => vec![(CFG, ending("cfg")), (DAT, ending("dat"))],
+        ExportFormat::Csv | ExportFormat::Json => vec![(OUT, name.to_owned())],
+    }
+}
+
+fn export(episode: &Episode, format: ExportFormat, mut out: Outputs) -> Result<(), Failure> {
+    let headless = || {
+        let rule = "the episode's header is lost or impossible: neither rate nor scale are known";
+        Failure::Usage(rule.to_owned())
+    };
+    match format {
+        ExportFormat::Json => out.json(OUT, || text(episode))?,
+        ExportFormat::Csv => {
+            let Some(file) = out.file(OUT) else {
+                return Ok(());
+            };
+            let name = file.name().to_owned();
+            if !stream(episode, file).map_err(Failure::output(&name))? {
+                return Err(headless());
+            }
+        }
+        ExportFormat::Comtrade => {
+            let [cfg, dat] = comtrade(episode).ok_or_else(headless)?;
+            out.put(CFG, || cfg)?;
+            out.put(DAT, || dat)?;
+        }
+    }
+    out.finish("")
+}

@@ -1,0 +1,173 @@
+//! The command line.
+
+mod args;
+mod compare;
+mod config;
+mod force;
+mod help;
+mod limits;
+mod live;
+mod log;
+mod paper;
+#[cfg(unix)]
+mod rig;
+mod scene;
+mod score;
+mod subject;
+mod sweep;
+mod trade;
+
+pub use args::Cli;
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+use clap::{CommandFactory, Parser};
+
+use args::{Command, DropArgs, ReplayArgs};
+
+use crate::gate::{Gate, remark, said};
+use touchdown_base::failure::Failure;
+use touchdown_base::paint::Paint;
+use touchdown_base::plain::shown;
+use touchdown_page::{json, report, timeline};
+use touchdown_run::{drop, fidelity, replay};
+use touchdown_scene::{BUILT_IN, Scene};
+
+/// Where the report goes when nothing is asked for.
+const DEFAULT_REPORT: &str = "touchdown-report.html";
+
+/// Reads the command line and does what it asks.
+pub fn main() -> Result<(), Failure> {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(usage) if usage.use_stderr() => usage.exit(),
+        Err(help) => return said(help.print().and_then(|()| io::stdout().flush())),
+    };
+    match cli.command {
+        None => drop_scene(&DropArgs {
+            scene: BUILT_IN[0].name.to_owned(),
+            report: Some(DEFAULT_REPORT.to_owned()),
+            ..DropArgs::default()
+        }),
+        Some(Command::Drop(args)) => drop_scene(&args),
+        Some(Command::Replay(args)) => replay_stream(&args),
+        Some(Command::Compare(args)) => compare::compare_recordings(&args),
+        Some(Command::Trade(args)) => trade::table(&args),
+        Some(Command::Paper(args)) => paper::check(&args),
+        Some(Command::Force(args)) => force::measure(&args),
+        Some(Command::Limits(args)) => limits::check(&args),
+        Some(Command::Score(args)) => score::measure(&args),
+        Some(Command::Sweep(args)) => sweep::sweep(&args),
+        #[cfg(unix)]
+        Some(Command::Rig(args)) => rig::rig(&args),
+        Some(Command::Log { what }) => log::log(&what),
+        Some(Command::Live(args)) => live::live(&args),
+        Some(Command::Config(args)) => config::config(&args),
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "touchdown", &mut script);
+            Gate::new()
+                .open()?
+                .finish(&String::from_utf8_lossy(&script))
+        }
+        Some(Command::Scene { what }) => scene::look(&what),
+    }
+}
+
+fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
+    let target = args.place.target()?;
+    let mut out = Gate::new()
+        .reads("SCENE", [&args.scene])
+        .reads("--image", target.image())
+        .writes("--json", &args.json)
+        .writes("--report", &args.report)
+        .writes("--stream", &args.stream)
+        .open()?;
+    let mut scene = load(&args.scene)?;
+    let why = choose(&mut scene)?;
+    let (outcome, stream) = drop::run(&scene, &target, out.file("--stream"))?;
+    stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
+    out.json("--json", || json::drop(&scene, &outcome))?;
+    out.put("--report", || {
+        report::render(&subject::subject(&scene), &outcome)
+    })?;
+    let text = timeline::drop(&scene, &outcome, out.paint());
+    out.finish(&(why + &text))
+}
+
+/// Takes the cheapest model that gives what the scene asks, where it leaves the model open; why, for
+/// people.
+fn choose(scene: &mut Scene) -> Result<String, Failure> {
+    let Some(auto) = &scene.auto else {
+        return Ok(String::new());
+    };
+    let choice = fidelity::choose(scene, auto);
+    let why = fidelity::explain(&choice);
+    let Some(best) = choice.best() else {
+        return Err(Failure::Usage(format!("{}: {why}", scene.name)));
+    };
+    scene.model = best.model;
+    Ok(why + "\n")
+}
+
+fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
+    let target = args.place.target()?;
+    let mut out = Gate::new()
+        .reads_recording("FILE", &args.stream)
+        .reads("--scene", [&args.scene])
+        .reads("--columns", &args.reading.columns)
+        .reads("--image", target.image())
+        .writes("--json", &args.json)
+        .writes("--report", &args.report)
+        .open()?;
+    let scene = load(&args.scene)?;
+    let path = Path::new(&args.stream);
+    let reading = args.reading.load()?;
+    let replay = replay::recording(path, &reading, &scene, &target)?;
+    warn(&replay.warnings);
+    let detection = &replay.detection;
+    out.json("--json", || json::replay(detection))?;
+    if let Some(page) = out.file("--report") {
+        let drop = replay::first_drop(path, &reading, &scene, &replay)?;
+        page.put(&touchdown_page::replay::page(
+            &args.stream,
+            &scene,
+            &replay,
+            drop.as_ref(),
+        ))?;
+    }
+    let format = replay.format.map_or(String::new(), |it| {
+        format!("{}: {it}, {} Hz\n", shown(&args.stream), replay.rate)
+    });
+    out.finish(&(format + &timeline::replay(&args.stream, detection)))
+}
+
+fn load(name: &str) -> Result<Scene, Failure> {
+    let scene = Scene::load(name)?;
+    warn(&scene.warnings());
+    Ok(scene)
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        remark(&format!("warning: {}\n", shown(warning)));
+    }
+}
+
+/// Shows why a command failed.
+pub fn complain(failure: &Failure) {
+    let theme = if io::stderr().is_terminal() && Paint::wanted() {
+        miette::GraphicalTheme::unicode()
+    } else {
+        miette::GraphicalTheme::none()
+    };
+    let handler = miette::GraphicalReportHandler::new_themed(theme)
+        .with_wrap_lines(false)
+        .with_context_lines(1);
+    let mut text = String::new();
+    if handler.render_report(&mut text, failure).is_err() {
+        text = failure.to_string();
+    }
+    remark(&format!("error:\n{}\n", text.trim_end()));
+}

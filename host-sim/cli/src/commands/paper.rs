@@ -1,0 +1,26 @@
+//! `touchdown paper`.
+
+use super::args::PaperArgs;
+use crate::gate::Gate;
+use touchdown_base::failure::Failure;
+use touchdown_lab::paper;
+
+/// Works out, says and writes the numbers; fails where one of ours is not right.
+pub(super) fn check(args: &PaperArgs) -> Result<(), Failure> {
+    let mut out = Gate::new()
+        .writes("--json", &args.json)
+        .writes("--report", [&args.report])
+        .open()?;
+    let paper = paper::run(args.drops)?;
+    out.json("--json", || paper::json(&paper))?;
+    out.put("--report", || paper::page(&paper))?;
+    let text = paper::table(&paper, out.paint());
+    out.finish(&text)?;
+    if paper.agrees() {
+        Ok(())
+    } else {
+        Err(Failure::Check(
+            "numbers of ours are not right: those marked with !".to_owned(),
+        ))
+    }
+}

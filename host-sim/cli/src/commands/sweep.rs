@@ -1,0 +1,73 @@
+//! `touchdown sweep`.
+
+use std::path::{Path, PathBuf};
+
+use super::args::{MergeArgs, SweepArgs, SweepCommand};
+use crate::gate::{Gate, Outputs, remark};
+use touchdown_base::failure::Failure;
+use touchdown_sweep::{Part, Plan, RESULTS, found, run, table, write};
+
+/// Runs a plan, or a part of it, or puts parts together.
+pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    if let Some(SweepCommand::Merge(args)) = &args.command {
+        return merge(args);
+    }
+    let Some(name) = &args.plan else {
+        return Err(Failure::Usage(
+            "sweep needs a plan: touchdown sweep PLAN.toml".to_owned(),
+        ));
+    };
+    if args.shard.is_some() && args.json.is_some() {
+        let rule = "a part has no result of its own: give --json to sweep merge";
+        return Err(Failure::Usage(rule.to_owned()));
+    }
+    let plan = Plan::load(name)?;
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let stem = Path::new(name)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
+        format!("{stem}-sweep")
+    });
+    let parts = args.shard.map_or_else(|| Part::all(&plan), |it| vec![it]);
+    let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
+    let out = gate(&folder, &args.json)
+        .reads("PLAN", [name])
+        .reads("the plan's scene", &plan.scene_file)
+        .claims("--out", &paths)
+        .open()?;
+    let had = run(&plan, &parts, Path::new(&folder))?;
+    if had > 0 {
+        remark(&format!("{folder} had {had} drops already\n"));
+    }
+    if let Some(Part { part, parts }) = args.shard {
+        let text = format!(
+            "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
+        );
+        return out.finish(&text);
+    }
+    finish(&plan, &paths, &folder, out)
+}
+
+fn merge(args: &MergeArgs) -> Result<(), Failure> {
+    let (plan, parts) = found(&args.folders)?;
+    let folder = args.folders.first().cloned().unwrap_or_default();
+    let out = gate(&folder, &args.json).reads("FOLDER", &parts).open()?;
+    finish(&plan, &parts, &folder, out)
+}
+
+/// Of what every sweep writes.
+fn gate(folder: &str, json: &Option<String>) -> Gate {
+    Gate::new()
+        .makes_folder(folder)
+        .claims("--out", RESULTS.map(|it| Path::new(folder).join(it)))
+        .writes("--json", json)
+}
+
+fn finish(plan: &Plan, parts: &[PathBuf], folder: &str, mut out: Outputs) -> Result<(), Failure> {
+    let results = write(plan, parts, Path::new(folder))?;
+    out.put("--json", || results.json)?;
+    out.add("--out", results.outputs);
+    let text = table(plan, &results.points, out.paint());
+    out.finish(&text)
+}

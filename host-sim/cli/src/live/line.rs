@@ -1,0 +1,131 @@
+//! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
+
+use serde_json::{Map, Value, json};
+use touchdown_core::controller::Fault;
+use touchdown_core::event::Notice;
+use touchdown_core::link::State;
+
+use super::update::{Said, Update};
+use super::watched::Watched;
+use touchdown_run::detection::{declared, forecast};
+use touchdown_scene::names::{channel_name, event_name, fault_name, mode_name, told_phase_name};
+
+/// The line without its end; `watched` has taken in what came before.
+pub fn line(update: &Update, watched: &Watched) -> String {
+    let (said, what) = match &update.said {
+        Said::Connected(greeting) => (
+            "connected",
+            json!({
+                "port": watched.port(),
+                "firmware": greeting.firmware,
+                "sample_rate_hz": greeting.sample_rate,
+                "clearance_m": greeting.settings.monitor.detector.machine.clearance,
+            }),
+        ),
+        Said::Lost(why) => ("lost", json!({ "port": watched.port(), "why": why })),
+        Said::State(it) => ("state", state(it, watched)),
+        Said::Notice(it) => notice(it, watched),
+        Said::Recent(recent) => {
+            let positions = watched.positions(recent);
+            let plane = |plane: usize| -> Vec<_> {
+                let places = positions.iter().map(|it| it.get(plane).copied().flatten());
+                places.map(|it| it.map(|place| place.map(shown))).collect()
+            };
+            let step = f64::from(recent.step);
+            let what = json!({
+                "sample": recent.sample,
+                "time_s": watched.timebase().time(recent.sample as f64),
+                "step_s": watched.timebase().time(step),
+                "a_m": plane(0),
+                "b_m": plane(1),
+            });
+            ("positions", what)
+        }
+        Said::Episode(number, header) => (
+            "episode",
+            json!({
+                "number": number,
+                "trigger": header.map(|it| event_name(it.trigger_kind)),
+                "boot": header.map(|it| it.boot),
+                "time_s": header.map(|it| it.trigger as f64 / f64::from(it.sample_rate)),
+            }),
+        ),
+        Said::Lifetime(it) => (
+            "lifetime",
+            json!({
+                "boots": it.boots,
+                "landings": it.landings,
+                "landings_cut_off": it.unweighed,
+                "weight": it.weight as f64 / 1e3,
+                "drops_not_recorded": it.lost,
+            }),
+        ),
+        Said::Damaged(count) => ("damaged", json!({ "frames": count })),
+    };
+    let mut all = Map::new();
+    all.insert("at_s".to_owned(), json!(update.at));
+    all.insert("said".to_owned(), json!(said));
+    if let Value::Object(what) = what {
+        all.extend(what);
+    }
+    Value::Object(all).to_string()
+}
+
+/// To a tenth of a nanometre, far below any count.
+fn shown(metres: f64) -> f64 {
+    (metres * 1e10).round() / 1e10
+}
+
+fn state(state: &State, watched: &Watched) -> Value {
+    let faults = Fault::ALL
+        .into_iter()
+        .filter(|it| state.faults.contains(*it));
+    let sample = (state.sample != u64::MAX).then_some(state.sample);
+    json!({
+        "sample": sample,
+        "time_s": sample.map(|it| watched.timebase().time(it as f64)),
+        "age_s": 1e-6 * f64::from(state.age_us),
+        "phase": told_phase_name(state.phase),
+        "mode": mode_name(state.mode),
+        "run": state.outputs.run,
+        "no_brake": state.outputs.no_brake,
+        "permit": state.outputs.permit,
+        "ready": state.outputs.ready,
+        "faults": faults.map(fault_name).collect::<Vec<_>>(),
+        "lost_samples": state.counters.lost_samples,
+        "unusable_values": state.counters.unusable_values,
+        "lost_notices": state.counters.lost_notices,
+        "damaged_frames": state.counters.damaged_frames,
+    })
+}
+
+fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
+    let timebase = watched.timebase();
+    let fate = |number: &u16, sample: &u64| {
+        let time = timebase.time(*sample as f64);
+        json!({ "number": number, "sample": sample, "time_s": time })
+    };
+    match notice {
+        Notice::Declared(event) => {
+            let told = declared(event, timebase);
+            let what = json!({
+                "number": event.number,
+                "event": told.event,
+                "onset_s": told.onset_s,
+                "declared_s": told.declared_s,
+                "sample": told.sample,
+                "plane": told.plane,
+                "motion": told.motion,
+                "normal_speed_m_s": told.normal_speed_m_s,
+                "fault": event.fault.map(|it| json!({
+                    "channel": channel_name(it.channel),
+                    "kind": it.kind,
+                })),
+            });
+            ("event", what)
+        }
+        Notice::Confirmed { number, sample } => ("confirmed", fate(number, sample)),
+        Notice::Withdrawn { number, sample } => ("withdrawn", fate(number, sample)),
+        Notice::Outlook(outlook) => ("outlook", json!(forecast(outlook, timebase))),
+    }
+}

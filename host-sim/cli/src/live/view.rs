@@ -1,0 +1,282 @@
+//! The terminal's picture.
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Paragraph};
+use touchdown_core::controller::{Fault, Mode};
+use touchdown_core::detect::Phase;
+use touchdown_core::link::State;
+
+use super::orbit::orbit;
+use super::watched::{Link, Watched};
+use touchdown_run::outcome::DetectedEvent;
+use touchdown_scene::names::{event_name, fault_name, mode_name, told_phase_name};
+
+const KEYS: &str = " q quit   space hold   p plane   x clear orbit";
+/// Older than this, what is shown is marked, s.
+const STALE: f64 = 1.0;
+
+/// What a person has chosen.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// Plane of the orbit, 0 is a.
+    pub plane: usize,
+    /// Whether the picture stands still.
+    pub held: bool,
+    /// File that is recorded to.
+    pub record: Option<String>,
+    /// Whether to use colour.
+    pub paint: bool,
+}
+
+/// Draws `watched` as it is at `now` (s).
+pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
+    let [head, body, foot] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Min(0),
+        Constraint::Length(1),
+    ])
+    .areas(frame.area());
+    let [left, right] =
+        Layout::horizontal([Constraint::Percentage(46), Constraint::Fill(1)]).areas(body);
+    let [status, events, episodes] = Layout::vertical([
+        Constraint::Length(14),
+        Constraint::Fill(3),
+        Constraint::Fill(2),
+    ])
+    .areas(right);
+    let pen = Pen(view.paint);
+    frame.render_widget(Paragraph::new(headline(watched, now, pen)), head);
+    orbit(frame, left, watched, view.plane, view.paint);
+    let block = Block::bordered().title(" now ");
+    frame.render_widget(
+        Paragraph::new(status_lines(watched, now, pen)).block(block),
+        status,
+    );
+    list(
+        frame,
+        events,
+        " events: onset s, what, mm/s ",
+        event_lines(watched, pen),
+    );
+    list(
+        frame,
+        episodes,
+        " episodes: number, at s, trigger ",
+        episode_lines(watched),
+    );
+    let mut keys = KEYS.to_owned();
+    if view.held {
+        keys += "   HELD";
+    }
+    if let Some(name) = &view.record {
+        keys += &format!("   recording to {name}");
+    }
+    frame.render_widget(Paragraph::new(keys), foot);
+}
+
+/// Colours, where they are wanted; what they say, the words say too.
+#[derive(Clone, Copy)]
+struct Pen(bool);
+
+impl Pen {
+    fn of(self, colour: Color, text: String) -> Span<'static> {
+        let style = if self.0 {
+            Style::default().fg(colour)
+        } else {
+            Style::default()
+        };
+        Span::styled(text, style)
+    }
+
+    fn bold(text: String) -> Span<'static> {
+        Span::styled(text, Style::default().add_modifier(Modifier::BOLD))
+    }
+}
+
+fn headline(watched: &Watched, now: f64, pen: Pen) -> Line<'static> {
+    let mut spans = vec![Pen::bold(format!(" touchdown live {}  ", watched.port()))];
+    spans.push(match watched.link() {
+        Link::New => Span::raw("connecting"),
+        Link::Up(since) => pen.of(Color::Green, format!("connected for {:.0} s", now - since)),
+        Link::Down(since, why) => pen.of(
+            Color::Red,
+            format!("NOT CONNECTED for {:.0} s: {why}", now - since),
+        ),
+    });
+    Line::from(spans)
+}
+
+fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
+    let Some(state) = watched.state() else {
+        return vec![Line::raw("nothing heard yet")];
+    };
+    let it = state.outputs;
+    let mut lines = vec![
+        Line::from(vec![Span::raw("phase     "), phase(state, pen)]),
+        Line::from(vec![Span::raw("mode      "), mode(state, pen)]),
+        outputs(
+            "outputs   ",
+            [("run", it.run), ("no brake", it.no_brake)],
+            pen,
+        ),
+        outputs(
+            "          ",
+            [("permit", it.permit), ("ready", it.ready)],
+            pen,
+        ),
+        faults(state, pen),
+    ];
+    let rate = watched
+        .sample_rate()
+        .map_or("-".to_owned(), |it| format!("{it:.0}"));
+    let nominal = watched.greeting().map_or(0.0, |it| it.sample_rate);
+    lines.push(Line::raw(format!(
+        "rates     {rate} of {nominal:.0} samples/s, {:.0} frames/s",
+        watched.frame_rate(now)
+    )));
+    let age = watched.age(now).unwrap_or(f64::INFINITY);
+    let text = format!("{age:.2} s");
+    let age = if age > STALE {
+        pen.of(Color::Red, text + ", OLD")
+    } else {
+        Span::raw(text)
+    };
+    lines.push(Line::from(vec![Span::raw("data age  "), age]));
+    let counters = &state.counters;
+    lines.push(Line::raw(format!(
+        "lost      {} samples, {} notices",
+        counters.lost_samples, counters.lost_notices
+    )));
+    lines.push(Line::raw(format!(
+        "unusable  {} values",
+        counters.unusable_values
+    )));
+    let restarts = match watched.restarts() {
+        0 => String::new(),
+        count => format!("; restarts {count}"),
+    };
+    lines.push(Line::raw(format!(
+        "damaged   {} frames there, {} here{restarts}",
+        counters.damaged_frames,
+        watched.damaged()
+    )));
+    lines.extend(lifetime(watched));
+    lines
+}
+
+/// In two lines: of an inspection, the landings are what counts.
+fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
+    let Some(it) = watched.lifetime() else {
+        return vec![Line::raw("lifetime  no log")];
+    };
+    let cut = match it.unweighed {
+        0 => String::new(),
+        count => format!(", {count} cut off"),
+    };
+    let weight = it.weight as f64 / 1e3;
+    vec![
+        Line::raw(format!(
+            "lifetime  {} landings, weight {weight:.3}{cut}",
+            it.landings
+        )),
+        Line::raw(format!(
+            "          {} times on, {} drops not recorded",
+            it.boots, it.lost
+        )),
+    ]
+}
+
+fn phase(state: &State, pen: Pen) -> Span<'static> {
+    let colour = match state.phase {
+        Phase::Starting => Color::Reset,
+        Phase::Levitated => Color::Green,
+        Phase::FreeFall | Phase::Impact | Phase::Sliding | Phase::Rolling => Color::Red,
+    };
+    pen.of(colour, told_phase_name(state.phase).to_owned())
+}
+
+fn mode(state: &State, pen: Pen) -> Span<'static> {
+    let colour = match state.mode {
+        Mode::SelfTest | Mode::Arming => Color::Yellow,
+        Mode::Watching => Color::Green,
+        Mode::Dropped | Mode::Faulted => Color::Red,
+    };
+    pen.of(colour, mode_name(state.mode).to_owned())
+}
+
+fn outputs(head: &'static str, outputs: [(&str, bool); 2], pen: Pen) -> Line<'static> {
+    let mut spans = vec![Span::raw(head)];
+    for (name, on) in outputs {
+        let text = format!("{name} {}  ", if on { "ON" } else { "off" });
+        spans.push(if on {
+            pen.of(Color::Green, text)
+        } else {
+            Span::raw(text)
+        });
+    }
+    Line::from(spans)
+}
+
+fn faults(state: &State, pen: Pen) -> Line<'static> {
+    let all = Fault::ALL
+        .into_iter()
+        .filter(|it| state.faults.contains(*it));
+    let names: Vec<_> = all.map(fault_name).collect();
+    let text = if names.is_empty() {
+        Span::raw("none")
+    } else {
+        pen.of(Color::Red, names.join(", "))
+    };
+    Line::from(vec![Span::raw("faults    "), text])
+}
+
+fn event_lines(watched: &Watched, pen: Pen) -> Vec<Line<'static>> {
+    watched
+        .events()
+        .map(|event| event_line(event, pen))
+        .collect()
+}
+
+fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {
+    let fate = match (event.confirmed_s, event.withdrawn_s, &event.fault) {
+        (_, Some(_), _) => " withdrawn".to_owned(),
+        (Some(_), None, _) => " confirmed".to_owned(),
+        (None, None, Some(fault)) => format!(" {} {}", fault.channel, fault.kind.name()),
+        (None, None, None) => String::new(),
+    };
+    let speed = event
+        .normal_speed_m_s
+        .map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
+    let time = Span::raw(format!("{:>11.4}  ", event.onset_s));
+    let name = pen.of(Color::Yellow, event_name(event.event).to_owned());
+    Line::from(vec![time, name, Span::raw(fate), Span::raw(speed)])
+}
+
+fn episode_lines(watched: &Watched) -> Vec<Line<'static>> {
+    let lines = watched.episodes().map(|(number, header)| {
+        Line::raw(header.map_or_else(
+            || format!("{number:>5}  header lost"),
+            |it| {
+                let at = it.trigger as f64 / f64::from(it.sample_rate);
+                let trigger = event_name(it.trigger_kind);
+                format!("{number:>5} {at:>11.3}  {trigger}, boot {}", it.boot)
+            },
+        ))
+    });
+    lines.collect()
+}
+
+fn list(frame: &mut Frame<'_>, area: Rect, title: &'static str, lines: Vec<Line<'static>>) {
+    let lines = if lines.is_empty() {
+        vec![Line::raw("none")]
+    } else {
+        lines
+    };
+    frame.render_widget(
+        Paragraph::new(lines).block(Block::bordered().title(title)),
+        area,
+    );
+}

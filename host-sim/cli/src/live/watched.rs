@@ -1,0 +1,271 @@
+//! All that is known of the controller by now.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use touchdown_core::event::Notice;
+use touchdown_core::link::{Recent, State};
+use touchdown_core::log::counters::Counters;
+use touchdown_core::log::header::Header;
+use touchdown_core::log::waveform::NO_VALUE;
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sensing::{PLANES, Sensing};
+
+use super::update::{Greeting, Said, Update};
+use touchdown_run::detection::declared;
+use touchdown_run::outcome::DetectedEvent;
+use touchdown_run::timebase::Timebase;
+
+/// Positions of a plane that are shown.
+const TRAIL: usize = 640;
+/// Events that are kept.
+const EVENTS: usize = 100;
+/// Over which rates are measured, s.
+const WINDOW: f64 = 2.0;
+
+/// The line's state, since when (s), and why it is not open.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Link {
+    /// Nothing was tried yet.
+    #[default]
+    New,
+    /// A controller answers.
+    Up(f64),
+    /// It does not.
+    Down(f64, String),
+}
+
+/// An event with its number, until it is known what became of it.
+#[derive(Clone, Debug)]
+struct Numbered {
+    number: u16,
+    event: DetectedEvent,
+}
+
+/// All that is known of a controller.
+#[derive(Clone, Debug, Default)]
+pub struct Watched {
+    port: String,
+    link: Link,
+    greeting: Option<Greeting>,
+    sensing: Option<Sensing>,
+    /// With the time at which it was heard.
+    state: Option<(f64, State)>,
+    /// Time and sample of the last states; time of the last frames.
+    states: VecDeque<(f64, u64)>,
+    frames: VecDeque<f64>,
+    trails: [VecDeque<[f64; 2]>; PLANES],
+    newest: usize,
+    events: VecDeque<Numbered>,
+    episodes: BTreeMap<u32, Option<Header>>,
+    lifetime: Option<Counters>,
+    damaged: u32,
+    restarts: u32,
+}
+
+impl Watched {
+    /// Of the controller at `port`, of which nothing is known.
+    pub fn new(port: String) -> Self {
+        Self {
+            port,
+            ..Self::default()
+        }
+    }
+
+    /// Takes in what was heard.
+    pub fn take(&mut self, update: &Update) {
+        let at = update.at;
+        if !matches!(update.said, Said::Lost(_) | Said::Damaged(_)) {
+            self.frames.push_back(at);
+            forget(&mut self.frames, |it| *it < at - WINDOW);
+        }
+        match &update.said {
+            Said::Connected(greeting) => {
+                self.sensing = Sensing::try_new(&greeting.settings.monitor.sensing).ok();
+                self.greeting = Some(greeting.clone());
+                self.link = Link::Up(at);
+                self.states.clear();
+            }
+            Said::Lost(why) => match &mut self.link {
+                Link::Down(_, known) => known.clone_from(why),
+                _ => self.link = Link::Down(at, why.clone()),
+            },
+            Said::State(state) => self.go_on(at, state),
+            Said::Notice(notice) => self.note(notice),
+            Said::Recent(recent) => self.follow(recent),
+            Said::Episode(number, header) => {
+                self.episodes.insert(*number, *header);
+            }
+            Said::Lifetime(counters) => self.lifetime = Some(*counters),
+            Said::Damaged(count) => self.damaged = *count,
+        }
+    }
+
+    fn go_on(&mut self, at: f64, state: &State) {
+        let began_again = self
+            .state
+            .is_some_and(|(_, it)| it.sample != u64::MAX && state.sample < it.sample);
+        if began_again {
+            // Its clock began again: what was told is of another time.
+            self.restarts += 1;
+            self.states.clear();
+            self.events.clear();
+        }
+        self.state = Some((at, *state));
+        self.states.push_back((at, state.sample));
+        forget(&mut self.states, |it| it.0 < at - WINDOW);
+    }
+
+    fn note(&mut self, notice: &Notice) {
+        let timebase = self.timebase();
+        let at = |sample: u64| Some(timebase.time(sample as f64));
+        let of = |number: u16| move |it: &&mut Numbered| it.number == number;
+        let mut backward = self.events.iter_mut().rev();
+        match notice {
+            Notice::Declared(event) => {
+                self.events.push_back(Numbered {
+                    number: event.number,
+                    event: declared(event, timebase),
+                });
+                while self.events.len() > EVENTS {
+                    self.events.pop_front();
+                }
+            }
+            Notice::Confirmed { number, sample } => {
+                if let Some(it) = backward.find(of(*number)) {
+                    it.event.confirmed_s = at(*sample);
+                }
+            }
+            Notice::Withdrawn { number, sample } => {
+                if let Some(it) = backward.find(of(*number)) {
+                    it.event.withdrawn_s = at(*sample);
+                }
+            }
+            Notice::Outlook(_) => {}
+        }
+    }
+
+    fn follow(&mut self, recent: &Recent) {
+        self.newest = 0;
+        for planes in self.positions(recent) {
+            for (trail, place) in self.trails.iter_mut().zip(planes) {
+                trail.extend(place);
+            }
+            self.newest += 1;
+        }
+        for trail in &mut self.trails {
+            while trail.len() > TRAIL {
+                trail.pop_front();
+            }
+        }
+    }
+
+    /// Displacement in each plane, m, oldest first.
+    pub fn positions(&self, recent: &Recent) -> Vec<[Option<[f64; 2]>; PLANES]> {
+        let (Some(sensing), Some(greeting)) = (&self.sensing, &self.greeting) else {
+            return Vec::new();
+        };
+        let fitted = greeting.settings.monitor.fitted;
+        let position = |counts: [u16; 4]| {
+            let there = (0..).zip(counts).filter(|(_, it)| *it != NO_VALUE);
+            let valid = there.fold(0, |bits, (channel, _)| bits | 1 << channel);
+            let sample = Sample {
+                counts,
+                valid: valid & fitted,
+                spin: None,
+                levitated: None,
+                edges: [None; TACHOMETERS],
+            };
+            let planes = sensing.convert(&sample, fitted).planes;
+            planes.map(|place| place.map(|it| it.map(f64::from)))
+        };
+        recent.counts().map(position).collect()
+    }
+
+    /// Forgets where the rotor has been.
+    pub fn forget_trail(&mut self) {
+        self.trails.iter_mut().for_each(VecDeque::clear);
+    }
+
+    /// The port's name.
+    pub fn port(&self) -> &str {
+        &self.port
+    }
+
+    /// The line.
+    pub fn link(&self) -> &Link {
+        &self.link
+    }
+
+    /// Who answered last.
+    pub fn greeting(&self) -> Option<&Greeting> {
+        self.greeting.as_ref()
+    }
+
+    /// What goes on, as it was told last.
+    pub fn state(&self) -> Option<&State> {
+        self.state.as_ref().map(|it| &it.1)
+    }
+
+    /// How old that is at `now`, s: since it was told, and what it said of its own age.
+    pub fn age(&self, now: f64) -> Option<f64> {
+        let (at, state) = self.state.as_ref()?;
+        Some(now - at + 1e-6 * f64::from(state.age_us))
+    }
+
+    /// Samples per second that the controller takes, measured; `None` until that can be told.
+    pub fn sample_rate(&self) -> Option<f64> {
+        let (first, last) = (self.states.front()?, self.states.back()?);
+        let time = last.0 - first.0;
+        (time > 0.5 * WINDOW).then(|| last.1.saturating_sub(first.1) as f64 / time)
+    }
+
+    /// Frames per second that come at `now`.
+    pub fn frame_rate(&self, now: f64) -> f64 {
+        let window = WINDOW.min(now).max(1e-3);
+        let last = self.frames.iter().filter(|it| **it > now - window);
+        last.count() as f64 / window
+    }
+
+    /// Where a plane's rotor end has been, oldest first, m, and how many of the last are the newest.
+    pub fn trail(&self, plane: usize) -> (impl Iterator<Item = [f64; 2]> + '_, usize) {
+        let trail = self.trails.get(plane);
+        (trail.into_iter().flatten().copied(), self.newest)
+    }
+
+    /// What happened, newest first; times on the controller's clock.
+    pub fn events(&self) -> impl Iterator<Item = &DetectedEvent> {
+        self.events.iter().rev().map(|it| &it.event)
+    }
+
+    /// Episodes that were seen in the log, newest first.
+    pub fn episodes(&self) -> impl Iterator<Item = (u32, Option<&Header>)> {
+        self.episodes.iter().rev().map(|it| (*it.0, it.1.as_ref()))
+    }
+
+    /// What was counted over the monitor's life.
+    pub fn lifetime(&self) -> Option<&Counters> {
+        self.lifetime.as_ref()
+    }
+
+    /// Frames that came damaged.
+    pub fn damaged(&self) -> u32 {
+        self.damaged
+    }
+
+    /// How often the controller began again.
+    pub fn restarts(&self) -> u32 {
+        self.restarts
+    }
+
+    /// Samples to seconds since the controller's start.
+    pub fn timebase(&self) -> Timebase {
+        let rate = self.greeting.as_ref().map_or(1.0, |it| it.sample_rate);
+        Timebase::new(0.0, f64::from(rate))
+    }
+}
+
+fn forget<T>(from: &mut VecDeque<T>, is_old: impl Fn(&T) -> bool) {
+    while from.front().is_some_and(&is_old) {
+        from.pop_front();
+    }
+}

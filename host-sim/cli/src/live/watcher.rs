@@ -1,0 +1,185 @@
+//! Holds the line on a thread of its own: asks, listens, and opens the line again when it is gone.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::update::{Greeting, Said, Update};
+use touchdown_base::plain::shown;
+use touchdown_files::drop_log::Episode;
+use touchdown_files::link::{Client, LinkError, Port, Told};
+
+/// Between two attempts to open the line.
+const RETRY: Duration = Duration::from_millis(500);
+/// Between two questions for positions: a fifth of what the line can carry.
+const RECENT: Duration = Duration::from_millis(125);
+/// Between two looks at the log.
+const LOG: Duration = Duration::from_secs(2);
+/// Without a word for so long, the controller is asked whether it is there.
+const SILENCE: Duration = Duration::from_secs(1);
+/// How long a time an answer with positions should span, s: a turn at 80 Hz and more.
+const SPAN: f32 = 12.5e-3;
+/// Positions in an answer.
+const POSITIONS: f32 = 32.0;
+/// Episodes whose headers are read.
+const EPISODES: u32 = 6;
+
+/// The thread's other end. It stops when this is dropped.
+pub struct Watcher {
+    updates: Receiver<Update>,
+    start: Instant,
+}
+
+impl Watcher {
+    /// Begins to watch.
+    pub fn start(port: Port) -> Self {
+        let (to, updates) = channel();
+        let start = Instant::now();
+        let mut teller = Teller { to, start };
+        thread::spawn(move || {
+            while let Err(Ended::Line(error)) = session(&port, &mut teller) {
+                if teller.tell(Said::Lost(error.to_string())).is_err() {
+                    break;
+                }
+                thread::sleep(RETRY);
+            }
+        });
+        Self { updates, start }
+    }
+
+    /// Since the start, s.
+    pub fn now(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// What is there now.
+    pub fn updates(&self) -> impl Iterator<Item = Update> {
+        self.updates.try_iter()
+    }
+
+    /// The next update, after at most `limit`.
+    pub fn next(&self, limit: Duration) -> Option<Update> {
+        self.updates.recv_timeout(limit).ok()
+    }
+}
+
+/// Why a session is over.
+enum Ended {
+    Line(LinkError),
+    /// Nobody listens.
+    Unheard,
+}
+
+impl From<LinkError> for Ended {
+    fn from(error: LinkError) -> Self {
+        Self::Line(error)
+    }
+}
+
+struct Teller {
+    to: Sender<Update>,
+    start: Instant,
+}
+
+impl Teller {
+    fn tell(&mut self, said: Said) -> Result<(), Ended> {
+        let at = self.start.elapsed().as_secs_f64();
+        self.to
+            .send(Update { at, said })
+            .map_err(|_| Ended::Unheard)
+    }
+}
+
+/// From the opening of the line to its end.
+fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
+    let mut client = Client::new(port.open()?);
+    let hello = client.hello()?;
+    let settings = client.settings()?;
+    teller.tell(Said::Connected(Greeting {
+        firmware: shown(&hello.firmware).into_owned(),
+        sample_rate: hello.sample_rate,
+        settings,
+    }))?;
+    let step = (SPAN * hello.sample_rate / POSITIONS).clamp(1.0, 1e4) as u16;
+    let mut positions = Due::every(RECENT);
+    let mut log = Due::every(LOG);
+    let mut heard = Instant::now();
+    let (mut known, mut lifetime) = (None, None);
+    let mut damaged = 0;
+    loop {
+        while let Some(told) = client.listen(Duration::from_millis(20))? {
+            heard = Instant::now();
+            teller.tell(match told {
+                Told::State(state) => Said::State(state),
+                Told::Notice(notice) => Said::Notice(notice),
+            })?;
+            if positions.is_due() || log.is_due() {
+                break;
+            }
+        }
+        if positions.is_due() {
+            positions.put_off();
+            teller.tell(Said::Recent(client.recent(step)?))?;
+        }
+        if log.is_due() {
+            log.put_off();
+            known = look(&mut client, known, teller)?;
+            let counters = client.lifetime()?;
+            if counters != lifetime {
+                lifetime = counters;
+                counters.map_or(Ok(()), |it| teller.tell(Said::Lifetime(it)))?;
+            }
+        }
+        if heard.elapsed() > SILENCE {
+            client.hello()?;
+            heard = Instant::now();
+        }
+        if client.damaged() != damaged {
+            damaged = client.damaged();
+            teller.tell(Said::Damaged(damaged))?;
+        }
+    }
+}
+
+/// Tells the headers of the last episodes that come after `known`; the last that was told.
+fn look(
+    client: &mut Client,
+    known: Option<u32>,
+    teller: &mut Teller,
+) -> Result<Option<u32>, Ended> {
+    let Some((first, last)) = client.episodes()? else {
+        return Ok(None);
+    };
+    let first = first.max(last.saturating_sub(EPISODES - 1));
+    // One that is being written is refused, and asked for again.
+    let mut told = known.filter(|it| *it <= last);
+    let first = told.map_or(first, |it| first.max(it.saturating_add(1)));
+    for number in first..=last {
+        if let Some((_, page)) = client.chunk(number, 0)? {
+            teller.tell(Said::Episode(number, Episode::of(&page).header))?;
+            told = Some(number);
+        }
+    }
+    Ok(told)
+}
+
+/// When to do something again.
+struct Due {
+    every: Duration,
+    at: Instant,
+}
+
+impl Due {
+    fn every(every: Duration) -> Self {
+        let at = Instant::now();
+        Self { every, at }
+    }
+
+    fn is_due(&self) -> bool {
+        self.at <= Instant::now()
+    }
+
+    fn put_off(&mut self) {
+        self.at = Instant::now() + self.every;
+    }
+}

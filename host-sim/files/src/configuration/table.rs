@@ -1,0 +1,191 @@
+//! The configuration as it is written: tables and units of a scene, and what only a controller has.
+
+use serde::{Deserialize, Serialize};
+use touchdown_core::config_block::{Settings, Wiring};
+use touchdown_core::detect::{DetectorConfig, Tuning};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::CHANNELS;
+use touchdown_core::sensing::{PLANES, SensingConfig};
+use touchdown_core::tachometer::TachometersConfig;
+
+use super::decimal::shortest;
+use touchdown_scene::check::gravity;
+use touchdown_scene::file::{RetainerTable, RotorTable};
+use touchdown_scene::flaw::Flaw;
+use touchdown_scene::list;
+use touchdown_scene::machine::{retainer, rotor};
+use touchdown_scene::machine_config;
+use touchdown_scene::names::channel_name;
+use touchdown_scene::rule::{MICRO, MILLI, RPM};
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// A configuration in the file's units.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tables {
+    rotor: RotorTable,
+    retainer: RetainerTable,
+    run: RunTable,
+    sensors: SensorsTable,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ball_bearing: Option<BallBearingTable>,
+    #[serde(default)]
+    detector: Tuning,
+}
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct RunTable {
+    gravity_m_s2: f64,
+    sample_rate_hz: f64,
+}
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct SensorsTable {
+    channels: Vec<String>,
+    resolution_um: f64,
+    zero_count: f64,
+    full_scale: u16,
+    #[serde(deserialize_with = "list::exactly")]
+    mounting_deg: [f64; PLANES],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pulses_per_turn: Option<u16>,
+    levitation_signal: bool,
+}
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct BallBearingTable {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inner_ring_marks: Option<u16>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cage_marks: Option<u16>,
+    cage_ratio: f64,
+    bore_radius_mm: f64,
+    edge_error_mrad: f64,
+    window_ms: f64,
+}
+
+impl From<&Settings> for Tables {
+    fn from(settings: &Settings) -> Self {
+        let Settings { monitor, wiring } = settings;
+        let DetectorConfig {
+            sample_rate,
+            machine,
+            tuning,
+        } = monitor.detector;
+        let mass = shortest(machine.mass, 1.0);
+        let radius = shortest(machine.rotor_radius, MILLI);
+        let per_inertia = 1.0 / (mass * (MILLI * radius) * (MILLI * radius));
+        let sensing = &monitor.sensing;
+        let fitted = (0..CHANNELS as u8).filter(|it| monitor.fitted >> it & 1 != 0);
+        Self {
+            rotor: RotorTable {
+                mass_kg: mass,
+                radius_mm: radius,
+                polar_inertia_kg_m2: Some(shortest(machine.inertia_ratio, per_inertia)),
+                speed_rpm: shortest(machine.spin, RPM),
+            },
+            retainer: RetainerTable {
+                clearance_mm: shortest(machine.clearance, MILLI),
+                friction: shortest(machine.friction, 1.0),
+                restitution: shortest(machine.restitution, 1.0),
+            },
+            run: RunTable {
+                gravity_m_s2: shortest(machine.gravity, 1.0),
+                sample_rate_hz: shortest(sample_rate, 1.0),
+            },
+            sensors: SensorsTable {
+                channels: fitted.map(|it| channel_name(it).to_owned()).collect(),
+                resolution_um: shortest(sensing.resolution, MICRO),
+                zero_count: shortest(sensing.zero_count, 1.0),
+                full_scale: sensing.full_scale,
+                mounting_deg: sensing.mounting_angle.map(|it| shortest(it, DEGREE)),
+                pulses_per_turn: wiring.pulses_per_turn,
+                levitation_signal: wiring.levitation,
+            },
+            ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
+            detector: tuning,
+        }
+    }
+}
+
+impl From<&TachometersConfig> for BallBearingTable {
+    fn from(config: &TachometersConfig) -> Self {
+        let [inner_ring_marks, cage_marks] = config.marks;
+        Self {
+            inner_ring_marks,
+            cage_marks,
+            cage_ratio: shortest(config.cage_ratio, 1.0),
+            bore_radius_mm: shortest(config.bore_radius, MILLI),
+            edge_error_mrad: shortest(config.edge_error, MILLI),
+            window_ms: shortest(config.window, MILLI),
+        }
+    }
+}
+
+impl Tables {
+    /// In SI. The core's own rules are not looked at yet.
+    pub(super) fn settings(&self) -> Result<Settings, Flaw> {
+        let rotor = rotor(&self.rotor)?;
+        let retainer = retainer(&self.retainer)?;
+        let gravity = gravity(self.run.gravity_m_s2)?;
+        let sensors = &self.sensors;
+        Ok(Settings {
+            monitor: MonitorConfig {
+                fitted: sensors.fitted()?,
+                sensing: SensingConfig {
+                    resolution: (MICRO * sensors.resolution_um) as f32,
+                    zero_count: sensors.zero_count as f32,
+                    full_scale: sensors.full_scale,
+                    mounting_angle: sensors.mounting_deg.map(|it| (DEGREE * it) as f32),
+                },
+                tachometers: self.ball_bearing.as_ref().map(BallBearingTable::config),
+                detector: DetectorConfig {
+                    sample_rate: self.run.sample_rate_hz as f32,
+                    machine: machine_config(&rotor, &retainer, gravity),
+                    tuning: self.detector,
+                },
+            },
+            wiring: Wiring {
+                pulses_per_turn: sensors.pulses_per_turn,
+                levitation: sensors.levitation_signal,
+            },
+        })
+    }
+}
+
+impl SensorsTable {
+    /// A bit for each channel.
+    fn fitted(&self) -> Result<u8, Flaw> {
+        let rule = "channels must be \"ax\" and \"ay\", \"bx\" and \"by\", or all four, each once";
+        let flaw = || Flaw::new("sensors", "channels", rule);
+        let mut fitted = 0;
+        for name in &self.channels {
+            let channel = (0..CHANNELS as u8).find(|it| channel_name(*it) == name);
+            let bit = 1 << channel.ok_or_else(flaw)?;
+            if fitted & bit != 0 {
+                return Err(flaw());
+            }
+            fitted |= bit;
+        }
+        [0b0011, 0b1100, 0b1111]
+            .contains(&fitted)
+            .then_some(fitted)
+            .ok_or_else(flaw)
+    }
+}
+
+impl BallBearingTable {
+    fn config(&self) -> TachometersConfig {
+        TachometersConfig {
+            marks: [self.inner_ring_marks, self.cage_marks],
+            cage_ratio: self.cage_ratio as f32,
+            bore_radius: (MILLI * self.bore_radius_mm) as f32,
+            edge_error: (MILLI * self.edge_error_mrad) as f32,
+            window: (MILLI * self.window_ms) as f32,
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! A dump of the flash, or a file of one episode.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use embedded_storage::nor_flash::ReadNorFlash;
+use serde::Serialize;
+use touchdown_core::log::block::{BLOCK_BYTES, Page};
+use touchdown_core::log::counters::Counters;
+use touchdown_firmware::store::{self, EPISODE_BYTES, Slot, bytes_of};
+
+use super::episode::{Completeness, Episode};
+use crate::ram_nor::RamNor;
+use touchdown_base::input_error::InputError;
+
+/// Larger than any flash that the log is kept on, bytes.
+const LARGEST: u64 = 256 << 20;
+
+/// All that a log holds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Dump {
+    /// Lifetime counters; none in a file of one episode, or where none are whole.
+    pub counters: Option<Counters>,
+    /// In the order of their numbers.
+    pub episodes: Vec<Episode>,
+}
+
+/// Reads the log at `path`.
+pub fn read(path: &str) -> Result<Dump, InputError> {
+    let dump = Dump::of(&InputError::read_bytes(Path::new(path), LARGEST)?);
+    if dump.counters.is_none() && dump.episodes.is_empty() {
+        let rule = "has neither counters nor a block of an episode: it is no drop log";
+        return Err(InputError::of_file(path, rule));
+    }
+    Ok(dump)
+}
+
+impl Dump {
+    /// From the bytes of a file.
+    pub fn of(bytes: &[u8]) -> Self {
+        // Where a dump has its counters, the pages of one episode are.
+        let head = &bytes[..bytes.len().min(bytes_of(0))];
+        if bytes.len() <= bytes_of(0) || is_block(head) {
+            let episode = Some(Episode::of(bytes)).filter(|it| it.report.sequence.is_some());
+            return Self {
+                counters: newest(&mut flash(head, 0)),
+                episodes: Vec::from_iter(episode),
+            };
+        }
+        let slots = (bytes.len() - bytes_of(0)).div_ceil(bytes_of(1) - bytes_of(0));
+        let mut flash = flash(bytes, slots);
+        let counters = newest(&mut flash);
+        let mut episodes: Vec<Episode> = (0..slots)
+            .filter_map(|slot| held(&mut flash, slot))
+            .collect();
+        episodes.sort_by_key(|it| it.sequence);
+        mark_twins(&mut episodes);
+        for it in &mut episodes {
+            // At the next start an episode that was cut off is counted.
+            let is_new = counters.is_none_or(|counters| counters.episodes < it.sequence);
+            if it.complete == Completeness::CutOff && is_new {
+                it.complete = Completeness::Open;
+            }
+        }
+        Self { counters, episodes }
+    }
+}
+
+/// The bytes as a flash of so many whole slots, erased where the file ends before.
+fn flash(bytes: &[u8], slots: usize) -> RamNor {
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes_of(slots), 0xff);
+    RamNor(bytes)
+}
+
+fn is_block(bytes: &[u8]) -> bool {
+    let (pages, _) = bytes.as_chunks::<BLOCK_BYTES>();
+    let mut opened = pages.iter().map(Page::open);
+    opened.any(|it| matches!(it, Page::Sealed(_)))
+}
+
+fn newest(flash: &mut RamNor) -> Option<Counters> {
+    let counters = store::counters(flash, 0).expect("within the flash");
+    (counters.generation > 0).then_some(counters)
+}
+
+/// The episode in a slot, if the store finds one there, or would but for damage.
+fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
+    let slot: Slot = store::slot(flash, 0, number).expect("within the flash");
+    let mut pages = vec![0; EPISODE_BYTES];
+    let address = bytes_of(number) as u32;
+    flash.read(address, &mut pages).expect("within the flash");
+    // An erasure goes from the first page to the last.
+    let is_erased = pages[..BLOCK_BYTES].iter().all(|it| *it == 0xff);
+    if slot.released || (slot.sequence == 0 && is_erased) {
+        return None;
+    }
+    let mut episode = Episode::of(&pages);
+    episode.report.sequence?;
+    episode.slot = Some(number);
+    episode.locked = slot.locked;
+    if slot.sequence != episode.sequence {
+        let flaw = "its first pages are lost, so the controller does not know it";
+        episode.flaw(flaw.to_owned());
+    }
+    Some(episode)
+}
+
+fn mark_twins(episodes: &mut [Episode]) {
+    let mut slots: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for it in episodes.iter() {
+        slots.entry(it.sequence).or_default().extend(it.slot);
+    }
+    for it in episodes {
+        let own = it.slot;
+        let others = slots[&it.sequence].iter();
+        for slot in others.filter(|slot| Some(**slot) != own) {
+            it.flaw(format!("slot {slot} has an episode of the same number"));
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The log, fetched from the controller over the link.
+
+use super::dump::Dump;
+use super::episode::Episode;
+use crate::link::{Client, LinkError, Port};
+use touchdown_base::progress::Progress;
+
+/// Which episodes are wanted: one takes 5 s at 115 200 baud.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All.
+    All,
+    /// The newest.
+    Newest,
+    /// That of this number.
+    Number(u32),
+}
+
+/// Fetches what is wanted and there, and the lifetime counters.
+pub fn fetch(port: &Port, wanted: Wanted) -> Result<Dump, LinkError> {
+    let mut client = Client::new(port.open()?);
+    client.hello()?;
+    let counters = client.lifetime()?;
+    let mut episodes = Vec::new();
+    let Some((first, last)) = client.episodes()? else {
+        return Ok(Dump { counters, episodes });
+    };
+    // Numbers between may be gone; what is beyond the largest flash is never there.
+    let numbers = match wanted {
+        Wanted::All => first.max(last.saturating_sub(MOST - 1))..=last,
+        Wanted::Newest => last..=last,
+        Wanted::Number(number) => number..=number,
+    };
+    for number in numbers {
+        let mut progress = None;
+        let bytes = client.episode(number, |done, total| {
+            progress
+                .get_or_insert_with(|| Progress::of_jobs("fetching", total.into()))
+                .at(done.into());
+        })?;
+        let episode = bytes.map(|bytes| Episode::of(&bytes));
+        episodes.extend(episode.filter(|it| it.report.sequence.is_some()));
+    }
+    Ok(Dump { counters, episodes })
+}
+
+/// Episodes in the largest flash that a log is kept on.
+const MOST: u32 = 5_461;

@@ -1,0 +1,70 @@
+//! The firmware's drop log as a file, a dump of its flash or one episode, or over the link. Format:
+//! `docs/formats/log.md`.
+
+mod comtrade;
+mod dump;
+mod episode;
+mod fetch;
+mod text;
+
+pub use comtrade::comtrade;
+pub use dump::{Dump, read};
+pub use episode::{Completeness, Episode, Event};
+pub use fetch::{Wanted, fetch};
+pub use text::{list, show};
+
+use std::io::Write;
+
+use touchdown_core::learnt::Learnt;
+use touchdown_core::sample::{CHANNELS, Edges};
+
+use crate::stream::{Columns, Pulses, Row, StreamWriter, of_field};
+
+/// Whether no episode of the log is damaged. One that was cut off is not.
+pub fn is_sound(dump: &Dump) -> bool {
+    !dump.episodes.iter().any(|it| it.damaged)
+}
+
+/// The episode as a stream, with spin and levitation signal as they were before it and the pulses that are known; time 0 is the trigger. False where it has no header, or an impossible one.
+pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
+    let Some(header) = episode.scale() else {
+        return Ok(false);
+    };
+    let learnt = episode.learnt.as_deref().and_then(of_field);
+    let spin = learnt.as_ref().and_then(Learnt::spin).map(f64::from);
+    let levitated = learnt.as_ref().and_then(Learnt::levitated);
+    let columns = Columns {
+        planes: if header.fitted & 0b1100 == 0 { 1 } else { 2 },
+        speed: spin.is_some(),
+        levitated: levitated.is_some(),
+        edges: std::array::from_fn(|channel| {
+            header.pulsed & (1 << channel) != 0 && !episode.pulses.is_empty()
+        }),
+    };
+    let rate = f64::from(header.sample_rate);
+    let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
+    for (number, counts) in episode.samples.iter().enumerate() {
+        let mut positions = [f64::NAN; CHANNELS];
+        for (channel, position) in positions.iter_mut().enumerate() {
+            *position = episode
+                .position(header, counts, channel)
+                .unwrap_or(f64::NAN);
+        }
+        let shown = episode.pulses.get(number).copied().flatten();
+        let shown = shown.unwrap_or_default();
+        writer.write(&Row {
+            time: episode.time(header, number),
+            positions,
+            spin,
+            levitated,
+            edges: shown.map(|edges| {
+                edges.map(|Edges { count, age }| Pulses {
+                    count: count.into(),
+                    age: f64::from(age) / (256.0 * rate),
+                })
+            }),
+        })?;
+    }
+    writer.finish()?;
+    Ok(true)
+}

@@ -1,0 +1,158 @@
+//! The log for people.
+
+use touchdown_core::log::ending::Closing;
+use touchdown_core::log::reader::DamageKind;
+
+use super::dump::Dump;
+use super::episode::{Completeness, Episode};
+use touchdown_base::paint::Paint;
+use touchdown_scene::names::event_name;
+
+/// A line for each episode, then the counters.
+pub fn list(dump: &Dump, paint: Paint) -> String {
+    let head = format!(
+        "{:>6} {:<11}{:<15}{:>5}{:>12}{:>9}{:>9}{:>8}",
+        "number", "state", "trigger", "boot", "at s", "samples", "events", "index"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    for episode in &dump.episodes {
+        text += &line(episode, paint);
+    }
+    match &dump.counters {
+        Some(it) => {
+            text += &format!(
+                "switched on {} times; {} landings, {} of them cut off, weight {:.3}; {} drops not recorded\n",
+                it.boots,
+                it.landings,
+                it.unweighed,
+                it.weight as f64 / 1e3,
+                it.lost
+            );
+        }
+        None => text += "no counters\n",
+    }
+    text
+}
+
+fn line(episode: &Episode, paint: Paint) -> String {
+    let header = episode.header.as_ref();
+    let state = format!("{:<11}", complete(episode.complete));
+    let state = match (episode.damaged, episode.complete) {
+        (true, _) => paint.bad(&state),
+        (false, Completeness::Yes) => paint.good(&state),
+        (false, _) => state,
+    };
+    let at = header.map(|it| it.trigger as f64 / f64::from(it.sample_rate));
+    let or = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    format!(
+        "{:>6} {state}{:<15}{:>5}{:>12}{:>9}{:>9}{:>8}{}{}\n",
+        episode.sequence,
+        header.map_or("-", |it| event_name(it.trigger_kind)),
+        or(header.map(|it| it.boot.to_string())),
+        or(at.map(|it| format!("{it:.3}"))),
+        episode.samples.iter().flatten().count(),
+        episode.events.len(),
+        or(episode.ending.map(|it| format!("{:.2}", it.index))),
+        if episode.locked { "  locked" } else { "" },
+        damage(episode),
+    )
+}
+
+/// Nothing, or what is damaged.
+fn damage(episode: &Episode) -> String {
+    if !episode.damaged {
+        return String::new();
+    }
+    let kinds = [
+        (DamageKind::Missing, "missing"),
+        (DamageKind::Broken, "broken"),
+        (DamageKind::Stray, "stray"),
+        (DamageKind::Unknown, "unknown"),
+    ];
+    let mut parts = Vec::new();
+    for (kind, name) in kinds {
+        let pages = episode.damage.iter().filter(|it| it.what == kind);
+        let pages: Vec<_> = pages.map(|it| it.page.to_string()).collect();
+        if !pages.is_empty() {
+            let word = if pages.len() == 1 { "page" } else { "pages" };
+            parts.push(format!("{word} {} {name}", pages.join(", ")));
+        }
+    }
+    parts.extend(episode.flaws.iter().cloned());
+    if episode.report.rest > 0 {
+        parts.push(format!(
+            "{} bytes behind the last page",
+            episode.report.rest
+        ));
+    }
+    format!("  damaged: {}", parts.join("; "))
+}
+
+fn complete(complete: Completeness) -> &'static str {
+    match complete {
+        Completeness::Yes => "complete",
+        Completeness::CutOff => "cut off",
+        Completeness::Open => "open",
+    }
+}
+
+/// One episode.
+pub fn show(episode: &Episode, paint: Paint) -> String {
+    let mut text = paint.bold(&format!("Episode {}: ", episode.sequence));
+    text += complete(episode.complete);
+    text += &damage(episode);
+    text.push('\n');
+    if let Some(header) = &episode.header {
+        let name = String::from_utf8_lossy(&header.firmware);
+        text += &format!(
+            "{}, configuration {:08x}, boot {}; {} at tick {}, {:.3} s after reset\n\
+             {} Hz, every {}. tick; {} of {} samples, {:.4} um a count\n",
+            name.trim_end_matches('\0'),
+            header.config_hash,
+            header.boot,
+            event_name(header.trigger_kind),
+            header.trigger,
+            header.trigger as f64 / f64::from(header.sample_rate),
+            header.sample_rate,
+            header.decimation,
+            episode.samples.iter().flatten().count(),
+            header.planned,
+            header.resolution * 1e6,
+        );
+    }
+    if let Some(known) = episode.samples_with_pulses
+        && known < episode.samples.len()
+    {
+        let all = episode.samples.len();
+        text += &format!("pulses incomplete: known of {known} of {all} samples\n");
+    }
+    if let Some(ending) = &episode.ending {
+        let why = match ending.closing {
+            Closing::Levitated => "floats again",
+            Closing::Withdrawn => "the fall was withdrawn",
+            Closing::Quiet => "nothing more happened",
+            Closing::Longest => "as long as an episode may be",
+        };
+        text += &format!("ended: {why}; velocity index {:.2}\n", ending.index);
+    }
+    if !episode.events.is_empty() {
+        text += &paint.bold(&format!(
+            "\n{:<16}{:>12}{:>14}{:>10}\n",
+            "event", "onset ms", "declared ms", "mm/s"
+        ));
+    }
+    for event in &episode.events {
+        let speed = if event.normal_speed_m_s > 0.0 {
+            format!("{:.2}", event.normal_speed_m_s * 1e3)
+        } else {
+            "-".to_owned()
+        };
+        text += &format!(
+            "{:<16}{:>12.4}{:>14.4}{speed:>10}\n",
+            event_name(event.event),
+            event.onset_s * 1e3,
+            event.declared_s * 1e3,
+        );
+    }
+    text
+}

@@ -1,0 +1,58 @@
+//! Why the controller does not answer.
+
+use std::io::{self, ErrorKind};
+
+use touchdown_core::config_block::BlockError;
+use touchdown_core::controller::Busy;
+use touchdown_core::link::{Refusal, VERSION};
+
+use touchdown_base::input_error::reason;
+use touchdown_base::plain::shown;
+
+/// Why a request has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The port cannot be opened, or is gone.
+    #[error("{}", of_line(.0))]
+    Line(#[from] io::Error),
+    /// Nothing came back.
+    #[error("no answer: is a controller there, at 115 200 baud?")]
+    Silent,
+    /// It speaks another version.
+    #[error("the controller speaks version {0} of the link, this program version {VERSION}")]
+    Version(u8),
+    /// It does not do what was asked.
+    #[error("the controller refuses: {}", why(.0))]
+    Refused(Refusal),
+    /// Its configuration is none of this version.
+    #[error("the controller's configuration: {0}")]
+    Config(BlockError),
+    /// It answers something else than was asked.
+    #[error("the controller's answer makes no sense")]
+    Senseless,
+}
+
+fn of_line(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::ConnectionRefused => "nobody is there".to_owned(),
+        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe | ErrorKind::UnexpectedEof => {
+            "the line was closed".to_owned()
+        }
+        _ => reason(error),
+    }
+}
+
+fn why(refusal: &Refusal) -> String {
+    let text = match refusal {
+        Refusal::Busy(Busy::DropRuns) => "a drop runs",
+        Refusal::Busy(Busy::Blind) => "no plane gives a position",
+        Refusal::Busy(Busy::Watching) => "it watches, so the machine may run",
+        Refusal::Busy(Busy::Latched) => "a drop is latched",
+        Refusal::Block => "that is no configuration of its version",
+        Refusal::Parameter(name) => return format!("{} breaks its rule", shown(name)),
+        Refusal::NoStore => "this board cannot keep it",
+        Refusal::StoreFailed => "its flash failed",
+        Refusal::NoEpisode => "there is no such episode, or it is being written",
+    };
+    text.to_owned()
+}

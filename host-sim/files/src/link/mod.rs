@@ -1,0 +1,19 @@
+//! The desktop's side of the serial link (`docs/formats/link.md`): asks the controller, and hears what it says
+//! by itself.
+//!
+//! | file | says |
+//! |---|---|
+//! | `port` | what a person types, to a line |
+//! | `line` | bytes to and from a serial device or a socket |
+//! | `client` | requests, retries, answers |
+//! | `error` | why there is no answer |
+
+mod client;
+mod error;
+mod line;
+mod port;
+
+pub use client::{Client, Told};
+pub use error::LinkError;
+pub use line::Line;
+pub use port::Port;

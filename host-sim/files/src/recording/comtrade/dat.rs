@@ -1,0 +1,216 @@
+//! The data of a COMTRADE recording, sample by sample.
+
+use std::io::{self, Read};
+
+use csv::ByteRecord;
+
+use super::cfg::{Cfg, Data};
+use crate::stream::{Bounded, Meter, csv_error};
+use touchdown_base::input_error::{InputError, reason};
+
+/// End of a text, as DOS has it.
+const END_OF_FILE: u8 = 0x1a;
+/// What stands for a missing value of a text where the channel cannot be so large.
+const MISSING: [f64; 2] = [99_999.0, 999_999.0];
+/// Stamp that stands for none.
+const NO_STAMP: u32 = u32::MAX;
+
+/// A sample: its number, its stamp in ticks, and its values, which are with the reader.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// From 1.
+    pub number: u64,
+    /// Ticks; `None` where there is none.
+    pub stamp: Option<f64>,
+}
+
+/// Reads samples.
+pub struct Dat<R> {
+    file: String,
+    cfg: Cfg,
+    source: Source<R>,
+    meter: Meter,
+    /// Of the sample that was read last: analog in their units, then digital 0 or 1; NaN where there is none.
+    pub values: Vec<f64>,
+    /// Records so far.
+    pub records: u64,
+}
+
+enum Source<R> {
+    Text(Box<csv::Reader<Bounded<R>>>, ByteRecord),
+    Binary(R, Vec<u8>),
+}
+
+impl<R: Read> Dat<R> {
+    /// Reads `bytes`, of the file `file`, as `cfg` says.
+    pub fn new(file: &str, cfg: Cfg, bytes: R) -> Self {
+        let (source, meter) = if cfg.data == Data::Ascii {
+            let bytes = Bounded::new(bytes);
+            let meter = bytes.meter();
+            let mut reader = csv::ReaderBuilder::new();
+            let reader = reader
+                .has_headers(false)
+                .flexible(true)
+                .trim(csv::Trim::All);
+            let reader = Box::new(reader.from_reader(bytes));
+            (Source::Text(reader, ByteRecord::new()), meter)
+        } else {
+            (
+                Source::Binary(bytes, vec![0; cfg.bytes()]),
+                Meter::default(),
+            )
+        };
+        Self {
+            file: file.to_owned(),
+            values: vec![f64::NAN; cfg.analog.len() + cfg.digital.len()],
+            cfg,
+            source,
+            meter,
+            records: 0,
+        }
+    }
+
+    /// What is read of it.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
+    }
+
+    /// The configuration.
+    pub fn cfg(&self) -> &Cfg {
+        &self.cfg
+    }
+
+    /// The file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// A flaw of the record that was read last.
+    pub fn flaw(&self, rule: impl Into<String>) -> InputError {
+        InputError::at_line(&self.file, self.records, rule)
+    }
+
+    /// The next sample; `None` at the end.
+    pub fn next(&mut self) -> Result<Option<Sample>, InputError> {
+        let sample = match &mut self.source {
+            Source::Text(reader, record) => {
+                let read = reader.read_byte_record(record);
+                if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
+                    return Ok(None);
+                }
+                if record.len() == 1 && record[0].first() == Some(&END_OF_FILE) {
+                    return Ok(None);
+                }
+                self.records += 1;
+                of_text(record, &self.cfg, &mut self.values)
+            }
+            Source::Binary(bytes, record) => {
+                let read = fill(bytes, record)
+                    .map_err(|error| InputError::of_file(&self.file, reason(&error)))?;
+                self.meter.add(read as u64);
+                if read == 0 {
+                    return Ok(None);
+                }
+                self.records += 1;
+                if read < record.len() {
+                    let rule = format!(
+                        "the last sample is cut off: it has {read} of {} bytes",
+                        record.len()
+                    );
+                    return Err(self.flaw(rule));
+                }
+                of_bytes(record, &self.cfg, &mut self.values)
+            }
+        };
+        sample.map(Some).map_err(|rule| self.flaw(rule))
+    }
+}
+
+/// Reads until `record` is full or the bytes end.
+fn fill(bytes: &mut impl Read, record: &mut [u8]) -> io::Result<usize> {
+    let mut filled = 0;
+    while filled < record.len() {
+        match bytes.read(&mut record[filled..]) {
+            Ok(0) => break,
+            Ok(read) => filled += read,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(filled)
+}
+
+fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
+    let needed = 2 + values.len();
+    if record.len() != needed {
+        let there = record.len();
+        return Err(format!(
+            "a sample needs {needed} fields, this one has {there}"
+        ));
+    }
+    let text = |at: usize| std::str::from_utf8(&record[at]).unwrap_or("?");
+    let number = |at: usize| -> Result<Option<f64>, String> {
+        match text(at) {
+            "" => Ok(None),
+            it => match it.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(Some(value)),
+                _ => Err(format!("field {} must be a number, is {it:?}", at + 1)),
+            },
+        }
+    };
+    for (index, value) in values.iter_mut().enumerate() {
+        let count = number(2 + index)?;
+        *value = match cfg.analog.get(index) {
+            Some(channel) => {
+                let count = count.filter(|it| !(MISSING.contains(it) && *it > channel.most));
+                count.map_or(f64::NAN, |it| channel.scale * it + channel.shift)
+            }
+            None => count.unwrap_or(f64::NAN),
+        };
+    }
+    let sample = text(0)
+        .parse()
+        .map_err(|_| format!("the sample's number must be whole, is {:?}", text(0)))?;
+    Ok(Sample {
+        number: sample,
+        stamp: number(1)?,
+    })
+}
+
+fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
+    let (words, _) = record.as_chunks::<4>();
+    let [number, stamp] = [words[0], words[1]].map(u32::from_le_bytes);
+    let (analog, digital) = values.split_at_mut(cfg.analog.len());
+    let width = if cfg.data == Data::Binary { 2 } else { 4 };
+    let (counts, bits) = record[8..].split_at(width * analog.len());
+    for ((value, channel), bytes) in analog.iter_mut().zip(&cfg.analog).zip(counts.chunks(width)) {
+        let count = match (cfg.data, bytes) {
+            (Data::Binary, &[a, b]) => {
+                let count = i16::from_le_bytes([a, b]);
+                (count != i16::MIN).then_some(f64::from(count))
+            }
+            (Data::Float32, &[a, b, c, d]) => {
+                let count = f32::from_le_bytes([a, b, c, d]);
+                if count.is_infinite() {
+                    return Err(format!("channel {} is infinite", channel.name));
+                }
+                Some(f64::from(count))
+            }
+            (_, &[a, b, c, d]) => {
+                let count = i32::from_le_bytes([a, b, c, d]);
+                (count != i32::MIN).then_some(f64::from(count))
+            }
+            _ => None,
+        };
+        *value = count.map_or(f64::NAN, |it| channel.scale * it + channel.shift);
+    }
+    for (index, value) in digital.iter_mut().enumerate() {
+        let word = &bits[2 * (index / 16)..];
+        let word = u16::from_le_bytes([word[0], word[1]]);
+        *value = f64::from(word >> (index % 16) & 1);
+    }
+    Ok(Sample {
+        number: u64::from(number),
+        stamp: (stamp != NO_STAMP).then_some(f64::from(stamp)),
+    })
+}

@@ -1,0 +1,166 @@
+//! The files of a COMTRADE recording: .cfg and .dat, or both in a .cff.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use super::cfg::Cfg;
+use super::dat::Dat;
+use crate::recording::layout::text_of;
+use touchdown_base::input_error::{InputError, reason};
+
+/// Larger than any configuration, bytes.
+const LARGEST_CFG: u64 = 16 << 20;
+
+/// Whether the name of `path` is that of a COMTRADE recording.
+pub fn is_comtrade(path: &Path) -> bool {
+    ["cfg", "dat", "cff"].iter().any(|it| ends(path, it))
+}
+
+fn ends(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case(ending))
+}
+
+/// Opens the recording that `path` is a file of; also the bytes of its data.
+pub fn open(path: &Path) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
+    if ends(path, "cff") {
+        let name = path.display().to_string();
+        let (file, size) = opened(path)?;
+        return Ok((combined(&name, Box::new(file))?, size));
+    }
+    let cfg_path = beside(path, "cfg")?;
+    let cfg_name = cfg_path.display().to_string();
+    let (mut file, size) = opened(&cfg_path)?;
+    let cfg = configuration(&cfg_name, &mut file, size)?;
+    let dat_path = beside(path, "dat")?;
+    let (file, size) = opened(&dat_path)?;
+    let dat_name = dat_path.display().to_string();
+    Ok((Dat::new(&dat_name, cfg, Box::new(file)), size))
+}
+
+/// The file of this ending beside `path`, in whichever case it is written.
+fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
+    if ends(path, ending) {
+        return Ok(path.to_owned());
+    }
+    let endings = [ending.to_owned(), ending.to_ascii_uppercase()];
+    let mut paths = endings.iter().map(|it| path.with_extension(it));
+    paths.find(|it| it.exists()).ok_or_else(|| {
+        let rule = format!(
+            "there is no .{ending} beside it: a COMTRADE recording has .cfg and .dat, or is a .cff"
+        );
+        InputError::of_file(&path.display().to_string(), rule)
+    })
+}
+
+fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
+    let name = path.display().to_string();
+    let fail = |error: std::io::Error| InputError::of_file(&name, reason(&error));
+    if path.is_dir() {
+        return Err(InputError::of_file(&name, "is a folder, not a file"));
+    }
+    let file = File::open(path).map_err(fail)?;
+    let size = file.metadata().map_err(fail)?.len();
+    Ok((BufReader::with_capacity(1 << 16, file), size))
+}
+
+fn configuration(name: &str, bytes: &mut impl Read, size: u64) -> Result<Cfg, InputError> {
+    if size > LARGEST_CFG {
+        let rule = format!(
+            "is larger than {} MiB, more than any configuration",
+            LARGEST_CFG >> 20
+        );
+        return Err(InputError::of_file(name, rule));
+    }
+    let mut text = Vec::new();
+    let read = bytes.take(LARGEST_CFG).read_to_end(&mut text);
+    read.map_err(|error| InputError::of_file(name, reason(&error)))?;
+    Cfg::parse(&text_of(&text)).map_err(|(line, rule)| InputError::at_line(name, line, rule))
+}
+
+/// A recording in one file: sections begin with lines as `--- file type: CFG ---`.
+pub fn combined(name: &str, bytes: Box<dyn BufRead>) -> Result<Dat<Box<dyn Read>>, InputError> {
+    let mut lines = Sections {
+        name,
+        bytes,
+        line: 0,
+    };
+    let (mut cfg, mut at) = (None, 0);
+    let mut section = lines.skip_to_section()?;
+    loop {
+        let Some(kind) = section else {
+            let rule = "has no section \"--- file type: DAT ... ---\" after one of CFG";
+            return Err(InputError::of_file(name, rule));
+        };
+        if kind == "CFG" {
+            at = lines.line;
+            let (text, next) = lines.text()?;
+            cfg = Some(text);
+            section = next;
+        } else if let (true, Some(text)) = (kind.starts_with("DAT"), &cfg) {
+            let cfg = Cfg::parse(text)
+                .map_err(|(line, rule)| InputError::at_line(name, at + line, rule))?;
+            let told = kind["DAT".len()..].split(':').next().unwrap_or("").trim();
+            if told.parse() != Ok(cfg.data) {
+                let rule =
+                    format!("the section's data are {told:?}, those of the configuration are not");
+                return Err(InputError::at_line(name, lines.line, rule));
+            }
+            return Ok(Dat::new(name, cfg, Box::new(lines.bytes)));
+        } else {
+            section = lines.skip_to_section()?;
+        }
+    }
+}
+
+struct Sections<'a> {
+    name: &'a str,
+    bytes: Box<dyn BufRead>,
+    line: u64,
+}
+
+impl Sections<'_> {
+    /// The next line, or as much of it as is believed; `None` at the end.
+    fn next(&mut self) -> Result<Option<String>, InputError> {
+        let mut line = Vec::new();
+        let mut some = (&mut self.bytes).take(crate::stream::LONGEST);
+        let read = some.read_until(b'\n', &mut line);
+        let read = read.map_err(|error| InputError::of_file(self.name, reason(&error)))?;
+        self.line += u64::from(line.ends_with(b"\n"));
+        Ok((read > 0).then(|| text_of(&line)))
+    }
+
+    fn skip_to_section(&mut self) -> Result<Option<String>, InputError> {
+        while let Some(line) = self.next()? {
+            if let Some(kind) = section(&line) {
+                return Ok(Some(kind));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The lines up to the next section, and its kind.
+    fn text(&mut self) -> Result<(String, Option<String>), InputError> {
+        let mut text = String::new();
+        while let Some(line) = self.next()? {
+            if let Some(kind) = section(&line) {
+                return Ok((text, Some(kind)));
+            }
+            text += &line;
+            if text.len() as u64 > LARGEST_CFG {
+                let rule = "the configuration is larger than any";
+                return Err(InputError::at_line(self.name, self.line, rule));
+            }
+        }
+        Ok((text, None))
+    }
+}
+
+/// The kind of the section that a line begins, in upper case: `CFG`, `DAT BINARY: 1234`.
+fn section(line: &str) -> Option<String> {
+    let inside = line.trim().strip_prefix("---")?.strip_suffix("---")?.trim();
+    let (what, kind) = inside.split_once(':')?;
+    let is = what.trim().eq_ignore_ascii_case("file type");
+    is.then(|| kind.trim().to_ascii_uppercase())
+}

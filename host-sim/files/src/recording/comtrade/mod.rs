@@ -1,0 +1,197 @@
+//! Recordings as COMTRADE (IEEE C37.111, all its editions), text or binary.
+//!
+//! Read sample by sample, so that a recording of any size fits; the crates of that name read all of it.
+
+mod cfg;
+mod dat;
+mod files;
+
+use std::io::Read;
+
+pub use cfg::Cfg;
+pub use dat::Dat;
+pub use files::{combined, is_comtrade, open};
+
+use super::mapping::Mapping;
+use super::pick::{Heading, Pick, by_name};
+use super::remarks::Remarks;
+use crate::stream::{Stamp, Stamped};
+use touchdown_base::input_error::InputError;
+use touchdown_base::plain::Number;
+use touchdown_scene::sensors::SensorsConfig;
+
+/// Part of a period by which a stamp may miss the rate.
+const OFF: f64 = 0.5;
+
+/// Ticks at which the stamps of binary data begin again.
+const WRAP: f64 = 4_294_967_296.0;
+
+/// Samples of a recording, its channels as a mapping has them.
+pub struct ComtradeRows<R> {
+    dat: Dat<R>,
+    pick: Pick,
+    /// By the rates, where it has them.
+    by_rate: bool,
+    /// First stamp, ticks.
+    first: Option<f64>,
+    finished: bool,
+}
+
+impl<R: Read> ComtradeRows<R> {
+    /// Finds the channels of `mapping`, or without one those that are named as in a stream.
+    pub fn new(
+        dat: Dat<R>,
+        mapping: Option<&Mapping>,
+        sensors: &SensorsConfig,
+        remarks: &Remarks,
+    ) -> Result<Self, InputError> {
+        let cfg = dat.cfg();
+        let fail = |rule: String| InputError::of_file(dat.file(), rule);
+        let found = headings(cfg);
+        let named;
+        let mapping = match mapping {
+            Some(mapping) => mapping,
+            None => {
+                named = by_name(&found).ok_or_else(|| {
+                    fail(format!(
+                        "no channels are named ax and ay: --columns says which they are; {}",
+                        super::pick::list(&found)
+                    ))
+                })?;
+                &named
+            }
+        };
+        if mapping.time.is_some() {
+            return Err(fail(
+                "COMTRADE has its own rate: leave out [time] of --columns".to_owned(),
+            ));
+        }
+        let pick = Pick::new(mapping, &found, sensors, remarks).map_err(fail)?;
+        for channel in pick.used().iter().filter_map(|it| cfg.analog.get(*it)) {
+            if channel.skew != 0.0 {
+                remarks.warn(format!(
+                    "{}: channel {} is sampled {} us late, which is not undone",
+                    dat.file(),
+                    channel.name,
+                    Number(channel.skew)
+                ));
+            }
+        }
+        if cfg.start.is_none() {
+            remarks.warn(format!(
+                "{}: the dates of first sample and trigger cannot be read; time 0 is the first sample",
+                dat.file()
+            ));
+        }
+        Ok(Self {
+            by_rate: !cfg.rates.is_empty(),
+            dat,
+            pick,
+            first: None,
+            finished: false,
+        })
+    }
+
+    /// What is taken of it.
+    pub fn pick(&self) -> &Pick {
+        &self.pick
+    }
+
+    /// The data.
+    pub fn dat(&self) -> &Dat<R> {
+        &self.dat
+    }
+
+    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+        let Some(sample) = self.dat.next()? else {
+            let (there, told) = (self.dat.records, self.dat.cfg().samples);
+            if there < told {
+                let rule = format!("the data end at sample {there} of {told}: the file is cut off");
+                return Err(self.dat.flaw(rule));
+            }
+            return Ok(None);
+        };
+        let cfg = self.dat.cfg();
+        let line = self.dat.records;
+        if line > cfg.samples {
+            let rule = format!(
+                "there are more than the {} samples of the configuration",
+                cfg.samples
+            );
+            return Err(self.dat.flaw(rule));
+        }
+        if sample.number != line {
+            let rule = format!(
+                "sample {line} is numbered {}: one is missing, or the file is damaged",
+                sample.number
+            );
+            return Err(self.dat.flaw(rule));
+        }
+        let start = cfg.start.unwrap_or(0.0);
+        let first = *self.first.get_or_insert(sample.stamp.unwrap_or(0.0));
+        let since = sample.stamp.map(|it| (it - first) * cfg.tick);
+        let stamp = if self.by_rate {
+            let since_first = cfg.time(line - 1);
+            let period = cfg
+                .rates
+                .iter()
+                .find(|it| line <= it.1)
+                .map_or(0.0, |it| 1.0 / it.0);
+            let wrap = if cfg.data == cfg::Data::Ascii {
+                f64::INFINITY
+            } else {
+                WRAP * cfg.tick
+            };
+            let off = |since: &f64| {
+                let off = (since - since_first).abs() % wrap;
+                off.min(wrap - off) > OFF * period + cfg.tick
+            };
+            if let Some(since) = since.filter(off) {
+                let rule = format!(
+                    "the stamp is {since:.6} s after the first sample, the rates of the configuration give \
+                     {since_first:.6} s"
+                );
+                return Err(self.dat.flaw(rule));
+            }
+            Stamp::exact(start + since_first)
+        } else {
+            let Some(since) = since else {
+                return Err(self
+                    .dat
+                    .flaw("the sample has no stamp, and the configuration no rate"));
+            };
+            Stamp::counted(start + since, cfg.tick)
+        };
+        Ok(Some(Stamped {
+            stamp,
+            row: self.pick.row(stamp.time, &self.dat.values),
+            line,
+        }))
+    }
+}
+
+impl<R: Read> Iterator for ComtradeRows<R> {
+    type Item = Result<Stamped, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.finished {
+            return None;
+        }
+        let row = self.read();
+        self.finished = !matches!(row, Ok(Some(_)));
+        row.transpose()
+    }
+}
+
+/// The channels, analog before digital.
+fn headings(cfg: &Cfg) -> Vec<Heading> {
+    let analog = cfg.analog.iter().map(|it| Heading {
+        text: it.name.clone(),
+        unit: (!it.unit.is_empty()).then(|| it.unit.clone()),
+    });
+    let digital = cfg.digital.iter().map(|name| Heading {
+        text: name.clone(),
+        unit: None,
+    });
+    analog.chain(digital).collect()
+}

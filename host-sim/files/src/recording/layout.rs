@@ -1,0 +1,304 @@
+//! How a text is written: found in its first part.
+
+use super::mapping::{Comment, Decimal, Delimiter, TextHints};
+use super::pick::Heading;
+use super::unit::is_unit;
+use crate::stream::is_missing;
+
+/// Bytes in which header and first rows must be.
+pub const HEAD: usize = 1 << 16;
+/// Rows that are looked at.
+const LOOKED_AT: usize = 64;
+
+/// How a text is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Between fields.
+    pub delimiter: Delimiter,
+    /// Between whole and fraction.
+    pub decimal: Decimal,
+    /// What a line that is none of the table begins with.
+    pub comment: Option<Comment>,
+    /// The columns; without names where the file has none.
+    pub columns: Vec<Heading>,
+    /// Bytes and lines before the first row.
+    pub before: (usize, u64),
+}
+
+/// A line that may be of the table.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    text: &'a str,
+    /// Its first byte in the head, and its number from 1.
+    at: (usize, u64),
+}
+
+/// The text of bytes that are UTF-8, or else Latin-1.
+pub fn text_of(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
+    }
+}
+
+impl Layout {
+    /// From the first bytes of a file, `whole` if that is all of it. Else the line and the rule.
+    pub fn find(head: &[u8], whole: bool, hints: &TextHints) -> Result<Self, (u64, String)> {
+        if let Some(place) = head.iter().position(|byte| *byte == 0) {
+            let line = 1 + head[..place].iter().filter(|it| **it == b'\n').count() as u64;
+            let rule = "is no text: it has a zero byte (COMTRADE ends in .cfg, .dat or .cff; \
+                        Parquet has to be converted to CSV: docs/use/recordings.md)";
+            return Err((line, rule.to_owned()));
+        }
+        let bom = if head.starts_with(b"\xef\xbb\xbf") {
+            3
+        } else {
+            0
+        };
+        let mut lines = lines(head, bom);
+        if !whole {
+            lines.pop();
+        }
+        let texts: Vec<String> = lines.iter().map(|(bytes, _)| text_of(bytes)).collect();
+        let all: Vec<Line> = (texts.iter().zip(&lines))
+            .map(|(text, (_, at))| Line { text, at: *at })
+            .collect();
+        let comment = hints.comment.or_else(|| comment_of(&all));
+        let is_comment = |line: &&Line| {
+            comment.is_some_and(|it| line.text.trim_start().as_bytes().first() == Some(&it.byte()))
+        };
+        let table: Vec<Line> = (all.iter())
+            .filter(|it| !it.text.trim().is_empty() && !is_comment(it))
+            .copied()
+            .collect();
+        let (delimiter, decimal) = marks(&table, hints)?;
+        let fields = |line: &Line| split(line.text, delimiter);
+        let tail = &table[table.len().saturating_sub(LOOKED_AT)..];
+        let width = usual_width(tail, delimiter);
+        let numeric = numeric_columns(tail, width, delimiter, decimal);
+        let is_row = |line: &Line| {
+            let fields = fields(line);
+            let numbers = fields.iter().filter(|it| is_number(it, decimal));
+            fields.len() == width
+                && numbers.count() > 0
+                && (fields.iter().zip(&numeric))
+                    .all(|(field, numeric)| !numeric || is_value(field, decimal))
+        };
+        let after = hints.header_line.unwrap_or(0);
+        let Some(first) = table.iter().position(|it| it.at.1 > after && is_row(it)) else {
+            let rule = format!("there are no rows of numbers in its first {HEAD} bytes");
+            return Err((table.first().map_or(1, |it| it.at.1), rule));
+        };
+        let at = table[first].at;
+        let mut above: Vec<Vec<String>> = (table[..first].iter().rev())
+            .take_while(|it| it.at.1 >= after)
+            .map(fields)
+            .take_while(|it| it.len() == width)
+            .take(2)
+            .collect();
+        if above.is_empty() {
+            // NumPy and gnuplot put the names into a comment.
+            let names = all
+                .iter()
+                .rev()
+                .filter(|it| it.at.1 < at.1)
+                .find(is_comment);
+            let names = names.map(|it| it.text.trim_start().trim_start_matches(['#', '%']));
+            let names = names.map(|it| split(it.trim_start(), delimiter));
+            above.extend(names.filter(|it| it.len() == width));
+        }
+        let has_units = above.len() == 2 && above[0].iter().any(|it| is_unit(it));
+        let mut above = above.into_iter();
+        let units = if has_units { above.next() } else { None };
+        let names = above.next().unwrap_or_else(|| vec![String::new(); width]);
+        let unit = |index: usize| {
+            let unit = units.as_ref()?.get(index)?;
+            (!unit.is_empty()).then(|| unit.clone())
+        };
+        Ok(Self {
+            delimiter,
+            decimal,
+            comment,
+            columns: (names.into_iter().enumerate())
+                .map(|(index, text)| Heading {
+                    text,
+                    unit: unit(index),
+                })
+                .collect(),
+            before: (at.0, at.1 - 1),
+        })
+    }
+}
+
+/// Each line with its place; a last one without an end is one too.
+fn lines(head: &[u8], from: usize) -> Vec<(&[u8], (usize, u64))> {
+    let (mut lines, mut start, mut number) = (Vec::new(), from, 1);
+    while start < head.len() {
+        let rest = &head[start..];
+        let length = rest.iter().position(|it| *it == b'\n' || *it == b'\r');
+        let length = length.unwrap_or(rest.len());
+        lines.push((&rest[..length], (start, number)));
+        let ends_in_both = rest[length..].starts_with(b"\r\n");
+        start += length + if ends_in_both { 2 } else { 1 };
+        number += 1;
+    }
+    lines
+}
+
+fn comment_of(lines: &[Line]) -> Option<Comment> {
+    [Comment::Hash, Comment::Percent].into_iter().find(|it| {
+        let begins = |line: &Line| line.text.trim_start().as_bytes().first() == Some(&it.byte());
+        lines.iter().any(begins)
+    })
+}
+
+/// The fields of a line, without blanks and quotes about them.
+fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
+    let between = char::from(delimiter.byte());
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for letter in line.chars() {
+        if letter == '"' {
+            quoted = !quoted;
+        } else if letter == between && !quoted {
+            fields.push(String::new());
+        } else if let Some(field) = fields.last_mut() {
+            field.push(letter);
+        }
+    }
+    fields.iter().map(|it| it.trim().to_owned()).collect()
+}
+
+/// Delimiter and decimal sign by which most of the last lines' fields are numbers.
+fn marks(table: &[Line], hints: &TextHints) -> Result<(Delimiter, Decimal), (u64, String)> {
+    let tail = &table[table.len().saturating_sub(LOOKED_AT)..];
+    let mut best = None;
+    let mut most = (0.0, 0);
+    for delimiter in Delimiter::ALL {
+        for decimal in [Decimal::Point, Decimal::Comma] {
+            let wanted = hints.delimiter.is_none_or(|it| it == delimiter)
+                && hints.decimal.is_none_or(|it| it == decimal);
+            if !wanted || (delimiter == Delimiter::Comma && decimal == Decimal::Comma) {
+                continue;
+            }
+            let width = usual_width(tail, delimiter);
+            let rows = tail.iter().map(|it| split(it.text, delimiter));
+            let (mut numbers, mut fields) = (0, 0);
+            for row in rows.filter(|it| it.len() == width && width > 1) {
+                fields += row.len();
+                numbers += row.iter().filter(|it| is_value(it, decimal)).count();
+            }
+            let part = numbers as f64 / fields.max(1) as f64;
+            if numbers > 0 && (part, numbers) > most {
+                (most, best) = ((part, numbers), Some((delimiter, decimal)));
+            }
+        }
+    }
+    best.ok_or_else(|| {
+        let rule =
+            "there are no rows of two numbers or more with commas, semicolons or tabs between them";
+        (table.first().map_or(1, |it| it.at.1), rule.to_owned())
+    })
+}
+
+/// Fields of most lines.
+fn usual_width(lines: &[Line], delimiter: Delimiter) -> usize {
+    let widths: Vec<_> = lines
+        .iter()
+        .map(|it| split(it.text, delimiter).len())
+        .collect();
+    let count = |width: usize| widths.iter().filter(|it| **it == width).count();
+    widths
+        .iter()
+        .copied()
+        .max_by_key(|it| count(*it))
+        .unwrap_or(0)
+}
+
+/// Which columns hold numbers in most lines.
+fn numeric_columns(
+    lines: &[Line],
+    width: usize,
+    delimiter: Delimiter,
+    decimal: Decimal,
+) -> Vec<bool> {
+    let rows: Vec<_> = (lines.iter().map(|it| split(it.text, delimiter)))
+        .filter(|it| it.len() == width)
+        .collect();
+    let numbers = |column: usize| {
+        rows.iter()
+            .filter(|it| is_value(&it[column], decimal))
+            .count()
+    };
+    (0..width)
+        .map(|column| 2 * numbers(column) > rows.len())
+        .collect()
+}
+
+/// A number, or what stands for a missing one.
+fn is_value(field: &str, decimal: Decimal) -> bool {
+    is_missing(field) || is_number(field, decimal)
+}
+
+fn is_number(field: &str, decimal: Decimal) -> bool {
+    let begins = field.starts_with(|it: char| it.is_ascii_digit() || "+-.,".contains(it));
+    begins && with_point(field, decimal).is_some_and(|it| it.parse::<f64>().is_ok())
+}
+
+/// The field with a decimal point; `None` where it has one but should not.
+pub fn with_point(field: &str, decimal: Decimal) -> Option<std::borrow::Cow<'_, str>> {
+    match decimal {
+        Decimal::Point => Some(field.into()),
+        Decimal::Comma if field.contains('.') => None,
+        Decimal::Comma => Some(field.replacen(',', ".", 1).into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn find(text: &str) -> Layout {
+        Layout::find(text.as_bytes(), true, &TextHints::default()).unwrap()
+    }
+
+    fn names(layout: &Layout) -> Vec<&str> {
+        layout.columns.iter().map(|it| it.text.as_str()).collect()
+    }
+
+    #[test]
+    fn decimal_commas_and_a_preamble() {
+        let layout = find(
+            "Messung 3;12.03.2024\r\nKanaele;3\r\n\r\nt;X1;Y1\r\ns;\u{b5}m;\u{b5}m\r\n0,000;1,5;-2\r\n0,001;;3\r\n",
+        );
+        assert_eq!(
+            (layout.delimiter, layout.decimal),
+            (Delimiter::Semicolon, Decimal::Comma)
+        );
+        assert_eq!(names(&layout), ["t", "X1", "Y1"]);
+        assert_eq!(layout.columns[1].unit.as_deref(), Some("\u{b5}m"));
+        assert_eq!(layout.before.1, 5);
+    }
+
+    #[test]
+    fn names_in_a_comment_and_no_names_at_all() {
+        let layout = find("# made by NumPy\n# t,x,y\n0,1,2\n1,2,3\n");
+        assert_eq!(names(&layout), ["t", "x", "y"]);
+        assert_eq!(layout.comment, Some(Comment::Hash));
+        assert_eq!(names(&find("0\t1\t2\n1\t2\t3\n")), ["", "", ""]);
+    }
+
+    #[test]
+    fn a_bad_cell_in_the_data_is_no_header() {
+        let layout = find("t,x,y\n0,1,2\n1,one,3\n2,1,3\n3,1,3\n");
+        assert_eq!(layout.before.1, 1);
+        assert_eq!(names(&layout), ["t", "x", "y"]);
+    }
+
+    #[test]
+    fn a_column_of_clock_times_is_left_alone() {
+        let layout = find("clock,x,y\n12:00:00,1.5,2\n12:00:01,2.5,2\n");
+        assert_eq!(names(&layout), ["clock", "x", "y"]);
+        assert_eq!(layout.before.1, 1);
+    }
+}

@@ -1,0 +1,319 @@
+//! From the columns that a recording has to the rows of a stream.
+
+use touchdown_core::sample::CHANNELS;
+
+use super::mapping::{
+    Axes, Column, LevitatedColumn, Mapping, POSITIONS, PositionColumn, SpeedColumn,
+};
+use super::remarks::Remarks;
+use super::unit::{Displacement, Speed, Time, split};
+use crate::stream::{Columns, Row};
+use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
+
+/// A column as the file has it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heading {
+    /// As it is written, unit included.
+    pub text: String,
+    /// From the row below, or from a place of its own.
+    pub unit: Option<String>,
+}
+
+impl Heading {
+    /// Its name and its unit.
+    fn parts(&self) -> (&str, Option<&str>) {
+        let (name, unit) = split(&self.text);
+        (name, self.unit.as_deref().or(unit))
+    }
+}
+
+/// What to take from a row, and how it becomes SI.
+#[derive(Clone, Debug)]
+pub struct Pick {
+    positions: Vec<Affine>,
+    speed: Option<Affine>,
+    levitated: Option<Threshold>,
+    /// The column of time and the power of ten of its seconds.
+    pub time: Option<(usize, i32)>,
+    /// Angle of each plane's sensors, where the columns are along them, rad.
+    turned: Option<[f64; 2]>,
+}
+
+/// (value - zero) factor.
+#[derive(Clone, Copy, Debug)]
+struct Affine {
+    column: usize,
+    zero: f64,
+    factor: f64,
+}
+
+impl Affine {
+    fn of(self, values: &[f64]) -> f64 {
+        (values[self.column] - self.zero) * self.factor
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Threshold {
+    column: usize,
+    above: f64,
+    reversed: bool,
+}
+
+impl Pick {
+    /// Finds the columns of `mapping` among `found`; else the rule that is broken.
+    pub fn new(
+        mapping: &Mapping,
+        found: &[Heading],
+        sensors: &SensorsConfig,
+        remarks: &Remarks,
+    ) -> Result<Self, String> {
+        let mut positions = Vec::new();
+        for (name, column) in POSITIONS.iter().zip(mapping.positions()) {
+            let Some(it) = column else { continue };
+            let index = find(&it.column, name, found)?;
+            let told = found[index].parts().1;
+            let read = told.and_then(|unit| unit.parse::<Displacement>().ok());
+            let unit = it.unit.or(read);
+            if let (Some(mine), Some(theirs)) = (it.unit, read)
+                && mine != theirs
+            {
+                let theirs = told.unwrap_or_default();
+                remarks.warn(format!(
+                    "{name}: the file says {theirs:?}, --columns another unit, which is taken"
+                ));
+            }
+            let scale = match (unit, it.sensitivity) {
+                (Some(Displacement::Length(metres)), None) => metres,
+                (Some(Displacement::Volts(volts)), Some(per_metre)) => volts / per_metre.0,
+                (Some(Displacement::Volts(_)), None) => {
+                    return Err(format!(
+                        "{name} is in volts: it needs a sensitivity, as \"200 mV/mil\""
+                    ));
+                }
+                (Some(Displacement::Length(_)), Some(_)) => {
+                    return Err(format!("{name} is a length: a sensitivity is for volts"));
+                }
+                (None, _) => return Err(no_unit(name, &found[index], "um")),
+            };
+            positions.push(Affine {
+                column: index,
+                zero: it.offset,
+                factor: if it.reversed { -scale } else { scale },
+            });
+        }
+        let mut speed = None;
+        if let Some(it) = &mapping.speed {
+            let column = find(&it.column, "speed", found)?;
+            let read = found[column].parts().1.and_then(|unit| unit.parse().ok());
+            let Some(Speed(scale)) = it.unit.or(read) else {
+                return Err(no_unit("speed", &found[column], "rpm"));
+            };
+            speed = Some(Affine {
+                column,
+                zero: 0.0,
+                factor: if it.reversed { -scale } else { scale },
+            });
+        }
+        let mut levitated = None;
+        if let Some(it) = &mapping.levitated {
+            levitated = Some(Threshold {
+                column: find(&it.column, "levitated", found)?,
+                above: it.above,
+                reversed: it.reversed,
+            });
+        }
+        let pick = Self {
+            positions,
+            speed,
+            levitated,
+            time: time(mapping, found)?,
+            turned: (mapping.axes == Axes::Sensors).then_some(sensors.mounting_angle),
+        };
+        pick.each_its_own(found)?;
+        Ok(pick)
+    }
+
+    /// No column is two quantities.
+    fn each_its_own(&self, found: &[Heading]) -> Result<(), String> {
+        let positions = self.positions.iter().map(|it| it.column);
+        let others = [
+            ("time", self.time.map(|it| it.0)),
+            ("speed", self.speed.map(|it| it.column)),
+            ("levitated", self.levitated.map(|it| it.column)),
+        ];
+        let others = others
+            .into_iter()
+            .filter_map(|(name, it)| Some((name, it?)));
+        let all: Vec<_> = POSITIONS.into_iter().zip(positions).chain(others).collect();
+        for (index, (name, column)) in all.iter().enumerate() {
+            if let Some((before, _)) = all[..index].iter().find(|it| it.1 == *column) {
+                let (number, named) = (column + 1, &found[*column].text);
+                let rule = "each needs a column of its own";
+                return Err(format!(
+                    "{before} and {name} are both column {number} {named:?}: {rule}"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a stream of it would have.
+    pub fn columns(&self) -> Columns {
+        Columns {
+            planes: (self.positions.len() / 2) as u8,
+            speed: self.speed.is_some(),
+            levitated: self.levitated.is_some(),
+            edges: [false; 2],
+        }
+    }
+
+    /// Which columns are read.
+    pub fn used(&self) -> Vec<usize> {
+        let positions = self.positions.iter().map(|it| it.column);
+        let speed = self.speed.map(|it| it.column);
+        let levitated = self.levitated.map(|it| it.column);
+        positions.chain(speed).chain(levitated).collect()
+    }
+
+    /// The row of `values`, of which those that are used are there; NaN where there is none.
+    pub fn row(&self, time: f64, values: &[f64]) -> Row {
+        let mut positions = [f64::NAN; CHANNELS];
+        for (place, column) in positions.iter_mut().zip(&self.positions) {
+            *place = column.of(values);
+        }
+        for (plane, angle) in self.turned.iter().flatten().enumerate() {
+            let along = [positions[2 * plane], positions[2 * plane + 1]];
+            let [x, y] = to_sensor_axes(along, -angle);
+            (positions[2 * plane], positions[2 * plane + 1]) = (x, y);
+        }
+        let spin = self.speed.map(|it| it.of(values));
+        Row {
+            time,
+            positions,
+            spin: spin.filter(|it| !it.is_nan()),
+            levitated: self.levitated.and_then(|it| {
+                let value = values[it.column];
+                (!value.is_nan()).then_some((value > it.above) != it.reversed)
+            }),
+            edges: [None; 2],
+        }
+    }
+}
+
+fn time(mapping: &Mapping, found: &[Heading]) -> Result<Option<(usize, i32)>, String> {
+    let Some(it) = mapping.time.as_ref().map(toml::Spanned::get_ref) else {
+        return Ok(None);
+    };
+    let Some(column) = &it.column else {
+        return Ok(None);
+    };
+    let index = find(column, "time", found)?;
+    let read = found[index].parts().1.and_then(|unit| unit.parse().ok());
+    let Some(Time(power)) = it.unit.or(read) else {
+        return Err(no_unit("time", &found[index], "s"));
+    };
+    Ok(Some((index, power)))
+}
+
+fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String> {
+    let name = match column {
+        Column::Number(number) => {
+            let index = number.checked_sub(1).filter(|it| *it < found.len());
+            return index.ok_or_else(|| {
+                format!(
+                    "{what}: there is no column {number}, there are {}",
+                    found.len()
+                )
+            });
+        }
+        Column::Name(name) => name.trim(),
+    };
+    let tests: [&dyn Fn(&Heading) -> bool; 4] = [
+        &|it| it.text.trim() == name,
+        &|it| it.parts().0 == name,
+        &|it| it.text.trim().eq_ignore_ascii_case(name),
+        &|it| it.parts().0.eq_ignore_ascii_case(name),
+    ];
+    for test in tests {
+        let mut places = (0..found.len()).filter(|index| test(&found[*index]));
+        match (places.next(), places.next()) {
+            (Some(index), None) => return Ok(index),
+            (Some(one), Some(other)) => {
+                return Err(format!(
+                    "{what}: columns {} and {} are both named {name:?}; give the number",
+                    one + 1,
+                    other + 1
+                ));
+            }
+            _ => {}
+        }
+    }
+    Err(format!(
+        "{what}: there is no column {name:?}; {}",
+        list(found)
+    ))
+}
+
+fn no_unit(what: &str, heading: &Heading, example: &str) -> String {
+    let named = &heading.text;
+    format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+}
+
+/// Columns that are named as in a stream: ax, ay, bx, by, speed, levitated.
+pub fn by_name(found: &[Heading]) -> Option<Mapping> {
+    let there = |name: &str| {
+        let is = |it: &&Heading| it.parts().0.trim().eq_ignore_ascii_case(name);
+        found
+            .iter()
+            .any(|it| is(&it))
+            .then(|| Column::Name(name.to_owned()))
+    };
+    let position = |name: &str| {
+        there(name).map(|column| {
+            let it = PositionColumn {
+                column,
+                unit: None,
+                sensitivity: None,
+                offset: 0.0,
+                reversed: false,
+            };
+            toml::Spanned::new(0..0, it)
+        })
+    };
+    let [ax, ay, bx, by] = POSITIONS.map(position);
+    let (bx, by) = bx.zip(by).unzip();
+    let (ax, ay) = ax.zip(ay).unzip();
+    ax.is_some().then_some(Mapping {
+        ax,
+        ay,
+        bx,
+        by,
+        speed: there("speed").map(|column| SpeedColumn {
+            column,
+            unit: None,
+            reversed: false,
+        }),
+        levitated: there("levitated").map(|column| LevitatedColumn {
+            column,
+            above: 0.5,
+            reversed: false,
+        }),
+        ..Mapping::default()
+    })
+}
+
+/// The columns, for people.
+pub fn list(found: &[Heading]) -> String {
+    const NAMED: usize = 20;
+    let names = found.iter().take(NAMED).enumerate().map(|(index, it)| {
+        let unit = it
+            .unit
+            .as_ref()
+            .map_or(String::new(), |unit| format!(" in {unit}"));
+        format!("{} {:?}{unit}", index + 1, it.text)
+    });
+    let names: Vec<_> = names.collect();
+    let more = if found.len() > NAMED { ", ..." } else { "" };
+    format!("its columns are {}{more}", names.join(", "))
+}

@@ -1,0 +1,258 @@
+//! Rows of a recording that is a text.
+
+use std::io::{Chain, Cursor, Read};
+
+use csv::ByteRecord;
+
+use super::layout::{HEAD, Layout, text_of, with_point};
+use super::mapping::{Mapping, TextHints};
+use super::pick::{Pick, list};
+use super::remarks::Remarks;
+use crate::stream::{Bounded, Meter, Stamp, Stamped, csv_error, is_missing};
+use touchdown_base::input_error::{InputError, is_utf_16, reason};
+use touchdown_scene::sensors::SensorsConfig;
+
+/// The first part of a file, and the rest of it.
+pub struct Head<R> {
+    bytes: Vec<u8>,
+    rest: R,
+}
+
+impl<R: Read> Head<R> {
+    /// Reads the first part of `bytes`; errors name the file `file`.
+    pub fn read(file: &str, mut bytes: R) -> Result<Self, InputError> {
+        let mut head = Vec::new();
+        let read = (&mut bytes).take(HEAD as u64).read_to_end(&mut head);
+        read.map_err(|error| InputError::of_file(file, reason(&error)))?;
+        Ok(Self {
+            bytes: head,
+            rest: bytes,
+        })
+    }
+
+    /// Whether it is in an encoding that is not read.
+    pub fn is_utf_16(&self) -> bool {
+        is_utf_16(&self.bytes)
+    }
+
+    /// How it is written.
+    pub fn layout(&self, hints: &TextHints) -> Result<Layout, (u64, String)> {
+        Layout::find(&self.bytes, self.bytes.len() < HEAD, hints)
+    }
+
+    /// All of it again, from byte `from` of the first part.
+    pub fn whole(self, from: usize) -> Chain<Cursor<Vec<u8>>, R> {
+        let mut first = Cursor::new(self.bytes);
+        first.set_position(from as u64);
+        first.chain(self.rest)
+    }
+}
+
+/// Rows of a text, its columns as a mapping has them.
+pub struct TextRows<R> {
+    file: String,
+    layout: Layout,
+    pick: Pick,
+    used: Vec<usize>,
+    rate: Option<f64>,
+    records: csv::Reader<Bounded<Chain<Cursor<Vec<u8>>, R>>>,
+    meter: Meter,
+    record: ByteRecord,
+    values: Vec<f64>,
+    /// Rows so far.
+    rows: u64,
+    /// The row that is handed out once it is known whether another follows.
+    ready: Option<Result<Stamped, InputError>>,
+    left_out: bool,
+    remarks: Remarks,
+}
+
+impl<R: Read> TextRows<R> {
+    /// Finds how the text is written and where its columns are.
+    pub fn new(
+        file: &str,
+        head: Head<R>,
+        mapping: &Mapping,
+        sensors: &SensorsConfig,
+        remarks: &Remarks,
+    ) -> Result<Self, InputError> {
+        let layout = head
+            .layout(&mapping.text)
+            .map_err(|(line, rule)| InputError::at_line(file, line, rule))?;
+        let header = layout.before.1.max(1);
+        let fail = |rule: String| InputError::at_line(file, header, rule);
+        let pick = Pick::new(mapping, &layout.columns, sensors, remarks).map_err(fail)?;
+        let rate = mapping.time.as_ref().and_then(|it| it.get_ref().rate_hz);
+        if pick.time.is_none() && rate.is_none() {
+            let rule = format!(
+                "nothing says when its rows were sampled: [time] of --columns needs a column or rate_hz; {}",
+                list(&layout.columns)
+            );
+            return Err(fail(rule));
+        }
+        let bytes = Bounded::new(head.whole(layout.before.0));
+        let meter = bytes.meter();
+        let records = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .delimiter(layout.delimiter.byte())
+            .comment(layout.comment.map(|it| it.byte()))
+            .from_reader(bytes);
+        let mut rows = Self {
+            file: file.to_owned(),
+            values: vec![f64::NAN; layout.columns.len()],
+            used: pick.used(),
+            layout,
+            pick,
+            rate,
+            records,
+            meter,
+            record: ByteRecord::new(),
+            rows: 0,
+            ready: None,
+            left_out: false,
+            remarks: remarks.clone(),
+        };
+        rows.ready = rows.read().transpose();
+        Ok(rows)
+    }
+
+    /// How it is written.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// What is taken of it.
+    pub fn pick(&self) -> &Pick {
+        &self.pick
+    }
+
+    /// The rate that the mapping gives, Hz.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+
+    /// How far it is read.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
+    }
+
+    fn line(&self) -> u64 {
+        self.layout.before.1 + self.record.position().map_or(1, csv::Position::line)
+    }
+
+    fn advance(&mut self) -> Result<bool, InputError> {
+        let read = self.records.read_byte_record(&mut self.record);
+        let before = self.layout.before.1;
+        read.map_err(|error| csv_error(&self.file, &error, &self.meter).further(before))
+    }
+
+    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+        if !self.advance()? {
+            return Ok(None);
+        }
+        let line = self.line();
+        match self.parse(line) {
+            Ok(row) => Ok(Some(row)),
+            Err(rule) => {
+                let error = InputError::at_line(&self.file, line, rule);
+                if !self.advance().unwrap_or(true) && self.is_cut_off() {
+                    self.leave_out(line);
+                    return Ok(None);
+                }
+                Err(error)
+            }
+        }
+    }
+
+    fn parse(&mut self, line: u64) -> Result<Stamped, String> {
+        let columns = self.layout.columns.len();
+        if self.record.len() != columns {
+            let there = self.record.len();
+            return Err(format!(
+                "a row needs {columns} fields, this one has {there}"
+            ));
+        }
+        for index in 0..self.used.len() {
+            let column = self.used[index];
+            self.values[column] = self.number(column)?;
+        }
+        let stamp = match self.pick.time {
+            Some((column, power)) => self.stamp(column, power)?,
+            None => Stamp::exact(self.rows as f64 / self.rate.unwrap_or(1.0)),
+        };
+        self.rows += 1;
+        Ok(Stamped {
+            stamp,
+            row: self.pick.row(stamp.time, &self.values),
+            line,
+        })
+    }
+
+    /// A number that lost its last digits is still a number: only the end of its line shows that the
+    /// last row is whole.
+    fn is_cut_off(&self) -> bool {
+        !self.meter.ends_in(b"\r\n")
+    }
+
+    fn leave_out(&mut self, line: u64) {
+        self.left_out = true;
+        self.remarks.warn(format!(
+            "{}:{line}: the last line is left out: it does not end with a newline, so it may be cut off",
+            self.file
+        ));
+    }
+
+    fn name(&self, column: usize) -> String {
+        match self.layout.columns[column].text.as_str() {
+            "" => format!("column {}", column + 1),
+            name => name.to_owned(),
+        }
+    }
+
+    fn number(&self, column: usize) -> Result<f64, String> {
+        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
+        if is_missing(text) {
+            return Ok(f64::NAN);
+        }
+        let number = with_point(text, self.layout.decimal).and_then(|it| it.parse::<f64>().ok());
+        number.filter(|it| it.is_finite()).ok_or_else(|| {
+            let text = text_of(&self.record[column]);
+            format!(
+                "{} must be a finite number, empty or NaN, is {text:?}",
+                self.name(column)
+            )
+        })
+    }
+
+    fn stamp(&self, column: usize, power: i32) -> Result<Stamp, String> {
+        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
+        let point = with_point(text, self.layout.decimal);
+        let stamp = point.and_then(|it| Stamp::parse(&it)?.times_ten_to(power));
+        stamp.ok_or_else(|| {
+            let text = text_of(&self.record[column]);
+            format!(
+                "{} must be a finite number, is {text:?}; without one, give rate_hz in the [time] of --columns",
+                self.name(column)
+            )
+        })
+    }
+}
+
+impl<R: Read> Iterator for TextRows<R> {
+    type Item = Result<Stamped, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let ready = match self.ready.take()? {
+            Ok(row) => row,
+            Err(error) => return Some(Err(error)),
+        };
+        self.ready = self.read().transpose();
+        if self.ready.is_none() && self.is_cut_off() && !self.left_out {
+            self.leave_out(ready.line);
+            return None;
+        }
+        Some(Ok(ready))
+    }
+}

@@ -1,0 +1,296 @@
+//! Reads a recorded stream, strictly: a row that breaks a rule ends it.
+
+use std::cell::RefCell;
+use std::io::Read;
+use std::rc::Rc;
+
+use csv::StringRecord;
+use touchdown_core::learnt::Learnt;
+use touchdown_core::sample::{CHANNELS, TACHOMETERS};
+
+use super::Columns;
+use super::bounded::{Bounded, Meter};
+use super::clock::Stamp;
+use super::even::Even;
+use super::learnt::{LEARNT, of_field};
+use super::row::{Pulses, Row, Stamped};
+use touchdown_base::input_error::{InputError, reason};
+
+const RPM: f64 = std::f64::consts::TAU / 60.0;
+const MICRO: f64 = 1e-6;
+/// Whole numbers up to here are exact.
+const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
+
+/// A stream being read. The rate is that of the first [`super::LOOK_AHEAD`] rows; all later rows are held
+/// to it.
+pub struct StreamReader<R> {
+    columns: Columns,
+    rows: Even<Records<R>>,
+}
+
+impl<R: Read> StreamReader<R> {
+    /// Reads the header and the first rows of `bytes`; errors name the stream `file`.
+    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
+        let records = Records::new(file, bytes)?;
+        Ok(Self {
+            columns: records.columns(),
+            rows: Even::new(file, records, 1)?,
+        })
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> Columns {
+        self.columns
+    }
+
+    /// Samples per second, Hz.
+    pub fn rate(&self) -> f64 {
+        self.rows.rate()
+    }
+
+    /// Time of the first row, s.
+    pub fn start(&self) -> f64 {
+        self.rows.start()
+    }
+}
+
+impl<R: Read> Iterator for StreamReader<R> {
+    type Item = Result<Row, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.rows.next()
+    }
+}
+
+/// The rows of a stream as they stand there, whatever their times.
+pub struct Records<R> {
+    file: String,
+    records: csv::Reader<Bounded<R>>,
+    meter: Meter,
+    columns: Columns,
+    header: Vec<&'static str>,
+    learnt: Before,
+    record: StringRecord,
+    begun: bool,
+    finished: bool,
+}
+
+/// What had been learnt before the first row; none before that is read, or without that column.
+pub type Before = Rc<RefCell<Option<Box<Learnt>>>>;
+
+impl<R: Read> Records<R> {
+    /// Reads the header of `bytes`.
+    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
+        let bytes = Bounded::new(bytes);
+        let meter = bytes.meter();
+        let mut records = csv::ReaderBuilder::new()
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(bytes);
+        let header = records
+            .headers()
+            .map_err(|error| csv_error(file, &error, &meter))?;
+        let names: Vec<_> = header.iter().collect();
+        let known = names.strip_suffix(&[LEARNT]).unwrap_or(&names);
+        let Some(columns) = Columns::of_header(known) else {
+            let rule = format!(
+                "the header must be time_s,ax_um,ay_um[,bx_um,by_um][,speed_rpm][,levitated]\
+                 [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us][,learnt], is {:?}",
+                names.join(",")
+            );
+            return Err(InputError::at_line(file, 1, rule));
+        };
+        let mut header = columns.header();
+        header.extend((known.len() < names.len()).then_some(LEARNT));
+        Ok(Self {
+            file: file.to_owned(),
+            records,
+            meter,
+            columns,
+            header,
+            learnt: Before::default(),
+            record: StringRecord::new(),
+            begun: false,
+            finished: false,
+        })
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> Columns {
+        self.columns
+    }
+
+    /// What had been learnt before the first row, once that is read.
+    pub fn learnt(&self) -> Before {
+        self.learnt.clone()
+    }
+
+    /// How far it is read.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
+    }
+
+    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+        let read = self.records.read_record(&mut self.record);
+        if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
+            self.check_end()?;
+            return Ok(None);
+        }
+        let row = parse(&self.file, &self.record, self.columns, &self.header)?;
+        if self.header.last() == Some(&LEARNT) {
+            self.learn()?;
+        }
+        Ok(Some(row))
+    }
+
+    /// The last field of a row: only the first one's has something in it.
+    fn learn(&mut self) -> Result<(), InputError> {
+        let text = &self.record[self.header.len() - 1];
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        if text.is_empty() {
+            return Ok(());
+        }
+        let fail = |rule: &str| InputError::at_line(&self.file, line(&self.record), rule);
+        if !is_first {
+            return Err(fail("learnt has a value in the first row only"));
+        }
+        let learnt = of_field(text);
+        let rule = "learnt is not what `touchdown log export` of this version writes";
+        *self.learnt.borrow_mut() = Some(Box::new(learnt.ok_or_else(|| fail(rule))?));
+        Ok(())
+    }
+
+    /// A number that lost its last digits is still a number: only the newline shows that the last
+    /// row is whole.
+    fn check_end(&self) -> Result<(), InputError> {
+        if self.meter.ends_in(b"\n") {
+            return Ok(());
+        }
+        let last = self.records.position().line();
+        let rule = "the last line is cut off: it does not end with a newline";
+        Err(InputError::at_line(&self.file, last, rule))
+    }
+}
+
+impl<R: Read> Iterator for Records<R> {
+    type Item = Result<Stamped, InputError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.finished {
+            return None;
+        }
+        let row = self.read();
+        self.finished = !matches!(row, Ok(Some(_)));
+        row.transpose()
+    }
+}
+
+fn line(record: &StringRecord) -> u64 {
+    record.position().map_or(1, csv::Position::line)
+}
+
+/// What the csv library has to say of `file`, read through `meter`.
+pub fn csv_error(file: &str, error: &csv::Error, meter: &Meter) -> InputError {
+    let line = error.position().map(csv::Position::line);
+    match (error.kind(), line) {
+        (csv::ErrorKind::Utf8 { .. }, Some(line)) => {
+            InputError::at_line(file, line, "the text is not UTF-8")
+        }
+        (csv::ErrorKind::Io(error), _) if meter.is_too_long() => {
+            InputError::at_line(file, meter.line(), error.to_string())
+        }
+        (csv::ErrorKind::Io(error), _) => InputError::of_file(file, reason(error)),
+        (_, Some(line)) => InputError::at_line(file, line, error.to_string()),
+        (_, None) => InputError::of_file(file, error.to_string()),
+    }
+}
+
+/// Whether a field says that there is no value.
+pub fn is_missing(field: &str) -> bool {
+    field.is_empty() || field.eq_ignore_ascii_case("nan")
+}
+
+fn parse(
+    file: &str,
+    record: &StringRecord,
+    columns: Columns,
+    header: &[&str],
+) -> Result<Stamped, InputError> {
+    let fail = |rule: String| InputError::at_line(file, line(record), rule);
+    if record.len() != header.len() {
+        return Err(fail(format!(
+            "a row needs {} fields, this one has {}",
+            header.len(),
+            record.len()
+        )));
+    }
+    let number = |column: usize| -> Result<f64, InputError> {
+        let text = &record[column];
+        match text.parse::<f64>() {
+            _ if is_missing(text) => Ok(f64::NAN),
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(fail(format!(
+                "{} must be a finite number, empty or NaN, is {text:?}",
+                header[column]
+            ))),
+        }
+    };
+    let stamp = Stamp::parse(&record[0]).ok_or_else(|| {
+        fail(format!(
+            "time_s must be a finite number, is {:?}",
+            &record[0]
+        ))
+    })?;
+    let channels = 2 * usize::from(columns.planes);
+    let mut positions = [f64::NAN; CHANNELS];
+    for (channel, position) in positions[..channels].iter_mut().enumerate() {
+        *position = MICRO * number(1 + channel)?;
+    }
+    let mut column = 1 + channels;
+    let mut spin = None;
+    if columns.speed {
+        spin = Some(RPM * number(column)?).filter(|spin| !spin.is_nan());
+        column += 1;
+    }
+    let mut levitated = None;
+    if columns.levitated {
+        levitated = match &record[column] {
+            "0" => Some(false),
+            "1" => Some(true),
+            other if is_missing(other) => None,
+            other => {
+                let rule = "must be 0, 1, empty or NaN";
+                return Err(fail(format!("levitated {rule}, is {other:?}")));
+            }
+        };
+        column += 1;
+    }
+    let mut edges = [None; TACHOMETERS];
+    for (pulses, _) in (edges.iter_mut().zip(columns.edges)).filter(|(_, there)| *there) {
+        let (count, age) = (number(column)?, MICRO * number(column + 1)?);
+        if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
+            let text = &record[column];
+            let rule = "must be a whole number from 0 to 2^53, empty or NaN";
+            return Err(fail(format!("{} {rule}, is {text:?}", header[column])));
+        }
+        if age < 0.0 {
+            let text = &record[column + 1];
+            let name = header[column + 1];
+            return Err(fail(format!("{name} must be 0 or more, is {text:?}")));
+        }
+        *pulses = (!count.is_nan() && !age.is_nan()).then_some(Pulses {
+            count: count as u64,
+            age,
+        });
+        column += 2;
+    }
+    let row = Row {
+        time: stamp.time,
+        positions,
+        spin,
+        levitated,
+        edges,
+    };
+    let line = line(record);
+    Ok(Stamped { stamp, row, line })
+}

@@ -1,0 +1,213 @@
+//! The measurement as one page.
+
+use maud::{Markup, html};
+
+use super::Measurement;
+use super::pulse::{Contact, Pulse};
+use super::recording::{Axis as Along, Recording};
+use super::spectrum::Transform;
+use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::shell::page as shell;
+use touchdown_chart::table::table;
+use touchdown_chart::text::{ms, ms_or_dash, si, significant};
+
+const HEIGHT: f64 = 280.0;
+/// Contacts that are drawn one by one, strongest first.
+const DRAWN: usize = 2;
+/// Lowest frequency of the drawing, Hz.
+const LOWEST: f64 = 10.0;
+
+/// Writes the page.
+pub fn page(recording: &Recording, measurement: &Measurement) -> String {
+    let [low, high] = measurement.band;
+    let mut strongest: Vec<&Contact> = measurement.contacts.iter().collect();
+    strongest.sort_by(|a, b| b.pulse.peak_force_n.total_cmp(&a.pulse.peak_force_n));
+    strongest.truncate(DRAWN);
+    let body = html! {
+        header {
+            p.kind { "Contact force" }
+            h1 { (recording.file) }
+            p.note {
+                "Recovered from accelerations at " (si(measurement.sample_rate, "Hz"))
+                " with a device calibrated from " (si(low, "Hz")) " to " (si(high, "Hz"))
+                ". Noise of the force: " (si(measurement.force.noise, "N")) "."
+            }
+        }
+        section {
+            h2 { "Contacts" }
+            (rows(measurement))
+            p.note {
+                "Force of the rotor on the retainer, friction included. Direction: from the bottom, \
+                 counter-clockwise. Peak and contact time are those of the law of the contact, fitted to \
+                 the recovered force; a dash: none fits. Outside the contacts the force is 0."
+            }
+        }
+        section { h2 { "Force" } (whole(recording, measurement)) }
+        @if !strongest.is_empty() {
+            section {
+                h2 { "Strongest contacts" }
+                (legend(&[("pulse", "recovered"), ("pulse run", "law of the contact, fitted")]))
+                div.pair { @for contact in strongest { div { (one(contact)) } } }
+            }
+        }
+        section {
+            h2 { "Device" }
+            (legend(&[("free-fall", "band that is used")]))
+            (device(measurement))
+            p.note { "Acceleration over force, from the known hits." }
+        }
+    };
+    let title = format!("{} \u{2013} contact force", recording.file);
+    shell(&title, &body).into_string()
+}
+
+fn rows(measurement: &Measurement) -> Markup {
+    let head = html! {
+        th.number { "Time" br; "ms" }
+        th.number { "Peak" br; "N" }
+        th.number { "Contact" br; "ms" }
+        th.number { "Impulse" br; "N s" }
+        th.number { "Direction" br; "degree" }
+    };
+    let row = |pulse: &Pulse| {
+        html! {
+            td.number { (ms(pulse.time_s)) }
+            td.number { (significant(pulse.peak_force_n, 4)) }
+            td.number { (ms_or_dash(pulse.contact_time_s)) }
+            td.number { (significant(pulse.impulse_n_s, 4)) }
+            td.number { (significant(pulse.direction_deg, 4)) }
+        }
+    };
+    let rows: Vec<Markup> = measurement.pulses().map(row).collect();
+    table("Contacts", &head, rows.into_iter())
+}
+
+/// Both axes over the whole recording.
+fn whole(recording: &Recording, measurement: &Measurement) -> Markup {
+    let axes = &measurement.force.axes;
+    let samples = axes.first().map_or(0, Vec::len);
+    let time = |k: usize| 1e3 * (recording.start + k as f64 / recording.rate);
+    let x = Axis::new(time(0), time(samples), "time, ms", 8.0);
+    let values = || axes.iter().flatten().copied();
+    let y = force_axis(values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+    let chart = Chart {
+        title: "Recovered force",
+        description: "Force on the retainer along each axis over the recording.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let classes = [("motion", "to the right"), ("impact", "up")];
+    let drawn = html! {
+        @for (axis, (class, _)) in axes.iter().zip(classes) {
+            @let points = axis.iter().enumerate().map(|(k, force)| (time(k), 1e-3 * force));
+            (curve(&chart, class, points))
+        }
+    };
+    html! {
+        (legend(&classes[..axes.len()]))
+        (chart.draw(&html! {}, &drawn, &html! {}))
+    }
+}
+
+fn one(contact: &Contact) -> Markup {
+    let times = || contact.recovered.iter().map(|it| 1e3 * it.0);
+    let forces = || contact.recovered.iter().map(|it| it.1);
+    let first = times().next().unwrap_or(0.0);
+    let last = times().next_back().unwrap_or(0.0);
+    let x = Axis::new(first, last, "time, ms", 5.0);
+    let top = forces().fold(contact.pulse.peak_force_n, f64::max);
+    let y = force_axis(forces().fold(0.0, f64::min), top);
+    let chart = Chart {
+        title: "Contact",
+        description: "Recovered force of a contact, and the law of the contact fitted to it.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let scaled = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
+        points.iter().map(|it| (1e3 * it.0, 1e-3 * it.1)).collect()
+    };
+    let curves = html! {
+        (curve(&chart, "pulse", scaled(&contact.recovered)))
+        (curve(&chart, "pulse run", scaled(&contact.fitted)))
+    };
+    chart.draw(&html! {}, &curves, &html! {})
+}
+
+/// Size of H over frequency, and the band.
+fn device(measurement: &Measurement) -> Markup {
+    let curves: Vec<(&str, Vec<(f64, f64)>)> = measurement
+        .calibrations
+        .iter()
+        .map(|calibration| {
+            let transform = Transform::holding(calibration.longest());
+            let step = calibration.rate / transform.length() as f64;
+            let response = calibration.response(&transform);
+            let sizes = response.h.iter().enumerate();
+            let points = sizes.map(|(k, h)| (k as f64 * step, h.norm()));
+            let class = match calibration.axis {
+                Along::X => "motion",
+                Along::Y => "impact",
+            };
+            (class, points.filter(|it| it.0 >= LOWEST).collect())
+        })
+        .collect();
+    let sizes = || curves.iter().flat_map(|it| &it.1).map(|it| it.1);
+    let [low, high] = measurement.band;
+    let x = Axis::decades(LOWEST, 0.5 * measurement.sample_rate, "frequency, Hz", 6.0);
+    let most = sizes().fold(0.0, f64::max).max(1e-9);
+    let least = sizes().fold(most, f64::min).max(1e-4 * most);
+    let y = Axis::decades(least, most, "acceleration over force, 1/kg", 6.0);
+    let chart = Chart {
+        title: "Device",
+        description: "Size of acceleration over force against frequency, both logarithmic.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let width = 100.0 * (x.fraction(high) - x.fraction(low));
+    let behind = html! {
+        rect class="band free-fall" x=(x.percent(low)) width=(format!("{width:.2}%")) y="0" height=(HEIGHT) {}
+    };
+    let drawn = html! { @for (class, points) in curves { (curve(&chart, class, points)) } };
+    chart.draw(&behind, &drawn, &html! {})
+}
+
+/// For forces in kN.
+fn force_axis(low: f64, high: f64) -> Axis {
+    let margin = 0.05 * (high - low).max(1e-3);
+    Axis::new(
+        1e-3 * (low - margin),
+        1e-3 * (high + margin),
+        "force, kN",
+        5.0,
+    )
+}
+
+fn curve(chart: &Chart<'_>, class: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Markup {
+    let mut pen = chart.pen();
+    for (x, y) in points {
+        pen.line_to(x, y);
+    }
+    pen.finish(class)
+}
+
+fn legend(entries: &[(&str, &str)]) -> Markup {
+    html! {
+        ul.legend {
+            @for (class, name) in entries {
+                li {
+                    svg width="34" height="12" aria-hidden="true" {
+                        @if *class == "free-fall" {
+                            rect class="band free-fall" x="1" y="1" width="32" height="10" {}
+                        } @else {
+                            path class={ "curve " (class) } d="M1 6H33" {}
+                        }
+                    }
+                    (name)
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Each extreme scene on rung `hertz`, in both schemes: steps that it refuses, and what holds at those
+//! that it takes.
+
+use touchdown_models::Compliance;
+use touchdown_rotor::error::ConfigError;
+
+use crate::limits::extreme::{Extreme, STEPS};
+use crate::limits::press::{Press, Pressed};
+use crate::limits::row::{Row, Worst};
+use touchdown_run::model::with_model;
+use touchdown_scene::scales::{compliance, fastest_impact};
+use touchdown_scene::{Precision, Rung, Scene, Scheme};
+
+/// Part of 2/omega_c that is still taken, and the part that no longer is.
+const TAKEN: f64 = 0.999;
+const REFUSED: f64 = 1.001;
+/// Part of the largest translation that a run may gain: the 0.5 % to which restitution is kept at
+/// T_c/25, twice as much in energy (`docs/know/model.md`).
+const ENERGY: f64 = 0.01;
+
+/// All measures of one extreme in one precision.
+pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigError> {
+    let stiff = compliance(&compliant(extreme, precision, 1e-6))?;
+    let (limit, accurate) = (stiff.longest_step(), stiff.accurate_step());
+    let (mut taken, mut refused): (Vec<f64>, Vec<f64>) =
+        extreme.steps.iter().partition(|step| **step <= limit);
+    if extreme.steps == STEPS {
+        taken.extend([accurate, TAKEN * limit]);
+    }
+    refused.push(REFUSED * limit);
+
+    let (mut pressed, mut energy) = (Pressed::default(), Worst::default());
+    let (mut drawn, mut accepted) = (0.0, 0);
+    for &scheme in Rung::Hertz.schemes() {
+        let at = |step| {
+            let mut scene = compliant(extreme, precision, step);
+            scene.model.scheme = scheme;
+            scene
+        };
+        for &step in &taken {
+            let scene = at(step);
+            let seen = with_model(&scene, press(&scene, &stiff))?;
+            if step <= accurate {
+                let rounding = super::rounding(precision) + seen.rounding;
+                let late = match scheme {
+                    Scheme::Euler => seen.half_steps,
+                    _ => 0.0,
+                };
+                let limit = ENERGY * seen.translation + late + rounding;
+                energy.take(seen.energy_gain, limit);
+                drawn = f64::max(drawn, seen.drawn);
+            }
+            pressed = pressed.worst(seen);
+        }
+        for &step in &refused {
+            let scene = at(step);
+            accepted += u32::from(with_model(&scene, press(&scene, &stiff)).is_ok());
+        }
+    }
+    let row = |measure: &str, measured, limit, unit| {
+        let name = format!("hertz: {}: {measure}", extreme.name);
+        Row::new(name, precision, measured, limit, unit)
+    };
+    let mut rows = vec![row(
+        "steps above 2/omega_c",
+        f64::from(accepted),
+        0.0,
+        "accepted",
+    )];
+    if !taken.is_empty() {
+        rows.push(row(
+            "energy gained at T_c/25 and below",
+            energy.measured,
+            energy.limit,
+            "m g rho0",
+        ));
+        rows.push(row(
+            "translation at any speed, T_c/25 and below",
+            drawn,
+            1.0 + ENERGY,
+            "of all energy at the start",
+        ));
+        rows.push(row(
+            "deepest compression",
+            pressed.depth,
+            1.0,
+            "of what the speed allows",
+        ));
+        rows.push(row(
+            "steps with NaN or infinity",
+            f64::from(pressed.not_finite),
+            0.0,
+            "steps",
+        ));
+    }
+    Ok(rows)
+}
+
+fn press<'a>(scene: &'a Scene, stiff: &'a Compliance<f64>) -> Press<'a> {
+    Press {
+        scene,
+        stiff,
+        fastest: fastest_impact(scene),
+    }
+}
+
+fn compliant(extreme: &Extreme, precision: Precision, step: f64) -> Scene {
+    let mut scene = extreme.at(precision, step);
+    scene.model.rung = Rung::Hertz;
+    scene
+}

@@ -1,0 +1,122 @@
+//! `touchdown limits`: the model at its extremes, each with what was measured, the limit and the verdict.
+//!
+//! What is measured is held against the independent reference, against closed forms, or against laws
+//! that hold whatever the scene. One row holds the model against itself: that many ticks at once are as
+//! good as one by one, which lets the long run be short.
+
+mod bounce;
+mod clock;
+mod closed_form;
+mod compliant;
+mod coupled;
+mod extreme;
+mod glance;
+mod press;
+mod refusal;
+mod row;
+mod scenes;
+mod stepping;
+mod support;
+mod table;
+mod truth;
+mod two_plane;
+mod watch;
+
+use rayon::prelude::*;
+use serde::Serialize;
+use touchdown_rotor::error::ConfigError;
+
+pub use row::{Row, all_hold};
+pub use table::table;
+
+use closed_form::ClosedForm;
+use extreme::Extreme;
+use touchdown_base::failure::Failure;
+use touchdown_base::progress::Progress;
+use touchdown_run::model::simulate;
+use touchdown_scene::Precision;
+use truth::Truth;
+
+/// f64 first: what breaks there is no matter of rounding.
+const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
+
+/// Runs every extreme in both precisions.
+pub fn run() -> Result<Vec<Row>, Failure> {
+    let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
+    let extremes = extreme::extremes()?;
+    let closed_forms = closed_form::closed_forms()?;
+    let jobs = (2 * extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
+    let mut progress = Progress::of_jobs("limits", jobs);
+    let mut rows = Vec::new();
+    for extreme in &extremes {
+        let truth = Truth::of(&extreme.scene);
+        for precision in PRECISIONS {
+            rows.extend(scenes::rows(extreme, &truth, precision).map_err(refused)?);
+        }
+        progress.advance();
+    }
+    for known in &closed_forms {
+        for (precision, limit) in PRECISIONS.into_iter().zip(known.limits) {
+            rows.push(closed(known, precision, limit).map_err(refused)?);
+        }
+        progress.advance();
+    }
+    rows.extend(other_rungs(&extremes, &mut progress).map_err(refused)?);
+    rows.extend(bounce::rows()?);
+    rows.extend(clock::rows(&mut progress).map_err(refused)?);
+    rows.extend(refusal::rows().map_err(refused)?);
+    rows.extend(coupled::rows()?);
+    Ok(rows)
+}
+
+/// The rungs that integrate, whose path is their own: what holds whatever the scene.
+fn other_rungs(extremes: &[Extreme], progress: &mut Progress) -> Result<Vec<Row>, ConfigError> {
+    let done: Vec<[Vec<Row>; 2]> = extremes
+        .par_iter()
+        .map(|extreme| {
+            let (mut moreau, mut hertz) = (Vec::new(), Vec::new());
+            for precision in PRECISIONS {
+                moreau.extend(stepping::rows(extreme, precision)?);
+                hertz.extend(compliant::rows(extreme, precision)?);
+            }
+            Ok([moreau, hertz])
+        })
+        .collect::<Result<_, ConfigError>>()?;
+    for _ in extremes {
+        progress.advance();
+    }
+    let (moreau, hertz): (Vec<_>, Vec<_>) = done.into_iter().map(|[a, b]| (a, b)).unzip();
+    Ok([moreau, hertz].into_iter().flatten().flatten().collect())
+}
+
+/// What rounding may add to the energy of a run at the scale of the gap, m g rho0: the targets of 10^6
+/// steps without losses.
+fn rounding(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-12,
+        Precision::F32 => 1e-4,
+    }
+}
+
+fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, ConfigError> {
+    let mut worst = 0.0_f64;
+    for &step in known.steps {
+        let mut scene = known.scene.clone();
+        scene.model.precision = precision;
+        scene.model.step = step;
+        let error = (known.error)(&simulate(&scene)?);
+        // NaN is the worst there is.
+        worst = if error <= worst { worst } else { error };
+    }
+    Ok(Row::new(known.name, precision, worst, limit, known.unit))
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    rows: &'a [Row],
+}
+
+/// `limits --json`.
+pub fn json(rows: &[Row]) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(&Json { rows }).map(|json| json + "\n")
+}

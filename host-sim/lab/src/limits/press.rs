@@ -1,0 +1,141 @@
+//! Rung `hertz` watched step by step: the energy that it has, and how deep it is in the wall.
+
+use touchdown_models::Compliance;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Change, Kinematics, Precision, Stepper, Touch};
+
+use crate::limits::watch::{ROUNDED, energy, inertia, is_finite};
+use touchdown_run::model::{Subject, Use};
+use touchdown_scene::{Contact, Scene};
+
+/// Of the fastest impact expected: beyond it neither step nor stiffness was chosen for what comes. At
+/// twice the speed the rate of a contact is 15 % higher.
+const EXPECTED: f64 = 2.0;
+
+/// What was seen, worst of all steps. Depth and energy count as long as the rotor is as slow as
+/// expected.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pressed {
+    /// Energy stored in the wall, over what motion and pressing force could put there.
+    pub depth: f64,
+    /// Largest rise of the energy above the lowest so far, in m g rho0. It counts in the gap and in
+    /// permanent contact; in a bounce the schemes' energy swings with the force.
+    pub energy_gain: f64,
+    /// Largest energy of translation, in m g rho0.
+    pub translation: f64,
+    /// What the work of gravity in half a step, at entry and at release of each impact, amounts to, in
+    /// m g rho0: semi-implicit Euler has the place a half step before the speed, the flight does not.
+    pub half_steps: f64,
+    /// Largest energy of translation at any speed, over all that the rotor had at its start.
+    pub drawn: f64,
+    /// What rounding may add to the energy, in m g rho0.
+    pub rounding: f64,
+    /// Steps after which a number was NaN or infinite.
+    pub not_finite: u32,
+}
+
+impl Pressed {
+    /// The worse of both.
+    pub fn worst(self, other: Self) -> Self {
+        Self {
+            depth: self.depth.max(other.depth),
+            energy_gain: self.energy_gain.max(other.energy_gain),
+            translation: self.translation.max(other.translation),
+            half_steps: self.half_steps.max(other.half_steps),
+            drawn: self.drawn.max(other.drawn),
+            rounding: self.rounding.max(other.rounding),
+            not_finite: self.not_finite.max(other.not_finite),
+        }
+    }
+}
+
+/// Watches the scene's model, of this stiffness, over the scene's duration.
+pub struct Press<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Of its contact.
+    pub stiff: &'a Compliance<f64>,
+    /// The fastest impact that stiffness and longest step are made for, m/s.
+    pub fastest: f64,
+}
+
+impl Use for Press<'_> {
+    type Output = Pressed;
+
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<Pressed, ConfigError> {
+        let (
+            scene,
+            Subject {
+                model,
+                start,
+                spin,
+                scales,
+            },
+        ) = (self.scene, subject);
+        let n = match scene.materials.contact {
+            Contact::Point => 1.5,
+            Contact::Line { .. } => 1.0,
+        };
+        let weight = scene.rotor.mass * scales.speed * scales.speed;
+        let stiffness = self.stiff.stiffness * scales.length.powf(n + 1.0) / weight;
+        let stored = |depth: f64| stiffness * depth.max(0.0).powf(n + 1.0) / (n + 1.0);
+        let gravity = if scene.run.gravity > 0.0 { 1.0 } else { 0.0 };
+        let step = scene.model.step / scales.time;
+        let epsilon = R::EPSILON.to_f64();
+
+        let mut seen = Pressed::default();
+        let mut state = model.start(start, *spin, |_| {})?;
+        let begun = model.kinematics(&state);
+        let first = begun.spin;
+        let (beta, spun) = (inertia(scene), first.to_f64());
+        let depth = |k: &Kinematics<R>| k.position[0].to_f64().hypot(k.position[1].to_f64()) - 1.0;
+        let speed = |k: &Kinematics<R>| k.velocity[0].to_f64().hypot(k.velocity[1].to_f64());
+        let whole = |k: &Kinematics<R>| energy(scene, k, first) + stored(depth(k));
+        // Height counts from the bottom.
+        let all = whole(&begun) + 0.5 * beta * spun * spun + gravity;
+        let expected = EXPECTED * self.fastest / scales.speed;
+        let (mut fastest, mut slow_fastest) = (speed(&begun), speed(&begun));
+        let (mut lowest, mut largest, mut impacts) = (f64::INFINITY, 0.0_f64, 0_u32);
+        let steps = (scene.run.duration / scene.model.step).ceil();
+        for _ in 0..steps as u64 {
+            let mut hits = 0;
+            model.step(&mut state, |h| {
+                hits += u32::from(matches!(h.change, Change::Impact(_)))
+            });
+            let now = model.kinematics(&state);
+            seen.not_finite += u32::from(!is_finite(&now));
+            if now.spin != first {
+                largest = largest.max(now.spin.to_f64().abs()).max(spun.abs());
+            }
+            fastest = fastest.max(speed(&now));
+            if fastest > expected {
+                continue;
+            }
+            // The wall answers from the step on that begins in it.
+            let pushed = depth(&now) - step * (slow_fastest + step) - ROUNDED * epsilon;
+            if pushed > 0.0 {
+                let square = slow_fastest * slow_fastest;
+                let most = 0.5 * square + (square + gravity) * pushed;
+                seen.depth = seen.depth.max(stored(pushed) / most);
+            }
+            if depth(&now) <= 0.0 || now.touch != Touch::None {
+                let energy = whole(&now);
+                lowest = lowest.min(energy);
+                seen.energy_gain = seen.energy_gain.max(energy - lowest);
+            }
+            slow_fastest = fastest;
+            impacts += hits;
+        }
+        let fall = gravity * step * slow_fastest;
+        seen.half_steps = fall * f64::from(impacts);
+        seen.translation = 0.5 * slow_fastest * slow_fastest;
+        // Without bias it adds up as a random walk does: four deviations.
+        let walk = 4.0 * steps.sqrt();
+        seen.rounding = epsilon * (beta * largest * largest + walk * seen.translation);
+        seen.drawn = 0.5 * fastest * fastest / all;
+        Ok(seen)
+    }
+}

@@ -1,0 +1,102 @@
+//! Each extreme scene against the reference, and watched.
+
+use touchdown_rotor::error::ConfigError;
+
+use crate::limits::extreme::Extreme;
+use crate::limits::row::{Row, Worst};
+use crate::limits::truth::Truth;
+use crate::limits::watch::{ROUNDED, Watch, Watched};
+use touchdown_run::model::{simulate, with_model};
+use touchdown_scene::Precision;
+
+/// Bound on what is followed in a step: 512 impacts and 256 stretches of contact.
+const MOST_CHANGES: f64 = 768.0;
+/// Changes in a step from which on a bounce series was cut short there, and what its end may then be
+/// off, T: the rest was summed from a speed that is not tiny.
+const CUT: u32 = 512;
+const CUT_ERROR: f64 = 1e-7;
+
+/// All measures of one extreme in one precision.
+pub fn rows(
+    extreme: &Extreme,
+    truth: &Truth,
+    precision: Precision,
+) -> Result<Vec<Row>, ConfigError> {
+    let mut watched = Watched {
+        outside: -1.0,
+        ..Watched::default()
+    };
+    let mut impacts = (0.0_f64, 0);
+    let mut contact = Worst::default();
+    for &step in extreme.steps {
+        let scene = extreme.at(precision, step);
+        let seen = with_model(&scene, Watch(&scene))?;
+        watched = watched.worst(seen);
+        let history = simulate(&scene)?;
+        let (error, compared) = truth.impact_error(&history, precision);
+        impacts = (impacts.0.max(error), compared);
+        if let Some((error, limit)) = truth.contact_error(&history, precision) {
+            let limit = if seen.changes > CUT {
+                limit.max(CUT_ERROR)
+            } else {
+                limit
+            };
+            contact.take(error, limit);
+        }
+    }
+    let epsilon = match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f32::EPSILON.into(),
+    };
+    let row = |measure: &str, measured, limit, unit| {
+        Row::new(
+            format!("{}: {measure}", extreme.name),
+            precision,
+            measured,
+            limit,
+            unit,
+        )
+    };
+    let mut rows = Vec::new();
+    if impacts.1 > 0 {
+        rows.push(row(
+            "error of the first impacts",
+            impacts.0,
+            1.0,
+            "of target",
+        ));
+    }
+    if contact.limit > 0.0 {
+        rows.push(row(
+            "time of permanent contact",
+            contact.measured,
+            contact.limit,
+            "T",
+        ));
+    }
+    rows.push(row(
+        "energy gained",
+        watched.energy_gain,
+        super::rounding(precision) + watched.spin_rounding + watched.path_rounding,
+        "m g rho0",
+    ));
+    rows.push(row(
+        "farthest beyond the wall",
+        watched.outside.max(0.0),
+        ROUNDED * epsilon,
+        "rho0",
+    ));
+    rows.push(row(
+        "steps with NaN or infinity",
+        f64::from(watched.not_finite),
+        0.0,
+        "steps",
+    ));
+    rows.push(row(
+        "most changes in a step",
+        f64::from(watched.changes),
+        MOST_CHANGES,
+        "changes",
+    ));
+    Ok(rows)
+}

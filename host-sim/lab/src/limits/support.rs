@@ -1,0 +1,134 @@
+//! The extremes of a retainer that gives way or turns.
+
+use touchdown_rotor::error::ConfigError;
+
+use super::glance::Glance;
+use touchdown_base::input_error::InputError;
+use touchdown_base::machine::Start;
+use touchdown_run::model::ModelRun;
+use touchdown_run::model::support::watch;
+use touchdown_scene::{BallBearing, Model, Scene, Support};
+
+/// Longest part of a scene, s.
+const LONGEST: f64 = 0.03;
+
+type Change = fn(&mut Scene);
+
+/// Name, and what differs from the rig on the support of the scene `soft-support`.
+const EXTREMES: [(&str, Change); 19] = [
+    ("as it is", |_| ()),
+    ("support nearly rigid", |s| on(s, |it| it.stiffness = 1e12)),
+    ("support of 1000 N/m", |s| {
+        on(s, |it| {
+            it.stiffness = 1e3;
+            it.travel = None;
+        });
+    }),
+    ("undamped", |s| on(s, |it| it.damping = 0.0)),
+    ("damped a thousandfold", |s| on(s, |it| it.damping *= 1e3)),
+    ("ring of 1 mg", |s| on(s, |it| it.mass = 1e-6)),
+    ("ring of 1 t", |s| on(s, |it| it.mass = 1e3)),
+    ("hard stop after 1 um", |s| {
+        on(s, |it| it.travel = Some(1e-6));
+    }),
+    ("restitution 0", |s| s.retainer.restitution = 0.0),
+    ("restitution 1 without friction", |s| {
+        s.retainer.restitution = 1.0;
+        s.retainer.friction = 0.0;
+    }),
+    ("friction 2", |s| s.retainer.friction = 2.0),
+    ("no spin", |s| s.rotor.spin = 0.0),
+    ("spin of 1 000 000 rpm", |s| {
+        s.rotor.spin = 1e6 * std::f64::consts::TAU / 60.0;
+    }),
+    ("no gravity", |s| {
+        s.run.gravity = 0.0;
+        s.start = Start::Free {
+            position: [0.05e-3, 0.1e-3],
+            velocity: [0.02, -0.1],
+        };
+    }),
+    ("gap of 20 um", |s| {
+        s.retainer.clearance = 20e-6;
+        s.start = Start::Free {
+            position: [0.0; 2],
+            velocity: [0.0; 2],
+        };
+    }),
+    ("inner ring without inertia", |s| turning(s, 1e-12)),
+    ("inner ring of 1000 kg m^2", |s| turning(s, 1e3)),
+    ("inner ring on a sprung support", |s| {
+        let support = s.support;
+        turning(s, 3e-5);
+        s.support = support;
+    }),
+    ("inner ring held by drag", |s| {
+        turning(s, 3e-5);
+        if let Some(bearing) = &mut s.ball_bearing {
+            bearing.dry_drag = 1e3;
+        }
+    }),
+];
+
+fn on(scene: &mut Scene, change: impl Fn(&mut Support)) {
+    if let Some(support) = &mut scene.support {
+        change(support);
+    }
+}
+
+/// On a fixed support, with an inner ring of this inertia, kg m^2.
+fn turning(scene: &mut Scene, inertia: f64) {
+    scene.support = None;
+    scene.ball_bearing = Some(BallBearing {
+        inertia,
+        dry_drag: 0.005,
+        viscous_drag: 1e-5,
+        cage_ratio: 0.4,
+        heat_capacity: 50.0,
+        heat_loss: 0.5,
+        marks: [None; 2],
+    });
+}
+
+/// All of them.
+pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
+    let soft = Scene::load("soft-support")?;
+    let rig = Scene::load("rig")?;
+    let made = EXTREMES.iter().map(|(name, change)| {
+        let mut scene = Scene {
+            model: Model {
+                step: rig.model.step,
+                ..soft.model
+            },
+            support: soft.support,
+            ..rig.clone()
+        };
+        scene.run.duration = LONGEST;
+        change(&mut scene);
+        (*name, scene)
+    });
+    Ok(made.collect())
+}
+
+/// Runs a scene, watched after each step.
+pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
+    // The ring may be the faster of the two.
+    let ring = scene.support.map_or(1.0, |it| scene.rotor.mass / it.mass);
+    let lever = ring.max(1.0).sqrt();
+    watch(scene, &mut |sight| {
+        let energy = sight.energy;
+        each(Glance {
+            beyond: sight.beyond.max(sight.stop),
+            motion: energy.motion + energy.ring,
+            lever,
+            gone: energy.dissipated(),
+            total: sight.total,
+            parts: [
+                energy.spin,
+                energy.motion + energy.ring,
+                energy.spring,
+                energy.race,
+            ],
+        });
+    })
+}

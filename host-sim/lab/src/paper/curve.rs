@@ -1,0 +1,46 @@
+//! A curve of a figure.
+
+use serde::Serialize;
+
+use maud::Markup;
+use touchdown_chart::plot::Pen;
+
+/// A curve, in the units that it names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    /// Of the paper.
+    pub figure: &'static str,
+    /// What it shows.
+    pub name: String,
+    /// Quantity and unit of the first coordinate.
+    pub x: &'static str,
+    /// Of the second.
+    pub y: &'static str,
+    /// In order; null breaks the curve.
+    pub points: Vec<Option<[f64; 2]>>,
+    /// Style class.
+    #[serde(skip)]
+    pub class: &'static str,
+}
+
+impl Curve {
+    /// Draws it in other units: both coordinates times a factor.
+    pub fn draw(&self, mut pen: Pen<'_>, [x, y]: [f64; 2]) -> Markup {
+        for point in &self.points {
+            match point {
+                Some(point) => pen.line_to(point[0] * x, point[1] * y),
+                None => pen.lift(),
+            }
+        }
+        pen.finish(self.class)
+    }
+
+    /// The greatest second coordinate, 0 or more.
+    pub fn top(&self) -> f64 {
+        self.points
+            .iter()
+            .flatten()
+            .map(|it| it[1])
+            .fold(0.0, f64::max)
+    }
+}

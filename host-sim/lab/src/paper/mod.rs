@@ -1,0 +1,92 @@
+//! The source paper, number by number: as printed, as right, as ours.
+//!
+//! M. Fumagalli, P. Varadi, G. Schweitzer, "Impact dynamics of high speed rotors in retainer bearings".
+//! The printed numbers are those that its text and equations state; its drawings were not measured.
+
+mod contact;
+mod curve;
+mod drops;
+mod ending;
+mod equations;
+mod fall;
+mod fig_3;
+mod fig_4;
+mod fig_7;
+mod hertz;
+mod page;
+mod rig;
+mod row;
+mod spread;
+mod straight;
+mod table;
+mod whirl;
+
+pub use curve::Curve;
+pub use drops::{Condition, Tally};
+pub use fig_4::Drawn;
+pub use page::page;
+pub use row::Row;
+pub use table::table;
+
+use serde::Serialize;
+
+use touchdown_base::failure::Failure;
+use touchdown_base::progress;
+use touchdown_scene::Scene;
+
+/// Random drops of a condition, unless fewer are asked for.
+pub const DROPS: u32 = 1000;
+
+/// All of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Paper {
+    /// The numbers.
+    pub rows: Vec<Row>,
+    /// The counts behind the rows on random drops.
+    pub drops: Vec<Tally>,
+    /// The curves of the drawings.
+    pub figures: Vec<Curve>,
+    /// The drops of Fig. 4.
+    #[serde(skip)]
+    pub falls: Vec<Drawn>,
+    /// The rig.
+    #[serde(skip)]
+    pub base: Scene,
+}
+
+impl Paper {
+    /// Whether every number of ours is right.
+    pub fn agrees(&self) -> bool {
+        self.rows.iter().all(|row| row.agrees != Some(false))
+    }
+}
+
+/// Works everything out, with so many random drops of a condition.
+pub fn run(drops: u32) -> Result<Paper, Failure> {
+    let base = rig::rig()?;
+    let conditions = drops::conditions();
+    let progress = progress::bar("drops", u64::from(drops) * conditions.len() as u64);
+    let drops = drops::tally(&base, &conditions, drops, &progress)?;
+    progress.finish_and_clear();
+    let mut rows = equations::rows(&base)?;
+    rows.extend(fall::rows(&base)?);
+    rows.extend(whirl::rows(&base)?);
+    rows.extend(spread::rows(&drops));
+    rows.extend(contact::rows(&base)?);
+    let falls = fig_4::drops()?;
+    let mut figures = fig_3::curves(&base);
+    figures.extend(falls.iter().map(fig_4::curve));
+    figures.extend(fig_7::curves(&base)?);
+    Ok(Paper {
+        rows,
+        drops,
+        figures,
+        falls,
+        base,
+    })
+}
+
+/// What `--json` writes.
+pub fn json(paper: &Paper) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(paper).map(|text| text + "\n")
+}

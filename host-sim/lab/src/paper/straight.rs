@@ -1,0 +1,107 @@
+//! A straight impact on rung `hertz`: force and duration by the model's steps, for the rows that have a
+//! closed form and for Fig. 7.
+
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Precision, Stepper};
+
+use super::hertz::Contact;
+use super::rig::{run, started};
+use touchdown_base::failure::Failure;
+use touchdown_base::history::Pulse;
+use touchdown_run::model::{Subject, Use, with_model};
+use touchdown_scene::scales::compliance;
+use touchdown_scene::{Rung, Scene, Scheme, Start};
+
+/// Steps of a contact. Both schemes are of second order, and a peak that falls between two steps is
+/// missed by (omega_c h)^2/8: 2e-6.
+const STEPS: f64 = 1000.0;
+/// What ours may be off in force and in time, relative; the model's error at this step is below it.
+pub const TOLERANCE: f64 = 2e-5;
+/// Contact times of flight before the contact, and of the whole run.
+const BEFORE: f64 = 0.5;
+const LONGEST: f64 = 2.0;
+/// Steps between two points of a curve.
+const SPACING: u64 = 10;
+
+/// Largest force and duration of `contact` without loss, gravity, friction and spin, as formulas
+/// (8) and (9) have it.
+pub fn pulse(base: &Scene, contact: &Contact) -> Result<Pulse, Failure> {
+    let scene = scene(base, contact)?;
+    let history = run(&scene)?;
+    let pulse = history.impacts.first().and_then(|impact| impact.pulse);
+    pulse
+        .ok_or_else(|| Failure::Usage(format!("{}: the rotor does not leave the wall", scene.name)))
+}
+
+/// Time since the wall was reached (s) and mean force over a few steps (N): what the model takes off
+/// the rotor's speed.
+pub fn curve(base: &Scene, contact: &Contact) -> Result<Vec<(f64, f64)>, Failure> {
+    let scene = scene(base, contact)?;
+    with_model(&scene, Curve(&scene)).map_err(|error| refused(&scene, &error))
+}
+
+/// Straight down at the contact's speed, from a little above the wall.
+fn scene(base: &Scene, contact: &Contact) -> Result<Scene, Failure> {
+    let mut scene = base.clone();
+    scene.rotor.mass = contact.mass;
+    scene.rotor.spin = 0.0;
+    scene.retainer.clearance = contact.clearance;
+    scene.retainer.friction = 0.0;
+    scene.retainer.restitution = 1.0;
+    scene.run.gravity = 0.0;
+    scene.model.rung = Rung::Hertz;
+    scene.model.scheme = Scheme::Verlet;
+    let start = |height: f64| Start::Free {
+        position: [0.0, height - contact.clearance],
+        velocity: [0.0, -contact.speed],
+    };
+    scene.start = start(contact.clearance);
+    let time = compliance(&scene)
+        .map_err(|error| refused(&scene, &error))?
+        .contact_time;
+    scene.model.step = time / STEPS;
+    Ok(started(
+        &scene,
+        start(BEFORE * time * contact.speed),
+        LONGEST * time,
+    ))
+}
+
+fn refused(scene: &Scene, error: &ConfigError) -> Failure {
+    Failure::Usage(format!("{}: {error}", scene.name))
+}
+
+struct Curve<'a>(&'a Scene);
+
+impl Use for Curve<'_> {
+    type Output = Vec<(f64, f64)>;
+
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<Vec<(f64, f64)>, ConfigError> {
+        let Subject {
+            model,
+            start,
+            spin,
+            scales,
+        } = subject;
+        let mut state = model.start(start, *spin, |_| {})?;
+        let upwards =
+            |state: &M::State| model.kinematics(state).velocity[1].to_f64() * scales.speed;
+        let spacing = SPACING as f64 * self.0.model.step;
+        let points = (self.0.run.duration / spacing) as u64;
+        let before = BEFORE / LONGEST * self.0.run.duration;
+        let mut speed = upwards(&state);
+        let mut curve = Vec::new();
+        for point in 0..points {
+            for _ in 0..SPACING {
+                model.step(&mut state, |_| {});
+            }
+            let force = self.0.rotor.mass * (upwards(&state) - speed) / spacing;
+            speed = upwards(&state);
+            curve.push(((point as f64 + 0.5) * spacing - before, force));
+        }
+        Ok(curve)
+    }
+}

@@ -1,0 +1,263 @@
+//! A rotor that floats, quiet or disturbed, and what the monitor says of it.
+
+use std::f64::consts::TAU;
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use touchdown_base::evenly::direction;
+use touchdown_base::failure::Failure;
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::monitor::Monitor;
+use touchdown_core::sensing::PLANES;
+use touchdown_scene::Scene;
+use touchdown_scene::sensors::{Motion, Sensors};
+
+use super::disturbance::{Coloured, Held, Kick, Shift, Steps, hum, smooth};
+use super::levitated::{Levitated, ORBIT};
+use super::watch::refused;
+
+/// Amplitude of the runout, m.
+pub const RUNOUT: f64 = 5e-6;
+/// Lowest and highest frequency of the orbit, Hz.
+const SPEEDS: [f64; 2] = [10.0, 500.0];
+
+/// What the machine does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Case {
+    White,
+    Orbit,
+    Offset,
+    Resonance,
+    Steps,
+    Hum,
+    Coloured,
+    /// Orbit, runout, offset, sweep, steps and hum.
+    Together,
+    Load,
+    Shock,
+    Setpoint,
+    Landing,
+}
+
+impl Case {
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::White => "white noise 1 um",
+            Self::Orbit => "orbit 30 um at 10 to 500 Hz, runout 5 um",
+            Self::Offset => "offset of half the gap",
+            Self::Resonance => "sweep through a resonance, up to 30 um",
+            Self::Steps => "sensor steps of 1 LSB",
+            Self::Hum => "mains hum 50 Hz, 2 um",
+            Self::Coloured => "noise 1 um below 500 Hz",
+            Self::Together => "orbit, runout, offset, sweep, steps and hum at once",
+            Self::Load => "load steps up to 1 g, caught",
+            Self::Shock => "base shocks up to 2 g, caught",
+            Self::Setpoint => "setpoint changes of 50 um in 20 ms",
+            Self::Landing => "controlled lift-off and landing",
+        }
+    }
+
+    /// Whether something happens, so that a fall may be declared but not confirmed.
+    pub fn is_disturbed(self) -> bool {
+        use Case::{Landing, Load, Setpoint, Shock};
+        matches!(self, Load | Shock | Setpoint | Landing)
+    }
+}
+
+/// The motion of one stretch.
+struct Stretch {
+    case: Case,
+    floats: Levitated,
+    random: ChaCha8Rng,
+    steps: Steps,
+    coloured: Coloured,
+    held: Held,
+    /// Of the setpoint's next change.
+    change: [f64; 2],
+    clearance: f64,
+    count: f64,
+}
+
+impl Stretch {
+    fn new(case: Case, scene: &mut Scene, mut random: ChaCha8Rng) -> Self {
+        let [low, high] = SPEEDS;
+        let frequency = low * f64::powf(high / low, random.random_range(0.0..1.0));
+        let mut floats = Levitated {
+            spin: TAU * frequency,
+            angle: random.random_range(0.0..TAU),
+            ..Levitated::default()
+        };
+        if random.random() {
+            floats.spin = -floats.spin;
+        }
+        match case {
+            Case::Orbit => {
+                floats.radius = ORBIT;
+                scene.sensors.runout = RUNOUT;
+                scene.sensors.runout_harmonic = random.random_range(1..=3);
+            }
+            Case::Offset => {
+                let far = 0.5 * scene.retainer.clearance;
+                floats.place = direction(&mut random).map(|part| far * part);
+            }
+            Case::Coloured => scene.sensors.noise = 0.3e-6,
+            Case::Together => {
+                scene.sensors.runout = RUNOUT;
+                scene.sensors.runout_harmonic = random.random_range(1..=3);
+                let far = 0.5 * scene.retainer.clearance;
+                floats.place = direction(&mut random).map(|part| far * part);
+            }
+            _ => {}
+        }
+        scene.rotor.spin = floats.spin;
+        Self {
+            case,
+            floats,
+            steps: Steps::default(),
+            coloured: Coloured::default(),
+            held: Held::new(if case == Case::Load {
+                Kick::Load
+            } else {
+                Kick::Shock
+            }),
+            change: direction(&mut random).map(|part| 50e-6 * part),
+            clearance: scene.retainer.clearance,
+            count: scene.sensors.resolution(),
+            random,
+        }
+    }
+
+    fn next(&mut self, time: f64, period: f64) -> Motion {
+        let shift = self.shift(time, period);
+        let [x, y] = self.floats.position(time);
+        let spin = match self.case {
+            Case::Together => TAU * swept(time).0,
+            _ => self.floats.spin,
+        };
+        Motion {
+            planes: shift.map(|[u, v]| [x + u, y + v]),
+            spin,
+            levitated: true,
+            bearing: None,
+        }
+    }
+
+    fn shift(&mut self, time: f64, period: f64) -> Shift {
+        match self.case {
+            Case::White | Case::Orbit | Case::Offset => Shift::default(),
+            Case::Resonance => [resonance(time); PLANES],
+            Case::Steps => self.steps.next(&mut self.random, period, self.count),
+            Case::Hum => hum(time, 2e-6),
+            Case::Coloured => self.coloured.next(&mut self.random, period, 1e-6, 500.0),
+            Case::Together => {
+                let [x, y] = resonance(time);
+                let steps = self.steps.next(&mut self.random, period, self.count);
+                let hum = hum(time, 2e-6);
+                [0, 1].map(|k| [x + steps[k][0] + hum[k][0], y + steps[k][1] + hum[k][1]])
+            }
+            Case::Load | Case::Shock => self.held.next(&mut self.random, period),
+            Case::Setpoint => {
+                // There for half a second, and back.
+                let within = time % 1.0;
+                let part = smooth((within - 0.25) / 0.02) - smooth((within - 0.75) / 0.02);
+                [self.change.map(|way| part * way); PLANES]
+            }
+            Case::Landing => {
+                // On the bottom, lifted, afloat, put down: 4 s each.
+                let within = time % 4.0;
+                let part = smooth((within - 0.5) / 0.2) - smooth((within - 3.2) / 0.3);
+                [[0.0, -self.clearance * (1.0 - part)]; PLANES]
+            }
+        }
+    }
+}
+
+/// A speed that goes from 20 to 200 Hz in 10 s and back: Hz, and turns.
+fn swept(time: f64) -> (f64, f64) {
+    let (low, high, half) = (20.0, 200.0, 10.0);
+    let within = time % (2.0 * half);
+    let slope = (high - low) / half;
+    if within < half {
+        let turns = low * within + 0.5 * slope * within * within;
+        (low + slope * within, turns)
+    } else {
+        let left = 2.0 * half - within;
+        // As many turns as on the way up, less those still to come.
+        let turns = half * (low + high) - low * left - 0.5 * slope * left * left;
+        (low + slope * left, turns)
+    }
+}
+
+/// Orbit at that speed; resonance at 100 Hz with a tenth of critical damping, 30 um there, the response of a
+/// steady speed.
+fn resonance(time: f64) -> [f64; 2] {
+    let (frequency, turns) = swept(time);
+    let ratio = frequency / 100.0;
+    let (stiff, damped) = (1.0 - ratio * ratio, 0.2 * ratio);
+    let radius = 6e-6 * ratio * ratio / f64::hypot(stiff, damped);
+    let (sin, cos) = (TAU * turns - damped.atan2(stiff)).sin_cos();
+    [radius * cos, radius * sin]
+}
+
+/// What a stretch brought.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Heard {
+    /// Events, of any kind where nothing happens, else falls.
+    pub declared: u32,
+    /// Falls.
+    pub confirmed: u32,
+    /// Samples from the first until the monitor was armed.
+    pub armed: Option<u64>,
+}
+
+/// Runs `seconds` of `case` on the machine of `scene`.
+pub fn listen(
+    case: Case,
+    scene: &Scene,
+    seconds: f64,
+    mut random: ChaCha8Rng,
+) -> Result<Heard, Failure> {
+    let mut scene = scene.clone();
+    let seed = random.random();
+    let mut stretch = Stretch::new(case, &mut scene, random);
+    let rate = scene.run.sample_rate;
+    let sensors = Sensors::try_new(&scene.sensors, rate).map_err(refused)?;
+    let monitor = Monitor::try_new(&scene.monitor_config()).map_err(refused)?;
+    let (mut seen, mut state) = (sensors.start(seed), monitor.start());
+    let mut heard = Heard::default();
+    for number in 0..(seconds * rate) as u64 {
+        let motion = stretch.next(number as f64 / rate, 1.0 / rate);
+        let sample = sensors.read(&mut seen, &motion);
+        for notice in monitor.update(&mut state, &sample) {
+            match notice {
+                Notice::Declared(event) => {
+                    let counts = !case.is_disturbed() || event.kind == EventKind::FreeFall;
+                    heard.declared += u32::from(counts);
+                }
+                Notice::Confirmed { .. } => heard.confirmed += 1,
+                Notice::Withdrawn { .. } | Notice::Outlook(_) => {}
+            }
+        }
+        if heard.armed.is_none() && state.is_armed() {
+            heard.armed = Some(number);
+        }
+    }
+    Ok(heard)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sweep_has_no_jump() {
+        let mut last = resonance(0.0);
+        for k in 1..450_000 {
+            let now = resonance(f64::from(k) * 5e-5);
+            let way = f64::hypot(now[0] - last[0], now[1] - last[1]);
+            assert!(way < 3e-6, "{k}: {way}");
+            last = now;
+        }
+    }
+}

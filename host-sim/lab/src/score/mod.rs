@@ -1,0 +1,208 @@
+//! `touchdown score`: how good the detector is, over seeded campaigns of drops and of levitation.
+//!
+//! The truth is the independent reference and what was put in; the bounds are closed forms. Each group
+//! measures one claim; its rows say what was measured, the target and whether it holds.
+
+mod bound;
+mod campaign;
+mod compare;
+mod confirmation;
+mod contact;
+mod disturbance;
+mod fall;
+mod figure;
+mod forecast;
+mod impact;
+mod levitated;
+mod listening;
+mod page;
+mod quiet;
+mod regime;
+mod row;
+mod sensors;
+mod severity;
+mod table;
+mod watch;
+mod whirl;
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use touchdown_core::detect::Tuning;
+
+pub use figure::Figure;
+pub use page::page;
+pub use row::{Row, none_fails};
+pub use table::table;
+
+use touchdown_base::failure::Failure;
+use touchdown_run::target::Target;
+use watch::Drop;
+
+/// Drops with the names of their cases.
+type Named = Vec<(String, Drop)>;
+
+/// What is measured together.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// For `--only`.
+    pub name: &'static str,
+    /// What it measures, for people.
+    pub about: &'static str,
+    run: fn(&Plan) -> Result<Findings, Failure>,
+    /// A drop of some of its cases, to compare two targets with.
+    drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Named, Failure>,
+}
+
+/// All of them.
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "fall",
+        about: "free fall after levitation: latency against the bound",
+        run: fall::run,
+        drops: fall::drops,
+    },
+    Group {
+        name: "impact",
+        about: "impacts at 1 um, two planes: found, dated, measured, invented",
+        run: impact::run,
+        drops: impact::drops,
+    },
+    Group {
+        name: "contact",
+        about: "permanent contact, end of slip, lift-off, and phases over time",
+        run: contact::run,
+        drops: contact::drops,
+    },
+    Group {
+        name: "regime",
+        about: "how drops of random machines end",
+        run: regime::run,
+        drops: regime::drops,
+    },
+    Group {
+        name: "forecast",
+        about: "whirl foretold, in drops of random machines",
+        run: forecast::run,
+        drops: forecast::drops,
+    },
+    Group {
+        name: "severity",
+        about: "impulses, dwell, velocity and whirl load of the same drops",
+        run: severity::run,
+        drops: severity::drops,
+    },
+    Group {
+        name: "sensors",
+        about: "sensors that fail in a drop: named, and no harm done",
+        run: sensors::run,
+        drops: sensors::drops,
+    },
+    Group {
+        name: "quiet",
+        about: "hours of levitation: what is declared, what is confirmed",
+        run: quiet::run,
+        drops: quiet::drops,
+    },
+];
+
+/// How much is measured, and of which detector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Names of [`GROUPS`].
+    pub groups: Vec<&'static str>,
+    /// Drops of each case.
+    pub seeds: u64,
+    /// Of the first drop; the others count up.
+    pub first_seed: u64,
+    /// Levitation of each case, s.
+    pub seconds: f64,
+    /// The detector's thresholds and times.
+    pub tuning: Tuning,
+}
+
+/// What a group found.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// Each with its verdict.
+    pub rows: Vec<Row>,
+    /// What is drawn of it.
+    pub figures: Vec<Figure>,
+}
+
+/// The answer; the same for the same plan, however many threads.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// What was measured.
+    pub plan: Plan,
+    /// Whether two targets were compared, instead.
+    pub compared: bool,
+    /// Name, what it measures, what was found; in the order of [`GROUPS`].
+    pub groups: Vec<(&'static Group, Findings)>,
+}
+
+impl Score {
+    /// How much was measured, for people.
+    fn extent(&self) -> String {
+        let Plan {
+            seeds,
+            first_seed,
+            seconds,
+            ..
+        } = self.plan;
+        let drops = format!("{seeds} drops a case from seed {first_seed}");
+        if self.compared {
+            format!("{drops}, on the host and on the target")
+        } else {
+            format!("{drops}, {seconds} s of levitation a case")
+        }
+    }
+
+    /// All rows.
+    pub fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.groups.iter().flat_map(|(_, found)| &found.rows)
+    }
+}
+
+/// Measures. On another target than the host: some cases of each group, on both, which must agree.
+pub fn run(plan: &Plan, target: &Target) -> Result<Score, Failure> {
+    let chosen = GROUPS.iter().filter(|it| plan.groups.contains(&it.name));
+    let groups = chosen.map(|group| {
+        let found = match target {
+            Target::Host => (group.run)(plan)?,
+            Target::Qemu(_) => compare::run(plan, group, target)?,
+        };
+        Ok((group, found))
+    });
+    Ok(Score {
+        plan: plan.clone(),
+        compared: !matches!(target, Target::Host),
+        groups: groups.collect::<Result<_, Failure>>()?,
+    })
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    seeds: u64,
+    first_seed: u64,
+    seconds: f64,
+    groups: BTreeMap<&'static str, &'a [Row]>,
+    figures: BTreeMap<&'static str, &'a [Figure]>,
+}
+
+/// `score --json`.
+pub fn json(score: &Score) -> serde_json::Result<String> {
+    let json = Json {
+        seeds: score.plan.seeds,
+        first_seed: score.plan.first_seed,
+        seconds: score.plan.seconds,
+        groups: (score.groups.iter())
+            .map(|(group, found)| (group.name, &found.rows[..]))
+            .collect(),
+        figures: (score.groups.iter())
+            .map(|(group, found)| (group.name, &found.figures[..]))
+            .collect(),
+    };
+    serde_json::to_string_pretty(&json).map(|json| json + "\n")
+}

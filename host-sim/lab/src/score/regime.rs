@@ -1,0 +1,268 @@
+//! The regime at the end of drops and of starts on the wall, over random machines.
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use touchdown_core::event::EventKind;
+
+use super::campaign;
+use super::figure::Figure;
+use super::impact::dropped;
+use super::levitated::Levitated;
+use super::row::Row;
+use super::watch::{Drop, Instant, Watched};
+use super::whirl::{has_wrong_sign, turns, whirls};
+use super::{Findings, Plan};
+use touchdown_base::failure::Failure;
+use touchdown_base::history::Regime;
+use touchdown_base::statistics::{median, share};
+use touchdown_base::wilson;
+use touchdown_scene::{Scene, Start};
+
+/// Part of the regimes that has to be told right.
+const RIGHT: f64 = 0.99;
+/// Turns from the start of contact after which 99 % of backward whirls have to be declared.
+const TURNS: f64 = 1.0;
+
+/// Length of a run, s.
+const WATCHED: f64 = 0.5;
+/// A regime that began later than this before the end is not judged, s, but for a whirl of so many turns.
+const SETTLED: f64 = 0.1;
+const LONG: f64 = 3.0;
+/// A pendulum that swings less, over that time, cannot be told from rest: three standard deviations of
+/// the noise, either way, m.
+const STILL: f64 = 6e-6;
+/// A rotor that hops by less, over that time, cannot be told from one that stays on the wall: the noise, m.
+const HOP: f64 = 1e-6;
+
+/// How a run starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Case {
+    Drop,
+    /// Along the wall, with the spin or against it.
+    OnTheWall,
+    /// Straight down, without spin.
+    Straight,
+}
+
+const CASES: [Case; 3] = [Case::Drop, Case::OnTheWall, Case::Straight];
+
+impl Case {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Drop => "drops, random machines",
+            Self::OnTheWall => "starts along the wall, random machines",
+            Self::Straight => "straight drops without spin",
+        }
+    }
+
+    fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
+        let mut scene = Scene::load("rig")?;
+        scene.run.duration = WATCHED;
+        scene.retainer.clearance = 0.1e-3 * 8_f64.powf(random.random_range(0.0..1.0));
+        scene.retainer.friction = random.random_range(0.05..0.4);
+        scene.retainer.restitution = random.random_range(0.2..0.85);
+        scene.rotor.radius = random.random_range(10e-3..50e-3);
+        let square = scene.rotor.radius * scene.rotor.radius;
+        scene.rotor.polar_inertia = 0.5 * scene.rotor.mass * square;
+        let sign = if random.random() { 1.0 } else { -1.0 };
+        let spin = sign * 300.0 * 20_f64.powf(random.random_range(0.0..1.0));
+        match self {
+            Self::Drop => Ok(dropped(plan, scene, spin, random)),
+            Self::OnTheWall => {
+                let natural = (scene.run.gravity * scene.retainer.clearance).sqrt();
+                let speed: f64 = random.random_range(-3.0..3.0);
+                scene.run.seed = random.random();
+                scene.rotor.spin = spin;
+                scene.start = Start::Wall {
+                    angle: random.random_range(-0.5..0.5),
+                    tangential: speed * natural,
+                };
+                Ok(Drop::of(plan, scene))
+            }
+            Self::Straight => {
+                scene.run.seed = random.random();
+                scene.rotor.spin = 0.0;
+                let floats = Levitated::default();
+                let first = random.random_range(0.0..1.0);
+                Ok(Drop::released(plan, scene, floats, [0.0; 2], 0.2, first))
+            }
+        }
+    }
+}
+
+/// Drops to compare two targets with.
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+    CASES
+        .into_iter()
+        .map(|case| Ok((case.name().to_owned(), case.drop(plan, random)?)))
+        .collect()
+}
+
+/// Rows of the confusion; its columns are the same and "contact", of which no more was said.
+const KINDS: usize = 5;
+
+fn row(regime: Regime) -> usize {
+    match regime {
+        Regime::Rest => 0,
+        Regime::Pendulum => 1,
+        Regime::ForwardWhirl => 2,
+        Regime::BackwardWhirl => 3,
+        Regime::Bouncing | Regime::Intermittent => 4,
+    }
+}
+
+/// Column of what the monitor last said.
+fn column(watched: &Watched) -> usize {
+    let mut column = 4;
+    let (mut lift_offs, mut touches) = (0, false);
+    for event in &watched.detection.events {
+        column = match event.event {
+            EventKind::Rest => 0,
+            EventKind::Pendulum => 1,
+            EventKind::ForwardWhirl => 2,
+            EventKind::BackwardWhirl => 3,
+            EventKind::LiftOff => {
+                lift_offs += 1;
+                4
+            }
+            // Slip ends, and begins again, within a regime.
+            EventKind::Sliding | EventKind::Rolling if touches => column,
+            EventKind::Sliding | EventKind::Rolling => KINDS,
+            EventKind::FreeFall => 4,
+            EventKind::Impact | EventKind::Levitated | EventKind::SensorFault => column,
+        };
+        touches = match event.event {
+            EventKind::Sliding | EventKind::Rolling => true,
+            EventKind::LiftOff | EventKind::FreeFall | EventKind::Impact => false,
+            _ => touches,
+        };
+    }
+    // Four lift-offs without whirl are intermittent contact, whatever came last.
+    if lift_offs >= 4 && !matches!(column, 2 | 3) {
+        column = 4;
+    }
+    column
+}
+
+/// What was seen of a drop.
+#[derive(Clone, Debug)]
+struct Seen {
+    /// Row and column; none where the regime was still changing or cannot be told.
+    regime: Option<(usize, usize)>,
+    /// Turns of each backward whirl when it was declared; infinite for one that was not.
+    turns: Vec<f64>,
+    /// Whirls told, and those whose sign is not that of the motion.
+    told: usize,
+    wrong_signs: usize,
+}
+
+fn seen(drop: &Drop) -> Result<Seen, Failure> {
+    let watched = drop.watch()?;
+    let regime = watched.truth.regime;
+    let end = drop.end();
+    let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
+    let settled = lasts && !is_blurred(&watched, end);
+    let events = &watched.detection.events;
+    let signs: Vec<_> = events
+        .iter()
+        .filter_map(|it| has_wrong_sign(&watched, it))
+        .collect();
+    Ok(Seen {
+        regime: settled.then(|| (row(regime), column(&watched))),
+        turns: whirls(&watched, end),
+        told: signs.len(),
+        wrong_signs: signs.iter().filter(|it| **it).count(),
+    })
+}
+
+/// A pendulum that hardly moves, or a rotor that hardly leaves the wall.
+fn is_blurred(watched: &Watched, end: f64) -> bool {
+    let span = |of: fn(&Instant) -> f64| {
+        let last = watched.instants.iter().filter(|it| it.time > end - SETTLED);
+        let (low, high) = last.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| {
+            (f64::min(low, of(it)), f64::max(high, of(it)))
+        });
+        high - low
+    };
+    match watched.truth.regime {
+        Regime::Pendulum => span(|it| it.position[0]) < STILL,
+        Regime::Intermittent => span(|it| f64::hypot(it.position[0], it.position[1])) < HOP,
+        _ => false,
+    }
+}
+
+/// Runs the group.
+pub fn run(plan: &Plan) -> Result<Findings, Failure> {
+    let drops = campaign::map(plan, "regime", &CASES, |case, mut random| {
+        seen(&case.drop(plan, &mut random)?.before_fast_whirl())
+    })?;
+    let mut rows = Vec::new();
+    let mut counts = [[0_u64; KINDS + 1]; KINDS];
+    for (case, drops) in CASES.iter().zip(&drops) {
+        let judged: Vec<_> = drops.iter().filter_map(|it| it.regime).collect();
+        for (row, column) in &judged {
+            counts[*row][*column] += 1;
+        }
+        let right = judged.iter().filter(|(row, column)| row == column).count();
+        let row = Row::at_least(
+            case.name(),
+            "right_share",
+            share(right, judged.len()),
+            RIGHT,
+        )
+        .of(judged.len());
+        rows.push(
+            row.with("drops", drops.len())
+                .with("judged", judged.len())
+                .with("right", right)
+                .noted(format!(
+                    "{right} right of {}; {} changing or blurred",
+                    judged.len(),
+                    drops.len() - judged.len()
+                )),
+        );
+    }
+    let all = || drops.iter().flatten();
+    let turns: Vec<f64> = all().flat_map(|it| it.turns.clone()).collect();
+    rows.push(
+        Row::quantile_at_most("backward whirl declared", "turns_p99", &turns, 0.99, TURNS)
+            .with("whirls", turns.len())
+            .with("turns_median", median(&turns))
+            .noted(format!(
+                "{} whirls, median {:.3}",
+                turns.len(),
+                median(&turns)
+            )),
+    );
+    let wrong: usize = all().map(|it| it.wrong_signs).sum();
+    let told: usize = all().map(|it| it.told).sum();
+    let (_, upper) = match told {
+        0 => (0.0, 1.0),
+        _ => wilson::interval(wrong as u64, told as u64),
+    };
+    rows.push(
+        Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
+            .with("drops", all().count())
+            .with("told", told)
+            .with("upper_95_share", upper)
+            .noted(format!(
+                "{wrong} of {told} told; 95 %: below {:.2} %",
+                100.0 * upper
+            )),
+    );
+    let names = vec![
+        "rest",
+        "pendulum",
+        "forward whirl",
+        "backward whirl",
+        "in flight",
+    ];
+    let figures = vec![Figure::Confusion {
+        title: "Regime at the end",
+        unit: "drops",
+        told: [&names[..], &["contact"]].concat(),
+        truth: names,
+        counts: counts.iter().map(|row| row.to_vec()).collect(),
+    }];
+    Ok(Findings { rows, figures })
+}

@@ -1,0 +1,98 @@
+//! How hard drops were, against the reference: the drops of `forecast`.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::campaign;
+use super::impact::JUMP;
+use super::row::Row;
+use super::watch::refused;
+use super::{Findings, Named, Plan, forecast};
+use crate::severity_score::{Strained, watch};
+use touchdown_base::failure::Failure;
+use touchdown_base::statistics::{median, quantile};
+use touchdown_scene::Scene;
+
+/// Errors that 90 of 100 drops keep: a sum or a time ends in impacts that no sensor sees.
+const NINE_IN_TEN: f64 = 0.9;
+/// Part of the true value.
+const RIGHT: f64 = 0.1;
+/// The same, of a whirl's load.
+const LOAD: f64 = 0.05;
+/// Of the time in contact, for each start and end of a contact, s: as that of a start.
+const DWELL: f64 = 1e-3;
+
+/// Drops to compare two targets with.
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
+    let drop = forecast::drop(plan, 0.0, random)?;
+    Ok(vec![("machine known".to_owned(), drop)])
+}
+
+/// A drop's errors, as parts of the truth; none where there was nothing to measure.
+#[derive(Clone, Copy, Debug)]
+struct Errors {
+    impact_speed: Option<f64>,
+    impulse: Option<f64>,
+    total_impulse: Option<f64>,
+    velocity_index: Option<f64>,
+    whirl_load: Option<f64>,
+    /// s, for each start and end of a contact.
+    dwell: Option<f64>,
+}
+
+fn errors(scene: &Scene, drop: &Strained) -> Errors {
+    let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let off = |seen: f32, truth: f64| (f64::from(seen) / truth - 1.0).abs();
+    let seen = &drop.seen;
+    // What has to be found.
+    let impulse = largest(&drop.impulses);
+    let is_felt = impulse >= JUMP * scene.rotor.mass;
+    let unit = (scene.run.gravity * scene.retainer.clearance).sqrt();
+    Errors {
+        impact_speed: is_felt.then(|| off(seen.impact_speed, largest(&drop.speeds))),
+        impulse: is_felt.then(|| off(seen.impulse, impulse)),
+        total_impulse: is_felt.then(|| off(seen.total_impulse, drop.impulses.iter().sum())),
+        velocity_index: is_felt.then(|| off(seen.velocity_index, drop.speed / unit)),
+        whirl_load: drop.whirl_load.map(|truth| off(seen.whirl_load, truth)),
+        dwell: (drop.dwell > 0.0)
+            .then(|| (f64::from(seen.dwell) - drop.dwell).abs() / drop.changes as f64),
+    }
+}
+
+/// Runs the group.
+pub fn run(plan: &Plan) -> Result<Findings, Failure> {
+    let drops = campaign::map(plan, "severity", &[()], |(), mut random| {
+        let [scene, told] = forecast::drawn(plan, 0.0, &mut random)?;
+        let drop = watch(&scene, &told).map_err(refused)?;
+        Ok(errors(&scene, &drop))
+    })?;
+    let row = |case: &str, quantity, target, of: fn(&Errors) -> Option<f64>| {
+        let errors: Vec<f64> = drops.iter().flatten().filter_map(of).collect();
+        Row::quantile_at_most(case, quantity, &errors, NINE_IN_TEN, target)
+            .with("drops", errors.len())
+            .with("error_median", median(&errors))
+            .with("error_worst", quantile(&errors, 1.0))
+            .noted(format!(
+                "{} drops, median {:.2e}, worst {:.2e}",
+                errors.len(),
+                median(&errors),
+                quantile(&errors, 1.0)
+            ))
+    };
+    let part = "error_p90";
+    Ok(Findings {
+        rows: vec![
+            row("greatest impact speed", part, RIGHT, |it| it.impact_speed),
+            row("greatest impulse", part, RIGHT, |it| it.impulse),
+            row("sum of impulses", part, RIGHT, |it| it.total_impulse),
+            row("velocity index", part, RIGHT, |it| it.velocity_index),
+            row("whirl load", part, LOAD, |it| it.whirl_load),
+            row(
+                "time in contact, per start and end",
+                "error_p90_s",
+                DWELL,
+                |it| it.dwell,
+            ),
+        ],
+        figures: Vec::new(),
+    })
+}

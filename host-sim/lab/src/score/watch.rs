@@ -1,0 +1,266 @@
+//! One drop: it floats, falls and bounces by the reference; sensors and monitor watch.
+
+use touchdown_core::detect::Phase;
+use touchdown_core::forecast::Lookout;
+use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
+use touchdown_core::sample::Sample;
+use touchdown_rotor::error::ConfigError;
+
+use super::levitated::Levitated;
+use super::{Plan, bound};
+use touchdown_base::failure::Failure;
+use touchdown_base::history::{History, Impact, PhaseKind, Regime};
+use touchdown_run::detection::detection;
+use touchdown_run::monitor_run::Answer;
+use touchdown_run::outcome::Detection;
+use touchdown_run::timebase::Timebase;
+use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
+use touchdown_scene::{Scene, Start};
+use touchdown_truth::Truth;
+
+/// A drop and what the monitor is told of its machine.
+#[derive(Clone, Debug)]
+pub struct Drop {
+    scene: Scene,
+    monitor: MonitorConfig,
+    floats: Option<Levitated>,
+    /// Before the release.
+    levitated: u64,
+    /// From the release to the next sample, in sample periods.
+    first: f64,
+}
+
+impl Drop {
+    /// Floats for `lead` s as `floats`, then goes on with the position and velocity that it has at that
+    /// moment, `thrown` (m/s) on top. `first` is the time from the release to the next sample, in
+    /// sample periods.
+    pub fn released(
+        plan: &Plan,
+        mut scene: Scene,
+        floats: Levitated,
+        thrown: [f64; 2],
+        lead: f64,
+        first: f64,
+    ) -> Self {
+        let [u, v] = floats.velocity(0.0);
+        scene.start = Start::Free {
+            position: floats.position(0.0),
+            velocity: [u + thrown[0], v + thrown[1]],
+        };
+        scene.rotor.spin = floats.spin(0.0);
+        Self {
+            levitated: (lead * scene.run.sample_rate).ceil() as u64,
+            first,
+            floats: Some(floats),
+            ..Self::of(plan, scene)
+        }
+    }
+
+    /// From the start of `scene`, with nothing before.
+    pub fn of(plan: &Plan, mut scene: Scene) -> Self {
+        scene.tuning = plan.tuning;
+        Self {
+            monitor: scene.monitor_config(),
+            scene,
+            floats: None,
+            levitated: 0,
+            first: 0.0,
+        }
+    }
+
+    /// The monitor is told of another machine than the one that drops.
+    pub fn told(mut self, change: impl FnOnce(&mut MonitorConfig)) -> Self {
+        change(&mut self.monitor);
+        self
+    }
+
+    /// Of sample `number`, s since the release.
+    fn time(&self, number: u64) -> f64 {
+        (number as f64 - self.levitated as f64 + self.first) / self.scene.run.sample_rate
+    }
+
+    /// Of a position on one axis, mean over the planes, m^2.
+    pub fn variance(&self) -> f64 {
+        bound::variance(&self.scene.sensors)
+    }
+
+    /// By the reference, of a run that ends then (s).
+    pub fn regime_at(&self, end: f64) -> Regime {
+        let mut scene = self.scene.clone();
+        scene.run.duration = end;
+        touchdown_truth::simulate(&scene).regime
+    }
+
+    /// Ends the run where the whirl gets faster than 1000 turns/s, twenty samples a turn: the rigid laws
+    /// let it grow without bound.
+    pub fn before_fast_whirl(mut self) -> Self {
+        const FASTEST: f64 = 1e3;
+        const LOOK: f64 = 1e-3;
+        let scene = self.scene.clone();
+        let mut truth = Truth::new(&scene);
+        let (mut time, mut turns) = (0.0_f64, 0.0_f64);
+        while time < scene.run.duration {
+            let now = truth.advance(time).rotor.turns_in_contact;
+            // A lift-off sets them back.
+            if now.abs() - turns.abs() > FASTEST * LOOK {
+                self.scene.run.duration = time;
+                break;
+            }
+            (time, turns) = (time + LOOK, now);
+        }
+        self
+    }
+
+    /// Samples a second.
+    pub fn rate(&self) -> f64 {
+        self.scene.run.sample_rate
+    }
+
+    /// Change of the velocity into the wall by an impact, m/s.
+    pub fn jump(&self, impact: &Impact) -> f64 {
+        (1.0 + self.scene.retainer.restitution) * impact.normal_speed
+    }
+
+    /// When the run ends, s since the release.
+    pub fn end(&self) -> f64 {
+        self.scene.run.duration
+    }
+
+    /// What the monitor is told.
+    pub fn monitor(&self) -> &MonitorConfig {
+        &self.monitor
+    }
+
+    /// What the sensors deliver.
+    pub fn samples(&self) -> Result<impl Iterator<Item = Sample>, Failure> {
+        let mut feed = Feed::new(self).map_err(refused)?;
+        Ok(std::iter::from_fn(move || feed.next().map(|it| it.0)))
+    }
+
+    /// Runs it.
+    pub fn watch(&self) -> Result<Watched, Failure> {
+        let monitor = Monitor::try_new(&self.monitor).map_err(refused)?;
+        let mut state = monitor.start();
+        let mut lookout = Lookout::try_new(&self.monitor.detector).map_err(refused)?;
+        let mut feed = Feed::new(self).map_err(refused)?;
+        let (mut notices, mut instants) = (Vec::new(), Vec::new());
+        while let Some((sample, instant)) = feed.next() {
+            notices.extend(monitor.update(&mut state, &sample));
+            notices.extend(monitor.look(&state, &mut lookout));
+            instants.extend(instant.map(|instant| Instant {
+                told: state.phase(),
+                ..instant
+            }));
+        }
+        let answer = Answer {
+            notices,
+            left_out: 0,
+            severity: *state.severity(),
+            summary: Fingerprint::default().summary(&state),
+            log: Vec::new(),
+        };
+        let timebase = Timebase::new(self.time(0), self.scene.run.sample_rate);
+        Ok(Watched {
+            truth: feed.truth.finish().whole,
+            detection: detection(&answer, timebase),
+            instants,
+        })
+    }
+}
+
+/// What happened and what was seen of it.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    /// By the reference.
+    pub truth: History,
+    /// By the monitor. Its fingerprint is left out.
+    pub detection: Detection,
+    /// One a sample from the release on.
+    pub instants: Vec<Instant>,
+}
+
+/// A sample after the release.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant {
+    /// s since the release.
+    pub time: f64,
+    /// True phase.
+    pub phase: PhaseKind,
+    /// The monitor's.
+    pub told: Phase,
+    /// Turns in the present contact, positive with the spin.
+    pub turns: f64,
+    /// m.
+    pub position: [f64; 2],
+}
+
+struct Feed<'a> {
+    drop: &'a Drop,
+    sensors: Sensors,
+    seen: SensorsState,
+    faults: Faults,
+    truth: Truth<'a>,
+    next: u64,
+}
+
+impl<'a> Feed<'a> {
+    fn new(drop: &'a Drop) -> Result<Self, ConfigError> {
+        let scene = &drop.scene;
+        let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
+        Ok(Self {
+            drop,
+            seen: sensors.start(scene.run.seed),
+            sensors,
+            faults: Faults::new(&scene.faults, &scene.sensors),
+            truth: Truth::new(scene),
+            next: 0,
+        })
+    }
+
+    fn next(&mut self) -> Option<(Sample, Option<Instant>)> {
+        let time = self.drop.time(self.next);
+        if time > self.drop.scene.run.duration {
+            return None;
+        }
+        self.next += 1;
+        let (motion, instant) = match self.drop.floats {
+            Some(floats) if time < 0.0 => (held(&floats, time), None),
+            _ => self.fallen(time),
+        };
+        let mut sample = self.sensors.read(&mut self.seen, &motion);
+        self.faults.spoil(&mut sample, time);
+        Some((sample, instant))
+    }
+
+    fn fallen(&mut self, time: f64) -> (Motion, Option<Instant>) {
+        let state = self.truth.advance(time);
+        let motion = Motion {
+            planes: state.sensed,
+            spin: state.rotor.spin,
+            levitated: false,
+            bearing: None,
+        };
+        let instant = Instant {
+            time,
+            phase: state.phase,
+            told: Phase::Starting,
+            turns: state.rotor.turns_in_contact * state.rotor.spin.signum(),
+            position: state.rotor.position,
+        };
+        (motion, Some(instant))
+    }
+}
+
+fn held(floats: &Levitated, time: f64) -> Motion {
+    Motion {
+        planes: [floats.position(time); 2],
+        spin: floats.spin(time),
+        levitated: true,
+        bearing: None,
+    }
+}
+
+/// For `map_err`.
+pub fn refused(error: ConfigError) -> Failure {
+    Failure::Usage(format!("score: {error}"))
+}

@@ -1,0 +1,81 @@
+//! How far a model's drop is from the reference's.
+
+use touchdown_base::history::{History, Impact, RotorState};
+use touchdown_scene::Scene;
+use touchdown_truth::Units;
+
+/// Impacts at which the error is told.
+pub(super) const IMPACTS: [usize; 3] = [1, 3, 10];
+
+/// Errors in units of the clearance rho0, T = sqrt(rho0/g) and V = sqrt(g rho0); without gravity V is the
+/// speed of the start, or 1 m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Accuracy {
+    /// Greatest of the errors of time, position and velocity just after the impacts `IMPACTS`; none where
+    /// the model or the reference has no such impact.
+    pub impacts: [Option<f64>; 3],
+    /// Whether the reference has the impacts `IMPACTS`.
+    pub expected: [bool; 3],
+    /// Time of the first permanent contact; none where the model or the reference has none.
+    pub contact: Option<f64>,
+    /// Whether the run ends in the reference's regime.
+    pub regime: bool,
+    /// Energy of translation and height at the end of the run, less the reference's, in units of V^2 or of
+    /// the reference's energy, whichever is larger.
+    pub energy: f64,
+}
+
+fn apart(a: &Impact, b: &Impact, units: Units) -> f64 {
+    let (a, b) = (&a.state, &b.state);
+    let time = (a.time - b.time).abs() / units.time;
+    let place = distance(a.position, b.position) / units.length;
+    time.max(place)
+        .max(distance(a.velocity, b.velocity) / units.speed)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+impl Accuracy {
+    pub(super) fn of(history: &History, truth: &History, scene: &Scene) -> Self {
+        let units = Units::of(scene);
+        let contact = |history: &History| history.contact_starts.first().copied();
+        Self {
+            impacts: IMPACTS.map(|k| {
+                let pair = history.impacts.get(k - 1).zip(truth.impacts.get(k - 1));
+                pair.map(|(a, b)| apart(a, b, units))
+            }),
+            expected: IMPACTS.map(|k| truth.impacts.len() >= k),
+            contact: contact(history)
+                .zip(contact(truth))
+                .map(|(a, b)| (a - b).abs() / units.time),
+            regime: history.regime == truth.regime,
+            energy: energy_apart(&history.end, &truth.end, scene.run.gravity, units.speed),
+        }
+    }
+
+    /// Greatest error of the impacts that the reference has, infinite where the model misses one; without
+    /// impacts, the error of the energy.
+    pub(super) fn worst(&self) -> f64 {
+        if self.expected == [false; 3] {
+            return self.energy;
+        }
+        self.impacts
+            .iter()
+            .zip(self.expected)
+            .filter(|(_, expected)| *expected)
+            .map(|(error, _)| error.unwrap_or(f64::INFINITY))
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Energies a unit of mass.
+fn energy_apart(a: &RotorState, b: &RotorState, gravity: f64, speed: f64) -> f64 {
+    let energy = |state: &RotorState| {
+        let [u, v] = state.velocity;
+        0.5 * (u * u + v * v) + gravity * state.position[1]
+    };
+    let (ours, theirs) = (energy(a), energy(b));
+    (ours - theirs).abs() / theirs.abs().max(speed * speed)
+}

@@ -1,0 +1,196 @@
+//! Error against cost, both logarithmic.
+
+use maud::{Markup, html};
+
+use super::Trade;
+use super::row::Row;
+use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::text::si;
+use touchdown_scene::{Precision, Rung};
+
+/// Errors below it are drawn on it.
+const LEAST_ERROR: f64 = 1e-17;
+/// Errors above it are drawn on it.
+const MOST_ERROR: f64 = 10.0;
+const HEIGHT: f64 = 440.0;
+const WIDTH: f64 = 960.0;
+
+/// Whose cost is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cost {
+    /// Seconds per simulated second on this machine.
+    Here,
+    /// Instructions per simulated second on the target.
+    Target,
+}
+
+impl Cost {
+    /// None where it is not known.
+    fn of(self, row: &Row) -> Option<f64> {
+        match self {
+            Self::Here => Some(row.seconds_per_simulated_second),
+            Self::Target => row
+                .mcu_instructions_per_step
+                .map(|count| count / row.step_s),
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Here => "cost here, seconds per simulated second",
+            Self::Target => "cost on the target, instructions per simulated second",
+        }
+    }
+}
+
+/// The drawing as a part of a page.
+pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
+    let axes = Axes::of(&trade.rows, cost);
+    axes.chart().draw(
+        &html! {},
+        &axes.front(&trade.rows),
+        &axes.points(&trade.rows),
+    )
+}
+
+/// The drawing for this machine as a file of its own.
+pub fn svg(trade: &Trade) -> String {
+    let axes = Axes::of(&trade.rows, Cost::Here);
+    let points = html! { (axes.points(&trade.rows)) (key(&trade.rows)) };
+    axes.chart()
+        .file(WIDTH, &axes.front(&trade.rows), &points)
+        .into_string()
+}
+
+/// What the points mean, inside the drawing.
+fn key(rows: &[Row]) -> Markup {
+    let mut entries: Vec<(String, String)> = shown(rows)
+        .map(|rung| {
+            (
+                format!("{} f32", rung_class(rung)),
+                format!("rung {}", rung.name()),
+            )
+        })
+        .collect();
+    entries.extend(Precision::ALL.map(|precision| {
+        let name = precision.name();
+        (format!("levitated {name}"), name.to_owned())
+    }));
+    html! {
+        @for (index, (class, name)) in entries.iter().enumerate() {
+            @let y = 0.5 * HEIGHT + 20.0 * index as f64;
+            circle class=(class) cx="86%" cy=(y) r="4" {}
+            text x="87.5%" y=(y) dy="4" { (name) }
+        }
+    }
+}
+
+/// The rungs of the table.
+fn shown(rows: &[Row]) -> impl Iterator<Item = Rung> {
+    Rung::ALL
+        .into_iter()
+        .filter(|rung| rows.iter().any(|row| row.rung == *rung))
+}
+
+/// Style class of a rung.
+pub(super) fn rung_class(rung: Rung) -> String {
+    format!("rung-{}", rung.name())
+}
+
+struct Axes {
+    of: Cost,
+    cost: Axis,
+    error: Axis,
+}
+
+impl Axes {
+    fn of(rows: &[Row], of: Cost) -> Self {
+        let costs = rows.iter().filter_map(|row| of.of(row));
+        let least = costs.clone().fold(f64::INFINITY, f64::min);
+        let most = costs.fold(0.0, f64::max);
+        let errors = rows.iter().map(|row| height(row.worst_error));
+        let (low, high) = errors.fold((MOST_ERROR, LEAST_ERROR), |(low, high), error| {
+            (f64::min(low, error), f64::max(high, error))
+        });
+        Self {
+            of,
+            cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label(), 8.0),
+            error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
+        }
+    }
+
+    fn chart(&self) -> Chart<'_> {
+        Chart {
+            title: "Error against cost",
+            description: "Each combination of rung, scheme, numbers, functions and step: its \
+                          greatest error at impacts 1, 3 and 10 over its cost; the front is joined.",
+            x: &self.cost,
+            y: &self.error,
+            height: HEIGHT,
+        }
+    }
+
+    /// Joins the front, which is about the cost here.
+    fn front(&self, rows: &[Row]) -> Markup {
+        let mut front: Vec<&Row> = rows.iter().filter(|row| row.pareto).collect();
+        front.sort_by(|a, b| {
+            a.seconds_per_simulated_second
+                .total_cmp(&b.seconds_per_simulated_second)
+        });
+        let chart = self.chart();
+        let mut pen = chart.pen();
+        for row in front.into_iter().filter(|_| self.of == Cost::Here) {
+            pen.line_to(row.seconds_per_simulated_second, height(row.worst_error));
+        }
+        pen.finish("front")
+    }
+
+    fn points(&self, rows: &[Row]) -> Markup {
+        let known = rows.iter().filter_map(|row| Some((row, self.of.of(row)?)));
+        html! {
+            @for (row, cost) in known {
+                @let y = (1.0 - self.error.fraction(height(row.worst_error))) * HEIGHT;
+                @let class = format!("{} {}", rung_class(row.rung), row.precision.name());
+                @let large = row.pareto && self.of == Cost::Here;
+                circle class=(class) cx=(self.cost.percent(cost)) cy=(format!("{y:.1}"))
+                    r=(if large { "6" } else { "3.5" }) {
+                    title { (caption(row)) }
+                }
+            }
+        }
+    }
+}
+
+/// Where an error is drawn.
+fn height(error: f64) -> f64 {
+    error.clamp(LEAST_ERROR, MOST_ERROR)
+}
+
+fn caption(row: &Row) -> String {
+    format!(
+        "{}, step {}: error {:.1e}, {:.1} ns a step",
+        row.name(),
+        si(row.step_s, "s"),
+        row.worst_error,
+        row.ns_per_step
+    )
+}
+
+/// What the points mean.
+pub(super) fn legend(rows: &[Row]) -> Markup {
+    html! {
+        ul.legend {
+            @for rung in shown(rows) {
+                li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung.name()) }
+            }
+            @for precision in Precision::ALL {
+                li { (dot(&format!("levitated {}", precision.name()))) (precision.name()) }
+            }
+            li { "large and joined: the front" }
+        }
+    }
+}
+
+fn dot(class: &str) -> Markup {
+    html! { svg width="12" height="12" aria-hidden="true" { circle class=(class) cx="6" cy="6" r="4" {} } }
+}

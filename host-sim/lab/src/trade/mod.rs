@@ -1,0 +1,100 @@
+//! Accuracy against cost: every rung, scheme, precision, math and step over one scene.
+
+mod accuracy;
+mod drawing;
+mod pace;
+mod page;
+mod pareto;
+mod row;
+mod table;
+
+pub use drawing::svg;
+pub use page::page;
+pub use row::{Row, json};
+pub use table::table;
+
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use touchdown_rotor::error::ConfigError;
+
+use accuracy::Accuracy;
+use touchdown_base::progress;
+use touchdown_run::fidelity::combination;
+use touchdown_run::fidelity::cost::LONGEST;
+use touchdown_run::model;
+use touchdown_scene::{Model, Scene};
+
+/// The table of a scene, and how much of the scene it was measured over.
+pub struct Trade {
+    /// The scene's heading.
+    pub scene: String,
+    /// From the release, s.
+    pub measured: f64,
+    /// One a combination that the scene allows.
+    pub rows: Vec<Row>,
+}
+
+/// Measures every combination over the first second of `scene`.
+pub fn run(scene: &Scene) -> Trade {
+    let mut scene = scene.clone();
+    scene.run.duration = scene.run.duration.min(LONGEST);
+    let models: Vec<Model> = combination::all()
+        .into_iter()
+        .filter(|&model| is_possible(&scene, model))
+        .collect();
+    let progress = progress::bar("trade", 2 * models.len() as u64);
+    let errors = accuracies(&scene, &models, &progress);
+    let mut rows: Vec<Row> = Vec::with_capacity(models.len());
+    for (model, accuracy) in models.iter().zip(errors) {
+        if let (Ok(pace), Some(accuracy)) = (pace::measure(&with(&scene, *model)), accuracy) {
+            rows.push(Row::new(*model, &accuracy, &pace));
+        }
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    pareto::mark(&mut rows);
+    Trade {
+        scene: scene.heading().to_owned(),
+        measured: scene.run.duration,
+        rows,
+    }
+}
+
+/// How far each model is from the reference; none where the model refuses the scene.
+fn accuracies(scene: &Scene, models: &[Model], progress: &ProgressBar) -> Vec<Option<Accuracy>> {
+    let truth = touchdown_truth::simulate(scene);
+    models
+        .par_iter()
+        .map(|&model| {
+            let scene = with(scene, model);
+            let history = model::simulate(&scene);
+            progress.inc(1);
+            history
+                .ok()
+                .map(|history| Accuracy::of(&history, &truth, &scene))
+        })
+        .collect()
+}
+
+fn is_possible(scene: &Scene, model: Model) -> bool {
+    struct Built;
+    impl model::Use for Built {
+        type Output = ();
+
+        fn with<R, M>(self, _: &model::Subject<R, M>) -> Result<(), ConfigError>
+        where
+            R: touchdown_rotor::Precision,
+            M: touchdown_rotor::Stepper<R>,
+        {
+            Ok(())
+        }
+    }
+    model::with_model(&with(scene, model), Built).is_ok()
+}
+
+fn with(scene: &Scene, model: Model) -> Scene {
+    Scene {
+        model,
+        ..scene.clone()
+    }
+}

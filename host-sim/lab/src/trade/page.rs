@@ -1,0 +1,88 @@
+//! The table and its drawing as one page.
+
+use maud::{Markup, html};
+
+use super::Trade;
+use super::drawing::{Cost, drawing, legend};
+use super::row::Row;
+use touchdown_chart::shell::page as shell;
+use touchdown_chart::table::table;
+use touchdown_chart::text::si;
+
+/// Writes the page.
+pub fn page(trade: &Trade) -> String {
+    let front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
+    let all: Vec<&Row> = trade.rows.iter().collect();
+    let counted = trade
+        .rows
+        .iter()
+        .any(|row| row.mcu_instructions_per_step.is_some());
+    let body = html! {
+        header {
+            p.kind { "Accuracy against cost" }
+            h1 { (trade.scene) }
+            p.note {
+                "Measured over the first " (si(trade.measured, "s")) ". Errors against the independent \
+                 reference: the greatest of time in T, position in clearances and velocity in V just \
+                 after an impact. Cost: the quickest of several runs on the machine that wrote this page, \
+                 with the rotor's place after each step. Instructions: counted in the emulator, mean of \
+                 the run."
+            }
+        }
+        section {
+            h2 { "Error against cost" }
+            p.note {
+                "Rung rigid solves from change to change, so its error does not depend on the step. Rung \
+                 moreau is of first order. Rung hertz is another law, whose contacts last: it does not \
+                 converge to the rigid laws, and gives force and contact time, which they do not. s/s: \
+                 seconds per simulated second. Errors at or above 10, and missed impacts, are drawn at 10."
+            }
+            (legend(&trade.rows))
+            h3 { "Here" }
+            (drawing(trade, Cost::Here))
+            @if counted {
+                h3 { "On the target" }
+                (drawing(trade, Cost::Target))
+            }
+        }
+        section { h2 { "Front" } (rows("Front", &front)) }
+        section { h2 { "All combinations" } (rows("All combinations", &all)) }
+    };
+    shell("Accuracy against cost \u{2013} touchdown", &body).into_string()
+}
+
+fn rows(name: &str, rows: &[&Row]) -> Markup {
+    let head = html! {
+        th { "Combination" }
+        th.number { "Step" }
+        th.number { "Impact 1" }
+        th.number { "Impact 3" }
+        th.number { "Impact 10" }
+        th.number { "Contact, T" }
+        th { "Regime" }
+        th.number { "Energy" }
+        th.number { "ns a step" }
+        th.number { "s/s" }
+        th.number { "Instr. a step" }
+    };
+    table(name, &head, rows.iter().map(|row| cells(row)))
+}
+
+fn cells(row: &Row) -> Markup {
+    let error = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1e}"));
+    html! {
+        td { (row.name()) }
+        td.number { (si(row.step_s, "s")) }
+        td.number { (error(row.error_impact_1)) }
+        td.number { (error(row.error_impact_3)) }
+        td.number { (error(row.error_impact_10)) }
+        td.number { (error(row.contact_error)) }
+        td { (if row.regime_ok { "right" } else { "wrong" }) }
+        td.number { (format!("{:.1e}", row.energy_drift)) }
+        td.number { (format!("{:.1}", row.ns_per_step)) }
+        td.number { (format!("{:.1e}", row.seconds_per_simulated_second)) }
+        td.number {
+            (row.mcu_instructions_per_step.map_or("\u{2013}".to_owned(), |it| format!("{it:.0}")))
+        }
+    }
+}

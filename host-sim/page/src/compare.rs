@@ -1,0 +1,105 @@
+//! Two recordings as one HTML page.
+
+use maud::{Markup, html};
+
+use touchdown_chart::shell::page as in_style;
+use touchdown_chart::table::table;
+use touchdown_chart::text::significant;
+use touchdown_chart::waveform::{Line, Waveform, waveform};
+use touchdown_run::compare::table::verdict;
+use touchdown_run::compare::{Comparison, Pair};
+use touchdown_run::replay::Excerpt;
+use touchdown_scene::Scene;
+use touchdown_scene::names::event_name;
+
+/// Writes the page.
+pub fn page(scene: &Scene, comparison: &Comparison) -> String {
+    let [a, b] = &comparison.files;
+    let body = html! {
+        p.kind { "Two recordings" }
+        h1 { (a) " and " (b) }
+        p { "Scene: " (scene.heading()) }
+        p class=(if comparison.beyond > 0 { "verdict alarm" } else { "verdict" }) {
+            (verdict(comparison)) ". Regime: " (regime(comparison, 0)) ", " (regime(comparison, 1)) "."
+        }
+        @for warning in &comparison.warnings { p.alarm { (warning) } }
+        @if let Some(excerpts) = &comparison.excerpts {
+            section {
+                h2 { "First drop" }
+                @for channel in 0..comparison.aligned.waveform_rms_m.len() { (panel(channel, excerpts, scene, comparison)) }
+                ul.legend {
+                    li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } (a) }
+                    li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M1 6H33" {} } (b) ", shifted by " (format!("{:.6}", -comparison.aligned.shift_s)) "\u{a0}s" }
+                }
+            }
+        }
+        section {
+            h2 { "Events" }
+            (events(comparison))
+            p.note { "Onsets, each on its own clock; differences after alignment. Impacts below 20 mm/s are not judged." }
+        }
+    };
+    in_style(&format!("{a} and {b}"), &body).into_string()
+}
+
+fn regime(comparison: &Comparison, index: usize) -> &'static str {
+    comparison.regimes[index].map_or("none", event_name)
+}
+
+fn panel(
+    channel: usize,
+    excerpts: &[Excerpt; 2],
+    scene: &Scene,
+    comparison: &Comparison,
+) -> Markup {
+    let [a, b] = excerpts;
+    let first = |line: Line<'_>| a.draw(channel, 0.0, line);
+    let second = |line: Line<'_>| b.draw(channel, -comparison.aligned.shift_s, line);
+    waveform(&Waveform {
+        channel,
+        span: [a.start, a.time(a.positions.len())],
+        time: "time of the first, s",
+        description: "Displacement of both recordings against time, the second shifted onto the first; \
+                      dashed lines at the clearance.",
+        clearance: scene.retainer.clearance,
+        curves: &[("sensed", &second), ("motion", &first)],
+        strokes: [&[], &[]],
+    })
+}
+
+fn events(comparison: &Comparison) -> Markup {
+    let head = html! {
+        th { "Event" }
+        th.number { "First" br; "s" }
+        th.number { "Second" br; "s" }
+        th.number { "Difference" br; "ms" }
+        th.number { "First" br; "mm/s" }
+        th.number { "Second" br; "mm/s" }
+        th.number { "Difference" br; "%" }
+        th { "Within" }
+    };
+    let number = |value: Option<f64>, scale: f64, digits: i32| {
+        value.map_or("\u{2013}".to_owned(), |it| significant(it * scale, digits))
+    };
+    let row = |pair: &Pair| {
+        let (class, word) = match pair.within {
+            Some(true) => ("", "yes"),
+            Some(false) => ("missed", "no"),
+            None => ("", "not judged"),
+        };
+        html! {
+            td { (event_name(pair.event)) }
+            td.number { (number(pair.a_s, 1.0, 7)) }
+            td.number { (number(pair.b_s, 1.0, 7)) }
+            td.number { (number(pair.difference_s, 1e3, 4)) }
+            td.number { (number(pair.a_speed_m_s, 1e3, 4)) }
+            td.number { (number(pair.b_speed_m_s, 1e3, 4)) }
+            td.number { (number(pair.speed_difference, 100.0, 3)) }
+            td class=(class) { (word) }
+        }
+    };
+    if comparison.events.is_empty() {
+        return html! { p { "None." } };
+    }
+    table("Events", &head, comparison.events.iter().map(row))
+}

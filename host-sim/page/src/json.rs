@@ -1,0 +1,253 @@
+//! What `--json` writes; SI, full precision, unknown values null.
+
+use serde::Serialize;
+use touchdown_core::health::Condition;
+use touchdown_core::sample::CHANNELS;
+
+use touchdown_base::history::{Impact, Phase, Regime};
+use touchdown_base::ledger::Ledger;
+use touchdown_run::conduct::Controller;
+use touchdown_run::model::RingEnd;
+use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
+use touchdown_run::timebase::Timebase;
+use touchdown_scene::elastic::Validity;
+use touchdown_scene::scales::validity;
+use touchdown_scene::{Precision, Rung, Scene};
+use touchdown_truth::reference::energy;
+
+#[derive(Serialize)]
+struct DropJson<'a> {
+    model: ModelJson,
+    impacts: Vec<ImpactJson>,
+    phases: &'a [Phase],
+    contact_starts_s: &'a [f64],
+    lift_offs_s: &'a [f64],
+    rolling_starts_s: &'a [f64],
+    regime: Regime,
+    #[serde(rename = "final")]
+    end: EndJson,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rings: Vec<RingJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring: Option<RingEndJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy: Option<EnergyJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    validity: Option<Validity>,
+    detector: EventsJson<'a>,
+    forecasts: &'a [Forecast],
+    severity: Severity,
+    controller: Controller,
+}
+
+#[derive(Serialize)]
+struct ModelJson {
+    rung: Rung,
+    precision: Precision,
+    step_s: f64,
+}
+
+#[derive(Serialize)]
+struct ImpactJson {
+    index: usize,
+    time_s: f64,
+    x_m: f64,
+    y_m: f64,
+    vx_m_s: f64,
+    vy_m_s: f64,
+    spin_rad_s: f64,
+    normal_speed_m_s: f64,
+    normal_impulse_n_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_force_n: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_time_s: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct EndJson {
+    time_s: f64,
+    x_m: f64,
+    y_m: f64,
+    vx_m_s: f64,
+    vy_m_s: f64,
+    spin_rad_s: f64,
+    energy_j: f64,
+}
+
+/// A ring of a rotor that tilts; its impacts with the state there.
+#[derive(Serialize)]
+struct RingJson<'a> {
+    name: &'a str,
+    z_m: f64,
+    impacts: Vec<ImpactJson>,
+    phases: &'a [Phase],
+    contact_starts_s: &'a [f64],
+    lift_offs_s: &'a [f64],
+    rolling_starts_s: &'a [f64],
+    regime: Regime,
+}
+
+/// The retainer ring at the end.
+#[derive(Serialize)]
+struct RingEndJson {
+    x_m: f64,
+    y_m: f64,
+    vx_m_s: f64,
+    vy_m_s: f64,
+    held_peak_force_n: f64,
+    #[serde(flatten)]
+    race: Option<RaceJson>,
+}
+
+#[derive(Serialize)]
+struct RaceJson {
+    inner_ring_rad_s: f64,
+    cage_rad_s: f64,
+    temperature_rise_k: f64,
+}
+
+#[derive(Serialize)]
+struct EnergyJson<'a> {
+    #[serde(flatten)]
+    ledger: &'a Ledger,
+    imbalance_j: f64,
+}
+
+#[derive(Serialize)]
+struct EventsJson<'a> {
+    events: &'a [DetectedEvent],
+    health: [Condition; CHANNELS],
+}
+
+#[derive(Serialize)]
+struct ReplayJson<'a> {
+    events: &'a [DetectedEvent],
+    forecasts: &'a [Forecast],
+    #[serde(skip_serializing_if = "is_none")]
+    left_out: u64,
+    severity: Severity,
+    samples: u64,
+    faults: u64,
+    health: [Condition; CHANNELS],
+}
+
+/// `drop --json`.
+pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
+    let model = &outcome.model;
+    text(&DropJson {
+        model: ModelJson {
+            rung: scene.model.rung,
+            precision: scene.model.precision,
+            step_s: scene.model.step,
+        },
+        impacts: model.impacts.iter().enumerate().map(impact).collect(),
+        phases: &model.phases,
+        contact_starts_s: &model.contact_starts,
+        lift_offs_s: &model.lift_offs,
+        rolling_starts_s: &model.rolling_starts,
+        regime: model.regime,
+        end: end(scene, outcome),
+        rings: rings(scene, outcome),
+        ring: outcome.ring.as_ref().map(ring_end),
+        energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
+            ledger,
+            imbalance_j: ledger.imbalance_j(),
+        }),
+        validity: validity(scene),
+        detector: EventsJson {
+            events: &outcome.detection.events,
+            health: outcome.detection.conditions,
+        },
+        forecasts: &outcome.detection.forecasts,
+        severity: outcome.detection.severity,
+        controller: outcome.conduct.told(Timebase::of(scene)),
+    })
+}
+
+/// `replay --json`.
+pub fn replay(detection: &Detection) -> serde_json::Result<String> {
+    text(&ReplayJson {
+        events: &detection.events,
+        forecasts: &detection.forecasts,
+        left_out: detection.left_out,
+        severity: detection.severity,
+        samples: detection.samples,
+        faults: detection.faults,
+        health: detection.conditions,
+    })
+}
+
+fn is_none(count: &u64) -> bool {
+    *count == 0
+}
+
+/// As every command writes it: indented, with an end of line.
+pub fn text(value: &impl Serialize) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(value).map(|json| json + "\n")
+}
+
+fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
+    let state = &impact.state;
+    ImpactJson {
+        index,
+        time_s: state.time,
+        x_m: state.position[0],
+        y_m: state.position[1],
+        vx_m_s: state.velocity[0],
+        vy_m_s: state.velocity[1],
+        spin_rad_s: state.spin,
+        normal_speed_m_s: impact.normal_speed,
+        normal_impulse_n_s: impact.normal_impulse,
+        peak_force_n: impact.pulse.map(|pulse| pulse.peak_force),
+        contact_time_s: impact.pulse.map(|pulse| pulse.duration),
+    }
+}
+
+fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
+    let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
+    let rings = rings.zip(&outcome.rings);
+    rings
+        .map(|(ring, [model, _])| RingJson {
+            name: &ring.name,
+            z_m: ring.place,
+            impacts: model.impacts.iter().enumerate().map(impact).collect(),
+            phases: &model.phases,
+            contact_starts_s: &model.contact_starts,
+            lift_offs_s: &model.lift_offs,
+            rolling_starts_s: &model.rolling_starts,
+            regime: model.regime,
+        })
+        .collect()
+}
+
+fn ring_end(ring: &RingEnd) -> RingEndJson {
+    RingEndJson {
+        x_m: ring.position[0],
+        y_m: ring.position[1],
+        vx_m_s: ring.velocity[0],
+        vy_m_s: ring.velocity[1],
+        held_peak_force_n: ring.held_peak,
+        race: ring.race.map(
+            |[inner_ring_rad_s, cage_rad_s, temperature_rise_k]| RaceJson {
+                inner_ring_rad_s,
+                cage_rad_s,
+                temperature_rise_k,
+            },
+        ),
+    }
+}
+
+fn end(scene: &Scene, outcome: &Outcome) -> EndJson {
+    let state = &outcome.model.end;
+    let stored = outcome.ledger.as_ref().map(Ledger::stored_j);
+    EndJson {
+        time_s: state.time,
+        x_m: state.position[0],
+        y_m: state.position[1],
+        vx_m_s: state.velocity[0],
+        vy_m_s: state.velocity[1],
+        spin_rad_s: state.spin,
+        energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), state)),
+    }
+}

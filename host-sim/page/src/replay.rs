@@ -1,0 +1,180 @@
+//! The replay of a recording as one HTML page.
+
+use maud::{Markup, html};
+use touchdown_core::event::EventKind;
+
+use crate::report::spectrum::{Spectra, spectra};
+use touchdown_chart::shell::page as in_style;
+use touchdown_chart::table::table;
+use touchdown_chart::text::{ms_or_dash, si, significant};
+use touchdown_chart::waveform::{Line, Waveform, waveform};
+use touchdown_run::outcome::DetectedEvent;
+use touchdown_run::replay::{Excerpt, Replay};
+use touchdown_scene::Scene;
+use touchdown_scene::names::event_name;
+
+/// Writes the page; `drop` is the first drop, sample by sample.
+pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) -> String {
+    let detection = &replay.detection;
+    let seconds = detection.samples as f64 / replay.rate;
+    let body = html! {
+        p.kind { "Replay of a recording" }
+        h1 { (name) }
+        p { "Scene: " (scene.heading()) }
+        @for warning in &replay.warnings { p.alarm { (warning) } }
+        dl.figures {
+            (figure("Samples", &detection.samples.to_string()))
+            (figure("Rate", &si(replay.rate, "Hz")))
+            (figure("Length", &si(seconds, "s")))
+            (figure("Events", &(detection.events.len() as u64 + detection.left_out).to_string()))
+            (figure("Impacts of the last drop", &detection.severity.impacts.to_string()))
+            (figure("Its hardest impact", &si(detection.severity.impact_speed_m_s, "m/s")))
+            (figure("Unusable channel values", &detection.faults.to_string()))
+        }
+        @if let Some(format) = &replay.format { p.note { (format) } }
+        @if let Some(drop) = drop {
+            section {
+                h2 { "First drop" }
+                (close(drop, scene, replay))
+            }
+        }
+        section {
+            h2 { "Whole recording" }
+            (whole(scene, replay))
+            p.note {
+                "Least and greatest displacement of each " (replay.envelope.stride) " samples. Dashed: clearance. "
+                "Strokes at the top: events; at the bottom: impacts."
+            }
+        }
+        section {
+            h2 { "Full spectrum" }
+            (spectrum(scene, replay))
+        }
+        section {
+            h2 { "Events" }
+            (events(replay))
+            @if detection.left_out > 0 {
+                p.note { (detection.left_out) " further messages of the detector were counted, not kept." }
+            }
+        }
+    };
+    in_style(&format!("Replay of {name}"), &body).into_string()
+}
+
+fn figure(name: &str, value: &str) -> Markup {
+    html! { div { dt { (name) } dd { (value) } } }
+}
+
+fn whole(scene: &Scene, replay: &Replay) -> Markup {
+    let envelope = &replay.envelope;
+    let stretch = envelope.stride as f64 / replay.rate;
+    panels(
+        [replay.start, end(replay)],
+        scene,
+        replay,
+        &|channel, line| {
+            for (index, bucket) in envelope.buckets().enumerate() {
+                let time = replay.start + (index as f64 + 0.5) * stretch;
+                line(time, bucket[channel][0]);
+                line(time, bucket[channel][1]);
+            }
+        },
+    )
+}
+
+fn close(drop: &Excerpt, scene: &Scene, replay: &Replay) -> Markup {
+    let span = [drop.start, drop.time(drop.positions.len())];
+    panels(span, scene, replay, &|channel, line| {
+        drop.draw(channel, 0.0, line)
+    })
+}
+
+/// The end of the recording, s.
+fn end(replay: &Replay) -> f64 {
+    replay.start + replay.detection.samples as f64 / replay.rate
+}
+
+/// A chart for each channel; `draw` hands out its points, s and m.
+fn panels(
+    span: [f64; 2],
+    scene: &Scene,
+    replay: &Replay,
+    draw: &dyn Fn(usize, Line<'_>),
+) -> Markup {
+    let onsets = |impacts: bool| -> Vec<f64> {
+        let events = replay.detection.events.iter();
+        let wanted = events.filter(|it| (it.event == EventKind::Impact) == impacts);
+        wanted.map(|it| it.onset_s).collect()
+    };
+    let (events, impacts) = (onsets(false), onsets(true));
+    let panel = |channel: usize| {
+        let points = |line: Line<'_>| draw(channel, line);
+        waveform(&Waveform {
+            channel,
+            span,
+            time: "time, s",
+            description: "Recorded displacement against time, dashed lines at the clearance, strokes at events.",
+            clearance: scene.retainer.clearance,
+            curves: &[("motion", &points)],
+            strokes: [&events, &impacts],
+        })
+    };
+    html! {
+        @for channel in 0..2 * usize::from(replay.envelope.planes) { (panel(channel)) }
+    }
+}
+
+/// Before and after the first drop's onset.
+fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
+    let drop = replay.first_drop().map(|it| it.onset_s);
+    let parts = match drop {
+        Some(onset) => vec![
+            ("levitated", "before it", [f64::NEG_INFINITY, onset]),
+            ("motion", "from the first drop on", [onset, f64::INFINITY]),
+        ],
+        None => vec![("motion", "all of it", [f64::NEG_INFINITY, f64::INFINITY])],
+    };
+    spectra(&Spectra {
+        found: &replay.spectrogram,
+        spin: scene.rotor.spin,
+        parts,
+        time: "time, s",
+    })
+}
+
+fn events(replay: &Replay) -> Markup {
+    let head = html! {
+        th { "Event" }
+        th.number { "Onset" br; "s" }
+        th.number { "Declared" br; "s" }
+        th.number { "Latency" br; "ms" }
+        th { "Plane" }
+        th.number { "Speed" br; "mm/s" }
+        th { "Fate" }
+    };
+    let row = |event: &DetectedEvent| {
+        let speed = event.normal_speed_m_s.map(|it| significant(it * 1e3, 4));
+        let fault = event
+            .fault
+            .map(|it| format!(" of {}: {}", it.channel, it.kind.name()));
+        let fate = match (event.confirmed_s, event.withdrawn_s) {
+            (Some(time), _) => format!("confirmed at {time:.6} s"),
+            (_, Some(time)) => format!("withdrawn at {time:.6} s"),
+            _ => String::new(),
+        };
+        html! {
+            td { (event_name(event.event)) (fault.unwrap_or_default()) }
+            td.number { (format!("{:.6}", event.onset_s)) }
+            td.number { (format!("{:.6}", event.declared_s)) }
+            td.number { (ms_or_dash(Some(event.declared_s - event.onset_s))) }
+            td { (event.plane) }
+            td.number { (speed.unwrap_or_default()) }
+            td { (fate) }
+        }
+    };
+    let events = &replay.detection.events;
+    if events.is_empty() {
+        return html! { p { "None." } };
+    }
+    table("Events", &head, events.iter().map(row))
+}

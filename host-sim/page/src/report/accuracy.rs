@@ -1,0 +1,113 @@
+//! The model under test against the independent reference.
+
+use super::Subject;
+use maud::{Markup, html};
+use touchdown_base::history::History;
+use touchdown_chart::table::table;
+use touchdown_chart::text::{error, ms, si, significant};
+use touchdown_run::outcome::Outcome;
+use touchdown_scene::names::regime_name;
+
+/// Draws times and end state side by side, with differences.
+pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
+    let (model, truth) = (&outcome.model, &outcome.truth);
+    let head = html! {
+        th { "Quantity" }
+        th.number { "Model" }
+        th.number { "Reference" }
+        th.number { "Difference" }
+    };
+    let mut rows = vec![
+        count_row("Impacts", model.impacts.len(), truth.impacts.len()),
+        time_row("First impact, ms", first_impact(model), first_impact(truth)),
+        speed_row(peak(model), peak(truth)),
+    ];
+    let starts = [
+        (
+            "Permanent contact",
+            &model.contact_starts,
+            &truth.contact_starts,
+        ),
+        ("Rolling", &model.rolling_starts, &truth.rolling_starts),
+        ("Lift-off", &model.lift_offs, &truth.lift_offs),
+    ];
+    for (name, ours, theirs) in starts {
+        if ours.len().max(theirs.len()) > 0 {
+            let name = format!("{name}, first, ms");
+            rows.push(time_row(
+                &name,
+                ours.first().copied(),
+                theirs.first().copied(),
+            ));
+        }
+    }
+    rows.push(html! {
+        td { "Regime" }
+        td.number { (regime_name(model.regime)) }
+        td.number { (regime_name(truth.regime)) }
+        td.number { (if model.regime == truth.regime { "same" } else { "differs" }) }
+    });
+    rows.push(html! {
+        td { "Position at the end, part of the clearance" }
+        td.number {} td.number {}
+        td.number { (error(apart(model, truth) / subject.machine.clearance)) }
+    });
+    html! {
+        p {
+            "The model ran in " (subject.precision) " with an output interval of "
+            (si(subject.step, "s")) ". The reference is an independent solver in f64."
+        }
+        (table("Model against reference", &head, rows.into_iter()))
+    }
+}
+
+fn first_impact(history: &History) -> Option<f64> {
+    history.impacts.first().map(|impact| impact.state.time)
+}
+
+fn peak(history: &History) -> Option<f64> {
+    let speeds = history.impacts.iter().map(|impact| impact.normal_speed);
+    speeds.reduce(f64::max)
+}
+
+fn apart(model: &History, truth: &History) -> f64 {
+    let ([x, y], [u, v]) = (model.end.position, truth.end.position);
+    f64::hypot(x - u, y - v)
+}
+
+fn count_row(name: &str, model: usize, truth: usize) -> Markup {
+    html! {
+        td { (name) }
+        td.number { (model) }
+        td.number { (truth) }
+        td.number { (model.abs_diff(truth)) }
+    }
+}
+
+fn time_row(name: &str, model: Option<f64>, truth: Option<f64>) -> Markup {
+    row(name, model, truth, "s", ms)
+}
+
+fn speed_row(model: Option<f64>, truth: Option<f64>) -> Markup {
+    let speed = |value: f64| significant(value * 1e3, 5);
+    row("Peak impact speed, mm/s", model, truth, "m/s", speed)
+}
+
+fn row(
+    name: &str,
+    model: Option<f64>,
+    truth: Option<f64>,
+    unit: &str,
+    show: fn(f64) -> String,
+) -> Markup {
+    let cell = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), show);
+    html! {
+        td { (name) }
+        td.number { (cell(model)) }
+        td.number { (cell(truth)) }
+        td.number {
+            @if let (Some(model), Some(truth)) = (model, truth) { (error(model - truth)) "\u{a0}" (unit) }
+            @else { "\u{2013}" }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Displacement x and y against time.
+
+use super::Subject;
+use super::stretch::far;
+use super::timeline::{percent, strokes, visible};
+use super::window::Window;
+use crate::report::phase::phase_class;
+use maud::{Markup, html};
+use touchdown_chart::plot::{Axis, Chart};
+use touchdown_core::event::EventKind;
+use touchdown_run::outcome::{DetectedEvent, Outcome, TracePoint};
+
+const HEIGHT: f64 = 190.0;
+const MICRO: f64 = 1e6;
+
+/// Draws both axes for a stretch of time.
+pub fn displacement(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+    html! {
+        (panel(0, window, subject, outcome))
+        (panel(1, window, subject, outcome))
+        ul.legend {
+            li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } "true motion" }
+            li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M4 8h0M11 4h0M18 7h0M25 5h0M31 8h0" {} } "sensed" }
+            li { svg width="34" height="12" aria-hidden="true" { line.true-mark x1="17" x2="17" y1="0" y2="12" {} } "true change" }
+            li { svg width="34" height="12" aria-hidden="true" { line.mark x1="17" x2="17" y1="0" y2="12" {} } "detected onset" }
+            li { "short strokes: impacts, true at the top, detected at the bottom" }
+        }
+    }
+}
+
+fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+    let (x, factor) = window.axis(6.0);
+    // A ring that moves lets the rotor beyond its clearance.
+    let farthest = shown(&outcome.trace, window)
+        .iter()
+        .map(|point| point.state.position[axis].abs())
+        .filter(|place| place.is_finite())
+        .fold(subject.machine.clearance, f64::max);
+    let reach = 1.12 * farthest * MICRO;
+    let name = ["x (right)", "y (up)"][axis];
+    let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
+    let chart = Chart {
+        title: ["Displacement x against time", "Displacement y against time"][axis],
+        description: "True motion as a line over bands in the colour of the true phase, sensed values \
+                      as dots, dashed lines at the clearance, upright lines at changes.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let mut motion = chart.pen();
+    let mut sensed = chart.pen();
+    let mut last: Option<&TracePoint> = None;
+    for point in shown(&outcome.trace, window) {
+        let time = point.state.time * factor;
+        let position = point.state.position[axis] * MICRO;
+        match last {
+            Some(from) if far(from, point, subject.machine.clearance) => motion.dot(time, position),
+            _ => motion.line_to(time, position),
+        }
+        last = Some(point);
+        if let Some(position) = point.sensed {
+            sensed.dot(time, position[axis] * MICRO);
+        }
+    }
+    let mut wall = chart.pen();
+    for side in [-1.0, 1.0] {
+        wall.lift();
+        wall.line_to(x.lo, side * subject.machine.clearance * MICRO);
+        wall.line_to(x.hi, side * subject.machine.clearance * MICRO);
+    }
+    let curves = html! {
+        (wall.finish("wall"))
+        (sensed.finish("sensed"))
+        (motion.finish("motion"))
+    };
+    chart.draw(
+        &bands(outcome, &x, factor),
+        &curves,
+        &marks(outcome, &x, factor),
+    )
+}
+
+/// The points of the trace within a stretch of time, and one more at either end.
+fn shown(trace: &[TracePoint], window: Window) -> &[TracePoint] {
+    let first = trace.partition_point(|point| point.state.time < window.start);
+    let end = trace.partition_point(|point| point.state.time <= window.end);
+    &trace[first.saturating_sub(1)..(end + 1).min(trace.len())]
+}
+
+fn bands(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
+    html! {
+        @for (phase, from, to) in visible(&outcome.truth.phases, x, factor) {
+            rect class={ "band " (phase_class(phase)) } x=(percent(from)) width=(percent(to - from))
+                y="0" height=(HEIGHT) {}
+        }
+    }
+}
+
+fn marks(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
+    let onsets = |impacts: bool| -> Vec<f64> {
+        let wanted = |it: &&DetectedEvent| (it.event == EventKind::Impact) == impacts;
+        let events = outcome.detection.events.iter();
+        events.filter(wanted).map(|it| it.onset_s).collect()
+    };
+    let changes: Vec<f64> = outcome.truth.phases.iter().map(|it| it.start_s).collect();
+    let hits: Vec<f64> = outcome
+        .truth
+        .impacts
+        .iter()
+        .map(|it| it.state.time)
+        .collect();
+    html! {
+        @for at in strokes(&changes, x, factor) { line.true-mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
+        @for at in strokes(&onsets(false), x, factor) { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
+        @for at in strokes(&hits, x, factor) { line.hit x1=(at) x2=(at) y1="0" y2="9" {} }
+        @for at in strokes(&onsets(true), x, factor) { line.hit x1=(at) x2=(at) y1=(HEIGHT - 9.0) y2=(HEIGHT) {} }
+    }
+}

@@ -1,0 +1,174 @@
+//! Drops of the reference, with a detector that knows the truth but for small errors.
+
+use super::Subject;
+use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
+use touchdown_base::machine::{Machine, Start};
+use touchdown_base::spectrogram::Analyser;
+use touchdown_core::event::EventKind;
+use touchdown_core::link::{Hello, State, Text};
+use touchdown_run::conduct::Conduct;
+use touchdown_run::matching::regime_event;
+use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
+use touchdown_truth::reference::Reference;
+
+const RATE: f64 = 50e3;
+const LEAD: f64 = 0.2;
+
+/// The rig of the paper.
+pub fn subject() -> Subject {
+    Subject {
+        title: "Rotor drop, paper rig".to_owned(),
+        source: "section 4 of the paper".to_owned(),
+        machine: Machine {
+            mass: 3.42,
+            radius: 0.024,
+            polar_inertia: 9.8496e-4,
+            clearance: 0.3e-3,
+            friction: 0.1,
+            restitution: 0.8,
+            gravity: 9.81,
+        },
+        spin: -3141.592653589793,
+        duration: 0.3,
+        sample_rate: RATE,
+        precision: "f64".to_owned(),
+        step: 20e-6,
+        seed: 1,
+        noise: 1e-6,
+        rings: Vec::new(),
+        cage_ratio: None,
+        parts: Vec::new(),
+        validity: None,
+        press: None,
+        versions: vec![("touchdown-core".to_owned(), "0.1.0".to_owned())],
+    }
+}
+
+/// The free start of the paper's drop.
+pub fn start() -> Start {
+    Start::Free {
+        position: [20e-6, 0.0],
+        velocity: [0.0, 0.0],
+    }
+}
+
+/// A drop; the model is as good as the reference.
+pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
+    let mut reference = Reference::new(&subject.machine, start, subject.spin);
+    let (lead, held) = match *start {
+        Start::Free { position, .. } => (LEAD, position),
+        Start::Wall { .. } => (0.0, [0.0; 2]),
+    };
+    let mut recorder = Recorder::new(lead);
+    let points = ((lead + subject.duration) * RATE) as usize;
+    let mut trace = Vec::new();
+    let step = points.div_ceil(6000);
+    let mut analyser = Analyser::new(RATE / step as f64);
+    for number in (0..points).step_by(step) {
+        let time = number as f64 / RATE - lead;
+        let (state, phase) = if time < 0.0 {
+            let position = held;
+            let spin = subject.spin;
+            let state = RotorState {
+                time,
+                position,
+                spin,
+                ..RotorState::default()
+            };
+            (state, PhaseKind::Levitated)
+        } else {
+            let state = reference.advance(time, &mut |it| recorder.take(it));
+            (state, reference.phase())
+        };
+        let jitter = |step: f64| 1.5 * subject.noise * (number as f64 * step).sin();
+        let [x, y] = state.position;
+        let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
+        analyser.take(time, sensed);
+        trace.push(TracePoint {
+            moving: touchdown_truth::Moving::Nothing,
+            state,
+            phase,
+            sensed,
+        });
+    }
+    let end = reference.advance(subject.duration, &mut |it| recorder.take(it));
+    let truth = recorder.finish(end, reference.still_speed());
+    Outcome {
+        rings: Vec::new(),
+        ledger: None,
+        ring: None,
+        model: truth.clone(),
+        detection: detection(&truth),
+        conduct: conduct(),
+        truth,
+        trace,
+        spectrogram: analyser.finish(),
+    }
+}
+
+/// A controller that was never asked anything.
+pub fn conduct() -> Conduct {
+    Conduct {
+        outputs: Vec::new(),
+        flash: Vec::new(),
+        hello: Hello {
+            firmware: Text::new(),
+            sample_rate: RATE as f32,
+        },
+        state: State::NONE,
+    }
+}
+
+/// Finds everything but the softest impacts, and one lift-off too many.
+fn detection(truth: &History) -> Detection {
+    let event = |event, onset_s: f64, latency: f64| DetectedEvent {
+        event,
+        onset_s,
+        declared_s: onset_s + latency,
+        confirmed_s: None,
+        withdrawn_s: None,
+        sample: ((onset_s + latency + LEAD) * RATE) as u64,
+        plane: "both",
+        normal_speed_m_s: None,
+        motion: "cylindrical",
+        fault: None,
+    };
+    let changes = truth.phases.iter().filter_map(|phase| match phase.phase {
+        PhaseKind::Levitated => Some(event(EventKind::Levitated, phase.start_s + 0.05, 0.1)),
+        PhaseKind::FreeFall if phase.start_s == 0.0 => Some(DetectedEvent {
+            confirmed_s: Some(0.0034),
+            ..event(EventKind::FreeFall, 0.1e-3, 1.2e-3)
+        }),
+        PhaseKind::FreeFall => Some(event(EventKind::LiftOff, phase.start_s, 0.9e-3)),
+        PhaseKind::Impact => None,
+        PhaseKind::Sliding => Some(event(EventKind::Sliding, phase.start_s - 0.4e-3, 2.5e-3)),
+        PhaseKind::Rolling => Some(event(EventKind::Rolling, phase.start_s + 2e-3, 4e-3)),
+    });
+    let hard = truth
+        .impacts
+        .iter()
+        .filter(|impact| impact.normal_speed > 8e-3);
+    let impacts = hard.map(|impact| DetectedEvent {
+        normal_speed_m_s: Some(0.98 * impact.normal_speed),
+        motion: "cylindrical",
+        fault: None,
+        ..event(EventKind::Impact, impact.state.time + 8e-6, 60e-6)
+    });
+    let mut events: Vec<DetectedEvent> = changes.chain(impacts).collect();
+    events.push(event(EventKind::LiftOff, 0.9 * truth.end.time, 1e-3));
+    if let (Some(kind), Some(&contact)) = (regime_event(truth.regime), truth.contact_starts.last())
+    {
+        events.push(event(kind, contact, 18e-3));
+    }
+    events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
+    Detection {
+        events,
+        forecasts: Vec::new(),
+        left_out: 0,
+        severity: Severity::default(),
+        samples: 25_000,
+        faults: 3,
+        conditions: Default::default(),
+        state_hash: 0,
+    }
+}

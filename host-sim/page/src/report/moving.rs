@@ -1,0 +1,186 @@
+//! What moves besides the rotor's centre: its ends, the retainer ring, the inner ring.
+
+use super::orbit::{Orbit, draw};
+use super::window::Window;
+use super::{RingSubject, Subject};
+use maud::{Markup, html};
+use std::f64::consts::TAU;
+use touchdown_base::history::{History, PhaseKind};
+use touchdown_chart::plot::{Axis, Chart};
+use touchdown_run::outcome::{Outcome, TracePoint};
+use touchdown_truth::Moving;
+
+const HEIGHT: f64 = 190.0;
+const MICRO: f64 = 1e6;
+
+/// One orbit a ring of a rotor that tilts.
+pub fn ends(subject: &Subject, outcome: &Outcome) -> Markup {
+    let rings = subject.rings.iter().zip(&outcome.rings).enumerate();
+    html! {
+        div.pair {
+            @for (index, (ring, [_, truth])) in rings {
+                section {
+                    h2 { "Orbit in ring " (ring.name) }
+                    (end(index, ring, truth, subject, outcome))
+                    p.note { (format!("At {:.0} mm from the centre of mass, gap {} \u{b5}m; {} impacts.", ring.place * 1e3, ring.clearance * MICRO, truth.impacts.len())) }
+                }
+            }
+        }
+    }
+}
+
+fn end(
+    index: usize,
+    ring: &RingSubject,
+    truth: &History,
+    subject: &Subject,
+    outcome: &Outcome,
+) -> Markup {
+    let in_ring = |point: &TracePoint| {
+        let Moving::Ends(ends) = point.moving else {
+            return None;
+        };
+        Some(at(point, ends[index], phase_at(truth, point.state.time)))
+    };
+    let trace: Vec<_> = outcome.trace.iter().filter_map(in_ring).collect();
+    draw(&Orbit {
+        title: &format!("Orbit in ring {}", ring.name),
+        clearance: ring.clearance,
+        spin: subject.spin,
+        trace: &trace,
+        hits: truth.impacts.iter().map(|it| it.state.position).collect(),
+    })
+}
+
+/// The same moment at another place of the rotor.
+fn at(point: &TracePoint, position: [f64; 2], phase: PhaseKind) -> TracePoint {
+    let mut point = *point;
+    point.state.position = position;
+    point.state.velocity = [0.0; 2];
+    point.phase = phase;
+    point
+}
+
+fn phase_at(truth: &History, time: f64) -> PhaseKind {
+    let after = truth.phases.partition_point(|phase| phase.start_s <= time);
+    let phase = truth.phases.get(after.saturating_sub(1));
+    phase.map_or(PhaseKind::FreeFall, |phase| phase.phase)
+}
+
+/// Path of the rotor in a ring that moves itself.
+pub fn in_ring(subject: &Subject, outcome: &Outcome) -> Markup {
+    let relative = |point: &TracePoint| match point.moving {
+        Moving::Ring { position, .. } => {
+            let [x, y] = point.state.position;
+            at(point, [x - position[0], y - position[1]], point.phase)
+        }
+        _ => *point,
+    };
+    let trace: Vec<_> = outcome.trace.iter().map(relative).collect();
+    draw(&Orbit {
+        title: "Orbit in the retainer ring",
+        clearance: subject.machine.clearance,
+        spin: subject.spin,
+        trace: &trace,
+        hits: Vec::new(),
+    })
+}
+
+/// Whether the retainer ring moves in the trace; whether its inner ring turns.
+pub fn ring_moves(outcome: &Outcome) -> (bool, bool) {
+    let mut moves = (false, false);
+    for point in &outcome.trace {
+        if let Moving::Ring {
+            position,
+            race_spin,
+            ..
+        } = point.moving
+        {
+            moves.0 |= position != [0.0; 2];
+            moves.1 |= race_spin != 0.0;
+        }
+    }
+    moves
+}
+
+/// Displacement of the ring against time.
+pub fn ring(window: Window, outcome: &Outcome) -> Markup {
+    let curves = |point: &TracePoint| match point.moving {
+        Moving::Ring { position, .. } => position.map(|x| x * MICRO),
+        _ => [0.0; 2],
+    };
+    lines(
+        "Displacement of the retainer ring",
+        "\u{b5}m from its rest place",
+        [("x (right)", "motion"), ("y (up)", "pulse")],
+        window,
+        outcome,
+        curves,
+    )
+}
+
+/// Speeds of inner ring, cage and rotor against time; `cage` is the speed of the cage over the inner ring's.
+pub fn speeds(cage: f64, window: Window, outcome: &Outcome) -> Markup {
+    let rpm = 60.0 / TAU;
+    let curves = |point: &TracePoint| match point.moving {
+        Moving::Ring { race_spin, .. } => {
+            [point.state.spin, race_spin, cage * race_spin].map(|speed| speed * rpm)
+        }
+        _ => [0.0; 3],
+    };
+    lines(
+        "Speed of rotor, inner ring and cage",
+        "1/min, counter-clockwise",
+        [
+            ("rotor", "motion"),
+            ("inner ring", "pulse"),
+            ("cage", "limit"),
+        ],
+        window,
+        outcome,
+        curves,
+    )
+}
+
+fn lines<const N: usize>(
+    title: &str,
+    unit: &str,
+    names: [(&str, &str); N],
+    window: Window,
+    outcome: &Outcome,
+    of: impl Fn(&TracePoint) -> [f64; N],
+) -> Markup {
+    let shown = |point: &&TracePoint| (window.start..=window.end).contains(&point.state.time);
+    let points = outcome.trace.iter().filter(shown);
+    let values: Vec<(f64, [f64; N])> = points.map(|it| (it.state.time, of(it))).collect();
+    let all = || values.iter().flat_map(|(_, values)| values).copied();
+    let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
+    let margin = 0.06 * (high - low);
+    let (x, factor) = window.axis(6.0);
+    let y = Axis::new(low - margin, high + margin, unit, 5.0);
+    let chart = Chart {
+        title,
+        description: "Of the reference, over time.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let curve = |index: usize, class: &str| {
+        let mut pen = chart.pen();
+        for (time, values) in &values {
+            pen.line_to(time * factor, values[index]);
+        }
+        pen.finish(class)
+    };
+    let curves = html! {
+        @for (index, (_, class)) in names.iter().enumerate() { (curve(index, class)) }
+    };
+    html! {
+        (chart.draw(&html! {}, &curves, &html! {}))
+        ul.legend {
+            @for (name, class) in names {
+                li { svg width="34" height="12" aria-hidden="true" { path class={ "curve " (class) } d="M1 6H33" {} } (name) }
+            }
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What was assumed: parameters, limits of the model, versions.
+
+use super::Subject;
+use maud::{Markup, html};
+use std::f64::consts::PI;
+use touchdown_chart::text::{si, significant};
+use touchdown_scene::parts::{Part, SPRING};
+
+/// Physical and dimensionless parameters and those of the run.
+pub fn parameters(subject: &Subject) -> Markup {
+    let rpm = significant(subject.spin * 30.0 / PI, 6);
+    let turn = match subject.spin.total_cmp(&0.0) {
+        _ if subject.spin == 0.0 => "",
+        std::cmp::Ordering::Greater => ", counter-clockwise",
+        _ => ", clockwise",
+    };
+    let physical = [
+        ("Mass", si(subject.machine.mass, "kg")),
+        (
+            "Rotor radius at the retainer",
+            si(subject.machine.radius, "m"),
+        ),
+        (
+            "Polar inertia",
+            format!(
+                "{}\u{a0}kg\u{a0}m\u{b2}",
+                significant(subject.machine.polar_inertia, 5)
+            ),
+        ),
+        (
+            "Radial clearance \u{3c1}\u{2080}",
+            si(subject.machine.clearance, "m"),
+        ),
+        ("Spin at the release", format!("{rpm}\u{a0}rpm{turn}")),
+        (
+            "Gravity",
+            format!("{}\u{a0}m/s\u{b2}", significant(subject.machine.gravity, 5)),
+        ),
+    ];
+    let run = [
+        ("Duration", si(subject.duration, "s")),
+        ("Sample rate", si(subject.sample_rate, "Hz")),
+        ("Sensor noise, standard deviation", si(subject.noise, "m")),
+        ("Noise seed", subject.seed.to_string()),
+        ("Model precision", subject.precision.clone()),
+        ("Model output interval", si(subject.step, "s")),
+    ];
+    html! {
+        div.pair {
+            div { (list("Rotor and retainer", &physical)) }
+            div { (list("Dimensionless numbers and scales", &scales(subject))) (list("Run", &run)) }
+        }
+    }
+}
+
+fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
+    let beta = subject.machine.polar_inertia
+        / (subject.machine.mass * subject.machine.radius * subject.machine.radius);
+    let time = (subject.machine.clearance / subject.machine.gravity).sqrt();
+    let speed = (subject.machine.clearance * subject.machine.gravity).sqrt();
+    let mut scales = vec![
+        ("Friction \u{b5}", significant(subject.machine.friction, 4)),
+        (
+            "Restitution \u{3b5}",
+            significant(subject.machine.restitution, 4),
+        ),
+        ("Inertia \u{3b2} = J/(m r\u{b2})", significant(beta, 4)),
+    ];
+    if subject.machine.gravity > 0.0 {
+        scales.extend([
+            (
+                "Spin W\u{2080} = r \u{3c9}\u{2080}/V",
+                significant(subject.machine.radius * subject.spin / speed, 5),
+            ),
+            ("Time T = \u{221a}(\u{3c1}\u{2080}/g)", si(time, "s")),
+            ("Speed V = \u{221a}(g \u{3c1}\u{2080})", si(speed, "m/s")),
+            (
+                "Whirl keeps contact from, at the bottom",
+                si(whirl_speed(subject), "rad/s"),
+            ),
+        ]);
+    }
+    scales
+}
+
+/// Least angular speed at the bottom from which a rotor driven by friction keeps contact for a turn.
+fn whirl_speed(subject: &Subject) -> f64 {
+    let friction = subject.machine.friction;
+    let drive = 3.0 * (1.0 + (-2.0 * PI * friction).exp()) / (1.0 + 4.0 * friction * friction);
+    (subject.machine.gravity / subject.machine.clearance * (drive - 1.0)).sqrt()
+}
+
+fn list(name: &str, rows: &[(&str, String)]) -> Markup {
+    html! {
+        h3 { (name) }
+        table.list { tbody { @for (name, value) in rows { tr { th scope="row" { (name) } td.number { (value) } } } } }
+    }
+}
+
+/// What the model leaves out; `forces`: it gives impacts a force and a duration.
+pub fn limits(subject: &Subject, forces: bool) -> Markup {
+    let out = subject.parts.iter().filter(|part| !part.modelled);
+    html! {
+        ul {
+            @for part in out { li { (part.name) ": " (part.reason) "." } }
+            @if let Some(validity) = &subject.validity { li { (validity) } }
+            @if subject.machine_is_fixed() {
+                li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
+            }
+            @if forces {
+                li { "In the reference an impact takes no time; the model's contact force is that of an elastic wall with damping, without tangential compliance or plastic flow." }
+            } @else {
+                li { "An impact takes no time: impulses are given, contact forces and contact durations are not." }
+            }
+            li { "Friction is Coulomb's, with one constant coefficient; restitution does not depend on speed." }
+            li { "Truth here is the reference solution of the same equations, not a measurement." }
+        }
+    }
+}
+
+impl Subject {
+    /// Whether the retainer stands on no spring.
+    fn machine_is_fixed(&self) -> bool {
+        let spring = |part: &&Part| part.name == SPRING;
+        self.parts
+            .iter()
+            .find(spring)
+            .is_none_or(|part| !part.modelled)
+    }
+}
+
+/// Components and versions.
+pub fn versions(subject: &Subject) -> Markup {
+    html! {
+        dl.versions { @for (component, version) in &subject.versions { div { dt { (component) } dd { (version) } } } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    #[test]
+    fn whirl_speed_of_the_rig() {
+        let speed = whirl_speed(&fixture::subject());
+        assert!((speed - 334.59).abs() < 0.01, "{speed}");
+    }
+}

@@ -1,0 +1,156 @@
+//! Angular speed against angle while the rotor is at the wall.
+
+use super::Subject;
+use super::regions::{View, areas};
+use super::stretch::{far, runs};
+use crate::report::phase::phase_class;
+use maud::{Markup, html};
+use touchdown_base::history::RotorState;
+use touchdown_base::regions::Plane;
+use touchdown_chart::plot::{Axis, Chart, Pen};
+use touchdown_run::outcome::{Outcome, TracePoint};
+
+/// Part of the clearance beyond which the rotor counts as near the wall.
+const NEAR: f64 = 0.8;
+
+/// Range of the slow part in `sqrt(g/clearance)`: a turn without friction takes `sqrt(5)` at the bottom.
+const BEGINNING: f64 = 5.0;
+
+/// Surface speed, in `sqrt(g clearance)`, from which the slip keeps its sign until fast whirl.
+const FAST: f64 = 20.0;
+
+const HEIGHT: f64 = 330.0;
+
+/// Draws theta-dot against theta, theta from the bottom, counter-clockwise; of a fast whirl also its
+/// beginning.
+pub fn phase_plane(subject: &Subject, outcome: &Outcome) -> Markup {
+    let motion = outcome
+        .trace
+        .iter()
+        .filter_map(|point| at_wall(&point.state, subject));
+    let (widest, low, high) = motion.fold((0.0, 0.0, 0.0), |(widest, low, high), (angle, rate)| {
+        (
+            f64::max(widest, angle.abs()),
+            f64::min(low, rate),
+            f64::max(high, rate),
+        )
+    });
+    if low == high {
+        return html! { p.note { "The rotor did not move along the wall." } };
+    }
+    let slow = BEGINNING * (subject.machine.gravity / subject.machine.clearance).sqrt();
+    let beginning = slow > 0.0 && high.max(-low) > 3.0 * slow;
+    html! {
+        @if beginning {
+            (plane("Phase plane, slow part", widest, low.max(-slow), high.min(slow), subject, outcome))
+        }
+        (plane("Phase plane", widest, low, high, subject, outcome))
+    }
+}
+
+fn plane(
+    title: &str,
+    widest: f64,
+    low: f64,
+    high: f64,
+    subject: &Subject,
+    outcome: &Outcome,
+) -> Markup {
+    let fast = high.max(-low) > 1e4;
+    let (factor, unit) = if fast {
+        (1e-3, "krad/s")
+    } else {
+        (1.0, "rad/s")
+    };
+    let spans = [(30.0, 10.0), (90.0, 30.0), (180.0, 45.0)];
+    let fitting = spans.into_iter().find(|span| 1.1 * widest < span.0);
+    let (reach, step) = fitting.unwrap_or(spans[2]);
+    let mut x = Axis::new(-reach, reach, "\u{3b8} from the bottom, degrees", 8.0);
+    x.step = step;
+    let margin = 0.06 * (high - low);
+    let (low, high) = ((low - margin) * factor, (high + margin) * factor);
+    let y = Axis::new(low, high, &format!("d\u{3b8}/dt, {unit}"), 6.0);
+    let chart = Chart {
+        title,
+        description: "Angular speed against angle from the bottom while the rotor is at the wall, \
+                      coloured by phase; inside a dashed curve the wall cannot hold the rotor.",
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let curves = html! {
+        @if let Some(plane) = fast_plane(subject).filter(|_| reach > 90.0) {
+            (areas(View { plane: &plane, side: -subject.spin.signum(), factor }, &chart))
+        }
+        @if reach > 90.0 { (contact_limit(subject, chart.pen(), factor)) }
+        @for run in runs(&outcome.trace) { (curve(run, subject, chart.pen(), factor)) }
+    };
+    chart.draw(&html! {}, &curves, &html! {})
+}
+
+/// The regions of a rotor that spins so fast that friction drives one way all the time.
+fn fast_plane(subject: &Subject) -> Option<Plane> {
+    let machine = &subject.machine;
+    let unit = (machine.gravity * machine.clearance).sqrt();
+    let fast = machine.radius * subject.spin.abs() > FAST * unit;
+    let friction = Plane::FRICTION.contains(&machine.friction);
+    (unit > 0.0 && fast && friction)
+        .then(|| Plane::new(machine.gravity / machine.clearance, machine.friction))
+}
+
+/// Angle in degrees and its rate in rad/s, if the rotor is near the wall.
+fn at_wall(state: &RotorState, subject: &Subject) -> Option<(f64, f64)> {
+    let ([x, y], [vx, vy]) = (state.position, state.velocity);
+    let radius = f64::hypot(x, y);
+    let near = radius > NEAR * subject.machine.clearance;
+    near.then(|| {
+        (
+            x.atan2(-y).to_degrees(),
+            (x * vy - y * vx) / (radius * radius),
+        )
+    })
+}
+
+/// Where the angle wraps, the curve runs out at one side and in at the other.
+fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
+    let mut last: Option<(f64, f64, &TracePoint)> = None;
+    for point in run {
+        let Some((angle, rate)) = at_wall(&point.state, subject) else {
+            pen.lift();
+            last = None;
+            continue;
+        };
+        let rate = rate * factor;
+        match last {
+            Some((_, _, from)) if far(from, point, subject.machine.clearance) => {
+                pen.dot(angle, rate)
+            }
+            Some((before, slower, _)) if (angle - before).abs() > 180.0 => {
+                let turn = 360f64.copysign(before);
+                pen.line_to(angle + turn, rate);
+                pen.lift();
+                pen.line_to(before - turn, slower);
+                pen.line_to(angle, rate);
+            }
+            _ => pen.line_to(angle, rate),
+        }
+        last = Some((angle, rate, point));
+    }
+    pen.finish(phase_class(run[run.len() - 1].phase))
+}
+
+/// Where the wall's force vanishes: `theta-dot^2 = -(g/clearance) cos theta`.
+fn contact_limit(subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
+    let pressing = subject.machine.gravity / subject.machine.clearance;
+    for side in [-1.0, 1.0] {
+        for half in [90..=180, -180..=-90] {
+            pen.lift();
+            for degrees in half {
+                let angle = f64::from(degrees);
+                let square = (-pressing * angle.to_radians().cos()).max(0.0);
+                pen.line_to(angle, side * square.sqrt() * factor);
+            }
+        }
+    }
+    pen.finish("limit")
+}

@@ -1,0 +1,192 @@
+//! The head of the page: what happened, in a line and a few figures.
+
+use super::Subject;
+use maud::{Markup, html};
+use std::f64::consts::TAU;
+use touchdown_base::history::{History, PhaseKind, Regime};
+use touchdown_chart::text::{ms, si, significant};
+use touchdown_core::event::EventKind;
+use touchdown_run::matching::{Match, Matches, regime_event};
+use touchdown_run::outcome::Outcome;
+use touchdown_scene::names::regime_name;
+
+/// Draws the title, the verdict and the key figures.
+pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Markup {
+    let truth = &outcome.truth;
+    let contact = first_contact(truth);
+    let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
+    html! {
+        header {
+            p.kind { "Touchdown report" }
+            h1 { (subject.title) }
+            @if !subject.source.is_empty() { p.note { (subject.source) } }
+            p class=(if whirls { "verdict alarm" } else { "verdict" }) {
+                (motion(truth)) " " (detection(outcome, matches))
+            }
+            dl.figures {
+                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
+                (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
+                (figure("First contact", &contact.0, contact.1))
+                (fall_figure(outcome, matches))
+                (regime_figure(outcome, matches))
+            }
+        }
+    }
+}
+
+fn figure(name: &str, value: &str, remark: &str) -> Markup {
+    html! { div { dt { (name) } dd { (value) } dd.note { (remark) } } }
+}
+
+fn motion(truth: &History) -> String {
+    let end = si(truth.end.time, "s");
+    match truth.regime {
+        Regime::ForwardWhirl => {
+            format!("The rotor whirls round the retainer with its spin after {end}.")
+        }
+        Regime::BackwardWhirl => {
+            format!("The rotor is driven into backward whirl round the retainer within {end}.")
+        }
+        Regime::Pendulum => {
+            format!(
+                "No whirl at the end: the rotor swings at the bottom of the retainer after {end}."
+            )
+        }
+        Regime::Rest => {
+            format!("No whirl at the end: the rotor lies still on the retainer after {end}.")
+        }
+        Regime::Intermittent => {
+            format!(
+                "No whirl at the end: the rotor keeps lifting off and falling back, {} times in {end}.",
+                truth.lift_offs.len()
+            )
+        }
+        Regime::Bouncing => format!("The rotor is not in permanent contact after {end}."),
+    }
+}
+
+fn detection(outcome: &Outcome, matches: &Matches) -> String {
+    let falls = matches.of_kind(EventKind::FreeFall).next();
+    let first = outcome
+        .truth
+        .impacts
+        .first()
+        .map(|impact| impact.state.time);
+    let mut text = match falls.map(|fall| (fall.latency_s, first)) {
+        None => String::new(),
+        Some((None, _)) => "The detector missed the free fall.".to_owned(),
+        Some((Some(latency), Some(first))) if latency < first => {
+            let lead = si(first - latency, "s");
+            format!(
+                "The detector declared the free fall {} after the release, {lead} before the first contact.",
+                si(latency, "s")
+            )
+        }
+        Some((Some(latency), Some(first))) => {
+            let late = si(latency - first, "s");
+            format!(
+                "The detector declared the free fall {} after the release, {late} after the first contact.",
+                si(latency, "s")
+            )
+        }
+        Some((Some(latency), None)) => {
+            format!(
+                "The detector declared the free fall {} after the release.",
+                si(latency, "s")
+            )
+        }
+    };
+    let whirl = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
+    for regime in whirl
+        .iter()
+        .filter_map(|&kind| matches.of_kind(kind).next())
+    {
+        match regime.latency_s {
+            Some(latency) => {
+                let latency = si(latency, "s");
+                text.push_str(&format!(
+                    " The detector named the whirl {latency} after that contact began."
+                ));
+            }
+            None => text.push_str(" The detector did not name the whirl."),
+        }
+    }
+    match matches.false_events.len() {
+        0 => {}
+        1 => text.push_str(" One of the detector's events is false."),
+        count => text.push_str(&format!(" {count} of the detector's events are false.")),
+    }
+    text
+}
+
+fn whirl(truth: &History) -> String {
+    match truth.regime {
+        Regime::ForwardWhirl | Regime::BackwardWhirl => {
+            let ([x, y], [vx, vy]) = (truth.end.position, truth.end.velocity);
+            let rate = (x * vy - y * vx).abs() / (TAU * (x * x + y * y));
+            format!(
+                "{} turns in this contact, at the end {} (on a rigid support an upper bound)",
+                significant(truth.end.turns_in_contact.abs(), 3),
+                si(rate, "Hz")
+            )
+        }
+        _ => "no whirl at the end of the run".to_owned(),
+    }
+}
+
+fn peak(truth: &History) -> String {
+    let speeds = truth.impacts.iter().map(|impact| impact.normal_speed);
+    let peak = speeds.reduce(f64::max);
+    peak.map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
+}
+
+fn impact_count(truth: &History) -> String {
+    match truth.impacts.len() {
+        0 => "no impacts".to_owned(),
+        1 => "1 impact, into the wall".to_owned(),
+        count => format!("{count} impacts, into the wall"),
+    }
+}
+
+fn first_contact(truth: &History) -> (String, &'static str) {
+    let impact = truth.impacts.first().map(|impact| impact.state.time);
+    let contact = truth.contact_starts.first().copied();
+    match impact.into_iter().chain(contact).reduce(f64::min) {
+        Some(0.0) => ("at the start".to_owned(), "starts on the retainer"),
+        Some(time) => (format!("{}\u{a0}ms", ms(time)), "after the release"),
+        None => ("none".to_owned(), "in this run"),
+    }
+}
+
+fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
+    let fall = matches.of_kind(EventKind::FreeFall).next();
+    let levitated =
+        outcome.truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
+    let remark = match fall.and_then(|fall| fall.detected) {
+        None if levitated => "never declared".to_owned(),
+        None => "no release in this run".to_owned(),
+        Some(index) => match outcome.detection.events[index].confirmed_s {
+            Some(time) => format!("confirmed at {}\u{a0}ms", ms(time)),
+            None => "declared, never confirmed".to_owned(),
+        },
+    };
+    figure("Free fall: latency", &latency(fall), &remark)
+}
+
+fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
+    let kind = regime_event(outcome.truth.regime);
+    let regime = kind.and_then(|kind| matches.of_kind(kind).next());
+    let remark = match regime {
+        Some(found) if found.detected.is_some() => "from the start of the last contact",
+        Some(_) => "never declared",
+        None => "no event names this regime",
+    };
+    figure("Regime: latency", &latency(regime), remark)
+}
+
+fn latency(found: Option<&Match>) -> String {
+    let latency = found.and_then(|found| found.latency_s);
+    latency.map_or("\u{2013}".to_owned(), |time| {
+        format!("{}\u{a0}ms", ms(time))
+    })
+}

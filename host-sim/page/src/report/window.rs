@@ -1,0 +1,73 @@
+//! The stretch of time that a chart shows; a trace should have all its points in the interesting one.
+
+use touchdown_base::history::{History, PhaseKind};
+use touchdown_chart::plot::Axis;
+
+/// Longest default stretch, in natural times `sqrt(clearance/g)`: bounce series up to a restitution of
+/// 0.95 fit.
+const LONGEST: f64 = 100.0;
+
+/// A stretch of time, s since release.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// s.
+    pub start: f64,
+    /// s.
+    pub end: f64,
+}
+
+impl Window {
+    /// The whole run, levitated lead included.
+    pub fn whole(truth: &History) -> Self {
+        let start = truth.phases.first().map_or(0.0, |first| first.start_s);
+        Self {
+            start,
+            end: truth.end.time.max(start),
+        }
+    }
+
+    /// From the release to shortly after permanent contact; for a start on the wall, to shortly after
+    /// the last change of contact. The whole run where that is not much longer. Clearance in m, gravity
+    /// in m/s2.
+    pub fn interesting(truth: &History, clearance: f64, gravity: f64) -> Self {
+        let whole = Self::whole(truth);
+        let first = truth.contact_starts.first().copied();
+        let settled = first.filter(|&time| time > 0.0).or_else(|| {
+            let starts = truth.phases.iter().skip(1).map(|phase| phase.start_s);
+            let last_impact = truth.impacts.last().map(|impact| impact.state.time);
+            starts.chain(last_impact).reduce(f64::max)
+        });
+        let Some(settled) = settled.filter(|&time| time > 0.0) else {
+            return whole;
+        };
+        let natural = (clearance / gravity).sqrt();
+        let longest = if natural.is_finite() {
+            LONGEST * natural
+        } else {
+            f64::INFINITY
+        };
+        let length = (1.3 * settled).min(longest);
+        let lead = truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
+        let start = if lead { -0.08 * length } else { 0.0 };
+        let window = Self {
+            start: start.max(whole.start),
+            end: length.min(whole.end),
+        };
+        if whole.end - whole.start < 1.5 * (window.end - window.start) {
+            whole
+        } else {
+            window
+        }
+    }
+
+    /// Its time axis and the factor from seconds to the axis' unit.
+    pub fn axis(self, ticks: f64) -> (Axis, f64) {
+        let (factor, label) = if self.end - self.start > 2.0 {
+            (1.0, "time since release, s")
+        } else {
+            (1e3, "time since release, ms")
+        };
+        let axis = Axis::new(self.start * factor, self.end * factor, label, ticks);
+        (axis, factor)
+    }
+}

@@ -1,0 +1,349 @@
+//! What the terminal shows: the true phases beside what the detector said, in 80 columns.
+
+use touchdown_core::event::EventKind;
+use touchdown_core::health::Condition;
+
+use touchdown_base::history::{History, Phase, PhaseKind};
+use touchdown_base::paint::Paint;
+use touchdown_base::plain::shown;
+use touchdown_run::matching::{Match, Matches, match_events, regime_event};
+use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
+use touchdown_run::timebase::Timebase;
+use touchdown_scene::Scene;
+use touchdown_scene::names::{channel_name, event_name, phase_name, regime_name};
+use touchdown_scene::scales::validity;
+
+/// Phases and impacts that are listed before the rest is summed up.
+const LISTED: usize = 12;
+/// Events of a replay that are listed.
+const REPLAYED: usize = 1000;
+/// A phase begins with its event within this, s.
+const SAME: f64 = 1e-12;
+
+/// A drop.
+pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
+    let matches = match_events(&outcome.truth, &outcome.detection);
+    let mut text = heading(scene, paint);
+    text += &phases(outcome, &matches, paint);
+    text += &impacts(outcome, &matches, paint);
+    text += &regime(outcome, &matches, paint);
+    text += &forecasts(&outcome.detection, paint);
+    text += &severity(&outcome.detection);
+    text += &outcome.conduct.told(Timebase::of(scene)).text(paint);
+    text += &extras(outcome, &matches, paint);
+    if let Some(validity) = validity(scene) {
+        text += &format!("{validity}\n");
+    }
+    text
+}
+
+fn heading(scene: &Scene, paint: Paint) -> String {
+    let heading = shown(scene.heading());
+    let mut words = heading.split_whitespace().peekable();
+    let mut lines = vec![words.next().unwrap_or_default().to_owned()];
+    for word in words {
+        let last = lines
+            .last_mut()
+            .filter(|line| line.len() + 1 + word.len() <= 79);
+        match last {
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    let lines: Vec<_> = lines.iter().map(|line| paint.bold(line)).collect();
+    format!(
+        "{}\n{} kg, radius {} mm, {} rpm; gap {} mm, friction {}, restitution {}\n",
+        lines.join("\n"),
+        scene.rotor.mass,
+        short(scene.rotor.radius * 1e3),
+        short(scene.rotor.spin * 60.0 / std::f64::consts::TAU),
+        short(scene.retainer.clearance * 1e3),
+        scene.retainer.friction,
+        scene.retainer.restitution,
+    )
+}
+
+fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let head = format!(
+        "\n{:<12}{:>12}{:>12}  {:<10}{:>13}{:>12}",
+        "phase", "from ms", "to ms", "detected", "onset ms", "latency ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    let phases = &outcome.truth.phases;
+    for phase in phases.iter().take(LISTED) {
+        text += &format!(
+            "{:<12}{:>12}{:>12}",
+            phase_name(phase.phase),
+            millis(phase.start_s),
+            millis(phase.end_s)
+        );
+        let begun = event_of(phase).and_then(|kind| {
+            matches
+                .of_kind(kind)
+                .find(|event| (event.onset_s - phase.start_s).abs() <= SAME)
+        });
+        if let Some(event) = begun {
+            text += &verdict(event, &outcome.detection, paint);
+        }
+        text.push('\n');
+    }
+    text + &more(phases.len(), "phases")
+}
+
+/// The event that a phase begins with.
+fn event_of(phase: &Phase) -> Option<EventKind> {
+    match phase.phase {
+        PhaseKind::Levitated => None,
+        PhaseKind::FreeFall if phase.start_s > 0.0 => Some(EventKind::LiftOff),
+        PhaseKind::FreeFall => Some(EventKind::FreeFall),
+        PhaseKind::Impact => Some(EventKind::Impact),
+        PhaseKind::Sliding => Some(EventKind::Sliding),
+        PhaseKind::Rolling => Some(EventKind::Rolling),
+    }
+}
+
+fn verdict(event: &Match, detection: &Detection, paint: Paint) -> String {
+    let Some(index) = event.detected else {
+        return format!("  {}", paint.bad("missed"));
+    };
+    let detected = &detection.events[index];
+    format!(
+        "  {}{:>13}{:>12}",
+        paint.good(&format!("{:<10}", fate(detected))),
+        millis(detected.onset_s),
+        optional(event.latency_s.map(millis)),
+    )
+}
+
+fn fate(event: &DetectedEvent) -> &'static str {
+    if event.confirmed_s.is_some() {
+        "confirmed"
+    } else if event.withdrawn_s.is_some() {
+        "withdrawn"
+    } else {
+        "declared"
+    }
+}
+
+fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let truth = &outcome.truth.impacts;
+    if truth.is_empty() {
+        return String::new();
+    }
+    let head = format!(
+        "\n{:<8}{:>12}{:>10}{:>13}{:>15}{:>10}{:>12}",
+        "impact", "at ms", "mm/s", "model off by", "onset error ms", "seen mm/s", "latency ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    let found = matches.of_kind(EventKind::Impact);
+    for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
+        let model = outcome.model.impacts.get(index);
+        let off = model.map(|model| seconds(model.state.time - impact.state.time));
+        text += &format!(
+            "{:<8}{:>12}{:>10.2}{:>13}",
+            index,
+            millis(impact.state.time),
+            impact.normal_speed * 1e3,
+            optional(off),
+        );
+        let seen = event.detected.map(|index| &outcome.detection.events[index]);
+        text += &match seen {
+            Some(seen) => format!(
+                "{:>15}{:>10}{:>12}",
+                optional(event.onset_error_s.map(millis)),
+                optional(seen.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3))),
+                optional(event.latency_s.map(millis)),
+            ),
+            None => format!("{:>9}{}", "", paint.bad("missed")),
+        };
+        text.push('\n');
+    }
+    text + &more(truth.len(), "impacts") + &forces(&outcome.model)
+}
+
+/// The contact forces of the model's impacts, where it has any.
+fn forces(model: &History) -> String {
+    let Some(hardest) = model
+        .pulses()
+        .max_by(|a, b| a.peak_force.total_cmp(&b.peak_force))
+    else {
+        return String::new();
+    };
+    let longest = model.pulses().map(|it| it.duration).fold(0.0, f64::max);
+    format!(
+        "model's contact force up to {:.0} N, within {} ms; longest contact {} ms\n",
+        hardest.peak_force,
+        millis(hardest.duration),
+        millis(longest)
+    )
+}
+
+fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let truth = outcome.truth.regime;
+    let mut text = format!("\n{} {}", paint.bold("regime"), regime_name(truth));
+    let Some(kind) = regime_event(truth) else {
+        return text + "\n";
+    };
+    let found = matches
+        .of_kind(kind)
+        .find_map(|event| event.detected)
+        .map(|index| &outcome.detection.events[index]);
+    text += &match found {
+        Some(event) => paint.good(&format!("; declared at {} ms", millis(event.declared_s))),
+        None => paint.bad("; not declared"),
+    };
+    text + "\n"
+}
+
+/// What was foretold, once anything was.
+fn forecasts(detection: &Detection, paint: Paint) -> String {
+    let all = &detection.forecasts;
+    if all.is_empty() {
+        return String::new();
+    }
+    let head = format!(
+        "\n{:<12}{:>12}{:>12}{:>15}",
+        "foretold", "forward", "backward", "whirls from ms"
+    );
+    let mut text = paint.bold(&head) + "\n";
+    for forecast in all.iter().take(LISTED) {
+        text += &format!(
+            "{:<12}{:>12.2}{:>12.2}{:>15}\n",
+            millis(forecast.made_s),
+            forecast.probability_forward,
+            forecast.probability_backward,
+            optional(forecast.begins_s.map(millis)),
+        );
+    }
+    text + &more(all.len(), "forecasts")
+}
+
+fn severity(detection: &Detection) -> String {
+    let it = &detection.severity;
+    let mut text = format!(
+        "severity: {} impacts seen, up to {:.2} mm/s and {:.4} N s\n\
+         {} ms in contact; velocity index {:.2}\n",
+        it.impacts,
+        it.impact_speed_m_s * 1e3,
+        it.impulse_n_s,
+        millis(it.dwell_s),
+        it.velocity_index,
+    );
+    if it.whirl_load_n > 0.0 {
+        text += &format!(
+            "whirl up to {:.0} Hz, {:.0} N\n",
+            it.whirl_frequency_hz, it.whirl_load_n
+        );
+    }
+    text
+}
+
+fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
+    let mut text = String::new();
+    if outcome.model.regime != outcome.truth.regime {
+        let line = format!("the model ends as {}", regime_name(outcome.model.regime));
+        text += &(paint.bad(&line) + "\n");
+    }
+    if !matches.false_events.is_empty() {
+        let line = format!("{} events that did not happen", matches.false_events.len());
+        text += &(paint.bad(&line) + "\n");
+    }
+    let told = outcome.detection.events.iter().filter_map(|event| {
+        let fault = event.fault?;
+        let (channel, kind) = (fault.channel, fault.kind.name());
+        let at = millis(event.declared_s);
+        Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
+    });
+    let told: Vec<_> = told.collect();
+    text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
+    text += &more(told.len(), "sensor faults");
+    text + &samples_line(&outcome.detection)
+}
+
+/// What the detector was fed, and the fingerprint by which two machines are compared.
+fn samples_line(detection: &Detection) -> String {
+    let conditions = (0..).zip(detection.conditions);
+    let bad: String = conditions
+        .filter(|(_, condition)| *condition != Condition::Ok)
+        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it.name()))
+        .collect();
+    format!(
+        "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
+        detection.samples, detection.faults, detection.state_hash
+    )
+}
+
+/// A replay: the events as they were declared.
+pub fn replay(stream: &str, detection: &Detection) -> String {
+    let mut text = format!(
+        "{}: {} events\n{}",
+        shown(stream),
+        detection.events.len(),
+        samples_line(detection)
+    );
+    if !detection.events.is_empty() {
+        text += &format!(
+            "\n{:<15}{:>16}{:>16}{:>12}{:>7}{:>12}\n",
+            "event", "onset s", "declared s", "", "plane", "speed mm/s"
+        );
+    }
+    for event in detection.events.iter().take(REPLAYED) {
+        let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
+        let fault = event
+            .fault
+            .map(|fault| format!("  {} {}", fault.channel, fault.kind.name()));
+        let line = format!(
+            "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
+            event_name(event.event),
+            event.onset_s,
+            event.declared_s,
+            if fate(event) == "declared" {
+                ""
+            } else {
+                fate(event)
+            },
+            event.plane,
+            speed.unwrap_or_default(),
+            fault.unwrap_or_default(),
+        );
+        text += &format!("{}\n", line.trim_end());
+    }
+    let more = detection.events.len().saturating_sub(REPLAYED);
+    if more > 0 {
+        text += &format!("... {more} more events, with --json\n");
+    }
+    if detection.left_out > 0 {
+        let left_out = detection.left_out;
+        text += &format!("{left_out} further messages of the detector were counted, not kept\n");
+    }
+    text
+}
+
+fn more(count: usize, what: &str) -> String {
+    if count > LISTED {
+        format!("... {} more {what}\n", count - LISTED)
+    } else {
+        String::new()
+    }
+}
+
+fn millis(seconds: f64) -> String {
+    format!("{:.4}", seconds * 1e3)
+}
+
+/// To six decimals, without trailing zeros.
+fn short(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn seconds(difference: f64) -> String {
+    if difference == 0.0 {
+        "0 s".to_owned()
+    } else {
+        format!("{:.0e} s", difference.abs())
+    }
+}
+
+fn optional(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "-".to_owned())
+}

@@ -1,0 +1,180 @@
+//! The whole controller on the desktop: what the emulator's image runs, over flash in RAM.
+
+use touchdown_core::config_block::{self, Block, Settings, Wiring};
+use touchdown_core::controller::{Faults, Outputs};
+use touchdown_core::event::{Notice, Notices};
+use touchdown_core::forecast::Lookout;
+use touchdown_core::link::{
+    Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
+};
+use touchdown_core::monitor::{Fingerprint, MonitorConfig};
+use touchdown_core::sample::Sample;
+use touchdown_core::wire::Switching;
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
+use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::store::bytes_of;
+use touchdown_rotor::error::ConfigError;
+
+use crate::conduct::Conduct;
+use crate::monitor_run::{Answer, MOST_NOTICES};
+use touchdown_files::ram_nor::RamNor;
+
+type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
+
+/// Runs the controller over `samples`, from an erased log on.
+pub fn run(
+    config: &MonitorConfig,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<(Answer, Conduct), ConfigError> {
+    let mut log =
+        RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
+    let mut desk = Desk::new(config);
+    let mut memory = Box::new(Memory::EMPTY);
+    let identity = Identity::new(&desk.block, log.boot());
+    let mut recorder = Recorder::new(&mut memory, config, identity);
+    let mut app = App::try_new(config, Faults::NONE)?;
+    let mut lookout = Lookout::try_new(&config.detector)?;
+    let mut notices = Notices::new();
+    let mut fingerprint = Fingerprint::default();
+    for sample in samples {
+        app.tick(&mut desk, &sample, 0, &mut notices);
+        recorder.set_severity(app.state().severity());
+        recorder.set_phase(app.state().phase());
+        recorder.take(&sample, &notices);
+        recorder.keep(app.state());
+        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+            desk.report(&outlook);
+            recorder.hear(&outlook);
+        }
+        fingerprint.take(app.state(), &lookout);
+        if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
+            while log.work(recorder.lost(), || recorder.fetch()) {}
+        }
+    }
+    while log.work(recorder.lost(), || recorder.fetch()) {}
+    let answer = Answer {
+        notices: desk.notices,
+        left_out: desk.left_out,
+        severity: *app.state().severity(),
+        summary: fingerprint.summary(app.state()),
+        log: Vec::new(),
+    };
+    let mut remote = Remote {
+        app: &mut app,
+        recorder: &recorder,
+        block: &desk.block,
+        log: &mut log,
+    };
+    let mut server = Server::new(env!("CARGO_PKG_VERSION"), config.detector.sample_rate);
+    let mut ask = |request| ask(&mut server, &mut remote, &request);
+    let (Reply::Hello(hello), Reply::State(state)) = (ask(Request::Hello), ask(Request::State))
+    else {
+        unreachable!("each request has its own answer");
+    };
+    let conduct = Conduct {
+        outputs: desk.switchings,
+        hello,
+        state,
+        flash: log.flash().0.clone(),
+    };
+    Ok((answer, conduct))
+}
+
+/// A request over the line and back.
+fn ask(server: &mut Server, remote: &mut Remote<'_>, request: &Request) -> Reply {
+    let frame = encode(1, request).expect("a request fits a frame");
+    let answers = frame.iter().filter_map(|byte| server.take(*byte, remote));
+    let mut decoder = Decoder::default();
+    let bytes: Vec<u8> = answers.flatten().collect();
+    let mut replies = bytes.iter().filter_map(|byte| decoder.take::<Reply>(*byte));
+    let answered = replies.next().and_then(Result::ok);
+    answered.expect("a whole request is answered").message
+}
+
+/// The board: it remembers.
+struct Desk {
+    block: Block,
+    notices: Vec<Notice>,
+    left_out: u64,
+    outputs: Outputs,
+    switchings: Vec<Switching>,
+    ticks: u64,
+}
+
+impl Desk {
+    fn new(config: &MonitorConfig) -> Self {
+        Self {
+            block: config_block::encode(&Settings {
+                monitor: *config,
+                wiring: Wiring::default(),
+            }),
+            notices: Vec::new(),
+            left_out: 0,
+            outputs: Outputs::SAFE,
+            switchings: Vec::new(),
+            ticks: 0,
+        }
+    }
+}
+
+impl Board for Desk {
+    fn report(&mut self, notice: &Notice) {
+        if self.notices.len() < MOST_NOTICES {
+            self.notices.push(*notice);
+        } else {
+            self.left_out += 1;
+        }
+    }
+
+    fn drive(&mut self, outputs: Outputs) {
+        if outputs != self.outputs {
+            self.outputs = outputs;
+            let sample = self.ticks;
+            self.switchings.push(Switching { sample, outputs });
+        }
+        self.ticks += 1;
+    }
+
+    fn config(&self) -> &[u8] {
+        &self.block
+    }
+
+    // There is no watchdog on a desktop.
+    fn feed(&mut self) {}
+}
+
+/// The controller, as the link sees it.
+struct Remote<'a> {
+    app: &'a mut App,
+    recorder: &'a Recorder<'a>,
+    block: &'a Block,
+    log: &'a mut RamLog,
+}
+
+impl Device for Remote<'_> {
+    fn state(&mut self) -> State {
+        self.app.report(0, 0)
+    }
+
+    fn config(&mut self) -> Block {
+        self.block.clone()
+    }
+
+    fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
+        Err(Refusal::NoStore)
+    }
+
+    fn clear(&mut self) -> Result<(), Refusal> {
+        Ok(self.app.clear()?)
+    }
+
+    fn recent(&mut self, step: u16) -> Recent {
+        self.recorder.recent(step)
+    }
+
+    fn log(&mut self) -> &mut impl Log {
+        self.log
+    }
+}

@@ -1,0 +1,151 @@
+//! From the monitor's notices, on the sample clock, to events in seconds.
+
+use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
+use touchdown_core::forecast::Outlook;
+
+use crate::monitor_run::Answer;
+use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast};
+use crate::timebase::Timebase;
+use touchdown_scene::names::channel_name;
+
+/// An event, as far as its declaration tells.
+pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
+    DetectedEvent {
+        event: event.kind,
+        onset_s: timebase.time(event.onset.samples()),
+        declared_s: timebase.time(event.declared as f64),
+        confirmed_s: None,
+        withdrawn_s: None,
+        sample: event.declared,
+        plane: match event.plane {
+            Plane::A => "a",
+            Plane::B => "b",
+            Plane::Both => "both",
+        },
+        normal_speed_m_s: (event.kind == EventKind::Impact)
+            .then_some(f64::from(event.normal_speed)),
+        motion: match event.motion {
+            Motion::Cylindrical => "cylindrical",
+            Motion::Conical => "conical",
+        },
+        fault: event.fault.map(|fault| ChannelFault {
+            channel: channel_name(fault.channel),
+            kind: fault.kind,
+        }),
+    }
+}
+
+/// The events of `answer`; a free fall has its confirmation or withdrawal with it.
+pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
+    let mut events: Vec<DetectedEvent> = Vec::new();
+    let mut forecasts = Vec::new();
+    let mut numbers = Vec::new();
+    for notice in &answer.notices {
+        match *notice {
+            Notice::Declared(event) => {
+                numbers.push(event.number);
+                events.push(declared(&event, timebase));
+            }
+            Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
+            Notice::Confirmed { number, sample } => {
+                // From the end: numbers wrap round in a long run.
+                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
+                    events[index].confirmed_s = Some(timebase.time(sample as f64));
+                }
+            }
+            Notice::Withdrawn { number, sample } => {
+                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
+                    events[index].withdrawn_s = Some(timebase.time(sample as f64));
+                }
+            }
+        }
+    }
+    Detection {
+        events,
+        forecasts,
+        left_out: answer.left_out,
+        severity: answer.severity.into(),
+        samples: answer.summary.samples,
+        faults: answer.summary.faults,
+        conditions: answer.summary.conditions,
+        state_hash: answer.summary.state_hash,
+    }
+}
+
+/// What an outlook foretells.
+pub fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
+    let made_s = timebase.time(outlook.made_at as f64);
+    let time_left = outlook.onset.map(|onset| f64::from(onset.time_left));
+    Forecast {
+        from_s: timebase.time(outlook.from.samples()),
+        made_s,
+        probability_forward: f64::from(outlook.probability_forward),
+        probability_backward: f64::from(outlook.probability_backward),
+        time_left_s: time_left,
+        begins_s: time_left.map(|left| made_s + left),
+        growth_s: outlook.onset.map(|onset| f64::from(onset.growth_time)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_core::event::{Event, Moment};
+    use touchdown_core::severity::Severity;
+    use touchdown_core::wire::Summary;
+
+    #[test]
+    fn stamps_are_whole_samples() {
+        let timebase = Timebase::new(-0.2, 30_000.0);
+        assert_eq!(timebase.time(6000.0), 0.0);
+        assert_eq!(timebase.time(6001.0), 1.0 / 30_000.0);
+        assert_eq!(Timebase::new(0.123_456_7, 20_000.0).time(0.0), 0.123_456_7);
+    }
+
+    #[test]
+    fn a_free_fall_carries_its_fate() {
+        let fall = |number, sample| {
+            Notice::Declared(Event {
+                number,
+                kind: EventKind::FreeFall,
+                onset: Moment::of_sample(sample - 10),
+                declared: sample,
+                plane: Plane::Both,
+                normal_speed: 0.0,
+                motion: Motion::Cylindrical,
+                fault: None,
+            })
+        };
+        let answer = Answer {
+            notices: vec![
+                fall(0, 100),
+                Notice::Withdrawn {
+                    number: 0,
+                    sample: 140,
+                },
+                fall(1, 300),
+                Notice::Confirmed {
+                    number: 1,
+                    sample: 350,
+                },
+            ],
+            left_out: 0,
+            severity: Severity::default(),
+            summary: Summary {
+                samples: 1000,
+                faults: 2,
+                conditions: Default::default(),
+                state_hash: 0,
+            },
+            log: Vec::new(),
+        };
+        let detection = detection(&answer, Timebase::new(0.0, 1000.0));
+        let fates: Vec<_> = detection
+            .events
+            .iter()
+            .map(|event| (event.onset_s, event.confirmed_s, event.withdrawn_s))
+            .collect();
+        assert_eq!(fates, [(0.09, None, Some(0.14)), (0.29, Some(0.35), None)]);
+        assert_eq!(detection.events[0].normal_speed_m_s, None);
+    }
+}

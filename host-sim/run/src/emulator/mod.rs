@@ -1,0 +1,262 @@
+//! The firmware's image in QEMU: the same monitor and controller, compiled for the microcontroller, over
+//! the same samples.
+
+mod files;
+mod session;
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::conduct::Conduct;
+use crate::monitor_run::Answer;
+use defmt_decoder::{DecodeError, Table};
+use touchdown_base::interrupt::{Registered, TemporaryFolder, spawn};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::Sample;
+use touchdown_files::link::LinkError;
+
+pub use self::files::replay_head;
+use self::files::{decode_answer, write_replay};
+pub use self::session::{RESTART, Session};
+
+const QEMU: &str = "qemu-system-arm";
+/// An STM32F405; what of it is emulated is in docs/build/firmware.md.
+const MACHINE: &str = "netduinoplus2";
+const IMAGE: &str = "touchdown-qemu";
+const COUNTING_IMAGE: &str = "touchdown-count";
+
+/// Longest time for the start of QEMU, and for each sample: far more than they take.
+const START_LIMIT: Duration = Duration::from_secs(30);
+const SAMPLE_LIMIT_MS: u64 = 1;
+
+/// Why the image gave no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulatorError {
+    /// The image is not there.
+    #[error("{}: no firmware image here; `cargo xtask firmware` builds it", .0.display())]
+    ImageMissing(PathBuf),
+    /// QEMU is not there.
+    #[error("{QEMU} is not installed: `cargo xtask setup` installs it")]
+    QemuMissing,
+    /// A file or a process of the desktop failed.
+    #[error("cannot {0}")]
+    Io(&'static str, #[source] io::Error),
+    /// The image has no log table, or one that cannot be read.
+    #[error("{} is not an image of this firmware: {reason}", image.display())]
+    NotAnImage {
+        /// The file.
+        image: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// It was still running after this time.
+    #[error("the image did not finish within {} s", .0.as_secs())]
+    Timeout(Duration),
+    /// It ended with an error.
+    #[error("the image failed ({status}): {}{qemu}", log.join("; "))]
+    Failed {
+        /// As QEMU gave it.
+        status: ExitStatus,
+        /// What the image logged.
+        log: Vec<String>,
+        /// What QEMU said.
+        qemu: String,
+    },
+    /// Its answer is not what [`wire`] describes.
+    #[error("the image's answer is damaged")]
+    Damaged,
+    /// It does not talk.
+    #[error("the image: {0}")]
+    Link(#[from] LinkError),
+}
+
+/// An image and the means to run it.
+#[derive(Clone, Debug)]
+pub struct Emulator {
+    image: PathBuf,
+}
+
+impl Emulator {
+    /// Looks for the image, by default the one that `cargo xtask firmware` builds, and for QEMU.
+    pub fn find(image: Option<&Path>) -> Result<Self, EmulatorError> {
+        Self::over(image.map_or_else(|| built(IMAGE), Path::to_path_buf))
+    }
+
+    /// Looks for the image that counts instructions, and for QEMU.
+    pub fn find_counting() -> Result<Self, EmulatorError> {
+        Self::over(built(COUNTING_IMAGE))
+    }
+
+    fn over(image: PathBuf) -> Result<Self, EmulatorError> {
+        let Ok(image) = image.canonicalize() else {
+            return Err(EmulatorError::ImageMissing(image));
+        };
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        if !std::env::split_paths(&path).any(|folder| folder.join(QEMU).is_file()) {
+            return Err(EmulatorError::QemuMissing);
+        }
+        Ok(Self { image })
+    }
+
+    /// The image.
+    pub fn image(&self) -> &Path {
+        &self.image
+    }
+
+    /// Runs the image over `samples`.
+    pub fn run(
+        &self,
+        config: &MonitorConfig,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<Answer, EmulatorError> {
+        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let replay = folder.path().join("replay");
+        let count = write_replay(&replay, config, samples)
+            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+
+        let arguments = ["enable=on,target=native,arg=replay,arg=answer"];
+        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+        let log = self.execute(folder.path(), &arguments, limit)?;
+        let answer = read(&folder.path().join("answer"))?;
+        let (answer, _) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
+        Ok(Answer { log, ..answer })
+    }
+
+    /// Runs the image over `samples` with a new drop log, and talks to it.
+    pub fn control(
+        &self,
+        config: &MonitorConfig,
+        samples: impl Iterator<Item = Sample>,
+    ) -> Result<(Answer, Conduct), EmulatorError> {
+        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let count = write_replay(&folder.path().join("replay"), config, samples)
+            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+        let mut session = self.open(folder.path())?;
+        let (answer, outputs) = session.answer(limit)?;
+        let mut client = session.client()?;
+        let conduct = Conduct {
+            outputs,
+            hello: client.hello()?,
+            state: client.state()?,
+            flash: read(&folder.path().join("log"))?,
+        };
+        let log = session.cut()?;
+        Ok((Answer { log, ..answer }, conduct))
+    }
+
+    /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after
+    /// `-semihosting-config`.
+    pub fn execute(
+        &self,
+        folder: &Path,
+        arguments: &[&str],
+        limit: Duration,
+    ) -> Result<Vec<String>, EmulatorError> {
+        let elf = read(&self.image)?;
+        let (out, err) = (folder.join("out"), folder.join("err"));
+        let (child, _registered) = self
+            .start(folder, "none", arguments, &out, &err)
+            .map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        let status = wait(child, limit)?;
+        let log = self.decode_log(&elf, &read(&out)?)?;
+        if !status.success() {
+            let qemu = String::from_utf8_lossy(&read(&err)?).trim().to_owned();
+            return Err(EmulatorError::Failed { status, log, qemu });
+        }
+        Ok(log)
+    }
+
+    fn start(
+        &self,
+        folder: &Path,
+        serial: &str,
+        arguments: &[&str],
+        out: &Path,
+        err: &Path,
+    ) -> io::Result<(Child, Registered)> {
+        let mut command = Command::new(QEMU);
+        command
+            .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
+            .args(["-serial", serial, "-semihosting-config"])
+            .args(arguments)
+            .arg("-kernel")
+            .arg(&self.image)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(File::create(out)?)
+            .stderr(File::create(err)?);
+        spawn(&mut command)
+    }
+
+    fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
+        let reject = |reason: String| EmulatorError::NotAnImage {
+            image: self.image.clone(),
+            reason,
+        };
+        let table = Table::parse(elf)
+            .map_err(|e| reject(e.to_string()))?
+            .ok_or_else(|| reject("it has no log table".into()))?;
+        let mut decoder = table.new_stream_decoder();
+        decoder.received(bytes);
+        let mut lines = Vec::new();
+        loop {
+            match decoder.decode() {
+                Ok(frame) => lines.push(frame.display_message().to_string()),
+                Err(DecodeError::UnexpectedEof) => return Ok(lines),
+                Err(DecodeError::Malformed) => lines.push("(damaged line)".into()),
+            }
+        }
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {
+    fs::read(path).map_err(|e| EmulatorError::Io("read", e))
+}
+
+/// Where `cargo xtask firmware` puts an image.
+pub fn built(name: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"),
+        PathBuf::from,
+    );
+    target.join("thumbv7em-none-eabihf/firmware").join(name)
+}
+
+fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {
+    let failed = |e| EmulatorError::Io("wait for QEMU", e);
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().map_err(failed)? {
+            return Ok(status);
+        }
+        if start.elapsed() > limit {
+            child.kill().map_err(failed)?;
+            child.wait().map_err(failed)?;
+            return Err(EmulatorError::Timeout(limit));
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_image_names_the_command_that_builds_it() {
+        let error = Emulator::find(Some(Path::new("no/such/image"))).unwrap_err();
+        assert!(error.to_string().contains("cargo xtask firmware"));
+    }
+
+    #[test]
+    fn process_that_hangs_is_ended_and_reported() {
+        let child = Command::new("sleep").arg("60").spawn().unwrap();
+        let error = wait(child, Duration::from_millis(20)).unwrap_err();
+        assert!(matches!(error, EmulatorError::Timeout(_)));
+    }
+}

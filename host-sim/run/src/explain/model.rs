@@ -1,0 +1,102 @@
+//! The rung, what it holds in memory and what it costs on the target.
+
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Precision, Stepper};
+
+use super::Row;
+use crate::instructions::Instructions;
+use crate::model::{Subject, Use, with_model};
+use touchdown_scene::parts::degrees_of_freedom;
+use touchdown_scene::scales::validity;
+use touchdown_scene::{Rung, Scene, Start};
+
+pub(super) fn model(scene: &Scene) -> Vec<Row> {
+    let step = scene.model.step * 1e6;
+    let (rung, step) = match scene.model.rung {
+        Rung::Rigid => (
+            "rigid: impacts take no time",
+            format!("{step:.4} us, output only: impacts lie between steps"),
+        ),
+        Rung::Moreau => (
+            "moreau: impacts take no time, and lie in the middle of a step",
+            format!("{step:.4} us; times are off by about as much an impact"),
+        ),
+        Rung::Hertz => (
+            "hertz: impacts have a force and take time",
+            format!("{step:.4} us; the limits stand below"),
+        ),
+        Rung::Support => (
+            "support: the retainer gives way or turns; impacts as in moreau",
+            format!("{step:.4} us; times are off by about as much an impact"),
+        ),
+        Rung::TwoPlane => (
+            "two-plane: the rotor tilts, each ring touches on its own; impacts as in moreau",
+            format!("{step:.4} us; times are off by about as much an impact"),
+        ),
+    };
+    let start = match scene.start {
+        Start::Free { .. } => "released in the gap, after 0.2 s of levitation",
+        Start::Wall { .. } => "on the wall; the detector starts cold",
+    };
+    let (count, which) = degrees_of_freedom(scene);
+    let mut rows = vec![
+        ("rung", rung.to_owned()),
+        ("scheme", scene.model.scheme.name().to_owned()),
+        ("degrees of freedom", format!("{count}: {which}")),
+        ("number format", scene.model.precision.name().to_owned()),
+        ("functions", scene.model.math.name().to_owned()),
+        ("step", step),
+        ("state", state(scene)),
+    ];
+    rows.extend(instructions(scene));
+    rows.push(("start", start.to_owned()));
+    if let Some(validity) = validity(scene) {
+        rows.push(("rigid rotor", validity.to_string()));
+    }
+    rows.push((
+        "truth",
+        "independent event-located solution in f64".to_owned(),
+    ));
+    rows
+}
+
+struct Size;
+
+impl Use for Size {
+    type Output = usize;
+
+    fn with<R: Precision, M: Stepper<R>>(self, _: &Subject<R, M>) -> Result<usize, ConfigError> {
+        Ok(size_of::<M::State>())
+    }
+}
+
+fn state(scene: &Scene) -> String {
+    match with_model(scene, Size) {
+        Ok(bytes) => format!("{bytes} bytes"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Counted on the emulated target, with output of the place.
+fn instructions(scene: &Scene) -> Vec<Row> {
+    let Some(each) = Instructions::of(&scene.model) else {
+        return vec![("instructions on the target", "not counted".to_owned())];
+    };
+    let mut rows = vec![
+        (
+            "instructions a step in flight",
+            format!("{:.0} on the target", each.flight),
+        ),
+        (
+            "instructions a step in contact",
+            format!("{:.0}", each.contact),
+        ),
+    ];
+    if each.impact > 0.0 {
+        rows.push((
+            "more for an impact, a contact",
+            format!("{:.0}, {:.0}", each.impact, each.stretch),
+        ));
+    }
+    rows
+}

@@ -1,0 +1,27 @@
+//! Runs model, detector and controller over a scene or a recording.
+
+pub mod model;
+
+pub mod monitor_run;
+
+pub mod conduct;
+pub mod controller_run;
+pub mod emulator;
+pub mod target;
+
+pub mod timebase;
+
+pub mod detection;
+pub mod outcome;
+pub mod trace;
+
+pub mod matching;
+
+pub mod drop;
+pub mod replay;
+
+pub mod compare;
+
+pub mod explain;
+pub mod fidelity;
+pub mod instructions;

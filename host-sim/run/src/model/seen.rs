@@ -1,0 +1,104 @@
+//! What a model made of a drop, in SI.
+
+use touchdown_base::history::{Happening, Impact, Pulse, RotorState};
+use touchdown_base::ledger::Ledger;
+use touchdown_base::rings::Histories;
+use touchdown_rotor as model;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::Scales;
+use touchdown_rotor::{Change, Kinematics, Touch};
+
+/// Part of the speed scale below which a rotor in contact is at rest.
+pub(super) const STILL: f64 = 1e-6;
+
+/// What a model made of a drop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelRun {
+    /// What happened.
+    pub histories: Histories,
+    /// Its energy, where the rung keeps account of it.
+    pub ledger: Option<Ledger>,
+    /// The retainer ring at the end, where it moves or turns.
+    pub ring: Option<RingEnd>,
+}
+
+/// A retainer ring at the end of a run, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingEnd {
+    /// From its rest place, m.
+    pub position: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+    /// Largest normal force in permanent contact, mean of a step, N.
+    pub held_peak: f64,
+    /// Of a ball bearing: spin of inner ring and cage, rad/s, and temperature above the surroundings, K.
+    pub race: Option<[f64; 3]>,
+}
+
+/// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for
+/// rounding ends on the last of them.
+pub fn steps_of_run(steps: f64) -> (u64, f64) {
+    let nearest = steps.round();
+    if (steps - nearest).abs() <= 1e-9 * nearest {
+        return (nearest as u64, 0.0);
+    }
+    (steps.floor() as u64, steps.fract())
+}
+
+/// What turns the model's units into SI.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub scales: Scales<f64>,
+    /// s.
+    pub step: f64,
+    /// That an impact meets, kg.
+    pub mass: f64,
+    pub restitution: f64,
+}
+
+impl Seen {
+    pub(super) fn happening<R: Real>(&self, happening: &model::Happening<R>) -> Happening {
+        let model::Happening { at, change, after } = happening;
+        let time = (at.tick as f64 + at.fraction.to_f64()) * self.step;
+        let Scales {
+            speed, time: unit, ..
+        } = self.scales;
+        let state = Self::state(after, time, &self.scales);
+        match *change {
+            Change::Impact(normal) => {
+                let normal_speed = normal.to_f64() * speed;
+                Happening::Impact(Impact {
+                    state,
+                    normal_speed,
+                    normal_impulse: self.mass * (1.0 + self.restitution) * normal_speed,
+                    pulse: None,
+                })
+            }
+            Change::Released(pulse) => Happening::Released {
+                state,
+                pulse: Pulse {
+                    peak_force: pulse.peak_force.to_f64() * self.mass * speed / unit,
+                    duration: pulse.duration.to_f64() * unit,
+                    impulse: pulse.impulse.to_f64() * self.mass * speed,
+                },
+            },
+            Change::ContactStarts => Happening::ContactStart {
+                time,
+                rolling: after.touch == Touch::Rolling,
+            },
+            Change::RollingStarts => Happening::RollingStart(time),
+            Change::SlidingStarts => Happening::SlidingStart(time),
+            Change::LiftsOff => Happening::LiftOff(time),
+        }
+    }
+
+    pub(super) fn state<R: Real>(k: &Kinematics<R>, time: f64, scales: &Scales<f64>) -> RotorState {
+        RotorState {
+            time,
+            position: k.position.map(|x| x.to_f64() * scales.length),
+            velocity: k.velocity.map(|v| v.to_f64() * scales.speed),
+            spin: k.spin.to_f64() * scales.spin,
+            turns_in_contact: k.turns.0 as f64 + k.turns.1.to_f64() / std::f64::consts::TAU,
+        }
+    }
+}

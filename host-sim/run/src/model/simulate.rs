@@ -1,0 +1,64 @@
+//! A scene's drop as its model has it.
+
+use touchdown_rotor as model;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Precision, Stepper};
+
+use super::seen::{ModelRun, STILL, Seen, steps_of_run};
+use super::{Subject, Use, support, two_plane, with_model};
+use touchdown_base::history::{History, Recorder};
+use touchdown_base::rings::Histories;
+use touchdown_scene::{Rung, Scene};
+
+/// Runs the scene's model from the release to the end.
+pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
+    match scene.model.rung {
+        Rung::Support => support::run(scene),
+        Rung::TwoPlane => two_plane::run(scene),
+        _ => Ok(ModelRun {
+            histories: Histories {
+                whole: with_model(scene, Simulate(scene))?,
+                rings: Vec::new(),
+            },
+            ledger: None,
+            ring: None,
+        }),
+    }
+}
+
+/// The rotor's part of [`run`].
+pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
+    run(scene).map(|run| run.histories.whole)
+}
+
+struct Simulate<'a>(&'a Scene);
+
+impl Use for Simulate<'_> {
+    type Output = History;
+
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<History, ConfigError> {
+        let scene = self.0;
+        let Subject {
+            model,
+            start,
+            spin,
+            scales,
+        } = subject;
+        let seen = Seen {
+            scales: *scales,
+            step: scene.model.step,
+            mass: scene.rotor.mass,
+            restitution: scene.retainer.restitution,
+        };
+        let mut recorder = Recorder::new(-scene.first_sample_time());
+        let mut take = |happening: model::Happening<R>| recorder.take(seen.happening(&happening));
+        let mut state = model.start(start, *spin, &mut take)?;
+        let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
+        model.run(&mut state, steps, R::lit(fraction), &mut take);
+        let last = Seen::state(&model.kinematics(&state), scene.run.duration, scales);
+        Ok(recorder.finish(last, STILL * scales.speed))
+    }
+}

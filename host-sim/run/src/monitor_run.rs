@@ -1,0 +1,75 @@
+//! The monitor on the desktop.
+
+use touchdown_core::event::Notice;
+use touchdown_core::forecast::Lookout;
+use touchdown_core::learnt::Learnt;
+use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
+use touchdown_core::sample::Sample;
+use touchdown_core::severity::Severity;
+use touchdown_core::wire::Summary;
+use touchdown_rotor::error::ConfigError;
+
+/// Notices that are kept; a recording of any length has to fit.
+pub const MOST_NOTICES: usize = 100_000;
+
+/// What the monitor said over a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// In the order of the ticks.
+    pub notices: Vec<Notice>,
+    /// Later ones, counted.
+    pub left_out: u64,
+    /// Of the last drop in it.
+    pub severity: Severity,
+    /// Last.
+    pub summary: Summary,
+    /// What the target printed.
+    pub log: Vec<String>,
+}
+
+/// Runs the monitor over `samples`.
+pub fn run(
+    config: &MonitorConfig,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<Answer, ConfigError> {
+    go_on(config, MonitorState::default(), samples)
+}
+
+/// The same from what it had `learnt` before them on.
+pub fn resume(
+    config: &MonitorConfig,
+    learnt: &Learnt,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<Answer, ConfigError> {
+    go_on(config, learnt.into(), samples)
+}
+
+fn go_on(
+    config: &MonitorConfig,
+    mut state: MonitorState,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<Answer, ConfigError> {
+    let monitor = Monitor::try_new(config)?;
+    let mut lookout = Lookout::try_new(&config.detector)?;
+    let mut fingerprint = Fingerprint::default();
+    let (mut notices, mut left_out) = (Vec::new(), 0);
+    for sample in samples {
+        let said = monitor.update(&mut state, &sample);
+        let outlook = monitor.look(&state, &mut lookout);
+        for notice in said.into_iter().chain(outlook) {
+            if notices.len() < MOST_NOTICES {
+                notices.push(notice);
+            } else {
+                left_out += 1;
+            }
+        }
+        fingerprint.take(&state, &lookout);
+    }
+    Ok(Answer {
+        notices,
+        left_out,
+        severity: *state.severity(),
+        summary: fingerprint.summary(&state),
+        log: Vec::new(),
+    })
+}

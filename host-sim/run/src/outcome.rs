@@ -1,0 +1,162 @@
+//! What a drop gives: the model's history, the reference's, what the sensors saw and what the
+//! detector said.
+
+use crate::conduct::Conduct;
+use crate::model::RingEnd;
+use serde::Serialize;
+use touchdown_base::history::{History, PhaseKind, RotorState};
+use touchdown_base::ledger::Ledger;
+use touchdown_base::spectrogram::Spectrogram;
+use touchdown_core::event::EventKind;
+use touchdown_core::health::{Condition, FaultKind};
+use touchdown_core::sample::CHANNELS;
+use touchdown_truth::Moving;
+
+/// An event of the detector, with times in seconds since the release (or since the stream's zero).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DetectedEvent {
+    /// What.
+    pub event: EventKind,
+    /// Estimated physical instant, s.
+    pub onset_s: f64,
+    /// Time stamp of the sample whose tick declared it, s.
+    pub declared_s: f64,
+    /// Free fall only, s.
+    pub confirmed_s: Option<f64>,
+    /// Free fall only, s.
+    pub withdrawn_s: Option<f64>,
+    /// Index of the declaring sample.
+    pub sample: u64,
+    /// `a`, `b` or `both`.
+    pub plane: &'static str,
+    /// Speed into the wall, impacts only, m/s.
+    pub normal_speed_m_s: Option<f64>,
+    /// `cylindrical` or `conical`: whether the ends of the rotor went the same way or against each other.
+    pub motion: &'static str,
+    /// Sensor faults only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<ChannelFault>,
+}
+
+/// What is wrong with which channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ChannelFault {
+    /// `ax`, `ay`, `bx` or `by`; the first of a plane stands for the plane where both are wrong.
+    pub channel: &'static str,
+    /// What.
+    pub kind: FaultKind,
+}
+
+/// What lay ahead, as the monitor saw it; the first of an episode, and where a probability had changed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Forecast {
+    /// Time stamp of the sample whose estimate it starts from, s.
+    pub from_s: f64,
+    /// Time stamp of the sample after which it was ready, s.
+    pub made_s: f64,
+    /// Of whirl with the spin, 0 to 1.
+    pub probability_forward: f64,
+    /// Of whirl against the spin, 0 to 1.
+    pub probability_backward: f64,
+    /// From `made_s` to the start of the contact that whirls, s; negative where it has begun, `None` where
+    /// no run whirls.
+    pub time_left_s: Option<f64>,
+    /// The start of that contact, s.
+    pub begins_s: Option<f64>,
+    /// From there to unbounded growth without gravity, rho0/(mu |v_t|), s.
+    pub growth_s: Option<f64>,
+}
+
+/// How hard the last drop was on the machine, as far as position and speed show it; see
+/// [`touchdown_core::severity::Severity`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Severity {
+    /// Impacts that were declared.
+    pub impacts: u16,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed_m_s: f64,
+    /// Greatest impulse along the normal, N s.
+    pub impulse_n_s: f64,
+    /// Sum over the impacts, N s.
+    pub total_impulse_n_s: f64,
+    /// Time in permanent contact, s.
+    pub dwell_s: f64,
+    /// Greatest speed of the centre in parts of sqrt(g rho0).
+    pub velocity_index: f64,
+    /// Greatest frequency of whirl, Hz.
+    pub whirl_frequency_hz: f64,
+    /// Greatest force of whirl on the wall, N.
+    pub whirl_load_n: f64,
+}
+
+impl From<touchdown_core::severity::Severity> for Severity {
+    fn from(it: touchdown_core::severity::Severity) -> Self {
+        Self {
+            impacts: it.impacts,
+            impact_speed_m_s: f64::from(it.impact_speed),
+            impulse_n_s: f64::from(it.impulse),
+            total_impulse_n_s: f64::from(it.total_impulse),
+            dwell_s: f64::from(it.dwell),
+            velocity_index: f64::from(it.velocity_index),
+            whirl_frequency_hz: f64::from(it.whirl_frequency),
+            whirl_load_n: f64::from(it.whirl_load),
+        }
+    }
+}
+
+/// What the detector said over a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detection {
+    /// In the order of declaration.
+    pub events: Vec<DetectedEvent>,
+    /// In the order of time.
+    pub forecasts: Vec<Forecast>,
+    /// Events and forecasts that came when there were too many to keep, with their confirmations.
+    pub left_out: u64,
+    /// Of the last drop.
+    pub severity: Severity,
+    /// Samples seen.
+    pub samples: u64,
+    /// Channel values that were unusable, or not used.
+    pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
+    /// Fingerprint of the detector's state over all ticks.
+    pub state_hash: u32,
+}
+
+/// A point of the true motion, for drawing.
+#[derive(Clone, Copy, Debug)]
+pub struct TracePoint {
+    /// The rotor.
+    pub state: RotorState,
+    /// The true phase.
+    pub phase: PhaseKind,
+    /// What moves besides.
+    pub moving: Moving,
+    /// What the sensors of plane a read, m; `None` where unusable.
+    pub sensed: Option<[f64; 2]>,
+}
+
+/// A drop, complete.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The model under test.
+    pub model: History,
+    /// The independent reference.
+    pub truth: History,
+    /// The model's energy, where its rung keeps account of it.
+    pub ledger: Option<Ledger>,
+    /// The model's retainer ring at the end, where it moves or turns.
+    pub ring: Option<RingEnd>,
+    /// Each ring, where the rotor tilts: the model's and the reference's.
+    pub rings: Vec<[History; 2]>,
+    /// The true motion, thinned to a few thousand points: all of it in the interesting part.
+    pub trace: Vec<TracePoint>,
+    /// Of what the sensors of plane a gave.
+    pub spectrogram: Spectrogram,
+    /// The detector.
+    pub detection: Detection,
+    /// The controller.
+    pub conduct: Conduct,
+}

@@ -1,0 +1,77 @@
+//! A part of a recording, sample by sample.
+
+use std::path::Path;
+
+use touchdown_core::sample::CHANNELS;
+
+use touchdown_base::failure::Failure;
+use touchdown_files::recording::{Reading, Recording};
+use touchdown_scene::Scene;
+
+/// Most samples that are kept: 2.6 s at 100 kHz.
+const MOST: usize = 1 << 18;
+
+/// A part of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excerpt {
+    /// Time of its first sample, s.
+    pub start: f64,
+    /// Samples per second, Hz.
+    pub rate: f64,
+    /// Displacements, m; NaN where there is none.
+    pub positions: Vec<[f64; CHANNELS]>,
+}
+
+impl Excerpt {
+    /// Displacements at `time` (s), linear between samples; `None` outside.
+    pub fn at(&self, time: f64) -> Option<[f64; CHANNELS]> {
+        let place = (time - self.start) * self.rate;
+        if place.is_nan() || place < 0.0 {
+            return None;
+        }
+        let (index, part) = (place.floor() as usize, place.fract());
+        let here = self.positions.get(index)?;
+        if part == 0.0 {
+            return Some(*here);
+        }
+        let next = self.positions.get(index + 1)?;
+        Some(std::array::from_fn(|channel| {
+            here[channel] + part * (next[channel] - here[channel])
+        }))
+    }
+
+    /// Hands out the points of a channel, s and m, so much later.
+    pub fn draw(&self, channel: usize, later: f64, line: &mut dyn FnMut(f64, f64)) {
+        for (index, positions) in self.positions.iter().enumerate() {
+            line(self.time(index) + later, positions[channel]);
+        }
+    }
+
+    /// Time of sample `index`, s.
+    pub fn time(&self, index: usize) -> f64 {
+        self.start + index as f64 / self.rate
+    }
+}
+
+/// The part of the recording at `path` from `from` to `to` (s), as much of it as is kept.
+pub fn excerpt(
+    path: &Path,
+    reading: &Reading,
+    scene: &Scene,
+    [from, to]: [f64; 2],
+) -> Result<Excerpt, Failure> {
+    let recording = Recording::open(path, reading, scene)?;
+    let (start, rate) = (recording.start, recording.rate);
+    let index = |time: f64| ((time - start) * rate).ceil().max(0.0) as usize;
+    let first = index(from);
+    let count = (index(to) + 1).saturating_sub(first).min(MOST);
+    let mut positions = Vec::new();
+    for row in recording.skip(first).take(count) {
+        positions.push(row?.positions);
+    }
+    Ok(Excerpt {
+        start: start + first as f64 / rate,
+        rate,
+        positions,
+    })
+}

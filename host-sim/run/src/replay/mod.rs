@@ -1,0 +1,169 @@
+//! A recording through the monitor.
+
+mod envelope;
+mod excerpt;
+
+use std::path::Path;
+
+use touchdown_core::event::EventKind;
+use touchdown_core::sample::Sample;
+
+pub use envelope::{Bucket, Envelope};
+pub use excerpt::{Excerpt, excerpt};
+
+use crate::detection::detection;
+use crate::outcome::{DetectedEvent, Detection};
+use crate::target::Target;
+use crate::timebase::Timebase;
+use touchdown_base::failure::Failure;
+use touchdown_base::input_error::InputError;
+use touchdown_base::progress::Progress;
+use touchdown_base::spectrogram::{Analyser, Spectrogram};
+use touchdown_files::recording::{Reading, Recording};
+use touchdown_files::stream::to_sample;
+use touchdown_scene::Scene;
+use touchdown_scene::sensors::SensorsConfig;
+
+/// A recording as the monitor saw it.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// What it is, for people; none for a stream.
+    pub format: Option<String>,
+    /// Samples per second, Hz.
+    pub rate: f64,
+    /// Time of the first sample, s.
+    pub start: f64,
+    /// What the monitor said.
+    pub detection: Detection,
+    /// All of it, coarse.
+    pub envelope: Envelope,
+    /// Of the sensors of plane a, a bounded number of spectra.
+    pub spectrogram: Spectrogram,
+    /// What is worth a warning.
+    pub warnings: Vec<String>,
+}
+
+impl Replay {
+    /// The first fall that stood, or the first impact.
+    pub fn first_drop(&self) -> Option<&DetectedEvent> {
+        self.detection.events.iter().find(|it| {
+            it.event == EventKind::Impact
+                || it.event == EventKind::FreeFall && it.withdrawn_s.is_none()
+        })
+    }
+}
+
+/// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
+/// The stream says which planes are fitted, how fast it was sampled and whether there is a speed.
+pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Failure> {
+    Ok(recording(path, &Reading::default(), scene, target)?.detection)
+}
+
+/// The same of a recording of any kind.
+pub fn recording(
+    path: &Path,
+    reading: &Reading,
+    scene: &Scene,
+    target: &Target,
+) -> Result<Replay, Failure> {
+    let mut recording = Recording::open(path, reading, scene)?;
+    let columns = recording.columns;
+    let rate = recording.rate;
+    let timebase = Timebase::new(recording.start, rate);
+    let sensors = SensorsConfig {
+        planes: columns.planes,
+        ..scene.sensors
+    };
+    let mut config = scene.monitor_config();
+    config.fitted = sensors.fitted();
+    config.tachometers = config
+        .tachometers
+        .and_then(|tachometers| columns.of_tachometers(tachometers));
+    config.detector.sample_rate = rate as f32;
+    let learnt = recording.learnt.take();
+    let mut flaw = None;
+    let mut envelope = Envelope::new(columns.planes);
+    let mut analyser = Analyser::new(rate);
+    let samples = Samples {
+        sensors: &sensors,
+        flaw: &mut flaw,
+        progress: Progress::of_bytes("replay", recording.size),
+        recording: &mut recording,
+        envelope: &mut envelope,
+        analyser: &mut analyser,
+        seen: 0,
+    };
+    let answer = match &learnt {
+        Some(learnt) => target.resume(&config, learnt, samples)?,
+        None => target.run(&config, samples)?,
+    };
+    match flaw {
+        Some(flaw) => Err(flaw.into()),
+        None => Ok(Replay {
+            format: if learnt.is_some() {
+                Some(EPISODE.to_owned())
+            } else {
+                recording.format.take()
+            },
+            rate,
+            start: recording.start,
+            detection: detection(&answer, timebase),
+            envelope,
+            spectrogram: analyser.finish(),
+            warnings: recording.warnings(),
+        }),
+    }
+}
+
+/// A stream that says what had been learnt.
+const EPISODE: &str = "an episode of a drop log, from what the detector had learnt before it";
+
+/// Before the first fall or impact, and after it, s.
+const AROUND: [f64; 2] = [0.02, 0.2];
+
+/// The recording at `path` about the first drop in it.
+pub fn first_drop(
+    path: &Path,
+    reading: &Reading,
+    scene: &Scene,
+    replay: &Replay,
+) -> Result<Option<Excerpt>, Failure> {
+    let Some(event) = replay.first_drop() else {
+        return Ok(None);
+    };
+    let about = [event.onset_s - AROUND[0], event.onset_s + AROUND[1]];
+    excerpt(path, reading, scene, about).map(Some)
+}
+
+/// The samples of a recording, up to its first flaw.
+struct Samples<'a> {
+    recording: &'a mut Recording,
+    sensors: &'a SensorsConfig,
+    flaw: &'a mut Option<InputError>,
+    progress: Progress,
+    envelope: &'a mut Envelope,
+    analyser: &'a mut Analyser,
+    seen: u64,
+}
+
+impl Iterator for Samples<'_> {
+    type Item = Sample;
+
+    fn next(&mut self) -> Option<Sample> {
+        match self.recording.next()? {
+            Ok(row) => {
+                self.seen += 1;
+                self.progress
+                    .passed(self.seen, || self.recording.bytes_read());
+                self.envelope.take(&row.positions);
+                let [x, y, ..] = row.positions;
+                self.analyser.take(row.time, Some([x, y]));
+                Some(to_sample(&row, self.sensors, self.recording.rate))
+            }
+            Err(flaw) => {
+                *self.flaw = Some(flaw);
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! From the file's units and names to a valid scene.
+
+use touchdown_core::monitor::Monitor;
+
+use super::auto::auto;
+use super::contact::{materials, step_in_contact};
+use super::faults::faults;
+use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
+use super::flaw::Flaw;
+use super::limits;
+use super::machine::{retainer, rotor, start};
+use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
+use super::support::{BallBearingTable, SupportTable};
+use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
+use crate::sensors::{SensorsConfig, Tachometers};
+use touchdown_base::plain::Number;
+
+pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
+    let rotor = rotor(&file.rotor)?;
+    let retainer = retainer(&file.retainer)?;
+    // The rings of a rotor that tilts are looked at below.
+    let clearance = match file.two_plane {
+        Some(_) => f64::INFINITY,
+        None => retainer.clearance,
+    };
+    let start = start(&file.start, clearance)?;
+    let run = run(&file.run)?;
+    let support = file.support.as_ref().map(SupportTable::check).transpose()?;
+    let ball_bearing = file.ball_bearing.as_ref();
+    let ball_bearing = ball_bearing.map(BallBearingTable::check).transpose()?;
+    let tachometers = ball_bearing.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
+    let two_plane = two_plane(&file, &rotor, &retainer, &start)?;
+    let needed = needed(&file)?;
+    let model = model(&file.model, &run, needed)?;
+    let auto = auto(&file, &model)?;
+    let materials = materials(file.materials.as_ref())?;
+    let sensors = sensors(&file.sensors, tachometers)?;
+    let faults = faults(&file.fault, &sensors, &run)?;
+    let mut scene = Scene {
+        name: name.to_owned(),
+        title: file.title,
+        source: file.source,
+        rotor,
+        retainer,
+        support,
+        ball_bearing,
+        two_plane,
+        start,
+        run,
+        model,
+        auto,
+        materials,
+        sensors,
+        faults,
+        tuning: file.detector,
+    };
+    if scene.model.rung == Rung::Hertz {
+        scene.model.step = step_in_contact(&scene, file.model.step_us.is_some())?;
+    }
+    monitor(&scene)?;
+    Ok(scene)
+}
+
+fn run(table: &RunTable) -> Result<Run, Flaw> {
+    let duration = above_zero("run", "duration_s", table.duration_s)?;
+    if duration > 86_400.0 {
+        let rule = format!(
+            "duration_s must be no more than 86400, is {}",
+            Number(duration)
+        );
+        return Err(Flaw::new("run", "duration_s", rule));
+    }
+    let rate = table.sample_rate_hz;
+    let gravity = gravity(table.gravity_m_s2)?;
+    let inclination = table.inclination_deg;
+    let inclination = between(
+        "run",
+        "inclination_deg",
+        inclination,
+        limits::INCLINATION_DEG,
+    )?;
+    let across = gravity * inclination.to_radians().cos();
+    Ok(Run {
+        duration,
+        // A vertical axis leaves rounding only.
+        gravity: if across < limits::LEAST_GRAVITY_M_S2 {
+            0.0
+        } else {
+            across
+        },
+        sample_rate: between("run", "sample_rate_hz", rate, 100.0..=200_000.0)?,
+        seed: table.seed,
+    })
+}
+
+/// Gravity, m/s^2.
+pub fn gravity(given: f64) -> Result<f64, Flaw> {
+    let gravity = zero_or_more("run", "gravity_m_s2", given)?;
+    if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
+        let rule = format!(
+            "gravity_m_s2 must be 0, or {} or more, is {}",
+            Number(limits::LEAST_GRAVITY_M_S2),
+            Number(gravity)
+        );
+        return Err(Flaw::new("run", "gravity_m_s2", rule));
+    }
+    between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)
+}
+
+/// The lowest rung that has all parts of the machine.
+fn needed(file: &SceneFile) -> Result<Rung, Flaw> {
+    let gives_way = [
+        ("support", file.support.is_some()),
+        ("ball_bearing", file.ball_bearing.is_some()),
+    ];
+    let gives_way = gives_way.iter().find(|(_, given)| *given);
+    match (gives_way, file.two_plane.is_some()) {
+        (Some((table, _)), true) => {
+            let rule = format!("no rung has both [{table}] and [two_plane]: leave one out");
+            Err(Flaw::new(table, "", rule))
+        }
+        (Some(_), false) => Ok(Rung::Support),
+        (None, true) => Ok(Rung::TwoPlane),
+        (None, false) => Ok(Rung::Rigid),
+    }
+}
+
+fn two_plane(
+    file: &SceneFile,
+    rotor: &Rotor,
+    retainer: &Retainer,
+    start: &Start,
+) -> Result<Option<TwoPlane>, Flaw> {
+    let Some(table) = &file.two_plane else {
+        let without = [("ring", file.ring.len()), ("magnet", file.magnet.len())];
+        return match without.iter().find(|(_, count)| *count > 0) {
+            Some((table, _)) => {
+                let rule = format!("[[{table}]] needs [two_plane]");
+                Err(Flaw::new(table, "z_mm", rule))
+            }
+            None => Ok(None),
+        };
+    };
+    let two_plane = table.check(rotor, retainer, &file.ring, &file.magnet)?;
+    two_plane.check_start(start)?;
+    Ok(Some(two_plane))
+}
+
+fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
+    let rung = match table.rung.as_deref() {
+        None => needed,
+        Some(name) => named("model", "rung", name, &Rung::ALL, Rung::name)?,
+    };
+    let parts = match rung {
+        Rung::Support => "[support] or [ball_bearing]",
+        Rung::TwoPlane => "[two_plane] and [[ring]]",
+        Rung::Rigid | Rung::Moreau | Rung::Hertz => "",
+    };
+    if !parts.is_empty() && needed != rung {
+        let rule = format!("rung = \"{}\" needs {parts}", rung.name());
+        return Err(Flaw::new("model", "rung", rule));
+    }
+    let scheme = match table.scheme.as_deref() {
+        None => rung.schemes()[0],
+        Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::name)?,
+    };
+    let precision = match table.precision.as_deref() {
+        None => Precision::F64,
+        Some(name) => named("model", "precision", name, &Precision::ALL, Precision::name)?,
+    };
+    let math = match table.math.as_deref() {
+        None => Math::Libm,
+        Some(name) => named("model", "math", name, precision.maths(), Math::name)?,
+    };
+    let step = match table.step_us {
+        Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
+        None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
+    };
+    let cutoff = match table.cutoff_mm_s {
+        None => 0.0,
+        Some(_) if rung != Rung::Rigid => {
+            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
+            return Err(Flaw::new("model", "cutoff_mm_s", rule));
+        }
+        Some(speed) => MILLI * between("model", "cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+    };
+    Ok(Model {
+        rung,
+        scheme,
+        precision,
+        math,
+        step,
+        cutoff,
+    })
+}
+
+fn sensors(table: &SensorsTable, tachometers: Option<Tachometers>) -> Result<SensorsConfig, Flaw> {
+    let config = SensorsConfig {
+        planes: table.planes,
+        bits: table.bits,
+        range: MICRO * table.range_um,
+        noise: MICRO * table.noise_um,
+        bandwidth: table.bandwidth_hz,
+        mounting_angle: table.mounting_deg.map(f64::to_radians),
+        offset: table.offset_um.map(|offset| MICRO * offset),
+        gain_error: table.gain_error_percent.map(|error| error / 100.0),
+        nonlinearity: table.nonlinearity_percent / 100.0,
+        runout: MICRO * table.runout_um,
+        runout_harmonic: table.runout_harmonic,
+        speed: table.speed,
+        levitation_signal: table.levitation_signal,
+        tachometers,
+    };
+    config.check().map_err(|error| translate(&error))?;
+    Ok(config)
+}
+
+/// The core has the last word: what it refuses is a flaw of the key that the value came from.
+fn monitor(scene: &Scene) -> Result<(), Flaw> {
+    Monitor::try_new(&scene.monitor_config())
+        .map(|_| ())
+        .map_err(|error| translate(&error))
+}

@@ -1,0 +1,95 @@
+//! `[[fault]]`: sensors that fail.
+
+use serde::Deserialize;
+use touchdown_core::sample::CHANNELS;
+
+use super::flaw::Flaw;
+use super::rule::{MICRO, above_zero, between, named};
+use super::{LEVITATED_BEFORE, Run};
+use crate::names::channel_name;
+use crate::sensors::{Failing, SensorFault, SensorsConfig};
+
+/// Most of them.
+const FAULTS: usize = 16;
+const KINDS: [&str; 10] = [
+    "open", "short", "dropped", "stuck", "spike", "shift", "drift", "gain", "reversed", "swapped",
+];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FaultTable {
+    kind: String,
+    channel: String,
+    at_s: f64,
+    duration_s: Option<f64>,
+    /// um, um/s or %.
+    size: Option<f64>,
+}
+
+/// Those of a scene.
+pub(super) fn faults(
+    tables: &[FaultTable],
+    sensors: &SensorsConfig,
+    run: &Run,
+) -> Result<Vec<SensorFault>, Flaw> {
+    if tables.len() > FAULTS {
+        let rule = format!(
+            "[[fault]] must stand no more than {FAULTS} times, stands {} times",
+            tables.len()
+        );
+        return Err(Flaw::new("fault", "kind", rule).in_row(FAULTS));
+    }
+    let rows = tables.iter().enumerate();
+    rows.map(|(row, table)| {
+        let fault = table.check(sensors, run);
+        fault.map_err(|flaw| flaw.in_row(row))
+    })
+    .collect()
+}
+
+impl FaultTable {
+    fn check(&self, sensors: &SensorsConfig, run: &Run) -> Result<SensorFault, Flaw> {
+        let kind = named("fault", "kind", &self.kind, &KINDS, |kind| kind)?;
+        let fitted = &[0, 1, 2, 3][..CHANNELS / 2 * usize::from(sensors.planes)];
+        let channel = named("fault", "channel", &self.channel, fitted, channel_name)?;
+        let start = between("fault", "at_s", self.at_s, -LEVITATED_BEFORE..=run.duration)?;
+        let duration = match self.duration_s {
+            Some(duration) => above_zero("fault", "duration_s", duration)?,
+            // A sample that is just due at the start is within rounding of it.
+            None if matches!(kind, "spike" | "dropped") => 0.999_999 / run.sample_rate,
+            None => f64::INFINITY,
+        };
+        Ok(SensorFault {
+            channel: usize::from(channel),
+            failing: self.failing(kind)?,
+            start,
+            end: start + duration,
+        })
+    }
+
+    fn failing(&self, kind: &str) -> Result<Failing, Flaw> {
+        let size = |unit: &str| {
+            let rule = || format!("kind = \"{kind}\" needs size, in {unit}");
+            let size = self
+                .size
+                .ok_or_else(|| Flaw::new("fault", "kind", rule()))?;
+            between("fault", "size", size, -1e6..=1e6)
+        };
+        let failing = match kind {
+            "spike" | "shift" => Failing::Off(MICRO * size("um")?),
+            "drift" => Failing::Drift(MICRO * size("um/s")?),
+            "gain" => Failing::Gain(size("%")? / 100.0),
+            _ if self.size.is_some() => {
+                let rule = format!("kind = \"{kind}\" has no size");
+                return Err(Flaw::new("fault", "size", rule));
+            }
+            "open" => Failing::Open,
+            "short" => Failing::Short,
+            "dropped" => Failing::Dropped,
+            "stuck" => Failing::Stuck,
+            "reversed" => Failing::Reversed,
+            _ => Failing::Swapped,
+        };
+        Ok(failing)
+    }
+}

@@ -1,0 +1,214 @@
+//! The scene file as it is written: one struct a table, in the file's units.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use touchdown_core::detect::Tuning;
+
+use super::faults::FaultTable;
+use super::flaw;
+use super::list;
+use super::support::{BallBearingTable, SupportTable};
+use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
+use touchdown_base::input_error::InputError;
+
+/// The tables of `text`, with finite numbers; errors name it `name`.
+pub fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
+    let file = toml::from_str(text).map_err(|error| {
+        let rule = error
+            .message()
+            .replacen("missing field", "missing required key", 1)
+            .replacen("unknown field", "unknown key", 1);
+        InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
+    })?;
+    match flaw::not_finite(text) {
+        Some((key, span)) => {
+            let rule = format!("{key} must be a finite number");
+            Err(InputError::at_span(name, text, span, rule))
+        }
+        None => Ok(file),
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub title: Option<String>,
+    pub source: Option<String>,
+    pub fidelity: Option<String>,
+    pub rotor: RotorTable,
+    pub retainer: RetainerTable,
+    pub support: Option<SupportTable>,
+    pub ball_bearing: Option<BallBearingTable>,
+    pub two_plane: Option<TwoPlaneTable>,
+    #[serde(default)]
+    pub ring: Vec<RingTable>,
+    #[serde(default)]
+    pub magnet: Vec<MagnetTable>,
+    #[serde(default)]
+    pub start: StartTable,
+    pub run: RunTable,
+    #[serde(default)]
+    pub model: ModelTable,
+    pub outputs: Option<OutputsTable>,
+    #[serde(default)]
+    pub materials: Option<MaterialsTable>,
+    #[serde(default)]
+    pub sensors: SensorsTable,
+    #[serde(default)]
+    pub fault: Vec<FaultTable>,
+    #[serde(default)]
+    pub detector: Tuning,
+}
+
+/// Table `[rotor]`, as it is written.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotorTable {
+    /// kg.
+    pub mass_kg: f64,
+    /// mm.
+    pub radius_mm: f64,
+    /// kg m^2; by default that of a solid cylinder.
+    pub polar_inertia_kg_m2: Option<f64>,
+    /// Counter-clockwise positive, 1/min.
+    pub speed_rpm: f64,
+}
+
+/// Table `[retainer]`, as it is written.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct RetainerTable {
+    /// Radial, mm.
+    pub clearance_mm: f64,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// 0 to 1.
+    pub restitution: f64,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StartTable {
+    pub x_mm: Option<f64>,
+    pub y_mm: Option<f64>,
+    pub vx_mm_s: Option<f64>,
+    pub vy_mm_s: Option<f64>,
+    pub angle_deg: Option<f64>,
+    pub tangential_mm_s: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RunTable {
+    pub duration_s: f64,
+    #[serde(default = "standard_gravity")]
+    pub gravity_m_s2: f64,
+    #[serde(default)]
+    pub inclination_deg: f64,
+    #[serde(default = "default_rate")]
+    pub sample_rate_hz: f64,
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+}
+
+fn standard_gravity() -> f64 {
+    9.81
+}
+
+fn default_rate() -> f64 {
+    20_000.0
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    pub rung: Option<String>,
+    pub scheme: Option<String>,
+    pub math: Option<String>,
+    pub precision: Option<String>,
+    pub step_us: Option<f64>,
+    pub cutoff_mm_s: Option<f64>,
+    pub fidelity: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OutputsTable {
+    pub regime: Option<bool>,
+    pub impact_time_us: Option<f64>,
+    pub impact_speed_percent: Option<f64>,
+    pub phases_us: Option<f64>,
+    pub whirl_load_percent: Option<f64>,
+    pub peak_force_percent: Option<f64>,
+    pub contact_time_percent: Option<f64>,
+}
+
+/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct MaterialsTable {
+    pub rotor_modulus_gpa: f64,
+    pub rotor_poisson: f64,
+    pub retainer_modulus_gpa: f64,
+    pub retainer_poisson: f64,
+    pub contact: Option<String>,
+    pub length_mm: Option<f64>,
+}
+
+impl Default for MaterialsTable {
+    fn default() -> Self {
+        Self {
+            rotor_modulus_gpa: 210.0,
+            rotor_poisson: 0.3,
+            retainer_modulus_gpa: 210.0,
+            retainer_poisson: 0.3,
+            contact: None,
+            length_mm: None,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SensorsTable {
+    pub planes: u8,
+    pub bits: u32,
+    pub range_um: f64,
+    pub noise_um: f64,
+    pub bandwidth_hz: Option<f64>,
+    #[serde(deserialize_with = "list::exactly")]
+    pub mounting_deg: [f64; 2],
+    #[serde(deserialize_with = "list::exactly")]
+    pub offset_um: [f64; 4],
+    #[serde(deserialize_with = "list::exactly")]
+    pub gain_error_percent: [f64; 4],
+    pub nonlinearity_percent: f64,
+    pub runout_um: f64,
+    pub runout_harmonic: u32,
+    pub speed: bool,
+    pub levitation_signal: bool,
+}
+
+impl Default for SensorsTable {
+    fn default() -> Self {
+        Self {
+            planes: 2,
+            bits: 12,
+            range_um: 1000.0,
+            noise_um: 1.0,
+            bandwidth_hz: None,
+            mounting_deg: [0.0; 2],
+            offset_um: [0.0; 4],
+            gain_error_percent: [0.0; 4],
+            nonlinearity_percent: 0.0,
+            runout_um: 0.0,
+            runout_harmonic: 1,
+            speed: false,
+            levitation_signal: false,
+        }
+    }
+}

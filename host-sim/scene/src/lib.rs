@@ -1,0 +1,270 @@
+//! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
+
+mod auto;
+mod builtin;
+pub mod check;
+mod contact;
+pub mod elastic;
+mod faults;
+pub mod file;
+pub mod flaw;
+pub mod limits;
+pub mod list;
+pub mod machine;
+mod materials;
+mod model;
+pub mod names;
+mod outputs;
+pub mod parts;
+pub mod rule;
+pub mod scales;
+pub mod sensors;
+mod support;
+mod two_plane;
+
+pub use builtin::{BUILT_IN, BuiltIn};
+pub use materials::{Contact, Materials};
+pub use model::{Math, Model, Precision, Rung, Scheme};
+pub use outputs::{Auto, Fixed, Output, Request};
+pub use support::{BallBearing, Support};
+pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::monitor::MonitorConfig;
+
+use crate::scales::compliance;
+use crate::sensors::{SensorFault, SensorsConfig, Tachometers};
+use touchdown_base::input_error::{InputError, LARGEST_TOML};
+use touchdown_base::machine::Machine;
+pub use touchdown_base::machine::Start;
+
+/// A valid scene; SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The file, or the name of a built-in scene.
+    pub name: String,
+    /// One line.
+    pub title: Option<String>,
+    /// Where the numbers come from.
+    pub source: Option<String>,
+    /// The rotor.
+    pub rotor: Rotor,
+    /// The retainer bearing.
+    pub retainer: Retainer,
+    /// What the retainer ring stands on, where that gives way.
+    pub support: Option<Support>,
+    /// The retainer as a ball bearing, where its inner ring turns.
+    pub ball_bearing: Option<BallBearing>,
+    /// The rotor's two ends, where it tilts.
+    pub two_plane: Option<TwoPlane>,
+    /// How it starts.
+    pub start: Start,
+    /// How long, and how often it is sampled.
+    pub run: Run,
+    /// What is modelled.
+    pub model: Model,
+    /// Where the model is to be chosen: what is asked of it.
+    pub auto: Option<Auto>,
+    /// What rotor and retainer are made of.
+    pub materials: Materials,
+    /// The sensor chain.
+    pub sensors: SensorsConfig,
+    /// Which of them fail.
+    pub faults: Vec<SensorFault>,
+    /// The detector's thresholds and times.
+    pub tuning: Tuning,
+}
+
+/// The rotor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor {
+    /// kg.
+    pub mass: f64,
+    /// At the retainer, m.
+    pub radius: f64,
+    /// kg m^2.
+    pub polar_inertia: f64,
+    /// At the start, counter-clockwise positive, rad/s.
+    pub spin: f64,
+}
+
+/// The retainer bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Retainer {
+    /// Radial, m.
+    pub clearance: f64,
+    /// Coulomb coefficient.
+    pub friction: f64,
+    /// 0 to 1.
+    pub restitution: f64,
+}
+
+/// How long, and how often it is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// From the release, s.
+    pub duration: f64,
+    /// Across the rotor's axis: downwards, m/s^2.
+    pub gravity: f64,
+    /// Of the sensors, Hz.
+    pub sample_rate: f64,
+    /// Of everything random.
+    pub seed: u64,
+}
+
+/// Time held by the magnetic bearings before the release of a free start, s.
+pub const LEVITATED_BEFORE: f64 = 0.2;
+
+impl Scene {
+    /// Reads the scene file at `name`, or else takes the built-in scene of that name.
+    pub fn load(name: &str) -> Result<Self, InputError> {
+        Self::parse(name, &Self::text(name)?)
+    }
+
+    /// The text of the scene file at `name`, or else of the built-in scene of that name, which a folder does not hide.
+    pub fn text(name: &str) -> Result<Cow<'static, str>, InputError> {
+        let (path, built_in) = (Path::new(name), BUILT_IN.iter().find(|it| it.name == name));
+        if path.exists() && !(path.is_dir() && built_in.is_some()) {
+            return InputError::read(path, LARGEST_TOML).map(Cow::Owned);
+        }
+        match built_in {
+            Some(scene) => Ok(Cow::Borrowed(scene.text)),
+            None => {
+                let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
+                let rule = format!(
+                    "no such file, and no built-in scene of this name; built in: {}",
+                    names.join(", ")
+                );
+                Err(InputError::of_file(name, rule))
+            }
+        }
+    }
+
+    /// Reads the scene `text`; errors name it `name`.
+    pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
+        let file = file::read(name, text)?;
+        check::scene(name, file)
+            .map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))
+    }
+
+    /// What is valid but worth knowing.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.retainer.clearance > self.sensors.range {
+            warnings.push(format!(
+                "{}: clearance_mm is {}, beyond the sensors' range of {} um: they saturate before \
+                 the rotor touches",
+                self.name,
+                self.retainer.clearance * 1e3,
+                self.sensors.range * 1e6
+            ));
+        }
+        for part in parts::parts(self) {
+            if part.asked && !part.modelled {
+                warnings.push(format!(
+                    "{}: {}: {}, the scene has rung {}",
+                    self.name,
+                    part.name,
+                    part.reason,
+                    self.model.rung.name()
+                ));
+            }
+        }
+        warnings.extend(self.step_warning());
+        warnings
+    }
+
+    fn step_warning(&self) -> Option<String> {
+        if self.model.rung != Rung::Hertz {
+            return None;
+        }
+        let limit = compliance(self).ok()?.accurate_step();
+        (self.model.step > limit).then(|| {
+            format!(
+                "{}: step_us is {}, above T_c/25 = {:.4} us: forces and contact times are inaccurate",
+                self.name,
+                self.model.step * 1e6,
+                limit * 1e6
+            )
+        })
+    }
+
+    /// What the monitor is told of this scene.
+    pub fn monitor_config(&self) -> MonitorConfig {
+        MonitorConfig {
+            fitted: self.sensors.fitted(),
+            sensing: self.sensors.sensing(),
+            tachometers: self.sensors.tachometers.as_ref().map(Tachometers::config),
+            detector: DetectorConfig {
+                sample_rate: self.run.sample_rate as f32,
+                machine: machine_config(&self.rotor, &self.retainer, self.run.gravity),
+                tuning: self.tuning,
+            },
+        }
+    }
+
+    /// Samples before the release.
+    pub fn levitated_samples(&self) -> u64 {
+        match self.start {
+            Start::Free { .. } => (LEVITATED_BEFORE * self.run.sample_rate).round() as u64,
+            Start::Wall { .. } => 0,
+        }
+    }
+
+    /// Rotor and retainer bearing, for a model.
+    pub fn machine(&self) -> Machine {
+        Machine {
+            mass: self.rotor.mass,
+            radius: self.rotor.radius,
+            polar_inertia: self.rotor.polar_inertia,
+            clearance: self.retainer.clearance,
+            friction: self.retainer.friction,
+            restitution: self.retainer.restitution,
+            gravity: self.run.gravity,
+        }
+    }
+
+    /// Takes rotor and retainer bearing of `machine`; the spin stays.
+    pub fn set_machine(&mut self, machine: &Machine) {
+        self.rotor.mass = machine.mass;
+        self.rotor.radius = machine.radius;
+        self.rotor.polar_inertia = machine.polar_inertia;
+        self.retainer.clearance = machine.clearance;
+        self.retainer.friction = machine.friction;
+        self.retainer.restitution = machine.restitution;
+        self.run.gravity = machine.gravity;
+    }
+
+    /// Time of the first sample, s since the release.
+    pub fn first_sample_time(&self) -> f64 {
+        -(self.levitated_samples() as f64) / self.run.sample_rate
+    }
+
+    /// The title, or else the name.
+    pub fn heading(&self) -> &str {
+        self.title.as_deref().unwrap_or(&self.name)
+    }
+}
+
+/// What the monitor is told of a machine; gravity across the rotor's axis, m/s^2.
+pub fn machine_config(rotor: &Rotor, retainer: &Retainer, gravity: f64) -> MachineConfig {
+    let Rotor {
+        mass,
+        radius,
+        polar_inertia,
+        spin,
+    } = *rotor;
+    MachineConfig {
+        mass: mass as f32,
+        clearance: retainer.clearance as f32,
+        gravity: gravity as f32,
+        rotor_radius: radius as f32,
+        inertia_ratio: (polar_inertia / (mass * radius * radius)) as f32,
+        friction: retainer.friction as f32,
+        restitution: retainer.restitution as f32,
+        spin: spin as f32,
+    }
+}

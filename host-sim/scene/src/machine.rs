@@ -1,0 +1,105 @@
+//! The rotor, its retainer, and how it starts.
+
+use super::file::{RetainerTable, RotorTable, StartTable};
+use super::flaw::Flaw;
+use super::limits;
+use super::rule::{MILLI, ON_THE_WALL, RPM, above_zero, between, zero_or_more};
+use super::{Retainer, Rotor, Start};
+use touchdown_base::plain::Number;
+
+/// Checks `[rotor]`.
+pub fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
+    let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
+    let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
+    let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
+    let radius = MILLI * between("rotor", "radius_mm", radius, limits::RADIUS_MM)?;
+    let solid = 0.5 * mass * radius * radius;
+    let polar_inertia = match table.polar_inertia_kg_m2 {
+        Some(inertia) => {
+            let inertia = above_zero("rotor", "polar_inertia_kg_m2", inertia)?;
+            let ratio = inertia / solid;
+            if !limits::INERTIA_RATIO.contains(&ratio) {
+                let (low, high) = limits::INERTIA_RATIO.into_inner();
+                let rule = format!(
+                    "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
+                     ({solid:.3e}), is {}",
+                    Number(inertia)
+                );
+                return Err(Flaw::new("rotor", "polar_inertia_kg_m2", rule));
+            }
+            inertia
+        }
+        None => solid,
+    };
+    let speed = between("rotor", "speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
+    Ok(Rotor {
+        mass,
+        radius,
+        polar_inertia,
+        spin: RPM * speed,
+    })
+}
+
+/// Checks `[retainer]`.
+pub fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
+    let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
+    let friction = zero_or_more("retainer", "friction", table.friction)?;
+    Ok(Retainer {
+        clearance: MILLI * between("retainer", "clearance_mm", clearance, limits::CLEARANCE_MM)?,
+        friction: between("retainer", "friction", friction, limits::FRICTION)?,
+        restitution: between("retainer", "restitution", table.restitution, 0.0..=1.0)?,
+    })
+}
+
+/// A free start must be within `clearance`, m.
+pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Flaw> {
+    let free = [
+        ("x_mm", table.x_mm),
+        ("y_mm", table.y_mm),
+        ("vx_mm_s", table.vx_mm_s),
+        ("vy_mm_s", table.vy_mm_s),
+    ];
+    let wall = [
+        ("angle_deg", table.angle_deg),
+        ("tangential_mm_s", table.tangential_mm_s),
+    ];
+    let first = |keys: &[(&'static str, Option<f64>)]| {
+        keys.iter()
+            .find(|(_, value)| value.is_some())
+            .map(|(key, _)| *key)
+    };
+    if let Some(wall_key) = first(&wall) {
+        if let Some(free_key) = first(&free) {
+            let rule = format!(
+                "{wall_key} starts the rotor on the wall, {free_key} starts it free: give one kind"
+            );
+            return Err(Flaw::new("start", wall_key, rule));
+        }
+        let angle = table.angle_deg.unwrap_or(0.0);
+        let angle = between("start", "angle_deg", angle, limits::ANGLE_DEG)?;
+        let speed = table.tangential_mm_s.unwrap_or(0.0);
+        let speed = between("start", "tangential_mm_s", speed, limits::SPEED_MM_S)?;
+        return Ok(Start::Wall {
+            angle: angle.to_radians(),
+            tangential: MILLI * speed,
+        });
+    }
+    for (key, speed) in &free[2..] {
+        between("start", key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
+    }
+    let [x, y, vx, vy] = free.map(|(_, value)| MILLI * value.unwrap_or(0.0));
+    let distance = x.hypot(y);
+    if distance > clearance * (1.0 + ON_THE_WALL) {
+        let key = if x.abs() > y.abs() { "x_mm" } else { "y_mm" };
+        let rule = format!(
+            "the start is outside the gap: {} mm from the centre, the clearance is {} mm",
+            Number(distance / MILLI),
+            Number(clearance / MILLI)
+        );
+        return Err(Flaw::new("start", key, rule));
+    }
+    Ok(Start::Free {
+        position: [x, y],
+        velocity: [vx, vy],
+    })
+}

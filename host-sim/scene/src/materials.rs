@@ -1,0 +1,36 @@
+//! What rotor and retainer are made of, and how they touch.
+
+use touchdown_models::Materials as Elastic;
+
+/// How rotor and retainer touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contact {
+    /// Sphere in sphere.
+    Point,
+    /// Cylinder in ring.
+    Line {
+        /// Axial, m.
+        length: f64,
+    },
+}
+
+impl Contact {
+    /// As in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Line { .. } => "line",
+        }
+    }
+}
+
+/// What rotor and retainer are made of, and how they touch. Rung `hertz`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Materials {
+    /// Moduli and Poisson's ratios.
+    pub elastic: Elastic<f64>,
+    /// The shape of the contact.
+    pub contact: Contact,
+    /// By the scene; else steel on steel is taken.
+    pub given: bool,
+}

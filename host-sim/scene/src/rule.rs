@@ -1,0 +1,112 @@
+//! Rules that many keys share, and the units they are written in.
+
+use touchdown_base::plain::Number;
+use touchdown_rotor::error::ConfigError;
+
+use super::flaw::Flaw;
+
+/// A turn a minute, rad/s.
+pub const RPM: f64 = std::f64::consts::TAU / 60.0;
+/// Of a unit.
+pub const MILLI: f64 = 1e-3;
+/// Of a unit.
+pub const MICRO: f64 = 1e-6;
+/// How far outside the gap rounding may put a start on the wall, relative to the clearance.
+pub(super) const ON_THE_WALL: f64 = 1e-9;
+
+pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> Result<f64, Flaw> {
+    if value > 0.0 {
+        return Ok(value);
+    }
+    Err(Flaw::new(
+        table,
+        key,
+        format!("{key} must be above 0, is {}", Number(value)),
+    ))
+}
+
+pub(crate) fn zero_or_more(
+    table: &'static str,
+    key: &'static str,
+    value: f64,
+) -> Result<f64, Flaw> {
+    if value >= 0.0 {
+        return Ok(value);
+    }
+    Err(Flaw::new(
+        table,
+        key,
+        format!("{key} must be 0 or more, is {}", Number(value)),
+    ))
+}
+
+pub(crate) fn between(
+    table: &'static str,
+    key: &'static str,
+    value: f64,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<f64, Flaw> {
+    if range.contains(&value) {
+        return Ok(value);
+    }
+    let (low, high) = range.into_inner();
+    let [low, high, value] = [low, high, value].map(Number);
+    let rule = format!("{key} must be {low} to {high}, is {value}");
+    Err(Flaw::new(table, key, rule))
+}
+
+/// The one of `all` that has this name.
+pub(super) fn named<T: Copy>(
+    table: &'static str,
+    key: &'static str,
+    given: &str,
+    all: &[T],
+    name: impl Fn(T) -> &'static str,
+) -> Result<T, Flaw> {
+    all.iter()
+        .copied()
+        .find(|&item| name(item) == given)
+        .ok_or_else(|| {
+            let names: Vec<_> = all
+                .iter()
+                .map(|&item| format!("\"{}\"", name(item)))
+                .collect();
+            let rule = format!("{key} must be {}, is \"{given}\"", names.join(" or "));
+            Flaw::new(table, key, rule)
+        })
+}
+
+/// A rule in the words of the configuration, in those of the file.
+pub fn translate(error: &ConfigError) -> Flaw {
+    let parameter = error.parameter();
+    let (table, key) = match parameter {
+        "clearance" => ("retainer", "clearance_mm"),
+        "friction" => ("retainer", "friction"),
+        "restitution" => ("retainer", "restitution"),
+        "gravity" => ("run", "gravity_m_s2"),
+        "sample_rate" => ("run", "sample_rate_hz"),
+        "rotor_radius" => ("rotor", "radius_mm"),
+        "inertia_ratio" => ("rotor", "polar_inertia_kg_m2"),
+        "spin" => ("rotor", "speed_rpm"),
+        "length" => ("materials", "length_mm"),
+        "fastest" => ("start", "vx_mm_s"),
+        // How well an edge is placed is fixed; the marks decide whether that is well enough.
+        "marks" | "edge_error" | "window" => ("ball_bearing", "inner_ring_marks"),
+        "bore_radius" => ("rotor", "radius_mm"),
+        "cage_ratio" => ("ball_bearing", "cage_ratio"),
+        "planes" => ("sensors", "planes"),
+        "bits" | "full_scale" | "zero_count" => ("sensors", "bits"),
+        "range" | "resolution" => ("sensors", "range_um"),
+        "noise" => ("sensors", "noise_um"),
+        "bandwidth" => ("sensors", "bandwidth_hz"),
+        "mounting_angle" => ("sensors", "mounting_deg"),
+        "offset" => ("sensors", "offset_um"),
+        "gain_error" => ("sensors", "gain_error_percent"),
+        "nonlinearity" => ("sensors", "nonlinearity_percent"),
+        "runout" => ("sensors", "runout_um"),
+        "runout_harmonic" => ("sensors", "runout_harmonic"),
+        tuning => ("detector", tuning),
+    };
+    let rule = error.to_string().replacen(parameter, key, 1);
+    Flaw::new(table, key, rule)
+}

@@ -1,0 +1,87 @@
+//! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
+
+use touchdown_base::machine::Start;
+use touchdown_models::{Compliance, HertzConfig, Line, Point};
+use touchdown_rotor::RigidConfig;
+use touchdown_rotor::error::ConfigError;
+
+use crate::elastic::Validity;
+use crate::{Contact, Scene};
+
+/// How stiff the scene's contact is.
+pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
+    match scene.materials.contact {
+        Contact::Point => compliant(scene, Point).compliance(),
+        Contact::Line { length } => compliant(scene, Line { length }).compliance(),
+    }
+}
+
+/// How far the rotor is rigid in its contacts, in the ring where it is least; none where the scene does not
+/// give its first elastic mode.
+pub fn validity(scene: &Scene) -> Option<Validity> {
+    let machine = scene.two_plane.as_ref()?;
+    let mode = machine.elastic_mode?;
+    let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
+    let rings = machine.rings.iter().map(|ring| ring.place / gyration);
+    let all = rings.filter_map(|zeta| match scene.materials.contact {
+        Contact::Point => Validity::try_new(&compliant(scene, Point), zeta, mode).ok(),
+        Contact::Line { length } => {
+            Validity::try_new(&compliant(scene, Line { length }), zeta, mode).ok()
+        }
+    });
+    all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+}
+
+/// Contact of the scene with the shape `shape`.
+pub fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {
+    HertzConfig {
+        rigid: config(scene),
+        materials: scene.materials.elastic,
+        shape,
+        fastest: fastest_impact(scene),
+    }
+}
+
+/// A fall to the bottom from the start's height, or through the gap if that is more, and the start's
+/// speed.
+pub fn fastest_impact(scene: &Scene) -> f64 {
+    let height = match scene.start {
+        Start::Free { position, .. } => position[1],
+        Start::Wall { angle, .. } => -scene.retainer.clearance * angle.cos(),
+    };
+    let fall = scene.retainer.clearance + height.max(0.0);
+    let speed = speed_of(&scene.start).hypot((2.0 * scene.run.gravity * fall).sqrt());
+    if speed > 0.0 {
+        speed
+    } else {
+        start_speed(scene)
+    }
+}
+
+fn speed_of(start: &Start) -> f64 {
+    match *start {
+        Start::Free { velocity, .. } => velocity[0].hypot(velocity[1]),
+        Start::Wall { tangential, .. } => tangential.abs(),
+    }
+}
+
+/// The scene's rigid rotor.
+pub fn config(scene: &Scene) -> RigidConfig<f64> {
+    RigidConfig {
+        mass: scene.rotor.mass,
+        radius: scene.rotor.radius,
+        polar_inertia: scene.rotor.polar_inertia,
+        clearance: scene.retainer.clearance,
+        friction: scene.retainer.friction,
+        restitution: scene.retainer.restitution,
+        gravity: scene.run.gravity,
+        speed: start_speed(scene),
+        step: scene.model.step,
+    }
+}
+
+/// Sets the scale where there is no gravity.
+pub fn start_speed(scene: &Scene) -> f64 {
+    let speed = speed_of(&scene.start);
+    if speed > 0.0 { speed } else { 1.0 }
+}

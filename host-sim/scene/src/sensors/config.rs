@@ -1,0 +1,131 @@
+//! The sensor chain as the scene gives it.
+
+use touchdown_core::sample::CHANNELS;
+use touchdown_core::sensing::{PLANES, SensingConfig};
+use touchdown_rotor::error::ConfigError;
+
+use super::Tachometers;
+
+/// Inductive position sensors and their converter; SI, all channels alike where not said.
+///
+/// Only noise and the converter distort by default: everything else is 0 until a scene asks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorsConfig {
+    /// Planes fitted, 1 or 2, each with two axes at right angles.
+    pub planes: u8,
+    /// Converter width, 4 to 16 bits.
+    pub bits: u32,
+    /// Largest displacement that the converter shows, either way, m.
+    pub range: f64,
+    /// White noise, rms, m.
+    pub noise: f64,
+    /// First-order corner frequency, Hz; not modelled if `None`.
+    pub bandwidth: Option<f64>,
+    /// Angle from the scene's x axis to each plane's first axis, counter-clockwise, rad.
+    pub mounting_angle: [f64; PLANES],
+    /// Reading at the bearing's centre, by channel, m.
+    pub offset: [f64; CHANNELS],
+    /// Relative error of the slope, by channel.
+    pub gain_error: [f64; CHANNELS],
+    /// Relative deviation at full range; it grows with the cube of the displacement.
+    pub nonlinearity: f64,
+    /// Amplitude of the shaft's surface error, m.
+    pub runout: f64,
+    /// Waves of that error on the circumference.
+    pub runout_harmonic: u32,
+    /// Whether the spin is measured too.
+    pub speed: bool,
+    /// Whether "levitation on" is wired.
+    pub levitation_signal: bool,
+    /// Optical sensors of a ball bearing, where the retainer is one that is watched.
+    pub tachometers: Option<Tachometers>,
+}
+
+impl SensorsConfig {
+    /// Displacement of one count, m.
+    pub fn resolution(&self) -> f64 {
+        2.0 * self.range / f64::from(1 << self.bits)
+    }
+
+    /// Count at displacement 0.
+    pub fn zero_count(&self) -> f64 {
+        f64::from(1 << (self.bits - 1))
+    }
+
+    /// Highest count.
+    pub fn full_scale(&self) -> u16 {
+        ((1_u32 << self.bits) - 1) as u16
+    }
+
+    /// One bit for each channel fitted.
+    pub fn fitted(&self) -> u8 {
+        if self.planes == 1 { 0b0011 } else { 0b1111 }
+    }
+
+    /// What the monitor needs to know to read the counts.
+    pub fn sensing(&self) -> SensingConfig {
+        SensingConfig {
+            resolution: self.resolution() as f32,
+            zero_count: self.zero_count() as f32,
+            full_scale: self.full_scale(),
+            mounting_angle: self.mounting_angle.map(|angle| angle as f32),
+        }
+    }
+
+    /// Checks every field.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        use ConfigError::{Negative, NotFinite, NotPositive, OutOfRange};
+        let lists = [&self.offset[..], &self.gain_error, &self.mounting_angle];
+        let names = ["offset", "gain_error", "mounting_angle"];
+        for (list, name) in lists.into_iter().zip(names) {
+            if list.iter().any(|value| !value.is_finite()) {
+                return Err(NotFinite(name));
+            }
+        }
+        for (value, name) in [
+            (self.range, "range"),
+            (self.noise, "noise"),
+            (self.nonlinearity, "nonlinearity"),
+            (self.runout, "runout"),
+            (self.bandwidth.unwrap_or(1.0), "bandwidth"),
+        ] {
+            if !value.is_finite() {
+                return Err(NotFinite(name));
+            }
+        }
+        if !(1..=2).contains(&self.planes) {
+            return Err(OutOfRange("planes", "1 or 2"));
+        }
+        if !(4..=16).contains(&self.bits) {
+            return Err(OutOfRange("bits", "4 to 16"));
+        }
+        if self.range <= 0.0 {
+            return Err(NotPositive("range"));
+        }
+        if self.noise < 0.0 {
+            return Err(Negative("noise"));
+        }
+        if self.noise > self.range {
+            return Err(OutOfRange("noise", "no more than the range"));
+        }
+        if self.bandwidth.is_some_and(|corner| corner <= 0.0) {
+            return Err(NotPositive("bandwidth"));
+        }
+        if self.gain_error.iter().any(|error| *error <= -1.0) {
+            return Err(OutOfRange("gain_error", "above -100 %"));
+        }
+        if self.nonlinearity.abs() > 0.3 {
+            return Err(OutOfRange("nonlinearity", "-30 to 30 %"));
+        }
+        if self.runout < 0.0 {
+            return Err(Negative("runout"));
+        }
+        if !(1..=1000).contains(&self.runout_harmonic) {
+            return Err(OutOfRange("runout_harmonic", "1 to 1000"));
+        }
+        if let Some(tachometers) = &self.tachometers {
+            tachometers.config().validate()?;
+        }
+        Ok(())
+    }
+}

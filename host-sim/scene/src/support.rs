@@ -1,0 +1,158 @@
+//! `[support]` and `[ball_bearing]`: a retainer ring that gives way and one that turns.
+
+use serde::Deserialize;
+
+use super::flaw::Flaw;
+use super::limits;
+use super::rule::{MILLI, above_zero, between, zero_or_more};
+use crate::sensors::Tachometers;
+
+/// Of an optical mark, rad: 0.1 mm on a circle of 50 mm diameter.
+const EDGE_ERROR: f64 = 0.004;
+/// Time back that the speed of a ring is measured over, s.
+const SPEED_WINDOW: f64 = 0.005;
+
+/// What the retainer ring stands on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support {
+    /// Of the ring and all that moves with it, kg.
+    pub mass: f64,
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
+    /// Of the ring to the hard stop, radial, m.
+    pub travel: Option<f64>,
+}
+
+/// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallBearing {
+    /// Of the inner ring and what turns with it, kg m^2.
+    pub inertia: f64,
+    /// Drag that does not depend on the speed, N m.
+    pub dry_drag: f64,
+    /// N m s.
+    pub viscous_drag: f64,
+    /// Speed of the cage over that of the inner ring.
+    pub cage_ratio: f64,
+    /// J/K.
+    pub heat_capacity: f64,
+    /// To the surroundings, W/K.
+    pub heat_loss: f64,
+    /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
+    pub marks: [Option<u16>; 2],
+}
+
+impl BallBearing {
+    /// The optical sensors, where there are any, on a ring of this bore radius (m).
+    pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
+        self.marks
+            .iter()
+            .any(Option::is_some)
+            .then_some(Tachometers {
+                marks: self.marks,
+                cage_ratio: self.cage_ratio,
+                bore_radius,
+                edge_error: EDGE_ERROR,
+                window: SPEED_WINDOW,
+            })
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SupportTable {
+    mass_kg: f64,
+    stiffness_n_m: f64,
+    #[serde(default)]
+    damping_n_s_m: f64,
+    travel_mm: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BallBearingTable {
+    inner_ring_inertia_kg_m2: f64,
+    #[serde(default)]
+    dry_drag_n_m: f64,
+    #[serde(default)]
+    viscous_drag_n_m_s: f64,
+    #[serde(default = "usual_cage_ratio")]
+    cage_ratio: f64,
+    #[serde(default = "usual_heat_capacity")]
+    heat_capacity_j_k: f64,
+    #[serde(default)]
+    heat_loss_w_k: f64,
+    inner_ring_marks: Option<u16>,
+    cage_marks: Option<u16>,
+}
+
+/// (1 - ball over pitch diameter)/2 where balls are a fifth of the pitch diameter, as in deep-groove
+/// bearings.
+fn usual_cage_ratio() -> f64 {
+    0.4
+}
+
+/// 0.2 kg of steel, 460 J/(kg K).
+fn usual_heat_capacity() -> f64 {
+    92.0
+}
+
+impl SupportTable {
+    pub fn check(&self) -> Result<Support, Flaw> {
+        const TABLE: &str = "support";
+        let mass = above_zero(TABLE, "mass_kg", self.mass_kg)?;
+        let stiffness = above_zero(TABLE, "stiffness_n_m", self.stiffness_n_m)?;
+        let damping = zero_or_more(TABLE, "damping_n_s_m", self.damping_n_s_m)?;
+        let travel = match self.travel_mm {
+            Some(travel) => {
+                let travel = above_zero(TABLE, "travel_mm", travel)?;
+                Some(MILLI * between(TABLE, "travel_mm", travel, limits::TRAVEL_MM)?)
+            }
+            None => None,
+        };
+        Ok(Support {
+            mass: between(TABLE, "mass_kg", mass, limits::MASS_KG)?,
+            stiffness: between(TABLE, "stiffness_n_m", stiffness, limits::STIFFNESS_N_M)?,
+            damping: between(TABLE, "damping_n_s_m", damping, limits::DAMPING_N_S_M)?,
+            travel,
+        })
+    }
+}
+
+impl BallBearingTable {
+    pub fn check(&self) -> Result<BallBearing, Flaw> {
+        const TABLE: &str = "ball_bearing";
+        let inertia = "inner_ring_inertia_kg_m2";
+        let given = above_zero(TABLE, inertia, self.inner_ring_inertia_kg_m2)?;
+        let capacity = above_zero(TABLE, "heat_capacity_j_k", self.heat_capacity_j_k)?;
+        let drag = |key, value| {
+            let value = zero_or_more(TABLE, key, value)?;
+            between(TABLE, key, value, limits::DRAG)
+        };
+        let marks = [
+            ("inner_ring_marks", self.inner_ring_marks),
+            ("cage_marks", self.cage_marks),
+        ];
+        for (key, marks) in marks {
+            if let Some(marks) = marks {
+                between(TABLE, key, f64::from(marks), limits::MARKS)?;
+            }
+        }
+        Ok(BallBearing {
+            inertia: between(TABLE, inertia, given, limits::RING_INERTIA_KG_M2)?,
+            dry_drag: drag("dry_drag_n_m", self.dry_drag_n_m)?,
+            viscous_drag: drag("viscous_drag_n_m_s", self.viscous_drag_n_m_s)?,
+            cage_ratio: between(TABLE, "cage_ratio", self.cage_ratio, limits::CAGE_RATIO)?,
+            heat_capacity: between(
+                TABLE,
+                "heat_capacity_j_k",
+                capacity,
+                limits::HEAT_CAPACITY_J_K,
+            )?,
+            heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
+            marks: marks.map(|(_, marks)| marks),
+        })
+    }
+}

@@ -1,0 +1,344 @@
+//! `[two_plane]`, `[[ring]]` and `[[magnet]]`: a rotor that tilts, in retainer rings at their places.
+
+use serde::Deserialize;
+
+use super::flaw::Flaw;
+use super::limits;
+use super::list;
+use super::rule::ON_THE_WALL;
+use super::rule::{MILLI, above_zero, between};
+use super::{Retainer, Rotor, Start};
+use touchdown_base::plain::Number;
+
+/// Most rings, and most magnets.
+pub const RINGS: usize = 4;
+const MAGNETS: usize = 2;
+const GRAM_MM: f64 = 1e-6;
+
+/// A rotor with two ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TwoPlane {
+    /// About an axis across the rotor, through its centre of mass, kg m^2.
+    pub transverse_inertia: f64,
+    /// Mass times distance of the centre of mass from the axis, kg m; its angle on the rotor, rad.
+    pub unbalance: [f64; 2],
+    /// Slope of the principal axis against the rotor's, rad; its angle on the rotor, rad.
+    pub skew: [f64; 2],
+    /// First bending mode of the rotor, Hz.
+    pub elastic_mode: Option<f64>,
+    /// Slope of the rotor's axis at the release: change of x and y along z.
+    pub tilt: [f64; 2],
+    /// rad/s.
+    pub tilt_rate: [f64; 2],
+    /// From down, counter-clockwise, rad.
+    pub gravity_angle: f64,
+    /// Of the sensor planes, m.
+    pub sensors: [f64; 2],
+    /// One to four.
+    pub rings: Vec<Ring>,
+    /// None to two.
+    pub magnets: Vec<Magnet>,
+}
+
+/// A retainer ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ring {
+    /// For people.
+    pub name: String,
+    /// From the rotor's centre of mass, m.
+    pub place: f64,
+    /// Of the rotor in it, m.
+    pub radius: f64,
+    /// Its gap and law.
+    pub retainer: Retainer,
+}
+
+/// What is left of a magnetic bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Magnet {
+    /// From the rotor's centre of mass, m.
+    pub place: f64,
+    /// Force per displacement, along it where positive: the negative stiffness of permanent flux, N/m.
+    pub stiffness: f64,
+    /// N.
+    pub force: [f64; 2],
+}
+
+impl TwoPlane {
+    /// Of the rotor's axis at `place`, from the bearing's centre, where the centre of mass is at `centre`
+    /// (or the velocities instead of all of these).
+    pub fn at(centre: [f64; 2], tilt: [f64; 2], place: f64) -> [f64; 2] {
+        [centre[0] + place * tilt[0], centre[1] + place * tilt[1]]
+    }
+
+    /// The start must be within every ring.
+    pub(super) fn check_start(&self, start: &Start) -> Result<(), Flaw> {
+        let Start::Free { position, .. } = *start else {
+            let rule = "a start on the wall is for one plane: give x_mm, y_mm and tilt_mrad";
+            return Err(Flaw::new("start", "angle_deg", rule));
+        };
+        for (row, ring) in self.rings.iter().enumerate() {
+            let [x, y] = Self::at(position, self.tilt, ring.place);
+            let clearance = ring.retainer.clearance;
+            if x.hypot(y) > clearance * (1.0 + ON_THE_WALL) {
+                let rule = format!(
+                    "the start is outside the gap of ring {}: {:.6} mm from its centre, the clearance is {} mm",
+                    ring.name,
+                    Number(x.hypot(y) / MILLI),
+                    Number(clearance / MILLI)
+                );
+                return Err(Flaw::new("ring", "z_mm", rule).in_row(row));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct TwoPlaneTable {
+    transverse_inertia_kg_m2: Option<f64>,
+    rotor_length_mm: Option<f64>,
+    unbalance_g_mm: f64,
+    unbalance_deg: f64,
+    skew_mrad: f64,
+    skew_deg: f64,
+    elastic_mode_hz: Option<f64>,
+    #[serde(deserialize_with = "list::exactly")]
+    tilt_mrad: [f64; 2],
+    #[serde(deserialize_with = "list::exactly")]
+    tilt_rate_rad_s: [f64; 2],
+    gravity_deg: f64,
+    #[serde(deserialize_with = "list::exactly_if_there")]
+    sensor_z_mm: Option<[f64; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RingTable {
+    name: Option<String>,
+    z_mm: f64,
+    radius_mm: Option<f64>,
+    clearance_mm: Option<f64>,
+    friction: Option<f64>,
+    restitution: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MagnetTable {
+    z_mm: f64,
+    #[serde(default)]
+    stiffness_n_m: f64,
+    #[serde(default, deserialize_with = "list::exactly")]
+    force_n: [f64; 2],
+}
+
+const TABLE: &str = "two_plane";
+
+impl TwoPlaneTable {
+    pub fn check(
+        &self,
+        rotor: &Rotor,
+        retainer: &Retainer,
+        rings: &[RingTable],
+        magnets: &[MagnetTable],
+    ) -> Result<TwoPlane, Flaw> {
+        let rings = all_rings(rotor, retainer, rings)?;
+        let ends = rings.iter().map(|ring| ring.place);
+        let lowest = ends.clone().fold(f64::INFINITY, f64::min);
+        let sensors = match self.sensor_z_mm {
+            Some(places) => {
+                for place in places {
+                    between(TABLE, "sensor_z_mm", place, limits::PLACE_MM)?;
+                }
+                places.map(|place| MILLI * place)
+            }
+            None => [lowest, ends.fold(f64::NEG_INFINITY, f64::max)],
+        };
+        let elastic_mode = match self.elastic_mode_hz {
+            Some(mode) => Some(between(
+                TABLE,
+                "elastic_mode_hz",
+                mode,
+                limits::ELASTIC_MODE_HZ,
+            )?),
+            None => None,
+        };
+        for (key, pair) in [
+            ("tilt_mrad", self.tilt_mrad),
+            ("tilt_rate_rad_s", self.tilt_rate_rad_s),
+        ] {
+            for value in pair {
+                between(TABLE, key, value, limits::TILT)?;
+            }
+        }
+        for (key, angle) in [
+            ("unbalance_deg", self.unbalance_deg),
+            ("skew_deg", self.skew_deg),
+            ("gravity_deg", self.gravity_deg),
+        ] {
+            between(TABLE, key, angle, limits::ANGLE_DEG)?;
+        }
+        let unbalance = between(
+            TABLE,
+            "unbalance_g_mm",
+            self.unbalance_g_mm,
+            limits::UNBALANCE_G_MM,
+        )?;
+        let skew = between(TABLE, "skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
+        Ok(TwoPlane {
+            transverse_inertia: self.transverse_inertia(rotor)?,
+            unbalance: [GRAM_MM * unbalance, self.unbalance_deg.to_radians()],
+            skew: [MILLI * skew, self.skew_deg.to_radians()],
+            elastic_mode,
+            tilt: self.tilt_mrad.map(|tilt| MILLI * tilt),
+            tilt_rate: self.tilt_rate_rad_s,
+            gravity_angle: self.gravity_deg.to_radians(),
+            sensors,
+            rings,
+            magnets: all_magnets(magnets)?,
+        })
+    }
+
+    /// As given, or that of a solid cylinder of the given length.
+    fn transverse_inertia(&self, rotor: &Rotor) -> Result<f64, Flaw> {
+        let key = "transverse_inertia_kg_m2";
+        let (inertia, key) = match (self.transverse_inertia_kg_m2, self.rotor_length_mm) {
+            (Some(inertia), None) => (above_zero(TABLE, key, inertia)?, key),
+            (None, Some(length)) => {
+                let length = above_zero(TABLE, "rotor_length_mm", length)?;
+                let length = MILLI * between(TABLE, "rotor_length_mm", length, limits::LENGTH_MM)?;
+                let square = rotor.radius * rotor.radius / 4.0 + length * length / 12.0;
+                (rotor.mass * square, "rotor_length_mm")
+            }
+            (given, _) => {
+                let both = given.is_some();
+                let rule = if both {
+                    "transverse_inertia_kg_m2 or rotor_length_mm: give one"
+                } else {
+                    "transverse_inertia_kg_m2 or rotor_length_mm must be given"
+                };
+                return Err(Flaw::new(TABLE, key, rule));
+            }
+        };
+        let ratio = rotor.polar_inertia / inertia;
+        if limits::GYROSCOPIC_RATIO.contains(&ratio) {
+            return Ok(inertia);
+        }
+        let (low, high) = limits::GYROSCOPIC_RATIO.into_inner();
+        let rule = format!(
+            "polar over transverse inertia must be {low:e} to {high} (a thin disc), is {:.6}",
+            Number(ratio)
+        );
+        Err(Flaw::new(TABLE, key, rule))
+    }
+}
+
+fn all_rings(rotor: &Rotor, retainer: &Retainer, tables: &[RingTable]) -> Result<Vec<Ring>, Flaw> {
+    if tables.is_empty() || tables.len() > RINGS {
+        let rule = format!(
+            "[[ring]] must stand 1 to {RINGS} times, stands {} times",
+            tables.len()
+        );
+        let table = if tables.is_empty() { TABLE } else { "ring" };
+        return Err(Flaw::new(table, "z_mm", rule));
+    }
+    let rings = tables.iter().enumerate();
+    rings
+        .map(|(index, table)| {
+            let ring = table.check(rotor, retainer);
+            ring.map_err(|flaw| flaw.in_row(index))
+                .map(|ring| match &table.name {
+                    Some(name) => Ring {
+                        name: name.clone(),
+                        ..ring
+                    },
+                    None => Ring {
+                        name: ["a", "b", "c", "d"][index].to_owned(),
+                        ..ring
+                    },
+                })
+        })
+        .collect()
+}
+
+impl RingTable {
+    fn check(&self, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Flaw> {
+        const TABLE: &str = "ring";
+        let optional = |key, value: Option<f64>, scale: f64, other: f64, range| match value {
+            Some(value) => between(TABLE, key, value, range).map(|value| scale * value),
+            None => Ok(other),
+        };
+        Ok(Ring {
+            name: String::new(),
+            place: MILLI * between(TABLE, "z_mm", self.z_mm, limits::PLACE_MM)?,
+            radius: optional(
+                "radius_mm",
+                self.radius_mm,
+                MILLI,
+                rotor.radius,
+                limits::RADIUS_MM,
+            )?,
+            retainer: Retainer {
+                clearance: optional(
+                    "clearance_mm",
+                    self.clearance_mm,
+                    MILLI,
+                    retainer.clearance,
+                    limits::CLEARANCE_MM,
+                )?,
+                friction: optional(
+                    "friction",
+                    self.friction,
+                    1.0,
+                    retainer.friction,
+                    limits::FRICTION,
+                )?,
+                restitution: optional(
+                    "restitution",
+                    self.restitution,
+                    1.0,
+                    retainer.restitution,
+                    0.0..=1.0,
+                )?,
+            },
+        })
+    }
+}
+
+fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Flaw> {
+    const TABLE: &str = "magnet";
+    if tables.len() > MAGNETS {
+        let rule = format!(
+            "[[magnet]] must stand {MAGNETS} times at most, stands {} times",
+            tables.len()
+        );
+        return Err(Flaw::new(TABLE, "z_mm", rule));
+    }
+    let magnets = tables.iter().enumerate();
+    magnets
+        .map(|(index, table)| {
+            let check = || {
+                let stiffness = table.stiffness_n_m;
+                if stiffness != 0.0 {
+                    between(
+                        TABLE,
+                        "stiffness_n_m",
+                        stiffness.abs(),
+                        limits::STIFFNESS_N_M,
+                    )?;
+                }
+                for force in table.force_n {
+                    between(TABLE, "force_n", force, limits::FORCE_N)?;
+                }
+                Ok(Magnet {
+                    place: MILLI * between(TABLE, "z_mm", table.z_mm, limits::PLACE_MM)?,
+                    stiffness,
+                    force: table.force_n,
+                })
+            };
+            check().map_err(|flaw: Flaw| flaw.in_row(index))
+        })
+        .collect()
+}

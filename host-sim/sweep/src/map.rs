@@ -1,0 +1,134 @@
+//! Probability of whirl over the parameters, as pictures.
+
+use maud::{Markup, html};
+use toml::Value;
+
+use super::columns::{as_number, text};
+use super::plan::Plan;
+use super::summary::Point;
+use super::table::short;
+use touchdown_chart::plot::{Axis, Chart};
+
+const HEIGHT: f64 = 320.0;
+/// Maps of a page; each is of the two parameters that change fastest, at values of the others.
+const MAPS: usize = 24;
+
+/// The picture for as many parameters as there are.
+pub(super) fn drawn(plan: &Plan, points: &[Point]) -> Markup {
+    match plan.listed.as_slice() {
+        [] => html! {},
+        [(key, values)] if values.iter().all(|it| as_number(it).is_some()) => {
+            curve(key, values, points)
+        }
+        [(key, values)] => map(&[("", vec![]), (key, values.iter().collect())], points),
+        [others @ .., (row, rows), (column, columns)] => {
+            let axes = [
+                (row.as_str(), rows.iter().collect::<Vec<_>>()),
+                (column.as_str(), columns.iter().collect()),
+            ];
+            let size = rows.len() * columns.len();
+            let maps = points.chunks_exact(size);
+            html! {
+                @for part in maps.take(MAPS) {
+                    @if !others.is_empty() { h3 { (at(plan, part, others.len())) } }
+                    (map(&axes, part))
+                }
+                @if points.len() > MAPS * size {
+                    p.note { "The others are in points.csv." }
+                }
+            }
+        }
+    }
+}
+
+fn at(plan: &Plan, part: &[Point], others: usize) -> String {
+    let values = part.first().map(|first| plan.values(first.point));
+    let pairs: Vec<_> = (plan.listed.iter().zip(values.unwrap_or_default()))
+        .take(others)
+        .map(|((key, _), value)| format!("{key} = {}", short(&text(value))))
+        .collect();
+    pairs.join(", ")
+}
+
+fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
+    let places: Vec<f64> = values.iter().filter_map(as_number).collect();
+    let ends = places
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), it| {
+            (f64::min(lo, *it), f64::max(hi, *it))
+        });
+    let x = Axis::new(ends.0, ends.1, key, 8.0);
+    let y = Axis::new(
+        0.0,
+        100.0,
+        "probability of whirl, %, with its 95 % interval",
+        6.0,
+    );
+    let title = format!("Whirl over {key}");
+    let chart = Chart {
+        title: &title,
+        description: &title,
+        x: &x,
+        y: &y,
+        height: HEIGHT,
+    };
+    let values = |it: &Point| [it.whirl_low, it.whirl_high, it.whirl_probability];
+    let mut order: Vec<_> = places.into_iter().zip(points).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let curves = html! {
+        @for (which, class) in ["limit", "limit", "impact"].into_iter().enumerate() {
+            @let mut pen = chart.pen();
+            @for (place, point) in &order {
+                ({ pen.line_to(*place, 100.0 * values(point)[which]); "" })
+            }
+            (pen.finish(class))
+        }
+    };
+    chart.draw(&html! {}, &curves, &html! {})
+}
+
+/// A table whose cells are the deeper in colour the more probable whirl is.
+fn map(axes: &[(&str, Vec<&Value>); 2], points: &[Point]) -> Markup {
+    let [(row, rows), (column, columns)] = axes;
+    let lines = points.chunks(columns.len().max(1));
+    html! {
+        div.scroll {
+            table.map {
+                caption {
+                    "Probability of whirl, %: "
+                    @if !row.is_empty() { "down " (row) ", " }
+                    "across " (column)
+                }
+                thead {
+                    tr {
+                        th {}
+                        @for value in columns { th.number scope="col" { (short(&text(value))) } }
+                    }
+                }
+                tbody {
+                    @for (index, line) in lines.enumerate() {
+                        tr {
+                            th scope="row" { (rows.get(index).map_or(String::new(), |it| short(&text(it)))) }
+                            @for point in line { (cell(point)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn cell(point: &Point) -> Markup {
+    let percent = 100.0 * point.whirl_probability;
+    let hint = format!(
+        "{percent:.2} % of {} drops, {:.2} to {:.2} %",
+        point.drops,
+        100.0 * point.whirl_low,
+        100.0 * point.whirl_high
+    );
+    let shade = format!(
+        "background: rgb(213 94 0 / {:.3})",
+        0.85 * point.whirl_probability
+    );
+    html! { td.number title=(hint) style=(shade) { (format!("{percent:.0}")) } }
+}

@@ -1,0 +1,321 @@
+//! The plan of a sweep: `PLAN.toml`.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::{Spanned, Table, Value};
+
+use super::parameter::{Distribution, ParameterTable, Values};
+use touchdown_base::input_error::{InputError, LARGEST_TOML};
+use touchdown_scene::Scene;
+
+/// Most drops of a sweep.
+const MOST_DROPS: u64 = 1_000_000_000;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    title: Option<String>,
+    scene: Spanned<String>,
+    #[serde(default = "default_drops")]
+    drops: Spanned<u64>,
+    #[serde(default = "default_seed")]
+    seed: u64,
+    start: Option<Spanned<StartTable>>,
+    #[serde(default)]
+    parameter: Vec<ParameterTable>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StartTable {
+    within: f64,
+    #[serde(default)]
+    speed_mm_s: f64,
+}
+
+fn default_drops() -> Spanned<u64> {
+    Spanned::new(0..0, 1_000)
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+/// A valid plan.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Its file.
+    pub name: String,
+    /// The file of its scene; none of a built-in one.
+    pub scene_file: Option<PathBuf>,
+    /// One line.
+    pub title: String,
+    /// Drops a point of the grid.
+    pub drops: u64,
+    pub(super) seed: u64,
+    pub(super) start: Option<RandomStart>,
+    pub(super) listed: Vec<(String, Vec<Value>)>,
+    pub(super) drawn: Vec<(String, Distribution)>,
+    /// The scene that the parameters change, and the text that it comes from.
+    pub(super) base: Table,
+    scene_text: String,
+    text: String,
+}
+
+/// Starts anywhere in the middle of the gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RandomStart {
+    /// Radius of the disc, part of the clearance.
+    pub within: f64,
+    /// Greatest speed, in any direction, m/s.
+    pub speed: f64,
+}
+
+impl Plan {
+    /// Reads the plan at `path`. Its scene is a file beside it, or a built-in one.
+    pub fn load(path: &str) -> Result<Self, InputError> {
+        let text = InputError::read(Path::new(path), LARGEST_TOML)?;
+        let file = parsed(path, &text)?;
+        let scene = file.scene.get_ref();
+        let beside = Path::new(path).with_file_name(scene);
+        let name = if beside.exists() {
+            beside.display().to_string()
+        } else {
+            scene.clone()
+        };
+        let scene_text = Scene::text(&name).map_err(|error| {
+            let rule = format!("scene {scene:?}: {}", error.rule());
+            InputError::at_span(path, &text, file.scene.span(), rule)
+        })?;
+        let mut plan = Self::of_texts(path, &text, &scene_text)?;
+        plan.scene_file = Some(PathBuf::from(name)).filter(|it| it.is_file());
+        Ok(plan)
+    }
+
+    /// The plan `text` over the scene `scene_text`; errors name it `name`.
+    pub fn of_texts(name: &str, text: &str, scene_text: &str) -> Result<Self, InputError> {
+        let file = parsed(name, text)?;
+        let fail = |span, rule: String| InputError::at_span(name, text, span, rule);
+        let scene_name = file.scene.get_ref();
+        let scene = Scene::parse(scene_name, scene_text).map_err(InputError::of_named_file)?;
+        if scene.auto.is_some() {
+            let rule = format!(
+                "scene {scene_name:?} leaves the model open (fidelity = \"auto\"): a sweep needs one rung, which \
+                 `touchdown scene explain` chooses for one drop"
+            );
+            return Err(fail(file.scene.span(), rule));
+        }
+        let heading = scene.heading().to_owned();
+        let base = toml::from_str(scene_text).map_err(|error| {
+            fail(
+                file.scene.span(),
+                format!("scene {scene_name:?}: {}", error.message()),
+            )
+        })?;
+        let mut plan = Self {
+            name: name.to_owned(),
+            scene_file: None,
+            title: file.title.unwrap_or(heading),
+            drops: *file.drops.get_ref(),
+            seed: file.seed,
+            start: None,
+            listed: Vec::new(),
+            drawn: Vec::new(),
+            base,
+            scene_text: scene_text.to_owned(),
+            text: text.to_owned(),
+        };
+        if let Some(start) = &file.start {
+            let StartTable { within, speed_mm_s } = *start.get_ref();
+            if !(0.0..1.0).contains(&within) || !(0.0..=1e6).contains(&speed_mm_s) {
+                let rule =
+                    "start: within is a part of the clearance, 0 to below 1; speed_mm_s 0 or more";
+                return Err(fail(start.span(), rule.to_owned()));
+            }
+            plan.start = Some(RandomStart {
+                within,
+                speed: speed_mm_s / 1e3,
+            });
+        }
+        for table in &file.parameter {
+            let key = table.key.get_ref();
+            plan.add(key, table)
+                .map_err(|rule| fail(table.key.span(), format!("{key}: {rule}")))?;
+        }
+        let all_alike = plan.start.is_none() && plan.drawn.is_empty();
+        if plan.drops == 0 || (all_alike && plan.drops > 1) {
+            let rule = "drops must be 1 or more; above 1 they need something random: a [start], or a \
+                        parameter that is drawn";
+            return Err(fail(file.drops.span(), rule.to_owned()));
+        }
+        if plan.total().is_none_or(|total| total > MOST_DROPS) {
+            let rule = format!("more than {MOST_DROPS} drops in all");
+            return Err(fail(file.drops.span(), rule));
+        }
+        Ok(plan)
+    }
+
+    fn add(&mut self, key: &str, table: &ParameterTable) -> Result<(), String> {
+        let known = self.listed.iter().map(|(key, _)| key);
+        if known
+            .chain(self.drawn.iter().map(|(key, _)| key))
+            .any(|it| it == key)
+        {
+            return Err("is there twice".to_owned());
+        }
+        if key == "run.seed" || (self.start.is_some() && key.starts_with("start.")) {
+            return Err("is drawn for each drop already".to_owned());
+        }
+        let values = table.values()?;
+        let tried = match &values {
+            Values::Listed(values) => values.clone(),
+            Values::Drawn(drawn) => drawn.samples().into_iter().map(Value::Float).collect(),
+        };
+        for value in tried {
+            let mut scene = self.base.clone();
+            set(&mut scene, key, &value)?;
+            Scene::parse("the scene", &scene.to_string())
+                .map_err(|error| error.rule().to_owned())?;
+        }
+        match values {
+            Values::Listed(values) => self.listed.push((key.to_owned(), values)),
+            Values::Drawn(drawn) => self.drawn.push((key.to_owned(), drawn)),
+        }
+        Ok(())
+    }
+
+    /// Points of the grid.
+    pub fn points(&self) -> u64 {
+        self.counts().product()
+    }
+
+    fn counts(&self) -> impl Iterator<Item = u64> {
+        self.listed.iter().map(|(_, values)| values.len() as u64)
+    }
+
+    /// Drops in all.
+    fn total(&self) -> Option<u64> {
+        let points = self.counts().try_fold(1, u64::checked_mul)?;
+        points.checked_mul(self.drops)
+    }
+
+    /// Drops in all.
+    pub fn size(&self) -> u64 {
+        self.points() * self.drops
+    }
+
+    /// The listed values of a point; the first parameter changes slowest.
+    pub(super) fn values(&self, point: u64) -> Vec<&Value> {
+        let mut left = point;
+        let mut values: Vec<_> = (self.listed.iter().rev())
+            .map(|(_, values)| {
+                let count = values.len() as u64;
+                let value = &values[(left % count) as usize];
+                left /= count;
+                value
+            })
+            .collect();
+        values.reverse();
+        values
+    }
+
+    /// Texts of plan and scene.
+    pub(super) fn texts(&self) -> [&str; 2] {
+        [&self.text, &self.scene_text]
+    }
+}
+
+fn parsed(name: &str, text: &str) -> Result<PlanFile, InputError> {
+    toml::from_str(text).map_err(|error| {
+        let rule = error
+            .message()
+            .replacen("missing field", "missing required key", 1)
+            .replacen("unknown field", "unknown key", 1);
+        InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
+    })
+}
+
+/// Gives `key`, as in `retainer.friction` or `ring.0.clearance_mm`, a value.
+pub(super) fn set(scene: &mut Table, key: &str, value: &Value) -> Result<(), String> {
+    let rule = || "is no key of a scene: table.key, or table.number.key".to_owned();
+    let parts: Vec<_> = key.split('.').collect();
+    let (last, tables) = parts.split_last().ok_or_else(rule)?;
+    let (first, rest) = tables.split_first().ok_or_else(rule)?;
+    let mut inner = scene
+        .entry(*first)
+        .or_insert_with(|| Value::Table(Table::new()));
+    for part in rest {
+        let number: usize = part.parse().map_err(|_| rule())?;
+        inner = inner.get_mut(number).ok_or_else(rule)?;
+    }
+    let table = inner.as_table_mut().ok_or_else(rule)?;
+    table.insert((*last).to_owned(), value.clone());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_scene::BUILT_IN;
+
+    fn plan(text: &str) -> Result<Plan, InputError> {
+        Plan::of_texts("plan.toml", text, BUILT_IN[0].text)
+    }
+
+    #[test]
+    fn the_first_parameter_changes_slowest() {
+        let plan = plan(
+            "scene = \"rig\"\ndrops = 1\n[[parameter]]\nkey = \"retainer.friction\"\nvalues = [0.1, 0.2]\n\
+             [[parameter]]\nkey = \"retainer.restitution\"\nvalues = [0.3, 0.5, 0.8]\n",
+        )
+        .expect("a valid plan");
+        assert_eq!(plan.points(), 6);
+        let of = |point| {
+            plan.values(point)
+                .iter()
+                .map(|it| it.as_float().unwrap())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(of(0), [0.1, 0.3]);
+        assert_eq!(of(2), [0.1, 0.8]);
+        assert_eq!(of(3), [0.2, 0.3]);
+    }
+
+    #[test]
+    fn a_scene_that_leaves_the_model_open_is_refused() {
+        let scene = format!("fidelity = \"auto\"\n{}", BUILT_IN[0].text);
+        let text = "drops = 1\nscene = \"open\"\n";
+        let error = Plan::of_texts("plan.toml", text, &scene).expect_err("auto");
+        assert_eq!(error.line(), Some(2), "{error}");
+        assert!(error.rule().contains("fidelity"), "{error}");
+    }
+
+    #[test]
+    fn flaws_name_their_line() {
+        for (text, line, part) in [
+            ("scene = \"rig\"\ndrops = 5\n", 2, "random"),
+            (
+                "scene = \"rig\"\n\n[[parameter]]\nkey = \"retainer.friction\"\nvalues = [-1]\n",
+                4,
+                "friction",
+            ),
+            (
+                "scene = \"rig\"\n\n[[parameter]]\nkey = \"retainer.fiction\"\nvalues = [1]\n",
+                4,
+                "unknown key",
+            ),
+            (
+                "scene = \"rig\"\n[[parameter]]\nkey = \"friction\"\nvalues = [1]\n",
+                3,
+                "table.key",
+            ),
+            ("scene = \"rig\"\n[start]\nwithin = 1.5\n", 2, "within"),
+            ("scene = \"rig\"\nspeed = 1\n", 2, "unknown key"),
+        ] {
+            let error = plan(text).expect_err(text);
+            assert_eq!(error.line(), Some(line), "{text}: {error}");
+            assert!(error.rule().contains(part), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Runs the parts of a sweep that are not there yet.
+
+use std::ops::Range;
+use std::path::Path;
+
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+use super::columns::{cells, columns};
+use super::draw::Scenes;
+use super::part::{Part, first_line};
+use super::plan::Plan;
+use super::record::Record;
+use touchdown_base::failure::Failure;
+use touchdown_base::input_error::InputError;
+use touchdown_base::output::Output;
+use touchdown_base::progress;
+use touchdown_run::model::simulate;
+
+/// Blocks that are simulated together, in parallel, and held in memory.
+const TOGETHER: usize = 64;
+
+/// Runs those of `parts` that `folder` does not have; how many drops it had.
+pub fn run(plan: &Plan, parts: &[Part], folder: &Path) -> Result<u64, Failure> {
+    let mut missing = Vec::new();
+    let (mut had, mut all) = (0, 0);
+    for part in parts {
+        let size = part.size(plan);
+        all += size;
+        if part.is_done(plan, folder)? {
+            had += size;
+        } else {
+            missing.push(*part);
+        }
+    }
+    let bar = progress::bar("sweep", all);
+    bar.set_position(had);
+    bar.reset_eta();
+    for part in missing {
+        write(plan, part, folder, &bar)?;
+    }
+    bar.finish_and_clear();
+    Ok(had)
+}
+
+fn write(plan: &Plan, part: Part, folder: &Path, bar: &ProgressBar) -> Result<(), Failure> {
+    let mut out = Output::create(&part.path(folder).display().to_string())?;
+    out.put(&first_line(plan))?;
+    let name = out.name().to_owned();
+    let failed = |error: csv::Error| Failure::output(&name)(error.into());
+    let mut table = csv::Writer::from_writer(&mut out);
+    table.write_record(columns(plan)).map_err(&failed)?;
+    let blocks: Vec<_> = part.blocks(plan).collect();
+    for blocks in blocks.chunks(TOGETHER) {
+        let simulated: Vec<_> = (blocks.par_iter())
+            .map(|drops| simulated(plan, drops.clone(), bar))
+            .collect::<Result<_, _>>()?;
+        for record in simulated.into_iter().flatten() {
+            let row = cells(plan, &plan.draw(record.index), &record);
+            table.write_record(row).map_err(&failed)?;
+        }
+    }
+    table.flush().map_err(Failure::output(&name))?;
+    drop(table);
+    out.commit()
+}
+
+fn simulated(plan: &Plan, drops: Range<u64>, bar: &ProgressBar) -> Result<Vec<Record>, Failure> {
+    let mut scenes = Scenes::new(plan);
+    let record = |index| {
+        let scene = scenes.of(&plan.draw(index))?;
+        let history = simulate(&scene)
+            .map_err(|error| InputError::of_file(&plan.name, format!("drop {index}: {error}")))?;
+        bar.inc(1);
+        Ok(Record::of(index, &scene, &history))
+    };
+    drops.map(record).collect()
+}

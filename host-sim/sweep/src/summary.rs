@@ -1,0 +1,85 @@
+//! What the drops of a point of the grid came to, together.
+
+use serde::Serialize;
+
+use super::record::{REGIMES, Record, number};
+use touchdown_base::history::Regime;
+use touchdown_base::statistics::median;
+use touchdown_base::wilson;
+
+/// A point of the grid.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Its number; the first parameter changes slowest.
+    pub point: u64,
+    /// Keys and values of the listed parameters.
+    pub values: serde_json::Map<String, serde_json::Value>,
+    /// How many.
+    pub drops: u64,
+    /// Drops that ended in each regime.
+    pub regimes: serde_json::Map<String, serde_json::Value>,
+    /// Of whirl in either direction.
+    pub whirl_probability: f64,
+    /// Lower end of its 95 % interval (Wilson).
+    pub whirl_low: f64,
+    /// Upper end.
+    pub whirl_high: f64,
+    /// Of backward whirl alone.
+    pub backward_probability: f64,
+    /// From the release to the start of the contact that whirls, median, s.
+    pub whirl_start_median_s: Option<f64>,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed_max_m_s: Option<f64>,
+    /// Greatest normal impulse of an impact, N s.
+    pub impulse_max_n_s: Option<f64>,
+    /// Greatest normal force at the end of a run, N.
+    pub end_load_max_n: Option<f64>,
+}
+
+/// Gathers the drops of a point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Gathered {
+    counts: [u64; REGIMES.len()],
+    whirl_starts: Vec<f64>,
+    /// Impact speed, impulse, load.
+    greatest: [Option<f64>; 3],
+}
+
+impl Gathered {
+    pub fn take(&mut self, record: &Record) {
+        self.counts[number(record.regime)] += 1;
+        if record.whirl_start.is_finite() {
+            self.whirl_starts.push(record.whirl_start);
+        }
+        let values = [record.impact_speed, record.impulse, record.end_load];
+        for (greatest, value) in self.greatest.iter_mut().zip(values) {
+            if !value.is_nan() {
+                *greatest = Some(greatest.map_or(value, |it| it.max(value)));
+            }
+        }
+    }
+
+    pub fn finish(self, point: u64, values: serde_json::Map<String, serde_json::Value>) -> Point {
+        let drops: u64 = self.counts.iter().sum();
+        let of = |regime| self.counts[number(regime)];
+        let backward = of(Regime::BackwardWhirl);
+        let whirls = of(Regime::ForwardWhirl) + backward;
+        let (whirl_low, whirl_high) = wilson::interval(whirls, drops);
+        let names = REGIMES.iter().map(|(_, name)| (*name).to_owned());
+        let [impact_speed_max_m_s, impulse_max_n_s, end_load_max_n] = self.greatest;
+        Point {
+            point,
+            values,
+            drops,
+            regimes: names.zip(self.counts.map(Into::into)).collect(),
+            whirl_probability: whirls as f64 / drops as f64,
+            whirl_low,
+            whirl_high,
+            backward_probability: backward as f64 / drops as f64,
+            whirl_start_median_s: Some(median(&self.whirl_starts)).filter(|it| it.is_finite()),
+            impact_speed_max_m_s,
+            impulse_max_n_s,
+            end_load_max_n,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The points as text.
+
+use super::columns::text;
+use super::plan::Plan;
+use super::summary::Point;
+use touchdown_base::paint::Paint;
+use touchdown_base::plain::shown;
+
+/// Points that are printed; all are in `points.csv`.
+const SHOWN: usize = 40;
+
+/// A line for each point.
+pub fn table(plan: &Plan, points: &[Point], paint: Paint) -> String {
+    let names: Vec<_> = (plan.listed.iter())
+        .map(|(key, _)| key.rsplit('.').next().unwrap_or(key))
+        .collect();
+    let mut text = paint.bold(&format!("{}: {} drops\n", shown(&plan.title), plan.size()));
+    let mut head: String = names.iter().map(|name| format!("{name:>16}")).collect();
+    head += "   whirl %     95 % interval  backward %  after ms  impact mm/s";
+    text += &(paint.bold(&head) + "\n");
+    for point in points.iter().take(SHOWN) {
+        text += &line(plan, point);
+    }
+    if points.len() > SHOWN {
+        text += &format!("... {} more points in points.csv\n", points.len() - SHOWN);
+    }
+    text
+}
+
+fn line(plan: &Plan, point: &Point) -> String {
+    let values: String = (plan.values(point.point).into_iter())
+        .map(|value| format!("{:>16}", shown(&short(&text(value)))))
+        .collect();
+    let thousand =
+        |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.1}", 1e3 * value));
+    format!(
+        "{values}{:>10.2}   {:>6.2} to {:>6.2}{:>12.2}{:>10}{:>13}\n",
+        100.0 * point.whirl_probability,
+        100.0 * point.whirl_low,
+        100.0 * point.whirl_high,
+        100.0 * point.backward_probability,
+        thousand(point.whirl_start_median_s),
+        thousand(point.impact_speed_max_m_s),
+    )
+}
+
+/// A number of a range can have seventeen digits.
+pub(super) fn short(value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(number) if value.len() > 8 => {
+            let digits = 4 - number.abs().max(1e-300).log10().floor() as i32;
+            let scale = 10f64.powi(digits.clamp(0, 12));
+            format!("{}", (number * scale).round() / scale)
+        }
+        _ => value.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_numbers_become_short() {
+        assert_eq!(short("0.30000000000000004"), "0.3");
+        assert_eq!(short("12345.678912"), "12346");
+        assert_eq!(short("polynomial-of-old"), "polynomial-of-old");
+        assert_eq!(short("0.1"), "0.1");
+    }
+}

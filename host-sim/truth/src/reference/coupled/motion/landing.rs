@@ -1,0 +1,103 @@
+//! Links that touch: impacts, and where a bounce series ends.
+
+use super::super::impact::{self, Touching};
+use super::super::step::Mode;
+use super::super::system::{Hold, Law, shared};
+use super::{Motion, ON_WALL};
+use touchdown_base::history::{Happening, Impact, RotorState};
+
+/// Launch speed below which a bounce series ends in contact, in units of speed.
+pub const CUTOFF: f64 = 1e-10;
+/// The same in parts of the speed along the wall, whose rounding it must exceed.
+const FAST_CUTOFF: f64 = 1e-12;
+/// Impacts that are forgotten in a unit of time; each time as many are not, the cut-off is doubled:
+/// what bounds the hops that are flown.
+const MANY_IMPACTS: f64 = 250.0;
+
+impl<L: Law> Motion<L> {
+    /// Positions outside their walls are taken back.
+    pub(super) fn take_inside(&mut self) {
+        for link in 0..self.modes.len() {
+            let clearance = self.system.links[link].clearance();
+            if clearance.is_some_and(|clearance| self.distance(link) > clearance) {
+                impact::keep_place(&self.system, link, &mut self.place);
+            }
+        }
+    }
+
+    pub(super) fn collide(
+        &mut self,
+        landing: Option<usize>,
+        sink: &mut impl FnMut(usize, Happening),
+    ) {
+        let touches = |link: &usize| match self.system.links[*link].clearance() {
+            None => false,
+            Some(clearance) => {
+                self.modes[*link] != Mode::Flight
+                    || Some(*link) == landing
+                    || self.distance(*link) >= (1.0 - ON_WALL) * clearance
+            }
+        };
+        let links: Vec<usize> = (0..self.modes.len()).filter(touches).collect();
+        for link in &links {
+            impact::keep_place(&self.system, *link, &mut self.place);
+        }
+        let touch = |link: &usize| Touching::new(&self.system, *link, &self.place, &self.speed);
+        let mut touching: Vec<Touching> = links.iter().map(touch).collect();
+        impact::strike(&self.system, &mut touching, &mut self.speed);
+        for touch in &touching {
+            let (link, cutoff) = (touch.link, self.cutoff(touch.link));
+            let flew = self.modes[link] == Mode::Flight;
+            self.modes[link] = match touch.outward(&self.system, &self.speed) {
+                outward if outward < -cutoff => Mode::Flight,
+                _ => self.closed(link),
+            };
+            if flew && touch.closing > cutoff && touch.impulse > 0.0 {
+                sink(link, Happening::Impact(self.impact(touch)));
+            }
+        }
+        self.release_brakes();
+        self.count();
+    }
+
+    /// A brake has no impulse: what an impact has set turning slips in it.
+    fn release_brakes(&mut self) {
+        for (mode, link) in self.modes.iter_mut().zip(&self.system.links) {
+            let turning = link.turning(&self.speed);
+            if let (Hold::Brake(_), Mode::Stick) = (link.hold, *mode)
+                && turning != 0.0
+            {
+                *mode = Mode::Slide(turning.signum());
+            }
+        }
+    }
+
+    fn impact(&self, touch: &Touching) -> Impact {
+        let told = self.system.links[touch.link].told;
+        Impact {
+            state: RotorState {
+                time: self.since.value,
+                position: shared(told, &self.place),
+                velocity: shared(told, &self.speed),
+                spin: self.speed[4],
+                turns_in_contact: 0.0,
+            },
+            normal_speed: touch.closing,
+            normal_impulse: touch.impulse,
+            pulse: None,
+        }
+    }
+
+    fn count(&mut self) {
+        let (count, last) = self.busy;
+        let time = self.since.value;
+        let forgotten = MANY_IMPACTS * (time - last) / self.units.0;
+        self.busy = ((count - forgotten).max(0.0) + 1.0, time);
+    }
+
+    pub(super) fn cutoff(&self, link: usize) -> f64 {
+        let [x, y] = self.system.links[link].lateral(&self.speed);
+        let haste = (self.busy.0 / MANY_IMPACTS).floor().exp2();
+        haste * (CUTOFF * self.units.1 + FAST_CUTOFF * f64::hypot(x, y))
+    }
+}

@@ -1,0 +1,187 @@
+//! The course of events of a coupled system.
+
+mod landing;
+mod modes;
+
+pub use landing::CUTOFF;
+
+use super::mode::Mode;
+use super::step::{Ending, Step};
+use super::system::{Hold, Law, Link, SIZE, System};
+use crate::reference::scale::Sum;
+use std::f64::consts::TAU;
+use touchdown_base::history::Happening;
+
+/// A displacement within this of the wall is on it, in parts of the clearance.
+const ON_WALL: f64 = 64.0 * f64::EPSILON;
+/// Size of the last terms of a series, in parts of the coordinates' sizes.
+const ACCURACY: f64 = 1e-18;
+
+/// A system that moves.
+#[derive(Clone, Debug)]
+pub struct Motion<L> {
+    system: System,
+    law: L,
+    accuracy: f64,
+    /// Units of time and speed.
+    units: (f64, f64),
+    /// Start of the step, s.
+    since: Sum,
+    place: [f64; SIZE],
+    speed: [f64; SIZE],
+    modes: Vec<Mode>,
+    turns: Vec<f64>,
+    step: Step,
+    started: bool,
+    /// Length of the next forced step, in units of time.
+    forced: f64,
+    /// Impacts that are not forgotten, and the time of the last.
+    busy: (f64, f64),
+}
+
+/// A moment of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// s.
+    pub time: f64,
+    /// Coordinates.
+    pub place: [f64; SIZE],
+    /// Their rates.
+    pub speed: [f64; SIZE],
+    /// Of each link.
+    pub modes: Vec<Mode>,
+    /// Signed turns of each link round its wall since contact began; 0 in flight.
+    pub turns: Vec<f64>,
+    /// Of each link, N.
+    pub normal: Vec<f64>,
+}
+
+impl<L: Law> Motion<L> {
+    /// At the release. `units` are those of time and speed against which small is small.
+    pub fn new(
+        system: System,
+        law: L,
+        units: (f64, f64),
+        (place, speed): ([f64; SIZE], [f64; SIZE]),
+    ) -> Self {
+        let links = system.links.len();
+        let brake_or_flight = |link: &Link| match link.hold {
+            Hold::Wall { .. } => Mode::Flight,
+            Hold::Brake(_) if link.turning(&speed) == 0.0 => Mode::Stick,
+            Hold::Brake(_) => Mode::Slide(link.turning(&speed).signum()),
+        };
+        Self {
+            modes: system.links.iter().map(brake_or_flight).collect(),
+            step: Step::none(&place, &speed, links),
+            system,
+            law,
+            accuracy: ACCURACY,
+            units,
+            since: Sum::default(),
+            place,
+            speed,
+            turns: vec![0.0; links],
+            started: false,
+            forced: modes::FORCED_STEP,
+            busy: (0.0, 0.0),
+        }
+    }
+
+    /// Size of the last terms of a series instead of rounding: what convergence is shown with.
+    pub fn set_accuracy(&mut self, accuracy: f64) {
+        self.accuracy = accuracy;
+    }
+
+    /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
+    /// happening on the way in order, with the number of its wall.
+    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(usize, Happening)) -> Moment {
+        loop {
+            let elapsed = self.since.up_to(time).max(0.0);
+            let duration = self.step.end * self.step.span;
+            if self.started && (elapsed < duration || !time.is_finite()) {
+                return self.moment(time, elapsed / self.step.span);
+            }
+            self.since.add(duration);
+            self.pass(sink);
+        }
+    }
+
+    /// Number of walls; they are the first links.
+    pub fn walls(&self) -> usize {
+        let walls = self.system.links.iter();
+        walls.filter(|link| link.clearance().is_some()).count()
+    }
+
+    /// Kinetic and potential, J.
+    pub fn energy(&self, moment: &Moment) -> f64 {
+        self.system.kinetic(&moment.speed) + self.law.potential(&moment.place)
+    }
+
+    fn moment(&self, time: f64, part: f64) -> Moment {
+        let place = self.step.place(part);
+        let links = 0..self.modes.len();
+        let turned = |link| match self.modes[link] {
+            Mode::Flight => 0.0,
+            _ => self.turns[link] + self.turned(link, &place),
+        };
+        Moment {
+            time,
+            turns: links.clone().map(turned).collect(),
+            normal: links.map(|link| self.step.normal(link, part)).collect(),
+            place,
+            speed: self.step.speed(part),
+            modes: self.modes.clone(),
+        }
+    }
+
+    /// Turns of a link's displacement since the start of the step.
+    fn turned(&self, link: usize, place: &[f64; SIZE]) -> f64 {
+        let link = &self.system.links[link];
+        let ([a, b], [x, y]) = (link.lateral(&self.place), link.lateral(place));
+        (a * y - b * x).atan2(a * x + b * y) / TAU
+    }
+
+    fn pass(&mut self, sink: &mut impl FnMut(usize, Happening)) {
+        let before = self.modes.clone();
+        let place = self.step.place(self.step.end);
+        for link in 0..self.modes.len() {
+            self.turns[link] = match self.modes[link] {
+                Mode::Flight => 0.0,
+                _ => self.turns[link] + self.turned(link, &place),
+            };
+        }
+        self.speed = self.step.speed(self.step.end);
+        self.place = place;
+        match self.step.ending {
+            _ if !self.started => {
+                self.take_inside();
+                self.collide(None, sink);
+            }
+            Ending::Step => {}
+            Ending::Touch(link) => self.collide(Some(link), sink),
+            change => self.change(change),
+        }
+        self.started = true;
+        self.settle();
+        let time = self.since.value;
+        for (link, (was, is)) in before.into_iter().zip(&self.modes).enumerate() {
+            let wall = self.system.links[link].clearance().is_some();
+            let happening = match (was, *is) {
+                _ if !wall => continue,
+                (Mode::Flight, Mode::Slide(_)) => Happening::ContactStart {
+                    time,
+                    rolling: false,
+                },
+                (Mode::Flight, Mode::Stick) => Happening::ContactStart {
+                    time,
+                    rolling: true,
+                },
+                (Mode::Slide(_) | Mode::Stick, Mode::Flight) => Happening::LiftOff(time),
+                (Mode::Slide(_), Mode::Stick) => Happening::RollingStart(time),
+                (Mode::Stick, Mode::Slide(_)) => Happening::SlidingStart(time),
+                _ => continue,
+            };
+            sink(link, happening);
+        }
+    }
+}

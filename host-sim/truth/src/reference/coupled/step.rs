@@ -1,0 +1,183 @@
+//! A step of smooth motion: its Taylor series, and where it ends.
+
+use super::fall::{Fall, first_fall};
+use super::forces::Forces;
+use super::jet::{Jet, ORDER, dot};
+pub use super::mode::Mode;
+use super::system::{Hold, Law, SIZE, System};
+
+/// Rounding of what a contact's forces and slips are made of, relative.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// The same for the gap: once lifted off, a rotor must not land on the rounding of its lift-off.
+const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// How a step ends; the number is that of the link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending {
+    /// The series is no longer good.
+    Step,
+    /// A flight does.
+    Touch(usize),
+    /// The normal force does.
+    LiftOff(usize),
+    /// Slip does.
+    SlipEnds(usize),
+    /// Grip does; slip of this sign begins.
+    GripLost(usize, f64),
+}
+
+/// Motion from one moment on, series in parts of `span`.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Time that the series is good for, s.
+    pub span: f64,
+    /// Part of it until the ending.
+    pub end: f64,
+    /// How it ends.
+    pub ending: Ending,
+    place: [Jet; SIZE],
+    speed: [Jet; SIZE],
+    normal: Vec<Jet>,
+}
+
+impl Step {
+    /// Nothing moves, and it is over at once.
+    pub fn none(place: &[f64; SIZE], speed: &[f64; SIZE], links: usize) -> Self {
+        Self {
+            span: 1.0,
+            end: 0.0,
+            ending: Ending::Step,
+            place: place.map(Jet::constant),
+            speed: speed.map(Jet::constant),
+            normal: vec![Jet::ZERO; links],
+        }
+    }
+
+    /// Expands the motion; `accuracy` is the size of the last terms, `longest` the longest span.
+    pub fn new(
+        system: &System,
+        law: &impl Law,
+        modes: &[Mode],
+        (place, speed): (&[f64; SIZE], &[f64; SIZE]),
+        (accuracy, longest): (f64, f64),
+    ) -> Self {
+        let (mut place, mut speed) = (place.map(Jet::start), speed.map(Jet::start));
+        let mut forces = Forces::new(system, law, modes, &place, &speed);
+        for k in 1..=ORDER {
+            let part = 1.0 / k as f64;
+            for i in 0..SIZE {
+                let rate = speed[i].terms()[k - 1];
+                speed[i].push(part * forces.acceleration[i].terms()[k - 1]);
+                place[i].push(part * rate);
+            }
+            forces = Forces::new(system, law, modes, &place, &speed);
+        }
+        let reach = |(jet, size): (&Jet, &f64)| {
+            [ORDER - 1, ORDER]
+                .map(|k| (accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
+                .into_iter()
+                .fold(f64::INFINITY, f64::min)
+        };
+        let span = place
+            .iter()
+            .zip(&system.size)
+            .map(reach)
+            .fold(longest, f64::min);
+        let mut step = Self {
+            span,
+            end: 1.0,
+            ending: Ending::Step,
+            place: place.map(|jet| jet.scaled(span)),
+            speed: speed.map(|jet| jet.scaled(span)),
+            normal: forces.normal.iter().map(|jet| jet.scaled(span)).collect(),
+        };
+        let grip: Vec<Jet> = forces.grip.iter().map(|jet| jet.scaled(span)).collect();
+        for (link, mode) in modes.iter().enumerate() {
+            step.locate(system, link, *mode, &grip[link], forces.size);
+        }
+        step
+    }
+
+    /// Coordinates at a part of the span.
+    pub fn place(&self, part: f64) -> [f64; SIZE] {
+        self.place.map(|jet| jet.at(part))
+    }
+
+    /// Their rates.
+    pub fn speed(&self, part: f64) -> [f64; SIZE] {
+        self.speed.map(|jet| jet.at(part))
+    }
+
+    /// Normal force at a link, N.
+    pub fn normal(&self, link: usize, part: f64) -> f64 {
+        self.normal[link].at(part)
+    }
+
+    fn locate(&mut self, system: &System, index: usize, mode: Mode, grip: &Jet, size: f64) {
+        let link = &system.links[index];
+        let start = self.speed(0.0);
+        let push = size * self.span * (system.lateral(index, index) + system.turning(index, index));
+        let slip_rounding = ROUNDING * (link.slip_size(&start) + push);
+        match (mode, link.hold) {
+            (Mode::Flight, Hold::Wall { clearance, .. }) => {
+                let unit = 1.0 / clearance;
+                let q = link.lateral(&self.place).map(|q| q * unit);
+                let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
+                let [x, y] = link.lateral(&start);
+                let way = unit * f64::hypot(x, y) * self.span;
+                let sizes = [1.0, way, way * way + unit * push * self.span];
+                let tolerances = sizes.map(|size| GAP_ROUNDING * size);
+                self.earlier(&gap, tolerances, Ending::Touch(index));
+            }
+            (Mode::Flight, Hold::Brake(_)) => {}
+            (_, Hold::Wall { friction, .. }) => {
+                let normal = self.normal[index];
+                self.earlier(&normal, [ROUNDING * size; 3], Ending::LiftOff(index));
+                if mode == Mode::Stick {
+                    let most = normal * friction;
+                    self.hold(index, &most, grip, ROUNDING * size * (1.0 + friction));
+                }
+            }
+            (_, Hold::Brake(limit)) => {
+                if mode == Mode::Stick {
+                    self.hold(
+                        index,
+                        &Jet::constant(limit),
+                        grip,
+                        ROUNDING * (size + limit),
+                    );
+                }
+            }
+        }
+        if let Mode::Slide(sign) = mode
+            && sign != 0.0
+        {
+            let q = link.lateral(&self.place);
+            let w = link.lateral(&self.speed);
+            let along = match link.clearance() {
+                Some(clearance) => (q[0] * w[1] - q[1] * w[0]) * (1.0 / clearance),
+                None => Jet::ZERO,
+            };
+            let slip = (along + link.turning(&self.speed)) * sign;
+            self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
+        }
+    }
+
+    fn hold(&mut self, link: usize, most: &Jet, grip: &Jet, rounding: f64) {
+        for sign in [-1.0, 1.0] {
+            let left = *most + *grip * sign;
+            self.earlier(&left, [rounding; 3], Ending::GripLost(link, sign));
+        }
+    }
+
+    fn earlier(&mut self, falls: &Jet, tolerances: [f64; 3], ending: Ending) {
+        let (end, ending) = match first_fall(falls.terms(), tolerances) {
+            Fall::Never => return,
+            Fall::At(end) => (end, ending),
+            Fall::After(end) => (end, Ending::Step),
+        };
+        if end < self.end {
+            (self.end, self.ending) = (end, ending);
+        }
+    }
+}

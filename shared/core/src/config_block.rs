@@ -1,0 +1,167 @@
+//! The configuration as it is stored: a block with version, length and checksum.
+//!
+//! [`MAGIC`], whose last byte is the version; the length of the body (u16, little-endian); the body
+//! ([`Settings`] in postcard); the CRC-32 of all that (u32, little-endian).
+
+use core::fmt;
+
+use crc::Digest;
+use heapless::Vec;
+
+use crate::checksum::CRC;
+use crate::monitor::{Monitor, MonitorConfig};
+use touchdown_rotor::error::ConfigError;
+
+/// First bytes of a block; the last is the version.
+pub const MAGIC: [u8; 4] = *b"TDC\x02";
+/// Most bytes of a block.
+pub const BLOCK_BYTES: usize = 384;
+const HEAD: usize = MAGIC.len() + 2;
+const TAIL: usize = 4;
+
+/// A block.
+pub type Block = Vec<u8, BLOCK_BYTES>;
+
+/// All that the controller is told.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Settings {
+    /// The monitor.
+    pub monitor: MonitorConfig,
+    /// What else is wired.
+    pub wiring: Wiring,
+}
+
+/// What is wired besides the position sensors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Wiring {
+    /// Pulses of the speed input in a turn of the rotor, 1 or more; `None` where it is not wired. The
+    /// way of turning is that of the machine's nominal spin.
+    pub pulses_per_turn: Option<u16>,
+    /// Whether the input "levitation on" is wired.
+    pub levitation: bool,
+}
+
+/// Why bytes are not a valid configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BlockError {
+    /// Nothing was ever stored.
+    Blank,
+    /// Another magic or version.
+    Version,
+    /// Shorter than its length says, or longer than a block can be.
+    Length,
+    /// The checksum is wrong.
+    Checksum,
+    /// The body is none of this version.
+    Body,
+    /// A parameter breaks its rule.
+    Refused(ConfigError),
+}
+
+impl fmt::Display for BlockError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Blank => f.write_str("nothing is stored"),
+            Self::Version => f.write_str("not a configuration of this version"),
+            Self::Length => f.write_str("the length is wrong"),
+            Self::Checksum => f.write_str("the checksum is wrong"),
+            Self::Body => f.write_str("the body is none of this version"),
+            Self::Refused(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for BlockError {}
+
+/// Settings to block.
+pub fn encode(settings: &Settings) -> Block {
+    let mut bytes = [0; BLOCK_BYTES - HEAD - TAIL];
+    // Far from full: a test holds the size.
+    let body = postcard::to_slice(settings, &mut bytes).map_or(&[][..], |body| &*body);
+    let mut block = Block::new();
+    let length = (body.len() as u16).to_le_bytes();
+    for part in [&MAGIC[..], &length, body] {
+        let _ = block.extend_from_slice(part);
+    }
+    let checksum = CRC.checksum(&block);
+    let _ = block.extend_from_slice(&checksum.to_le_bytes());
+    block
+}
+
+/// The block at the start of `bytes`, and its settings, checked.
+pub fn decode(bytes: &[u8]) -> Result<(&[u8], Settings), BlockError> {
+    if bytes.iter().take(HEAD).all(|&byte| byte == 0xff) {
+        return Err(BlockError::Blank);
+    }
+    let rest = bytes.strip_prefix(&MAGIC).ok_or(BlockError::Version)?;
+    let (length, _) = rest.split_first_chunk().ok_or(BlockError::Length)?;
+    let end = HEAD + usize::from(u16::from_le_bytes(*length)) + TAIL;
+    if end > BLOCK_BYTES {
+        return Err(BlockError::Length);
+    }
+    let block = bytes.get(..end).ok_or(BlockError::Length)?;
+    let (checked, checksum) = block.split_last_chunk().ok_or(BlockError::Length)?;
+    if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
+        return Err(BlockError::Checksum);
+    }
+    let body = checked.get(HEAD..).ok_or(BlockError::Length)?;
+    let (settings, left) =
+        postcard::take_from_bytes::<Settings>(body).map_err(|_| BlockError::Body)?;
+    if !left.is_empty() {
+        return Err(BlockError::Body);
+    }
+    settings.validate().map_err(BlockError::Refused)?;
+    Ok((block, settings))
+}
+
+impl Settings {
+    /// Names the first parameter that breaks its rule.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        if self.wiring.pulses_per_turn == Some(0) {
+            return Err(ConfigError::OutOfRange("pulses_per_turn", "1 or more"));
+        }
+        Monitor::try_new(&self.monitor).map(|_| ())
+    }
+}
+
+/// Bytes that one call of [`Patrol::step`] takes in.
+pub const SLICE_BYTES: usize = 4;
+
+/// Checks a block over and over, a slice a tick.
+#[derive(Clone)]
+pub struct Patrol {
+    at: usize,
+    digest: Digest<'static, u32>,
+}
+
+impl Default for Patrol {
+    fn default() -> Self {
+        Self {
+            at: 0,
+            digest: CRC.digest(),
+        }
+    }
+}
+
+impl Patrol {
+    /// Takes in the next slice; at the end of a pass, whether the block still is what it was.
+    pub fn step(&mut self, block: &[u8]) -> Option<bool> {
+        let Some((checked, checksum)) = block.split_last_chunk() else {
+            return Some(false);
+        };
+        let left = checked.get(self.at..).unwrap_or(&[]);
+        let slice = left.get(..SLICE_BYTES).unwrap_or(left);
+        self.digest.update(slice);
+        self.at += slice.len();
+        if self.at < checked.len() {
+            return None;
+        }
+        let digest = core::mem::take(self).digest;
+        Some(digest.finalize() == u32::from_le_bytes(*checksum))
+    }
+
+    /// Most steps until a change of a block of `length` bytes is found: one pass may just have gone by.
+    pub const fn steps(length: usize) -> usize {
+        2 * length.div_ceil(SLICE_BYTES)
+    }
+}

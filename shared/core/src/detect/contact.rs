@@ -1,0 +1,374 @@
+//! On the wall: slides or rolls, swings, whirls, rests, lifts off.
+
+use core::f32::consts::TAU;
+
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::estimate::Place;
+use crate::detect::fix::Fix;
+use crate::detect::lift_off::LiftOff;
+use crate::detect::signals::{Retainer, Signals};
+use crate::detect::slip::{Kind, Slip, Verdict};
+use crate::detect::still::Still;
+use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+use crate::vector::direction;
+use touchdown_rotor::real::sqrt;
+
+/// Slip, m/s, that a speed sensor resolves.
+const SLIP_RESOLUTION: f32 = 0.02;
+/// Standard deviations of the velocity along the wall that bound its error.
+const SURE: f32 = 3.0;
+/// Way back from the last turning point, in standard deviations of the position, that makes a swing.
+const CLEAR_SWING: f32 = 8.0;
+
+/// Angle in a sample, rad, from which on a whirl is not followed well enough to tell whether it slides or rolls.
+const TOO_FAST: f32 = 0.3;
+/// Cosine of the angle from the bottom up to which a rotor that goes back swings: near the sides
+/// one that has left the wall comes back as well.
+const SWINGS: f32 = 0.3;
+/// That of a turning point where the wall may not have pressed, and up to which it is then waited: the rotor may have left
+/// the wall there by less than the sensors show, and comes back to it lower.
+const ASIDE: f32 = 0.1;
+const BACK: f32 = 0.9;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactTest {
+    filter: WallFilter,
+    machine: MachineConfig,
+    period: f32,
+    threshold: f32,
+    still_samples: u32,
+}
+
+/// What the contact is known to have become.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Regime {
+    #[default]
+    Unknown,
+    Rest,
+    Pendulum,
+    ForwardWhirl,
+    BackwardWhirl,
+}
+
+/// A contact under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Touching {
+    /// Angle and rate.
+    pub(crate) track: WallTrack,
+    lift: LiftOff,
+    still: Still,
+    /// Sliding or rolling, once known.
+    pub(crate) kind: Option<Kind>,
+    regime: Regime,
+    /// Samples since the contact began.
+    age: u32,
+    /// Farthest angle turned in the present direction, rad, samples since, and the direction.
+    turning: Turning,
+    /// Slip that friction cannot have used up yet, m/s.
+    slip_left: f32,
+    slow: u32,
+    /// Slip against an inner ring that turns, where measured.
+    pub(crate) slip: Option<Slip>,
+    verdict: Verdict,
+    /// Whether it has been too fast to tell sliding from rolling.
+    too_fast: bool,
+}
+
+/// The last turning point of a swing.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turning {
+    angle: f32,
+    age: u32,
+    direction: f32,
+    /// Cosine of its angle from the bottom.
+    cos: f32,
+}
+
+impl Turning {
+    /// Follows the angle turned (rad) and the cosine of that from the bottom; true where it has come back by `clear`
+    /// from a turning point.
+    fn take(&mut self, angle: f32, cos: f32, clear: f32) -> bool {
+        self.age = self.age.saturating_add(1);
+        if self.direction == 0.0 {
+            if (angle - self.angle).abs() > clear {
+                self.direction = angle - self.angle;
+                self.angle = angle;
+                self.age = 0;
+            }
+            return false;
+        }
+        if (angle - self.angle) * self.direction >= 0.0 {
+            self.angle = angle;
+            self.cos = cos;
+            self.age = 0;
+            return false;
+        }
+        (angle - self.angle).abs() > clear
+    }
+}
+
+/// What a sample showed. Ages in samples.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Finding {
+    Kind(Kind, f32),
+    Regime(Regime, f32),
+    LiftOff(f32),
+}
+
+/// What a tick can find in a contact: kind and regime are told apart.
+pub(crate) type Findings = [Option<Finding>; 2];
+
+impl ContactTest {
+    pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
+        Self {
+            filter: WallFilter::new(&config.machine, &config.tuning, config.sample_rate),
+            machine: config.machine,
+            period: 1.0 / config.sample_rate,
+            threshold,
+            still_samples: (config.tuning.still_time * config.sample_rate).max(16.0) as u32,
+        }
+    }
+
+    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`; `slip_left` is
+    /// the slip (m/s) that is certainly left.
+    pub(crate) fn start(
+        &self,
+        fix: &Fix,
+        velocity: [f32; 2],
+        spread: f32,
+        age: f32,
+        slip_left: f32,
+    ) -> Touching {
+        let (outward, _) = direction(fix.position);
+        let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
+        Touching {
+            track: self.filter.start(outward, speed, spread),
+            age: age as u32,
+            slip_left,
+            ..Touching::default()
+        }
+    }
+
+    /// Takes the next sample, or its absence.
+    pub(crate) fn take(
+        &self,
+        state: &mut Touching,
+        fix: Option<&Fix>,
+        signals: &Signals,
+    ) -> Findings {
+        state.age = state.age.saturating_add(1);
+        let spin = signals.spin;
+        let rate = state.swing().rate;
+        state.too_fast |= rate.abs() * self.period > TOO_FAST;
+        let surface = self.machine.rotor_radius * spin.unwrap_or(self.machine.spin);
+        let mut slip = surface + rate * self.machine.clearance;
+        state.slip = None;
+        if let Retainer::Turning(Some(bore)) = signals.retainer {
+            slip -= bore.speed;
+            let spread = SURE * self.machine.clearance * state.track.rate_spread();
+            state.slip = Some(Slip {
+                speed: slip,
+                error: bore.error + spread,
+            });
+        }
+        let sample = fix.map(|fix| (fix.position, fix.variance));
+        self.filter.take(&mut state.track, sample, slip);
+        if let Some(age) = fix.and_then(|fix| self.lift_off(state, fix)) {
+            return [Some(Finding::LiftOff(age)), None];
+        }
+        let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
+        let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
+        let on_wall = fix.filter(|_| state.lift.is_at_wall());
+        let regime = on_wall.and_then(|fix| self.regime(state, fix, surface, slip));
+        [kind, regime]
+    }
+
+    fn lift_off(&self, state: &mut Touching, fix: &Fix) -> Option<f32> {
+        let (_, radius) = direction(fix.position);
+        state.lift.take(radius, fix.variance, self.threshold)
+    }
+
+    /// `slip` as against a wall that does not turn, m/s, where measured.
+    fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
+        let swing = state.swing();
+        let pressing = self.pressing(swing);
+        let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
+        let taken = per_impulse * pressing.max(0.0) * self.period;
+        state.slip_left -= taken;
+        let (found, age) = match slip {
+            _ if state.slip.is_some() => self.by_slip(state, taken),
+            Some(slip) if slip.abs() > SLIP_RESOLUTION => {
+                state.slow = 0;
+                (Some(Kind::Sliding), 0.0)
+            }
+            Some(_) => {
+                state.slow = state.slow.saturating_add(1);
+                let long = state.slow > self.still_samples / 10;
+                // Friction had to take the rest off first.
+                let age = state.slow as f32 - SLIP_RESOLUTION / taken;
+                (long.then_some(Kind::Rolling), age.max(0.0))
+            }
+            None if state.slip_left > 0.0 => (Some(Kind::Sliding), 0.0),
+            None if state.too_fast && state.kind.is_some() => (None, 0.0),
+            None => self.by_likelihood(state),
+        };
+        let found = found.filter(|kind| state.kind != Some(*kind))?;
+        // The first verdict dates from the start of the contact.
+        let age = if state.kind.is_none() {
+            state.age as f32
+        } else {
+            age
+        };
+        state.kind = Some(found);
+        state.track.for_rolling = Evidence::default();
+        state.track.for_sliding = Evidence::default();
+        Some(Finding::Kind(found, age))
+    }
+
+    /// Acceleration with which the wall presses, m/s^2.
+    fn pressing(&self, swing: &Swing) -> f32 {
+        self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
+    }
+
+    fn by_slip(&self, state: &mut Touching, taken: f32) -> (Option<Kind>, f32) {
+        let slip = state.slip.as_ref();
+        match slip.and_then(|slip| state.verdict.take(slip, taken, SLIP_RESOLUTION)) {
+            Some((kind, age)) => (Some(kind), age),
+            // Without friction or pressing there is no time to wait for.
+            None if state.kind.is_none() && state.age > self.still_samples => {
+                (Some(Kind::Rolling), 0.0)
+            }
+            None => (None, 0.0),
+        }
+    }
+
+    fn by_likelihood(&self, state: &Touching) -> (Option<Kind>, f32) {
+        let rolling = &state.track.for_rolling;
+        let sliding = &state.track.for_sliding;
+        // Where nothing moves enough to tell, and no slip is certain, there is none.
+        let settle = state.kind.is_none() && state.age > self.still_samples;
+        if rolling.sum > self.threshold {
+            (Some(Kind::Rolling), rolling.age as f32)
+        } else if sliding.sum > self.threshold {
+            (Some(Kind::Sliding), sliding.age as f32)
+        } else if settle {
+            (Some(Kind::Rolling), 0.0)
+        } else {
+            (None, 0.0)
+        }
+    }
+
+    /// Whether it is bound to go round: it has the energy to pass the top with the wall still pressing. Friction
+    /// that drives it only adds to that, and rolling takes less, so no more need be known than the way of the slip.
+    fn goes_round(&self, state: &Touching, slip: f32) -> bool {
+        let swing = state.swing();
+        let rate = swing.rate.abs() - SURE * state.track.rate_spread();
+        let over_the_top = self.machine.gravity / self.machine.clearance * (3.0 + 2.0 * swing.cos);
+        rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
+    }
+
+    fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32, slip: f32) -> Option<Finding> {
+        let swing = *state.swing();
+        let block = state.still.take(fix.position, self.still_samples);
+        let clear = CLEAR_SWING * sqrt(fix.variance) / self.machine.clearance;
+        let turned_back = state.turning.take(swing.turned, swing.cos, clear);
+        let lowest = if state.turning.cos < ASIDE {
+            BACK
+        } else {
+            SWINGS
+        };
+        let has_turned = swing.turned.abs() >= TAU;
+        let (found, age) = if has_turned || self.goes_round(state, slip) {
+            let way = if has_turned { swing.turned } else { swing.rate };
+            let with_spin = way * surface >= 0.0;
+            let whirl = if with_spin {
+                Regime::ForwardWhirl
+            } else {
+                Regime::BackwardWhirl
+            };
+            (whirl, state.age as f32)
+        } else if turned_back && swing.cos >= lowest {
+            (Regime::Pendulum, state.turning.age as f32)
+        } else if block
+            .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)
+        {
+            (Regime::Rest, self.still_samples as f32)
+        } else {
+            return None;
+        };
+        if found == state.regime {
+            return None;
+        }
+        state.regime = found;
+        Some(Finding::Regime(found, age))
+    }
+}
+
+impl Touching {
+    /// Radius at which the wall seems to be, m.
+    pub(crate) fn wall(&self) -> f32 {
+        self.lift.wall
+    }
+
+    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
+    pub(crate) fn wavering(&self) -> Option<f32> {
+        self.lift.wavering()
+    }
+
+    /// As it goes on at one end of the rotor alone, where the wall seems to be `shift` (m) farther.
+    pub(crate) fn at_one_end(&self, shift: f32) -> Self {
+        Self {
+            lift: self.lift.at_one_end(shift),
+            ..*self
+        }
+    }
+
+    /// As that of one end goes on for both: where the wall is must be learnt anew.
+    pub(crate) fn of_both(&self) -> Self {
+        Self {
+            lift: LiftOff::default(),
+            ..*self
+        }
+    }
+
+    /// Unit vector from the centre to the contact.
+    pub(crate) fn outward(&self) -> [f32; 2] {
+        let swing = self.swing();
+        [swing.sin, -swing.cos]
+    }
+
+    /// Where the rotor is for a forecast, at `speed` along the wall (m/s) and samples of `period` (s).
+    pub(crate) fn place(&self, speed: f32, period: f32) -> Place {
+        Place::Wall {
+            outward: self.outward(),
+            speed,
+            age: self.age as f32 * period,
+            turned: self.swing().turned,
+        }
+    }
+
+    /// Samples since it began.
+    pub(crate) fn age(&self) -> u32 {
+        self.age
+    }
+
+    /// Whether it is known to go round.
+    pub(crate) fn whirls(&self) -> bool {
+        matches!(self.regime, Regime::ForwardWhirl | Regime::BackwardWhirl)
+    }
+
+    /// Distance from the wall, m, while it may be lifting off.
+    pub(crate) fn lifting(&self) -> Option<f32> {
+        (!self.lift.is_at_wall()).then_some(self.lift.gap)
+    }
+
+    /// The estimate of the likelier hypothesis.
+    pub(crate) fn swing(&self) -> &Swing {
+        if self.kind == Some(Kind::Rolling) {
+            &self.track.roll
+        } else {
+            &self.track.slide
+        }
+    }
+}

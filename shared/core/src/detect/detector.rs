@@ -1,0 +1,490 @@
+//! The detector: learns while the rotor floats, finds the release, and follows from there on the rotor
+//! as a whole or, where they move apart, its ends.
+
+#[cfg(feature = "serde")]
+mod learnt;
+
+#[cfg(feature = "serde")]
+pub(crate) use self::learnt::Afloat;
+use crate::config::DetectorConfig;
+use crate::detect::contact::Touching;
+use crate::detect::ends::{Ends, EndsTest};
+use crate::detect::estimate::Estimate;
+use crate::detect::fix::Fix;
+use crate::detect::flight::{FlightTest, Listener};
+use crate::detect::ladder::{Fall, Ladder, Rungs};
+use crate::detect::levitation::{Learning, Levitation};
+use crate::detect::noise::Noise;
+use crate::detect::orbit::{OrbitState, Orbiting};
+use crate::detect::release::{Release, ReleaseBank};
+use crate::detect::signals::Signals;
+use crate::detect::slip::Slip;
+use crate::detect::strain::Strain;
+use crate::detect::teller::{Pending, Teller};
+use crate::event::{EventKind, Moment, Motion, Notices, Plane};
+use crate::phase::Phase;
+use crate::sensing::{PLANES, Reading};
+use crate::vector::{direction, square, sum};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::ln;
+
+/// Standard deviations by which a rotor has moved for certain.
+const MOVED: f32 = 8.0;
+/// Angle beyond that of friction, rad, up to which a rotor at the wall may lie there still.
+const RESTING_ANGLE: f32 = 0.1;
+/// Times the mean square of their wavering that sensors may be off on the wall, where that is less than while it floated.
+const WAVERING: f32 = 2.0;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Detector {
+    config: DetectorConfig,
+    resolution: f32,
+    learning: Learning,
+    orbiting: Orbiting,
+    release: Release,
+    /// Of the floating rotor.
+    flight: FlightTest,
+    ladder: Ladder,
+    ends: EndsTest,
+    start_samples: u32,
+}
+
+/// What the detector carries from sample to sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DetectorState {
+    sample: u64,
+    next_number: u16,
+    noise: Noise,
+    levitation: Levitation,
+    orbit: OrbitState,
+    release: ReleaseBank,
+    listener: Listener,
+    pending: Option<Pending>,
+    /// The rotor as a whole.
+    rotor: Rungs,
+    ends: Ends,
+    /// First position, m, and whether the rotor has been at the wall since.
+    origin: Option<[f32; 2]>,
+    off_wall: bool,
+}
+
+impl Detector {
+    /// Checks `config`; `resolution` is the displacement of one count, m.
+    pub fn try_new(config: &DetectorConfig, resolution: f32) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let rate = config.sample_rate;
+        let tuning = &config.tuning;
+        let threshold = -ln(tuning.false_alarm);
+        Ok(Self {
+            config: *config,
+            resolution,
+            learning: Learning::new(tuning, rate),
+            orbiting: Orbiting::new(tuning.arming_time, rate),
+            release: Release::new(tuning, rate, config.machine.gravity, threshold),
+            flight: FlightTest::new(config, threshold),
+            ladder: Ladder::new(config, threshold),
+            ends: EndsTest::new(config, threshold),
+            start_samples: ((0.2 * tuning.still_time * rate).max(1.0) as u32).max(64),
+        })
+    }
+
+    /// One tick. Bounded; cannot fail.
+    pub fn update(
+        &self,
+        state: &mut DetectorState,
+        reading: &Reading,
+        signals: &Signals,
+        notices: &mut Notices,
+    ) {
+        let sample = state.sample;
+        state.sample += 1;
+        let mut next_number = state.next_number;
+        let mut teller = Teller {
+            sample,
+            plane: match reading.planes {
+                [Some(_), None] => Plane::A,
+                [None, Some(_)] => Plane::B,
+                _ => Plane::Both,
+            },
+            motion: Motion::Cylindrical,
+            next_number: &mut next_number,
+            notices,
+        };
+        for (channel, found) in (0..).zip(reading.found) {
+            if let Some(found) = found {
+                teller.tell_fault(channel, found);
+            }
+        }
+        if reading.moved != [0.0; 2] {
+            state.shift(reading.moved);
+        }
+        self.orbiting.advance(&mut state.orbit, signals.spin);
+        let fix = reading.mean().map(|(position, planes)| {
+            state.noise.take(position, planes);
+            Fix {
+                now: Moment::of_sample(sample),
+                position,
+                variance: state.noise.variance(planes, self.resolution),
+            }
+        });
+        if fix.is_none() {
+            state.noise.skip();
+        }
+        let known = state.noise.is_known();
+        let fix = fix.filter(|_| known);
+        match reading.planes {
+            [Some(a), Some(b)] if known => {
+                let floats = state.rotor.phase == Phase::Levitated;
+                let variance = state.noise.variance(1, self.resolution);
+                self.ends.take(&mut state.ends, a, b, variance, floats);
+                teller.motion = state.ends.motion();
+            }
+            _ => state.ends.lose_sight(),
+        }
+        if state.ends.are_alone() {
+            self.apart(state, reading, signals, &mut teller);
+        } else {
+            self.together(state, fix.as_ref(), signals, &mut teller);
+            if state.ends.have_parted() {
+                self.part(state, reading, &mut teller);
+            }
+        }
+        state.next_number = next_number;
+    }
+
+    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
+    /// move as one.
+    pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
+        if state.ends.are_alone() {
+            return None;
+        }
+        let at = Moment::of_sample(state.sample.saturating_sub(1));
+        self.ladder.estimate(&state.rotor, at, spin)
+    }
+
+    /// What the rotor goes through; of ends that are apart the one that is worse off.
+    pub(crate) fn strain(&self, state: &DetectorState) -> Strain {
+        let of = |rungs: &Rungs| self.ladder.strain(rungs);
+        match state.ends.alone() {
+            [a, b] => of(a).worse(&of(b)),
+            _ => of(&state.rotor),
+        }
+    }
+
+    /// Each end's position, where seen.
+    fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Fix>; PLANES] {
+        let fix = |position| Fix {
+            now: Moment::of_sample(state.sample.saturating_sub(1)),
+            position,
+            variance: state.noise.variance(1, self.resolution),
+        };
+        reading.planes.map(|position| position.map(fix))
+    }
+
+    /// The rotor as a whole.
+    fn together(
+        &self,
+        state: &mut DetectorState,
+        fix: Option<&Fix>,
+        signals: &Signals,
+        teller: &mut Teller,
+    ) {
+        match (state.rotor.phase, fix) {
+            (Phase::Starting, Some(fix)) => self.starting(state, fix),
+            (Phase::Levitated, Some(fix)) => self.levitated(state, fix, signals, teller),
+            (Phase::FreeFall | Phase::Impact, Some(fix)) => {
+                self.airborne(state, fix, signals, teller);
+            }
+            (Phase::Sliding | Phase::Rolling, fix) => self.touching(state, fix, signals, teller),
+            (Phase::FreeFall | Phase::Impact, None) => self.ladder.skip(&mut state.rotor),
+            (Phase::Starting | Phase::Levitated, None) => {}
+        }
+    }
+
+    /// Switched on: floats, or lies on the wall already. What moves along the wall is in contact; what
+    /// keeps still there is, if it could lie there.
+    fn starting(&self, state: &mut DetectorState, fix: &Fix) {
+        let (outward, radius) = direction(fix.position);
+        let machine = &self.config.machine;
+        state.off_wall |= radius < self.ladder.near;
+        self.learning.take(&mut state.levitation, fix.position);
+        let origin = *state.origin.get_or_insert(fix.position);
+        let moved = square(fix.position, origin) > MOVED * MOVED * fix.variance;
+        let since_start = state.sample.saturating_sub(1) as f32;
+        if state.off_wall {
+            state.rotor.phase = Phase::Levitated;
+        } else if moved {
+            self.ladder.lie(&mut state.rotor, fix, since_start);
+        } else if state.sample >= u64::from(self.start_samples) {
+            let lies = outward[0].abs() <= -outward[1] * (machine.friction + RESTING_ANGLE);
+            if lies || machine.gravity == 0.0 {
+                self.ladder.lie(&mut state.rotor, fix, since_start);
+            } else {
+                state.rotor.phase = Phase::Levitated;
+            }
+        }
+    }
+
+    fn levitated(
+        &self,
+        state: &mut DetectorState,
+        fix: &Fix,
+        signals: &Signals,
+        teller: &mut Teller,
+    ) {
+        self.learning.take(&mut state.levitation, fix.position);
+        if state.levitation.is_fresh() {
+            // It still moved: what the tests learnt of it goes as well.
+            state.listener.forget();
+            state.release.forget();
+            state.orbit.forget();
+        }
+        let floats = (state.levitation.mean, state.levitation.variance);
+        let residual = self
+            .orbiting
+            .take(&mut state.orbit, fix.position, floats, fix.variance);
+        if residual.first {
+            state.release.restart();
+        }
+        let is_known = self.learning.has_position(&state.levitation)
+            && (state.levitation.is_armed() || state.orbit.is_fitted(&self.orbiting));
+        let released = is_known
+            .then(|| {
+                self.release
+                    .take(&mut state.release, residual.way, residual.variance)
+            })
+            .flatten();
+        if !state.levitation.is_armed() && is_known {
+            let [x, y] = state.orbit.ending();
+            let position = [fix.position[0] - x, fix.position[1] - y];
+            self.flight
+                .listen(&mut state.listener, &Fix { position, ..*fix });
+        }
+        let loudness = state.listener.loudness();
+        if !state.levitation.is_armed() {
+            // Fell before anything was learnt: the wall shows it.
+            let (_, radius) = direction(fix.position);
+            if state.off_wall && radius >= self.ladder.near {
+                self.ladder.fly(&mut state.rotor, fix, None, loudness);
+            }
+            return;
+        }
+        let Some(age) = released else {
+            return;
+        };
+        self.ladder.fly(&mut state.rotor, fix, None, loudness);
+        let number = teller.tell(EventKind::FreeFall, age, 0.0);
+        state.pending = Some(Pending::new(number, fix.now.later(-age)));
+        if signals.levitated == Some(false) {
+            teller.close(&mut state.pending, true);
+        }
+    }
+
+    fn airborne(
+        &self,
+        state: &mut DetectorState,
+        fix: &Fix,
+        signals: &Signals,
+        teller: &mut Teller,
+    ) {
+        let (rotor, pending) = (&mut state.rotor, &mut state.pending);
+        let home = state.levitation.mean;
+        self.ladder.land(rotor, fix, home, signals, pending, teller);
+        if rotor.phase.is_contact() {
+            return;
+        }
+        let fall = pending
+            .as_mut()
+            .map(|pending| self.ladder.fall(rotor, fix, &state.levitation, pending));
+        match fall {
+            Some(Fall::Certain) => teller.close(pending, true),
+            Some(Fall::Caught) => {
+                teller.close(pending, false);
+                state.release.restart();
+                rotor.phase = Phase::Levitated;
+            }
+            Some(Fall::Open) | None => {}
+        }
+        if self.ladder.floats(rotor, fix) {
+            self.learn_again(state, teller);
+            self.ladder.tell_levitated(teller);
+        }
+    }
+
+    /// Floats again: withdraws what is open.
+    fn learn_again(&self, state: &mut DetectorState, teller: &mut Teller) {
+        teller.close(&mut state.pending, false);
+        state.rotor.phase = Phase::Levitated;
+        state.levitation = Levitation::default();
+        state.listener.forget();
+        state.release.forget();
+        state.orbit.forget();
+        state.ends.forget();
+    }
+
+    fn touching(
+        &self,
+        state: &mut DetectorState,
+        fix: Option<&Fix>,
+        signals: &Signals,
+        teller: &mut Teller,
+    ) {
+        // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
+        let learnt = state.levitation.learnt_variance();
+        let wavering = state.rotor.contact.wavering();
+        let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
+        let fix = fix.map(|fix| Fix {
+            variance: fix.variance.max(shown),
+            ..*fix
+        });
+        let loudness = state.listener.loudness();
+        let ends = &mut state.ends;
+        let whose = |contact: &Touching| ends.lifting(contact);
+        let (rotor, fix) = (&mut state.rotor, fix.as_ref());
+        if !self
+            .ladder
+            .touching(rotor, fix, signals, loudness, whose, teller)
+        {
+            state.ends.lift_one();
+        }
+    }
+
+    /// Gives each end a ladder of its own where they have moved apart.
+    fn part(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
+        let [Some(a), Some(b)] = self.fixes(state, reading) else {
+            return;
+        };
+        let ends = [&a, &b];
+        let loudness = state.listener.loudness();
+        match state.rotor.phase {
+            Phase::Starting => return,
+            Phase::Levitated => {
+                // The mean of both need not move when the rotor only tilts.
+                let (homes, variance) = state.ends.homes(&state.levitation);
+                let [home_a, home_b] = homes;
+                let far = [(a, home_a), (b, home_b)].map(|(fix, home)| {
+                    let position = fix.position;
+                    self.ladder.is_far(position, home) && Ends::is_off(position, home, variance)
+                });
+                if far == [false; PLANES] || !state.levitation.is_armed() {
+                    return;
+                }
+                let number = teller.tell_of(far, EventKind::FreeFall);
+                state.pending = Some(Pending::new(number, ends[0].now));
+                teller.close(&mut state.pending, true);
+                self.ladder.fly(&mut state.rotor, ends[0], None, loudness);
+            }
+            _ => {}
+        }
+        self.ends
+            .part(&mut state.ends, &state.rotor, ends, loudness);
+    }
+
+    /// Each end for itself, until they move as one again.
+    fn apart(
+        &self,
+        state: &mut DetectorState,
+        reading: &Reading,
+        signals: &Signals,
+        teller: &mut Teller,
+    ) {
+        let fixes = &self.fixes(state, reading);
+        let (ends, pending) = (&mut state.ends, &mut state.pending);
+        let floating = (&state.levitation, state.listener.loudness());
+        let is_caught = self
+            .ends
+            .step(ends, fixes, signals, floating, pending, teller);
+        if is_caught {
+            teller.close(pending, false);
+            ends.unite();
+            state.release.restart();
+            state.rotor.phase = Phase::Levitated;
+            return;
+        }
+        if let Some(joined) = self.ends.join(ends, fixes) {
+            state.rotor = *joined;
+            if state.rotor.phase == Phase::Levitated {
+                self.learn_again(state, teller);
+            }
+        }
+    }
+}
+
+impl DetectorState {
+    /// The mean over the planes has moved by `way` (m), the rotor has not.
+    fn shift(&mut self, way: [f32; 2]) {
+        self.levitation.shift(way);
+        self.orbit.shift(way);
+        self.listener.shift(way);
+        if let Some(origin) = &mut self.origin {
+            *origin = sum(*origin, way);
+        }
+        if !self.ends.are_alone() {
+            let outward = self.rotor.contact.outward();
+            let farther = way[0] * outward[0] + way[1] * outward[1];
+            let track = &mut self.rotor.flight.track;
+            track.position = sum(track.position, way);
+            self.rotor.contact = self.rotor.contact.at_one_end(farther);
+        }
+    }
+
+    /// The present phase; of ends that are apart the one that is further on.
+    pub fn phase(&self) -> Phase {
+        let [a, b] = self.phases();
+        a.max(b)
+    }
+
+    /// The present phase of each end.
+    pub fn phases(&self) -> [Phase; PLANES] {
+        self.ends.phases().unwrap_or([self.rotor.phase; PLANES])
+    }
+
+    /// How the rotor moves.
+    pub fn motion(&self) -> Motion {
+        self.ends.motion()
+    }
+
+    /// Slip in contact, where it is measured against an inner ring that turns.
+    pub fn slip(&self) -> Option<Slip> {
+        let ends = self.ends.alone();
+        let all = if ends.is_empty() {
+            core::slice::from_ref(&self.rotor)
+        } else {
+            ends
+        };
+        let mut contacts = all.iter().filter(|rungs| rungs.phase.is_contact());
+        contacts.find_map(|rungs| rungs.contact.slip)
+    }
+
+    /// Whether noise and position have been learnt.
+    pub fn is_armed(&self) -> bool {
+        self.levitation.is_armed()
+    }
+
+    /// Hands out the words that every tick's outcome depends on.
+    pub(crate) fn fingerprint(&self, mut put: impl FnMut(u32)) {
+        put(self.rotor.phase as u32);
+        put(u32::from(self.next_number));
+        let [x, y] = self.levitation.mean;
+        let learnt = [x, y, self.levitation.variance, self.release.statistic];
+        let rotor = learnt.into_iter().chain(self.rotor.words());
+        rotor.for_each(|value| put(bits(value)));
+        for end in self.ends.alone() {
+            put(end.phase as u32);
+            end.words().into_iter().for_each(|value| put(bits(value)));
+        }
+        if let Some(slip) = self.slip() {
+            put(bits(slip.speed));
+        }
+    }
+}
+
+/// The bits of a NaN differ between machines that agree on everything else.
+pub(crate) fn bits(value: f32) -> u32 {
+    if value.is_nan() {
+        0x7fc0_0000
+    } else {
+        value.to_bits()
+    }
+}

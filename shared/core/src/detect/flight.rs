@@ -1,0 +1,546 @@
+//! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
+
+#[cfg(feature = "serde")]
+mod learnt;
+
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::fix::Fix;
+use crate::detect::jump::{Approach, JumpBank, JumpTest};
+use crate::detect::next_impact::NextImpact;
+use crate::detect::series::{Bounce, Known, Series};
+use crate::detect::track::Jump;
+use crate::detect::track::{Ballistic, Track};
+use crate::vector::{direction, sum};
+use touchdown_rotor::real::{root, sqrt};
+
+/// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
+pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
+/// Time after the foreseen end of a series in which a missed impact would still show, s.
+const SERIES_MARGIN: f32 = 5e-4;
+
+/// Times that of `dwell`, near the wall without impact, after which it is contact whatever was foreseen: a wall that hardly
+/// presses, or gravity seen the wrong way round, foresees anything.
+const OVERDUE: u32 = 4;
+/// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
+const IMPOSSIBLE: f32 = 0.3;
+/// Part of the faintest impact's speed that one which is foreseen has to have.
+const FAINTER: f32 = 0.42;
+/// Part of gravity that a wall is taken to press with at least.
+const LEAST_PRESSING: f32 = 0.1;
+/// Standard deviations by which a rotor is clear of the wall where it lay before.
+const CLEAR_OF_WALL: f32 = 3.0;
+
+/// Mean of the impact test's statistic in white noise, as the test below measures it.
+const WHITE_LEVEL: f32 = 0.6;
+/// From this ratio to it on, the sensors are louder than white noise.
+const LOUD: f32 = 1.5;
+
+/// Part of the wall's tolerance by which its radius may differ from where the last impact was.
+const UNEVEN: f32 = 0.33;
+/// Samples in a row that no flight and no impact explains, which are left out: a spike. More are a motion.
+const LEFT_OUT: u8 = 2;
+/// Way of an impact in the sample after it, in samples' ways of the speed before it: twice that speed is the most that
+/// it takes off. Twice as much again, for two samples.
+const KICK: f32 = 4.0;
+/// Standard deviations of the speed.
+const FASTER: f32 = 3.0;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlightTest {
+    ballistic: Ballistic,
+    jumps: JumpTest,
+    /// The filter of a rotor that floats.
+    calm: Ballistic,
+    machine: MachineConfig,
+    period: f32,
+    threshold: f32,
+    /// Standard deviations that noise does not reach.
+    certain: f32,
+    /// Radius from which on the wall is near, m.
+    near: f32,
+    /// How far the wall may be from where an impact was, m.
+    uneven: f32,
+    /// Acceleration towards the wall that a bounce feels, m/s^2.
+    slowest: f32,
+    /// Samples near the wall, without impact, that no such bounce of that height lasts.
+    dwell: u32,
+}
+
+/// A flight under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Airborne {
+    /// Position and velocity.
+    pub(crate) track: Track,
+    bank: JumpBank,
+    /// The impacts so far.
+    pub(crate) series: Series,
+    near_wall: u32,
+    /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
+    seen_near: u32,
+    /// Samples in a row that are left out.
+    left_out: u8,
+    /// Radius from which on the rotor may lie on the wall, m.
+    lies: f32,
+    /// Samples that it has.
+    lying: u32,
+}
+
+impl Airborne {
+    /// Nothing has been seen of the wall yet.
+    fn restart(&mut self, loudness: f32) {
+        self.bank.begin(loudness);
+        self.near_wall = 0;
+        self.seen_near = 0;
+        self.lying = 0;
+    }
+
+    /// What is known of another one, but for impacts under way.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.track = other.track;
+        self.series = other.series;
+        self.lies = other.lies;
+        self.restart(other.bank.loudness());
+    }
+}
+
+/// How loud the impact test is while the rotor floats.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Listener {
+    track: Track,
+    bank: JumpBank,
+    level: f32,
+    count: f32,
+}
+
+impl Listener {
+    /// Forgets all.
+    pub(crate) fn forget(&mut self) {
+        self.bank.begin(0.0);
+        self.level = 0.0;
+        self.count = 0.0;
+    }
+
+    /// What is measured has moved by `way`, m.
+    pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        self.track.position = sum(self.track.position, way);
+    }
+
+    /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
+    /// clearly louder counts.
+    pub(crate) fn loudness(&self) -> f32 {
+        let ratio = self.level / WHITE_LEVEL;
+        if ratio > LOUD { ratio } else { 1.0 }
+    }
+}
+
+/// What a sample showed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Landing {
+    /// An impact, `age` samples ago.
+    Impact {
+        /// Samples.
+        age: f32,
+        /// Speed into the wall, m/s.
+        normal_speed: f32,
+    },
+    /// Permanent contact since `age` samples.
+    Contact {
+        /// Samples.
+        age: f32,
+    },
+}
+
+impl Landing {
+    /// Into the wall, m/s; 0 where it came to lie there.
+    pub(crate) fn speed(&self) -> f32 {
+        match *self {
+            Self::Impact { normal_speed, .. } => normal_speed,
+            Self::Contact { .. } => 0.0,
+        }
+    }
+}
+
+/// A jump that is an impact.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    bounce: Bounce,
+    /// Samples since, for its event.
+    age: f32,
+    /// Whether the impacts before it say more of it than it shows.
+    foreseen: bool,
+    /// With which the flight before it had left the wall, m/s; 0 where it is the first.
+    launch_speed: f32,
+    /// From the centre, m.
+    radius: f32,
+}
+
+impl FlightTest {
+    pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
+        let (machine, tuning) = (config.machine, &config.tuning);
+        // A bounce of height h lasts 2 sqrt(2 h/g); twice that, so that one that has just begun ends.
+        let slowest = machine.gravity.max(1.0);
+        let tolerance = tuning.wall_tolerance * machine.clearance;
+        let longest_bounce = 2.0 * sqrt(2.0 * tolerance / slowest);
+        Self {
+            ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
+            jumps: JumpTest::new(tuning, config.sample_rate, threshold),
+            calm: Ballistic::new(config.sample_rate, 0.0, tuning.flight_error),
+            machine,
+            period: 1.0 / config.sample_rate,
+            threshold,
+            certain: sqrt(2.0 * threshold),
+            near: machine.clearance - tolerance,
+            uneven: UNEVEN * tolerance,
+            slowest,
+            dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
+        }
+    }
+
+    /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
+    /// (m) at which it lay: what is clearly inside of it is no contact, however near.
+    pub(crate) fn start(&self, flight: &mut Airborne, fix: &Fix, wall: Option<f32>, loudness: f32) {
+        let clear = CLEAR_OF_WALL * sqrt(fix.variance);
+        flight.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+        flight.series = Series::default();
+        flight.lies = wall.map_or(self.near, |wall| wall - clear);
+        flight.restart(loudness);
+    }
+
+    /// The flight of one end that goes on from that of both; its velocity has to be found.
+    pub(crate) fn part(&self, flight: &mut Airborne, both: &Airborne, fix: &Fix, loudness: f32) {
+        let velocity = both.track.velocity;
+        flight.track = Track::new(fix.position, fix.variance, velocity, UNKNOWN_SPEED);
+        flight.series = both.series.anew();
+        flight.lies = both.lies;
+        flight.restart(loudness);
+    }
+
+    /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
+    /// much so is learnt.
+    pub(crate) fn listen(&self, listener: &mut Listener, fix: &Fix) {
+        if listener.count == 0.0 {
+            listener.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+        }
+        self.calm.predict(&mut listener.track);
+        let innovation = self
+            .calm
+            .correct(&mut listener.track, fix.position, fix.variance);
+        self.jumps
+            .update(&mut listener.bank, &innovation, [0.0, 1.0]);
+        listener.count += 1.0;
+        listener.level += (listener.bank.statistic - listener.level) / listener.count;
+    }
+
+    /// To the next sample without a usable position.
+    pub(crate) fn skip(&self, flight: &mut Airborne) {
+        self.ballistic.predict(&mut flight.track);
+        self.jumps.skip(&mut flight.bank);
+    }
+
+    /// Takes the next sample.
+    pub(crate) fn take(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+        self.ballistic.predict(&mut flight.track);
+        if !self.is_possible(&flight.track, fix) {
+            if flight.left_out < LEFT_OUT {
+                flight.left_out += 1;
+                self.jumps.skip(&mut flight.bank);
+                return self.contact(flight, fix);
+            }
+        } else {
+            flight.left_out = 0;
+        }
+        let innovation = self
+            .ballistic
+            .correct(&mut flight.track, fix.position, fix.variance);
+        let (outward, _) = direction(flight.track.position);
+        let [u, v] = flight.track.velocity;
+        let approach = Approach {
+            inward: outward.map(|n| -n),
+            speed: u * outward[0] + v * outward[1],
+            pull: -self.machine.gravity * outward[1],
+            restitution: flight.series.restitution(&self.machine),
+        };
+        let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
+        if let Some(jump) = jump {
+            let impact = self.judge(flight, &jump, fix);
+            flight.track.shift(&jump);
+            flight.bank.restart();
+            if let Some(hit) = impact {
+                self.take_in(flight, &hit);
+                return Some(Landing::Impact {
+                    age: hit.age,
+                    normal_speed: hit.bounce.normal_speed,
+                });
+            }
+        }
+        self.relaunch(flight, fix);
+        self.contact(flight, fix)
+    }
+
+    fn take_in(&self, flight: &mut Airborne, hit: &Hit) {
+        let (series, machine) = (&mut flight.series, &self.machine);
+        if hit.foreseen {
+            series.go_on(hit.bounce, machine, self.period);
+        } else {
+            series.take(hit.bounce, hit.launch_speed, machine, self.period);
+            flight.lies = self.near.max(hit.radius - self.uneven);
+            flight.near_wall = 0;
+        }
+        flight.seen_near = 0;
+        flight.lying = 0;
+    }
+
+    /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
+    /// the one before, which takes it inward and along the wall by no more than its speed.
+    fn is_possible(&self, track: &Track, fix: &Fix) -> bool {
+        let noise = self.certain * track.spread(fix.variance);
+        let [u, v] = track.velocity;
+        let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
+        let kick = KICK * self.period * speed;
+        let ([nx, ny], _) = direction(track.position);
+        let [x, y] = track.position;
+        let [dx, dy] = [fix.position[0] - x, fix.position[1] - y];
+        let (out, along) = (dx * nx + dy * ny, dy * nx - dx * ny);
+        out < noise && out > -noise - kick && along.abs() < noise + kick
+    }
+
+    /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
+    /// well, it does not.
+    fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
+        if flight.bank.loudness() > 1.0 {
+            return;
+        }
+        let (Some(after), Some(last)) =
+            (flight.series.shown_after(self.period), flight.series.last())
+        else {
+            return;
+        };
+        let flown = fix.now.since(last.at);
+        if flown >= after {
+            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
+            let error = flight.track.speed_error();
+            (flight.series).relaunch(velocity, error, &self.machine, self.period);
+        }
+    }
+
+    /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
+    /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
+    /// it finds after the time t in which a fall is found, as a jump of pressing times t.
+    fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<Hit> {
+        let since = jump.age * self.period;
+        let mut after = flight.track;
+        after.shift(jump);
+        let (outward, radius) = direction(self.ballistic.position_before(&after, since));
+        let [u, v] = self.ballistic.velocity_before(&after, since);
+        let before = [u - jump.change[0], v - jump.change[1]];
+        let normal_speed = before[0] * outward[0] + before[1] * outward[1];
+        let along = v * outward[0] - u * outward[1];
+        let mut bounce = Bounce {
+            at: fix.now.later(-jump.age),
+            normal_speed,
+            known: Known::to(normal_speed, flight.track.speed_error()),
+            along,
+            outward,
+            pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
+        };
+        let mut age = jump.dated;
+        let mut least = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        let mut launch_speed = 0.0;
+        let mut foreseen = false;
+        if let Some(last) = flight.series.last() {
+            let flown = bounce.at.since(last.at) * self.period;
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch().speed) {
+                return None;
+            }
+            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
+            launch_speed = -(u * last.outward[0] + v * last.outward[1]);
+            let next = NextImpact::of(&flight.series, bounce.pressing, &self.machine, self.period);
+            if let Some(next) = next.filter(|it| it.is(&bounce, age)) {
+                foreseen = next.is_weak(&bounce, least);
+                if foreseen {
+                    age = next.age(fix.now, age);
+                    bounce.at = fix.now.later(-age);
+                    bounce.known = next.known();
+                    bounce.normal_speed = bounce.known.speed;
+                    least *= FAINTER;
+                } else {
+                    bounce.known = next.known().and(bounce.known);
+                }
+            }
+        }
+        let is_hit = radius >= self.near && bounce.normal_speed > least;
+        is_hit.then_some(Hit {
+            bounce,
+            age,
+            foreseen,
+            launch_speed,
+            radius,
+        })
+    }
+
+    /// How long the flight after an impact would last on a flat wall, s: it leaves with the speed v = `launch` and comes
+    /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
+    fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
+        let squares = last.along * last.along + launch * launch;
+        let back = squares / self.machine.clearance + self.machine.gravity;
+        if back > 0.0 { 2.0 * launch / back } else { 0.0 }
+    }
+
+    /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
+    fn is_about_to_hit(&self, flight: &Airborne, fix: &Fix) -> bool {
+        let (track, loudness) = (&flight.track, flight.bank.loudness());
+        let ([x, y], _) = direction(track.position);
+        let [u, v] = track.velocity;
+        let pressing = self.pressing(track).max(self.slowest);
+        u * x + v * y > self.faintest(pressing, fix.variance * loudness)
+    }
+
+    /// With what the wall presses on a rotor there, m/s^2.
+    fn pressing(&self, track: &Track) -> f32 {
+        let ([x, y], _) = direction(track.position);
+        let [u, v] = track.velocity;
+        let along = v * x - u * y;
+        along * along / self.machine.clearance - self.machine.gravity * y
+    }
+
+    /// Speed below which an impact cannot be told from lying on the wall, m/s.
+    fn faintest(&self, pressing: f32, variance: f32) -> f32 {
+        let a = pressing.max(LEAST_PRESSING * self.machine.gravity);
+        if a <= 0.0 {
+            return 0.0;
+        }
+        let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
+        a * root::<5>(fifth)
+    }
+
+    fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+        let (_, seen) = direction(fix.position);
+        flight.seen_near = if seen < self.near {
+            0
+        } else {
+            flight.seen_near + 1
+        };
+        if flight.seen_near > OVERDUE * self.dwell {
+            let age = flight.seen_near as f32;
+            return Some(Landing::Contact { age });
+        }
+        let (_, radius) = direction(flight.track.position);
+        if radius < self.near {
+            flight.near_wall = 0;
+            flight.lying = 0;
+            return None;
+        }
+        flight.near_wall += 1;
+        let at_wall = flight.near_wall as f32 * self.period;
+        if let Some(end) = flight.series.end() {
+            let over = fix.now.since(end) * self.period;
+            if over < SERIES_MARGIN {
+                return None;
+            }
+            // A rotor that left the wall after the foreseen end has refuted it, or will soon.
+            if at_wall >= over && !self.is_about_to_hit(flight, fix) {
+                return Some(Landing::Contact {
+                    age: over / self.period,
+                });
+            }
+        }
+        if radius < flight.lies {
+            flight.lying = 0;
+            return None;
+        }
+        flight.lying += 1;
+        let age = flight.lying as f32;
+        // A wall that presses less lets it fly for longer.
+        let pressing = self
+            .pressing(&flight.track)
+            .max(LEAST_PRESSING * self.slowest);
+        let part = age / self.dwell as f32;
+        let lies = part * part * pressing.min(self.slowest) > self.slowest;
+        lies.then_some(Landing::Contact { age })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Tuning;
+    use crate::detect::noise::white;
+    use crate::detect::series::tests::MACHINE;
+    use crate::event::Moment;
+
+    fn test(sample_rate: f32) -> FlightTest {
+        let config = DetectorConfig {
+            sample_rate,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        FlightTest::new(&config, 25.3)
+    }
+
+    fn level(sample_rate: f32, runout: f32) -> f32 {
+        let test = test(sample_rate);
+        let (mut listener, mut seed) = (Listener::default(), 1);
+        for k in 0..50_000_u16 {
+            let (sin, cos) = libm::sincosf(3141.6 * f32::from(k) / sample_rate);
+            let fix = Fix {
+                now: Moment::default(),
+                position: [
+                    1e-6 * white(&mut seed) + runout * cos,
+                    1e-6 * white(&mut seed) + runout * sin,
+                ],
+                variance: 1e-12,
+            };
+            test.listen(&mut listener, &fix);
+        }
+        listener.level
+    }
+
+    #[test]
+    fn the_level_of_white_noise() {
+        for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
+            let level = level(sample_rate, 0.0);
+            assert!(
+                (level / WHITE_LEVEL - 1.0).abs() < 0.2,
+                "{sample_rate} {level}"
+            );
+        }
+    }
+
+    #[test]
+    fn runout_is_louder() {
+        assert!(level(20_000.0, 3e-6) > 4.0 * WHITE_LEVEL);
+    }
+
+    /// A rotor that was off the wall after the foreseen end did not lie there since.
+    #[test]
+    fn a_rotor_that_comes_back_after_the_end_of_its_series_is_in_no_contact_since() {
+        let test = test(20_000.0);
+        let bounce = Bounce {
+            at: Moment::of_sample(1_000),
+            normal_speed: 5e-3,
+            known: Known::to(5e-3, 1e-4),
+            pressing: 9.81,
+            outward: [0.0, -1.0],
+            ..Bounce::default()
+        };
+        let contact = |away: core::ops::Range<u64>| {
+            let mut flight = Airborne::default();
+            flight.series.take(bounce, 0.0, &MACHINE, test.period);
+            let end = flight.series.end().expect("the wall presses").samples();
+            assert!((1_080.0..1_085.0).contains(&end), "{end}");
+            (1_000..1_105).find(|&sample| {
+                let y = if away.contains(&sample) { -2e-4 } else { -3e-4 };
+                flight.track.position = [0.0, y];
+                let fix = Fix {
+                    now: Moment::of_sample(sample),
+                    position: [0.0, y],
+                    variance: 1e-12,
+                };
+                test.contact(&mut flight, &fix).is_some()
+            })
+        };
+        assert!(contact(0..0).is_some_and(|at| at < 1_095));
+        assert_eq!(contact(1_076..1_096), None);
+    }
+}

@@ -1,0 +1,113 @@
+//! The end of a permanent contact: a CUSUM on the distance from the wall.
+
+use touchdown_rotor::real::{root, sqrt};
+
+/// Samples that the wall's place is learnt from before it is trusted.
+const WARM_UP: u16 = 16;
+/// Samples that the wall's learnt place remembers.
+const MEMORY: f32 = 256.0;
+/// Samples that show how far the sensors waver on the wall: a turn of the rotor, or so much of it as the wall's
+/// learnt place does not follow.
+const LEARNT: u16 = 128;
+/// Distance that the test is tuned to, in standard deviations: above what noise and the waves of a
+/// sensor's error do, below what a flight soon reaches.
+const SHIFT: f32 = 4.0;
+/// Most that one sample can say, in standard deviations: a spike alone is no lift-off.
+const LOUDEST: f32 = SHIFT;
+
+/// Part of the way from lift-off to detection at which the crossing is placed at the latest: nearer to
+/// detection the samples since say nothing of when it began.
+const LATEST_CROSSING: f32 = 0.75;
+
+/// The test.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LiftOff {
+    /// Radius at which the wall seems to be, m.
+    pub(crate) wall: f32,
+    /// Distance of the last sample from it, inward, m.
+    pub(crate) gap: f32,
+    count: u16,
+    /// Mean square of that distance on the wall, m^2.
+    square: f32,
+    sum: f32,
+    age: u16,
+}
+
+impl LiftOff {
+    /// Whether the last sample was at the wall.
+    pub(crate) fn is_at_wall(&self) -> bool {
+        self.age == 0
+    }
+
+    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
+    pub(crate) fn wavering(&self) -> Option<f32> {
+        (self.count >= LEARNT).then_some(self.square)
+    }
+
+    /// At one end alone, where the wall seems to be `shift` (m) farther. Which end has left it, the next
+    /// samples decide.
+    pub(crate) fn at_one_end(&self, shift: f32) -> Self {
+        Self {
+            wall: self.wall + shift,
+            sum: 0.5 * self.sum,
+            ..*self
+        }
+    }
+
+    /// Takes the distance from the centre (m), known to `variance` (m^2). Where the rotor has left the
+    /// wall: samples since.
+    pub(crate) fn take(&mut self, radius: f32, variance: f32, threshold: f32) -> Option<f32> {
+        let sigma = sqrt(variance);
+        self.gap = self.wall - radius;
+        let inward = self.gap / sigma;
+        self.sum = (self.sum + SHIFT * (inward.min(LOUDEST) - 0.5 * SHIFT)).max(0.0);
+        if self.count < WARM_UP {
+            self.sum = 0.0;
+        }
+        if self.sum <= 0.0 {
+            self.age = 0;
+            self.count = self.count.saturating_add(1);
+            let gain = 1.0 / f32::from(self.count).min(MEMORY);
+            if self.count > 1 {
+                self.square += gain * (self.gap * self.gap - self.square);
+            }
+            self.wall += gain * (radius - self.wall);
+            return None;
+        }
+        self.age = self.age.saturating_add(1);
+        if self.sum <= threshold {
+            return None;
+        }
+        // The gap grows with the third power of time: where it crossed half the shift tells when it
+        // began.
+        let crossed = root::<3>((0.5 * SHIFT / inward).clamp(0.0, 1.0)).min(LATEST_CROSSING);
+        Some(f32::from(self.age) / (1.0 - crossed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flight_is_found_and_dated() {
+        let mut test = LiftOff::default();
+        for k in 0..1_000 {
+            let noise = if k % 2 == 0 { 1e-6 } else { -1e-6 };
+            assert_eq!(test.take(300e-6 + noise, 1e-12, 25.0), None);
+        }
+        // A spike, and a pair of them.
+        for k in 0..200 {
+            let gap = if k % 50 < 2 { 40e-6 } else { 0.0 };
+            assert_eq!(test.take(300e-6 - gap, 1e-12, 25.0), None);
+        }
+        // 20 um after 40 samples, growing with the cube.
+        let found = (1..200).find_map(|k| {
+            let gap = 20e-6 * (k as f32 / 40.0).powi(3);
+            test.take(300e-6 - gap, 1e-12, 25.0)
+                .map(|age| (k as f32, age))
+        });
+        let (now, age) = found.expect("found");
+        assert!(now < 40.0 && (now - age).abs() < 8.0, "{now} {age}");
+    }
+}

@@ -1,0 +1,305 @@
+//! Follows an orbit and its harmonics.
+//!
+//! With the angle theta of the orbit, each axis is a constant plus a_k cos(k theta) + b_k sin(k theta), k from 1 to
+//! `HARMONICS`. The constant and k = 1 start with a fit by least squares, which needs no whole turn;
+//! then all follow the residual by its gradient. A phase-locked loop keeps theta: what is left along the
+//! motion is an error of the angle. It is one of third order, so that a speed that changes evenly is followed as well.
+
+use touchdown_rotor::real::sin_cos;
+
+/// Highest multiple of the frequency.
+const HARMONICS: usize = 4;
+/// Time constant of the amplitudes, s, but for half a turn where that is longer.
+const AMPLITUDE_TIME: f32 = 0.03;
+/// Time constant of the centre, s: of a fall it swallows a fiftieth in 1 ms.
+const CENTRE_TIME: f32 = 0.02;
+/// Natural frequency of the phase-locked loop, rad/s, but for half the orbit's where that is lower: a
+/// speed that changes by 20 % a second at 500 Hz leaves 0.01 rad.
+const LOOP: f32 = 250.0;
+/// Its damping.
+const DAMPING: f32 = 0.7;
+/// Part of its natural frequency to the third power with which it follows a speed that changes: at 10 Hz and 20 % a
+/// second it would else stay 0.013 rad behind, 0.4 um of an orbit of 30 um.
+const SLOPE: f32 = 0.125;
+/// Variance of the parameters before the fit, over that of the noise.
+const UNKNOWN: f32 = 1e4;
+/// Turns that the fit remembers: the frequency is not quite right yet.
+const FIT_MEMORY: f32 = 1.0;
+/// Turns, and seconds, that the fit is made of.
+const FIT_TURNS: f32 = 1.5;
+const FIT_TIME: f32 = 0.02;
+/// Largest error of the angle that the loop takes from a sample, rad.
+const MOST_OFF: f32 = 0.3;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Follow {
+    period: f32,
+}
+
+/// The orbit.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Orbit {
+    /// Cosine and sine of theta, and of its change in a sample.
+    angle: [f32; 2],
+    turn: [f32; 2],
+    /// Change of theta in a sample, rad, and that of it.
+    rate: f32,
+    slope: f32,
+    spin: Option<f32>,
+    /// m.
+    centre: [f32; 2],
+    /// Of cosine and sine, by axis, from k = 1, m.
+    waves: [[[f32; 2]; 2]; HARMONICS],
+    /// Of centre, cosine and sine; the fit is over where there is none.
+    fit: Option<Fit>,
+    samples: f32,
+}
+
+/// Covariance of the fit, over the noise: rows of the upper triangle.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Fit([f32; 6]);
+
+/// Cosine and sine of k theta.
+type Waves = [[f32; 2]; HARMONICS];
+
+impl Follow {
+    pub(super) fn new(sample_rate: f32) -> Self {
+        Self {
+            period: 1.0 / sample_rate,
+        }
+    }
+
+    /// An orbit at `rate` (rad a sample) about `centre` (m); all else has to be found.
+    pub(super) fn start(&self, rate: f32, centre: [f32; 2]) -> Orbit {
+        let (sin, cos) = sin_cos(rate);
+        Orbit {
+            angle: [1.0, 0.0],
+            turn: [cos, sin],
+            rate,
+            slope: 0.0,
+            spin: None,
+            centre,
+            waves: [[[0.0; 2]; 2]; HARMONICS],
+            fit: Some(Fit([UNKNOWN, 0.0, 0.0, UNKNOWN, 0.0, UNKNOWN])),
+            samples: 0.0,
+        }
+    }
+
+    /// To the next sample; a measured spin (rad/s) that changes takes the orbit with it.
+    pub(super) fn advance(&self, orbit: &mut Orbit, spin: Option<f32>) {
+        if let (Some(now), Some(before)) = (spin, orbit.spin)
+            && before != 0.0
+        {
+            orbit.hasten(orbit.rate * (now / before - 1.0));
+        }
+        orbit.spin = spin;
+        orbit.angle = unit(product(orbit.angle, orbit.turn));
+    }
+
+    /// Takes a position (m) of a rotor that floats; what the orbit does not explain of it.
+    pub(super) fn learn(&self, orbit: &mut Orbit, position: [f32; 2]) -> [f32; 2] {
+        let waves = orbit.waves();
+        let residual = orbit.residual(position, &waves);
+        orbit.samples += 1.0;
+        if orbit.fit.is_none() {
+            self.lock(orbit, residual);
+            self.adapt(orbit, residual, &waves);
+        } else if orbit.fit(residual) > FIT_TURNS && orbit.samples * self.period > FIT_TIME {
+            orbit.fit = None;
+            orbit.samples = 0.0;
+        }
+        residual
+    }
+
+    /// Corrects angle and rate by what the residual has along the motion, over the motion's square.
+    fn lock(&self, orbit: &mut Orbit, residual: [f32; 2]) {
+        let [cos, sin] = orbit.angle;
+        let along = |([a, b], r): ([f32; 2], f32)| (b * cos - a * sin) * r;
+        let along: f32 = orbit.waves[0].into_iter().zip(residual).map(along).sum();
+        let power = orbit.square();
+        if power > 0.0 {
+            let pull = (LOOP * self.period).min(0.5 * orbit.rate);
+            let off = (along / power).clamp(-MOST_OFF, MOST_OFF);
+            orbit.slope += SLOPE * pull * pull * pull * off;
+            orbit.hasten(orbit.slope + pull * pull * off);
+            orbit.angle = unit(product(orbit.angle, [1.0, 2.0 * DAMPING * pull * off]));
+        }
+    }
+
+    fn adapt(&self, orbit: &mut Orbit, residual: [f32; 2], waves: &Waves) {
+        for (centre, r) in orbit.centre.iter_mut().zip(residual) {
+            *centre += self.period / CENTRE_TIME * r;
+        }
+        let turn = core::f32::consts::TAU / orbit.rate;
+        let slow = (AMPLITUDE_TIME / self.period).max(0.5 * turn);
+        // The fit has the orbit already; its harmonics come from nothing.
+        let mut gain = 2.0 / slow;
+        for (wave, [cos, sin]) in orbit.waves.iter_mut().zip(waves) {
+            for (parts, r) in wave.iter_mut().zip(residual) {
+                parts[0] += gain * cos * r;
+                parts[1] += gain * sin * r;
+            }
+            gain = 2.0 / slow.min(turn + orbit.samples);
+        }
+    }
+}
+
+impl Orbit {
+    /// About another centre, `way` (m) off.
+    pub(super) fn shift(&mut self, [x, y]: [f32; 2]) {
+        self.centre[0] += x;
+        self.centre[1] += y;
+    }
+
+    /// Square of its radius, m^2: mean of the axes' amplitudes.
+    pub(super) fn square(&self) -> f32 {
+        let [[a, b], [c, d]] = self.waves[0];
+        0.5 * (a * a + b * b + c * c + d * d)
+    }
+
+    /// The orbit alone, without its harmonics, m.
+    pub(super) fn fundamental(&self) -> [f32; 2] {
+        let [cos, sin] = self.angle;
+        self.waves[0].map(|[a, b]| a * cos + b * sin)
+    }
+
+    /// Takes a residual into the fit; turns that it has seen.
+    fn fit(&mut self, residual: [f32; 2]) -> f32 {
+        let [cos, sin] = self.angle;
+        let seen = self.samples * self.rate / core::f32::consts::TAU;
+        let keep = 1.0 - self.rate / (FIT_MEMORY * core::f32::consts::TAU);
+        let Some(fit) = &mut self.fit else {
+            return seen;
+        };
+        let [by_one, by_cos, by_sin] = fit.gains([1.0, cos, sin], keep);
+        for ((centre, [a, b]), r) in (self.centre.iter_mut().zip(&mut self.waves[0])).zip(residual)
+        {
+            *centre += by_one * r;
+            *a += by_cos * r;
+            *b += by_sin * r;
+        }
+        seen
+    }
+
+    fn residual(&self, position: [f32; 2], waves: &Waves) -> [f32; 2] {
+        let mut residual = [position[0] - self.centre[0], position[1] - self.centre[1]];
+        for (wave, [cos, sin]) in self.waves.iter().zip(waves) {
+            for (r, [a, b]) in residual.iter_mut().zip(wave) {
+                *r -= a * cos + b * sin;
+            }
+        }
+        residual
+    }
+
+    fn waves(&self) -> Waves {
+        let mut next = [1.0, 0.0];
+        let mut waves = [next; HARMONICS];
+        for wave in &mut waves {
+            next = product(next, self.angle);
+            *wave = next;
+        }
+        waves
+    }
+
+    fn hasten(&mut self, change: f32) {
+        self.rate += change;
+        self.turn = unit(product(self.turn, [1.0, change]));
+    }
+}
+
+impl Fit {
+    /// Gains of a sample with these regressors; `keep` is the weight of the last sample against it.
+    fn gains(&mut self, z: [f32; 3], keep: f32) -> [f32; 3] {
+        let [a, b, c, d, e, f] = self.0;
+        let p = [
+            a * z[0] + b * z[1] + c * z[2],
+            b * z[0] + d * z[1] + e * z[2],
+            c * z[0] + e * z[1] + f * z[2],
+        ];
+        let scale = 1.0 / (keep + z[0] * p[0] + z[1] * p[1] + z[2] * p[2]);
+        self.0 = [
+            a - scale * p[0] * p[0],
+            b - scale * p[0] * p[1],
+            c - scale * p[0] * p[2],
+            d - scale * p[1] * p[1],
+            e - scale * p[1] * p[2],
+            f - scale * p[2] * p[2],
+        ]
+        .map(|term| term / keep);
+        p.map(|p| p * scale)
+    }
+}
+
+/// Of two complex numbers.
+fn product([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
+    [a * c - b * d, a * d + b * c]
+}
+
+/// Back to length 1, from nearly that.
+fn unit([a, b]: [f32; 2]) -> [f32; 2] {
+    let scale = 1.5 - 0.5 * (a * a + b * b);
+    [a * scale, b * scale]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::noise::white;
+    use crate::detect::orbit::{Search, Searching};
+
+    /// Root mean square of what is left of one axis from 0.15 s on, in um.
+    fn left(hz: f64, sweep: f64, sample_rate: f64) -> f64 {
+        let search = Search::new(sample_rate as f32);
+        let follow = Follow::new(sample_rate as f32);
+        let (mut searching, mut orbit, mut seed) = (Searching::default(), None, 1);
+        let third = (0.05 * sample_rate) as u32;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for k in 0..20 * third {
+            let time = f64::from(k) / sample_rate;
+            let angle = core::f64::consts::TAU * hz * (time + 0.5 * sweep * time * time) + 2.0;
+            let (sin, cos) = libm::sincos(angle);
+            let noise = [white(&mut seed), white(&mut seed)].map(|it| 1e-6 * it);
+            let runout = 5e-6 * libm::cos(3.0 * angle) as f32;
+            let position = [
+                30e-6 * cos as f32 + noise[0] + runout + 7e-5,
+                20e-6 * sin as f32 + noise[1],
+            ];
+            if k < third {
+                search.take(&mut searching, position);
+                continue;
+            }
+            let orbit = orbit.get_or_insert_with(|| {
+                let rate = search.rate(&searching, 1e-12).expect("an orbit");
+                follow.start(rate, [7e-5, 0.0])
+            });
+            follow.advance(orbit, None);
+            let [x, y] = follow.learn(orbit, position);
+            if k > 3 * third {
+                sum += f64::from(x * x + y * y);
+                count += 2.0;
+            }
+        }
+        libm::sqrt(sum / count) * 1e6
+    }
+
+    #[test]
+    fn what_is_left_is_the_noise() {
+        for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
+            for (hz, most) in [
+                (20.0, 1.5),
+                (50.0, 1.25),
+                (100.0, 1.1),
+                (200.0, 1.1),
+                (500.0, 1.1),
+            ] {
+                for sweep in [0.0, 0.2, -0.2] {
+                    let left = left(hz, sweep, sample_rate);
+                    assert!(left < most, "{hz} Hz, {sweep}/s, {sample_rate}: {left} um");
+                }
+            }
+        }
+    }
+}

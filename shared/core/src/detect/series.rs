@@ -1,0 +1,381 @@
+//! The bounce series: what the impacts seen say of those too weak to see.
+//!
+//! From launch speed v under a wall that presses with a, the rest of a series lasts
+//! 2 v/(a (1 - restitution)): its end is known long before the bounces vanish in the noise.
+
+use crate::config::MachineConfig;
+use crate::event::Moment;
+
+/// Weight of the configured restitution against that of one clear impact.
+const PRIOR_WEIGHT: f32 = 1.0;
+/// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
+const CLEAR_SPEED: f32 = 0.02;
+
+/// Standard deviations by which a flight contradicts what restitution lets expect of its launch, and the speed,
+/// m/s, from which on it may.
+const CONTRADICTS: f32 = 4.0;
+const CLEAR_LAUNCH: f32 = 0.01;
+/// Part of the first flight after an impact that shows well how the rotor left the wall.
+const SHOWN: f32 = 0.6;
+/// Samples that this must take: fewer show it no better than the impact did.
+const LONG_ENOUGH: f32 = 16.0;
+
+/// Parts by which the speed foreseen of an impact may be off: for the wall's pressing, and for a restitution that no
+/// impact has shown yet.
+const UNEVEN: f32 = 0.02;
+const UNTAUGHT: f32 = 0.1;
+
+/// A speed, as well as it is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Known {
+    /// m/s.
+    pub(crate) speed: f32,
+    /// Variance of its logarithm.
+    pub(crate) doubt: f32,
+}
+
+impl Known {
+    /// Known to `error`, m/s.
+    pub(crate) fn to(speed: f32, error: f32) -> Self {
+        let part = error / speed;
+        Self {
+            speed,
+            doubt: part * part,
+        }
+    }
+
+    /// The same speed known twice.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let part = self.doubt / (self.doubt + other.doubt);
+        Self {
+            speed: self.speed + part * (other.speed - self.speed),
+            doubt: part * other.doubt,
+        }
+    }
+}
+
+/// An impact, as far as the series needs it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Bounce {
+    /// When.
+    pub(crate) at: Moment,
+    /// Speed into the wall, m/s.
+    pub(crate) normal_speed: f32,
+    /// The same, as the impacts before it say as well.
+    pub(crate) known: Known,
+    /// Velocity along the wall after it, counter-clockwise, m/s.
+    pub(crate) along: f32,
+    /// Outward unit vector at the contact.
+    pub(crate) outward: [f32; 2],
+    /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
+    pub(crate) pressing: f32,
+}
+
+/// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
+/// times as many are gone.
+const REST_STEPS: u8 = 8;
+/// A flight under an acceleration a at first and b at last ends with (a + 2 b)/(2 a + b) of the speed that it began with,
+/// so the launch speed goes with this power of the pressing besides.
+const FOLLOWS: f32 = 1.0 / 3.0;
+
+impl Bounce {
+    /// Time, s, from a launch with speed `launch` to the end of the series. The launch speed falls by
+    /// (1 - restitution)/2 times what the wall presses, whatever the bounces, and [`FOLLOWS`] the pressing; meanwhile the
+    /// rotor slides along the wall as if it lay on it. `None` where the wall ceases to press.
+    fn rest(&self, launch: f32, restitution: f32, machine: &MachineConfig) -> Option<f32> {
+        let loss = 0.5 * (1.0 - restitution);
+        if loss <= 0.0 || self.pressing <= 0.0 {
+            return None;
+        }
+        let against = if machine.spin != 0.0 {
+            machine.spin
+        } else {
+            self.along
+        };
+        let friction = if against > 0.0 {
+            -machine.friction
+        } else {
+            machine.friction
+        };
+        let step = launch / (loss * self.pressing * f32::from(REST_STEPS));
+        let [mut sin, minus_cos] = self.outward;
+        let (mut cos, mut along, mut pressing) = (-minus_cos, self.along, self.pressing);
+        let (mut left, mut time) = (launch, 0.0);
+        for _ in 0..3 * REST_STEPS {
+            let before = along;
+            along += (friction * pressing - machine.gravity * sin) * step;
+            let turn = 0.5 * (before + along) * step / machine.clearance;
+            (sin, cos) = (sin + cos * turn, cos - sin * turn);
+            let norm = 1.5 - 0.5 * (sin * sin + cos * cos);
+            (sin, cos) = (sin * norm, cos * norm);
+            let next = along * along / machine.clearance + machine.gravity * cos;
+            let mean = 0.5 * (pressing + next);
+            let taken = loss * mean * step;
+            if taken >= left {
+                return Some(time + step * left / taken);
+            }
+            if next <= 0.0 {
+                return None;
+            }
+            left -= taken;
+            left += FOLLOWS * left * (next - pressing) / mean;
+            time += step;
+            pressing = next;
+        }
+        None
+    }
+}
+
+/// The series so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Series {
+    /// Restitution seen, times weight, and the weight.
+    seen: [f32; 2],
+    /// Sum of the impulses along the normal, per mass, m/s.
+    impulse: f32,
+    last: Option<Bounce>,
+    ends: Option<Moment>,
+    /// Speed with which the rotor left the wall at the last impact.
+    launch: Known,
+    /// Whether its velocity along the wall is still that which followed from the impact.
+    assumed: bool,
+}
+
+impl Series {
+    /// Restitution: as configured, and as seen.
+    pub(crate) fn restitution(&self, machine: &MachineConfig) -> f32 {
+        let [seen, weight] = self.seen;
+        (seen + PRIOR_WEIGHT * machine.restitution) / (weight + PRIOR_WEIGHT)
+    }
+
+    /// Weight of the impacts in the restitution, in clear ones.
+    pub(crate) fn weight(&self) -> f32 {
+        self.seen[1]
+    }
+
+    /// Sum of the speeds into the wall, m/s, of the impacts after the last one, on a wall that presses evenly.
+    pub(crate) fn yet_to_come(&self, machine: &MachineConfig) -> f32 {
+        let restitution = self.restitution(machine);
+        match &self.last {
+            Some(last) if self.ends.is_some() && restitution < 1.0 => {
+                last.normal_speed * restitution / (1.0 - restitution)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Another series, with what has been learnt and taken in this one.
+    pub(crate) fn anew(&self) -> Self {
+        Self {
+            last: None,
+            ends: None,
+            ..*self
+        }
+    }
+
+    /// Samples after the last impact from which on the flight shows how it began; `None` where it
+    /// has been taken from there.
+    pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
+        let last = self.last.as_ref().filter(|_| self.assumed)?;
+        let flight = 2.0 * self.launch.speed / last.pressing;
+        let after = SHOWN * flight / period;
+        (last.pressing > 0.0 && after >= LONG_ENOUGH).then_some(after)
+    }
+
+    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
+    /// after an impact that along the wall is hardly known, and the wall's pressing grows with its square. How
+    /// fast it left the wall is known better from the impacts, unless the flight contradicts them.
+    pub(crate) fn relaunch(
+        &mut self,
+        [u, v]: [f32; 2],
+        error: f32,
+        machine: &MachineConfig,
+        period: f32,
+    ) {
+        self.assumed = false;
+        let restitution = self.restitution(machine);
+        let Some(last) = self.last.as_mut() else {
+            return;
+        };
+        let [x, y] = last.outward;
+        last.along = v * x - u * y;
+        last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
+        let shown = -(u * x + v * y);
+        if (shown - self.launch.speed).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
+            self.launch = Known::to(shown, error);
+        }
+        let rest = last.rest(self.launch.speed, restitution, machine);
+        self.ends = rest.map(|time| last.at.later(time / period));
+    }
+
+    /// Speed with which the rotor left the wall at the last impact; it comes back with that, but for what the pressing
+    /// and the restitution leave open.
+    pub(crate) fn launch(&self) -> Known {
+        let untaught = UNTAUGHT / (self.seen[1] + PRIOR_WEIGHT);
+        Known {
+            doubt: self.launch.doubt + UNEVEN * UNEVEN + untaught * untaught,
+            ..self.launch
+        }
+    }
+
+    /// The last impact.
+    pub(crate) fn last(&self) -> Option<&Bounce> {
+        self.last.as_ref()
+    }
+
+    /// Takes an impact; `launch_speed` is the speed (m/s) with which the flight before it had left
+    /// the wall at the last impact, where known.
+    pub(crate) fn take(
+        &mut self,
+        bounce: Bounce,
+        launch_speed: f32,
+        machine: &MachineConfig,
+        period: f32,
+    ) {
+        if let Some(last) = &self.last {
+            let ratio = (launch_speed / last.normal_speed).clamp(0.0, 1.0);
+            let clearness = last.normal_speed / CLEAR_SPEED;
+            let weight = (clearness * clearness).min(4.0);
+            self.seen[0] += weight * ratio;
+            self.seen[1] += weight;
+        }
+        self.leave(bounce, machine, period);
+        self.assumed = true;
+    }
+
+    /// Takes an impact that is as foreseen: it says nothing new of the restitution.
+    pub(crate) fn go_on(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
+        self.leave(bounce, machine, period);
+        self.assumed = false;
+    }
+
+    /// After an impact.
+    fn leave(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
+        let restitution = self.restitution(machine);
+        self.launch = Known {
+            speed: restitution * bounce.known.speed,
+            ..bounce.known
+        };
+        let rest = bounce.rest(self.launch.speed, restitution, machine);
+        self.ends = rest.map(|time| bounce.at.later(time / period));
+        self.impulse += (1.0 + restitution) * bounce.normal_speed;
+        self.last = Some(bounce);
+    }
+
+    /// End of the series; `None` where the wall does not press on, or the series does not end.
+    pub(crate) fn end(&self) -> Option<Moment> {
+        self.ends
+    }
+
+    /// Slip, m/s, that friction cannot have used up in the impacts so far, from a nominal one.
+    pub(crate) fn slip_left(&self, nominal: f32, machine: &MachineConfig) -> f32 {
+        let per_impulse = machine.friction * (1.0 + 1.0 / machine.inertia_ratio);
+        nominal.abs() - per_impulse * self.impulse
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) const MACHINE: MachineConfig = MachineConfig {
+        mass: 3.42,
+        clearance: 3e-4,
+        gravity: 9.81,
+        rotor_radius: 0.024,
+        inertia_ratio: 0.5,
+        friction: 0.1,
+        restitution: 0.8,
+        spin: -3141.6,
+    };
+
+    /// Samples of 10 us.
+    const PERIOD: f32 = 1e-5;
+
+    fn bounce(samples: f32, normal_speed: f32) -> Bounce {
+        Bounce {
+            at: Moment::default().later(samples),
+            normal_speed,
+            known: Known::to(normal_speed, 1e-4),
+            along: 0.0,
+            outward: [0.0, -1.0],
+            pressing: 9.81,
+        }
+    }
+
+    #[test]
+    fn the_end_of_a_straight_drop() {
+        // A straight drop of 0.3 mm hits at V = 76.72 mm/s after 7.82 ms and ends at
+        // (V/g)(1 + eps)/(1 - eps) = 70.386 ms: `docs/know/model.md`.
+        let smooth = MachineConfig {
+            friction: 0.0,
+            ..MACHINE
+        };
+        let mut series = Series::default();
+        series.take(bounce(782.062, 0.076_720), 0.0, &smooth, PERIOD);
+        let end = series.end().expect("the wall presses");
+        assert!((end.samples() - 7038.56).abs() < 0.2, "{end:?}");
+    }
+
+    /// Against flights in small steps.
+    #[test]
+    fn the_end_of_a_series_up_and_down_the_wall() {
+        for (angle, along) in [(0.6_f32, 0.05), (1.0, -0.03), (-1.0, 0.06), (0.3, 0.02)] {
+            let (sin, cos) = libm::sincosf(angle);
+            let bounce = Bounce {
+                normal_speed: 5e-3,
+                along,
+                outward: [sin, -cos],
+                pressing: along * along / MACHINE.clearance + MACHINE.gravity * cos,
+                ..Bounce::default()
+            };
+            let rest = bounce.rest(4e-3, 0.8, &MACHINE).expect("the wall presses");
+            let end = end_of_flights(f64::from(angle), f64::from(along));
+            assert!(
+                (f64::from(rest) / end - 1.0).abs() < 0.03,
+                "{angle} {along}: {rest} s, not {end}"
+            );
+        }
+    }
+
+    /// Time, s, that a rotor which leaves the wall with 4 mm/s bounces for.
+    fn end_of_flights(mut angle: f64, mut along: f64) -> f64 {
+        let (step, clearance, friction) = (1e-7, 3e-4, 0.1);
+        let (mut height, mut speed, mut time, mut launch) = (0.0, 4e-3, 0.0, 4e-3_f64);
+        while launch > 1e-5 {
+            let (sin, cos) = libm::sincos(angle);
+            along -= 9.81 * sin * step;
+            angle += along / clearance * step;
+            speed -= (along * along / clearance + 9.81 * cos) * step;
+            height += speed * step;
+            time += step;
+            if height <= 0.0 && speed < 0.0 {
+                along -= friction * 1.8 * speed;
+                speed *= -0.8;
+                (height, launch) = (0.0, speed);
+            }
+        }
+        time
+    }
+
+    #[test]
+    fn a_speed_known_twice_is_known_better() {
+        let both = Known::to(0.010, 1e-3).and(Known::to(0.013, 5e-4));
+        // Parts of 0.1 and 0.0385: weights of 100 and 676.
+        assert!((both.speed - 0.012_613).abs() < 1e-6, "{both:?}");
+        assert!((both.doubt - 1.0 / 776.0).abs() < 1e-6, "{both:?}");
+    }
+
+    #[test]
+    fn a_wrong_restitution_is_unlearnt() {
+        let mut series = Series::default();
+        let mut speed = 0.0767;
+        for k in 0..4 {
+            series.take(bounce(1e3 * k as f32, speed), speed, &MACHINE, PERIOD);
+            speed *= 0.5;
+        }
+        let restitution = series.restitution(&MACHINE);
+        // Configured: 0.8.
+        assert!(restitution > 0.5 && restitution < 0.56, "{restitution}");
+    }
+}

@@ -1,0 +1,58 @@
+//! Stillness: whether the rotor keeps its place over a stretch of time.
+
+use touchdown_rotor::real::sqrt;
+
+/// Collects blocks of samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Still {
+    count: u32,
+    origin: [f32; 2],
+    sum: [f32; 2],
+    square: f32,
+    last: Option<[f32; 2]>,
+}
+
+/// A finished block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Block {
+    /// m.
+    pub(crate) mean: [f32; 2],
+    /// Of one axis, m^2.
+    pub(crate) variance: f32,
+    /// Way from the mean of the block before, m; infinite for the first.
+    pub(crate) moved: f32,
+}
+
+impl Still {
+    /// Takes a position, m; every `length` samples a block.
+    pub(crate) fn take(&mut self, position: [f32; 2], length: u32) -> Option<Block> {
+        if self.count == 0 {
+            self.origin = position;
+            self.sum = [0.0; 2];
+            self.square = 0.0;
+        }
+        let dx = position[0] - self.origin[0];
+        let dy = position[1] - self.origin[1];
+        self.sum[0] += dx;
+        self.sum[1] += dy;
+        self.square += dx * dx + dy * dy;
+        self.count += 1;
+        if self.count < length {
+            return None;
+        }
+        let scale = 1.0 / self.count as f32;
+        let [mx, my] = self.sum.map(|sum| sum * scale);
+        let mean = [self.origin[0] + mx, self.origin[1] + my];
+        let moved = self.last.map_or(f32::INFINITY, |[x, y]| {
+            let (dx, dy) = (mean[0] - x, mean[1] - y);
+            sqrt(dx * dx + dy * dy)
+        });
+        self.last = Some(mean);
+        self.count = 0;
+        Some(Block {
+            mean,
+            variance: (0.5 * (self.square * scale - mx * mx - my * my)).max(0.0),
+            moved,
+        })
+    }
+}

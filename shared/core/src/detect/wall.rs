@@ -1,0 +1,194 @@
+//! Permanent contact: where the rotor is on the wall, and whether it slides or rolls.
+//!
+//! Two filters follow the angle from the bottom, one by the equation of sliding, one by that of
+//! rolling, with the same gains. Whichever predicts the samples better is true: the difference of
+//! their log-likelihoods is summed up as a CUSUM in each direction.
+
+use crate::config::{MachineConfig, Tuning};
+use touchdown_rotor::real::sqrt;
+
+/// Time over which an error of the equations keeps its sign, s.
+const ERROR_TIME: f32 = 1e-3;
+
+/// Most that one sample can say for a hypothesis: a lost track or a spike decides nothing alone.
+const LOUDEST: f32 = 3.0;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallFilter {
+    period: f32,
+    /// Gravity over clearance, 1/s^2.
+    stiffness: f32,
+    friction: f32,
+    rolling: f32,
+    clearance: f32,
+    wander: f32,
+}
+
+/// One hypothesis' estimate.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Swing {
+    /// Sine and cosine of the angle from the bottom.
+    pub(crate) sin: f32,
+    /// See `sin`.
+    pub(crate) cos: f32,
+    /// rad/s.
+    pub(crate) rate: f32,
+    /// Angle turned since the contact began, rad.
+    pub(crate) turned: f32,
+}
+
+/// Both hypotheses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallTrack {
+    /// Sliding.
+    pub(crate) slide: Swing,
+    /// Rolling.
+    pub(crate) roll: Swing,
+    /// Of angle, angle and rate, rate.
+    covariance: [f32; 3],
+    /// For rolling, against sliding.
+    pub(crate) for_rolling: Evidence,
+    /// For sliding, against rolling.
+    pub(crate) for_sliding: Evidence,
+}
+
+/// A CUSUM of log-likelihoods.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Evidence {
+    pub(crate) sum: f32,
+    /// Samples since it last was zero.
+    pub(crate) age: u32,
+}
+
+impl Evidence {
+    fn add(&mut self, gain: f32) {
+        self.sum = (self.sum + gain).max(0.0);
+        self.age = if self.sum > 0.0 {
+            self.age.saturating_add(1)
+        } else {
+            0
+        };
+    }
+}
+
+impl WallFilter {
+    pub(crate) fn new(machine: &MachineConfig, tuning: &Tuning, sample_rate: f32) -> Self {
+        let error = tuning.contact_error / machine.clearance;
+        Self {
+            period: 1.0 / sample_rate,
+            stiffness: machine.gravity / machine.clearance,
+            friction: machine.friction,
+            rolling: 1.0 / (1.0 + machine.inertia_ratio),
+            clearance: machine.clearance,
+            wander: error * error * ERROR_TIME / sample_rate,
+        }
+    }
+
+    /// Contact at `outward` (unit vector) with `speed` along the wall (m/s, counter-clockwise), known
+    /// to `spread` (m/s).
+    pub(crate) fn start(&self, outward: [f32; 2], speed: f32, spread: f32) -> WallTrack {
+        let swing = Swing {
+            sin: outward[0],
+            cos: -outward[1],
+            rate: speed / self.clearance,
+            turned: 0.0,
+        };
+        let spread = spread / self.clearance;
+        WallTrack {
+            slide: swing,
+            roll: swing,
+            // A few degrees: the position of one sample.
+            covariance: [1e-3, 0.0, spread * spread],
+            ..WallTrack::default()
+        }
+    }
+
+    /// To the next sample, and its position (m), whose axes have `variance` (m^2); `slip` has the
+    /// sign of the slip. Without a usable sample, `None`.
+    pub(crate) fn take(&self, track: &mut WallTrack, sample: Option<([f32; 2], f32)>, slip: f32) {
+        let dt = self.period;
+        let friction = if slip > 0.0 {
+            -self.friction
+        } else {
+            self.friction
+        };
+        let k = self.stiffness;
+        let slide = &mut track.slide;
+        let pressing = slide.rate * slide.rate + k * slide.cos;
+        // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
+        let growth = 1.0 + friction * slide.rate * dt;
+        slide.predict(growth * (friction * pressing.max(0.0) - k * slide.sin), dt);
+        let roll = &mut track.roll;
+        roll.predict(-k * self.rolling * roll.sin, dt);
+        let [aa, ar, rr] = track.covariance;
+        track.covariance = [
+            aa + (2.0 * ar + rr * dt) * dt,
+            ar + rr * dt,
+            rr + self.wander,
+        ];
+        let Some((position, variance)) = sample else {
+            return;
+        };
+        let scale = 1.0 / self.clearance;
+        let noise = variance * scale * scale;
+        let [aa, ar, rr] = track.covariance;
+        let total = aa + noise;
+        let gain = [aa / total, ar / total];
+        let keep = noise / total;
+        track.covariance = [aa * keep, ar * keep, rr - gain[1] * ar];
+        let slide = track.slide.correct(position, scale, gain);
+        let roll = track.roll.correct(position, scale, gain);
+        let for_rolling = 0.5 * (slide * slide - roll * roll) / total;
+        let for_rolling = for_rolling.clamp(-LOUDEST, LOUDEST);
+        track.for_rolling.add(for_rolling);
+        track.for_sliding.add(-for_rolling);
+    }
+}
+
+impl WallTrack {
+    /// Standard deviation of the rates, rad/s.
+    pub(crate) fn rate_spread(&self) -> f32 {
+        sqrt(self.covariance[2].max(0.0))
+    }
+}
+
+impl Swing {
+    /// A rate of more than a radian in a sample is not followed.
+    fn predict(&mut self, acceleration: f32, dt: f32) {
+        let angle = (self.rate + 0.5 * acceleration * dt) * dt;
+        // Not `clamp`: bounds that it cannot see through may be the wrong way round, and it would say so.
+        self.rate = (self.rate + acceleration * dt).max(-1.0 / dt).min(1.0 / dt);
+        self.rotate(angle);
+    }
+
+    fn correct(&mut self, [x, y]: [f32; 2], scale: f32, gain: [f32; 2]) -> f32 {
+        let residual = (x * self.cos + y * self.sin) * scale;
+        // On the far side the tangential component no longer tells the way.
+        let outward = (x * self.sin - y * self.cos) * scale;
+        let residual = if outward > 0.0 {
+            residual
+        } else if residual >= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        self.rotate(gain[0] * residual);
+        self.rate += gain[1] * residual;
+        residual
+    }
+
+    /// Turns by an angle (limited to 1 rad), by the series of sine and cosine to 1e-5.
+    fn rotate(&mut self, angle: f32) {
+        let a = angle.clamp(-1.0, 1.0);
+        let q = a * a;
+        let sin = a * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0)));
+        let cos = 1.0 - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0));
+        let (s, c) = (self.sin, self.cos);
+        let (s, c) = (s * cos + c * sin, c * cos - s * sin);
+        let norm = 1.5 - 0.5 * (s * s + c * c);
+        self.sin = s * norm;
+        self.cos = c * norm;
+        self.turned += a;
+    }
+}

@@ -1,0 +1,69 @@
+//! The forecast as a task of its own, below the tick: what it is handed, and when it starts anew.
+
+use crate::config::DetectorConfig;
+use crate::detect::Estimate;
+use crate::event::Notice;
+use crate::event::Outlook;
+use crate::forecast::{Forecast, ForecastState};
+use touchdown_rotor::error::ConfigError;
+
+/// What the tick hands over.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// The last sample.
+    pub sample: u64,
+    /// In flight or in contact.
+    pub is_released: bool,
+    /// The rotor, once it has met the wall, where it was asked for.
+    pub estimate: Option<Estimate>,
+}
+
+/// The forecast. It shares nothing with the tick, which may interrupt it at any point.
+#[derive(Clone, Debug)]
+pub struct Lookout {
+    forecast: Forecast,
+    state: ForecastState,
+}
+
+impl Lookout {
+    /// Checks `config` and prepares the model.
+    pub fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
+        Ok(Self {
+            forecast: Forecast::try_new(config)?,
+            state: ForecastState::default(),
+        })
+    }
+
+    /// Whether it waits for an estimate to start from.
+    pub fn asks(&self) -> bool {
+        !self.state.is_busy()
+    }
+
+    /// A slice of the work: once after each tick, or as often as there is time. Bounded; cannot fail. What lies
+    /// ahead, where that is news.
+    pub fn work(&mut self, sight: &Sight) -> Option<Notice> {
+        let state = &mut self.state;
+        if !sight.is_released {
+            *state = ForecastState::default();
+            return None;
+        }
+        if !state.is_busy()
+            && let Some(estimate) = &sight.estimate
+            && self.forecast.is_known(estimate.speed_error)
+        {
+            self.forecast.start(state, estimate);
+        }
+        self.forecast.work(state, sight.sample)?;
+        state.news().map(Notice::Outlook)
+    }
+
+    /// The last forecast of this episode.
+    pub fn last(&self) -> Option<&Outlook> {
+        self.state.last()
+    }
+
+    /// Words that show any difference in what was worked out.
+    pub(crate) fn words(&self) -> [f32; 5] {
+        self.state.words()
+    }
+}

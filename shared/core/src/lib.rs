@@ -1,0 +1,32 @@
+#![no_std]
+#![forbid(unsafe_code)]
+//! Touchdown of a rotor on active magnetic bearings: the impact model and the phase detector that
+//! run on the microcontroller and, with the same bits, on the desktop.
+//!
+//! Everything that runs per sample comes as three types: `XConfig` (SI units, public, validated),
+//! `X` (coefficients) and `XState`. Building an `X` can fail; the per-sample call cannot: it is
+//! bounded, allocates nothing and never panics.
+
+pub mod checksum;
+pub mod config;
+#[cfg(feature = "serde")]
+pub mod config_block;
+pub mod controller;
+pub mod detect;
+pub mod event;
+pub mod fault;
+pub mod forecast;
+pub mod health;
+#[cfg(feature = "serde")]
+pub mod learnt;
+#[cfg(feature = "serde")]
+pub mod link;
+pub mod log;
+pub mod monitor;
+pub mod phase;
+pub mod sample;
+pub mod sensing;
+pub mod severity;
+pub mod tachometer;
+mod vector;
+pub mod wire;

@@ -1,0 +1,28 @@
+//! The bytes of the drop log, as firmware writes and desktop reads them: `docs/formats/log.md`.
+//!
+//! An episode is a sequence of [`block::Block`]s of one flash page each: header, waveform, pulses, events,
+//! severity, ending. Each block carries its episode, its place and a checksum, so any part of an
+//! episode is known for what it is. The ending comes last: without it the episode is incomplete.
+
+pub mod block;
+pub mod counters;
+pub mod ending;
+mod fields;
+pub mod header;
+pub mod marks;
+pub mod pulses;
+pub mod reader;
+#[cfg(feature = "serde")]
+pub mod severity;
+pub mod waveform;
+
+use crate::checksum::CRC;
+
+/// Version of the format, in the header of an episode with pulses. All earlier ones are read as well.
+pub const FORMAT: u16 = 3;
+/// Version in the header of an episode without pulses. Version 1 has no [`block::Kind::Learnt`].
+pub const FORMAT_WITHOUT_PULSES: u16 = 2;
+
+fn checksum(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}

@@ -1,0 +1,276 @@
+//! The whole tick: sensing, the sensors' health, then the detector.
+
+use crc::Digest;
+
+use crate::checksum::CRC;
+use crate::detect::{
+    Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
+};
+use crate::event::{Motion, Notice, Notices};
+use crate::forecast::{Lookout, Sight};
+use crate::health::{Condition, Health, HealthState};
+use crate::sample::{CHANNELS, Sample};
+use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
+use crate::severity::{Severeness, Severity, SeverityState};
+use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
+use crate::wire::Summary;
+use touchdown_rotor::error::ConfigError;
+
+/// All that the monitor is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MonitorConfig {
+    /// Bit i is set if channel i is fitted.
+    pub fitted: u8,
+    /// Counts to displacement.
+    pub sensing: SensingConfig,
+    /// Pulses to the inner ring's speed, where the retainer is a ball bearing that is watched.
+    pub tachometers: Option<TachometersConfig>,
+    /// Displacement to events.
+    pub detector: DetectorConfig,
+}
+
+/// Coefficients of the tick.
+#[derive(Clone, Debug)]
+pub struct Monitor {
+    sensing: Sensing,
+    health: Health,
+    tachometers: Option<Tachometers>,
+    detector: Detector,
+    severeness: Severeness,
+}
+
+/// What the sensors say in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    reading: Reading,
+    signals: Signals,
+}
+
+/// What the tick carries from sample to sample.
+#[derive(Clone, Debug, Default)]
+pub struct MonitorState {
+    samples: u64,
+    faults: u64,
+    pub(crate) health: HealthState,
+    pub(crate) tachometers: TachometersState,
+    position: Option<[f32; 2]>,
+    inner_ring: Option<Speed>,
+    pub(crate) detector: DetectorState,
+    pub(crate) spin: Option<f32>,
+    #[cfg(feature = "serde")]
+    pub(crate) levitated: Option<bool>,
+    severity: SeverityState,
+}
+
+impl Monitor {
+    /// Checks `config` and prepares the tick.
+    pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+        Ok(Self {
+            sensing: Sensing::try_new(&config.sensing)?,
+            tachometers: config
+                .tachometers
+                .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
+                .transpose()?,
+            detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
+            health: Health::new(&config.detector, &config.sensing, config.fitted),
+            severeness: Severeness::try_new(&config.detector)?,
+        })
+    }
+
+    /// The state before the first sample.
+    pub fn start(&self) -> MonitorState {
+        MonitorState::default()
+    }
+
+    /// One tick: what it has to say. Bounded; cannot fail.
+    pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
+        let mut notices = Notices::new();
+        self.tick(state, sample, &mut notices);
+        notices
+    }
+
+    /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
+    #[inline]
+    pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
+        let seen = self.sense(state, sample);
+        self.detect(state, &seen, notices);
+        self.weigh(state, notices);
+    }
+
+    /// First part of a tick: what the sensors say, and whether they can be believed.
+    #[inline]
+    pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
+        let phases = state.detector.phases();
+        let reading = self
+            .health
+            .update(&mut state.health, &self.sensing, sample, phases);
+        state.spin = sample.spin.filter(|spin| spin.is_finite());
+        #[cfg(feature = "serde")]
+        {
+            state.levitated = sample.levitated;
+        }
+        let spin = state.spin;
+        let retainer = self.retainer(state, sample);
+        state.samples += 1;
+        state.position = reading
+            .mean()
+            .filter(|_| reading.is_own())
+            .map(|(position, _)| position);
+        state.faults += u64::from(reading.unusable.count_ones());
+        state.faults += u64::from(spin.is_none() && sample.spin.is_some());
+        let signals = Signals {
+            spin,
+            retainer,
+            levitated: sample.levitated,
+        };
+        Seen { reading, signals }
+    }
+
+    /// Second part: the detector. What was in `notices` goes.
+    #[inline]
+    pub fn detect(&self, state: &mut MonitorState, seen: &Seen, notices: &mut Notices) {
+        notices.clear();
+        let detector = &mut state.detector;
+        self.detector
+            .update(detector, &seen.reading, &seen.signals, notices);
+    }
+
+    /// Last part: what it does to the machine.
+    #[inline]
+    pub fn weigh(&self, state: &mut MonitorState, notices: &[Notice]) {
+        let strain = self.detector.strain(&state.detector);
+        self.severeness.take(&mut state.severity, &strain, notices);
+    }
+
+    /// What the forecast below the tick needs of the last one; an estimate only where it `asks` for one.
+    pub fn sight(&self, state: &MonitorState, asks: bool) -> Sight {
+        let is_released = state.detector.phase() >= Phase::FreeFall;
+        let estimate = if asks && is_released {
+            self.detector.estimate(&state.detector, state.spin)
+        } else {
+            None
+        };
+        Sight {
+            sample: state.samples.saturating_sub(1),
+            is_released,
+            estimate,
+        }
+    }
+
+    /// A slice of the forecast after a tick, where the two take turns.
+    pub fn look(&self, state: &MonitorState, lookout: &mut Lookout) -> Option<Notice> {
+        lookout.work(&self.sight(state, lookout.asks()))
+    }
+
+    fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
+        let Some(tachometers) = &self.tachometers else {
+            return Retainer::Fixed;
+        };
+        let edges = &sample.edges;
+        state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
+        match state.spin {
+            Some(spin) => {
+                Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
+            }
+            None => Retainer::Fixed,
+        }
+    }
+}
+
+impl MonitorState {
+    /// Samples seen.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Channel values that were unusable, or not used.
+    pub fn faults(&self) -> u64 {
+        self.faults
+    }
+
+    /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers
+    /// values of its own.
+    pub fn position(&self) -> Option<[f32; 2]> {
+        self.position
+    }
+
+    /// What can be had of each channel.
+    pub fn conditions(&self) -> [Condition; CHANNELS] {
+        self.health.conditions()
+    }
+
+    /// The present phase.
+    pub fn phase(&self) -> Phase {
+        self.detector.phase()
+    }
+
+    /// The present phase of each end of the rotor.
+    pub fn phases(&self) -> [Phase; PLANES] {
+        self.detector.phases()
+    }
+
+    /// How the rotor moves.
+    pub fn motion(&self) -> Motion {
+        self.detector.motion()
+    }
+
+    /// Speed of the ball bearing's inner ring, where known.
+    pub fn inner_ring(&self) -> Option<Speed> {
+        self.inner_ring
+    }
+
+    /// Slip on the wall, where it is measured: in contact, with rotor and inner ring speed known.
+    pub fn slip(&self) -> Option<Slip> {
+        self.detector.slip()
+    }
+
+    /// What the last drop has done to the machine so far; zeros before the first.
+    pub fn severity(&self) -> &Severity {
+        &self.severity.so_far
+    }
+
+    /// Whether noise and position have been learnt.
+    pub fn is_armed(&self) -> bool {
+        self.detector.is_armed()
+    }
+}
+
+/// Fingerprint of the state over a run: equal on two machines only if every tick left the same
+/// bits. Not part of the tick.
+#[derive(Clone)]
+pub struct Fingerprint(Digest<'static, u32>);
+
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self(CRC.digest())
+    }
+}
+
+impl Fingerprint {
+    /// Takes in the state after a tick, and that of the forecast below it.
+    pub fn take(&mut self, state: &MonitorState, lookout: &Lookout) {
+        self.0.update(&state.samples.to_le_bytes());
+        self.0.update(&state.faults.to_le_bytes());
+        state
+            .health
+            .fingerprint(|value| self.0.update(&bits(value).to_le_bytes()));
+        state
+            .detector
+            .fingerprint(|word| self.0.update(&word.to_le_bytes()));
+        let severity = state.severity().words();
+        for value in lookout.words().into_iter().chain(severity) {
+            self.0.update(&bits(value).to_le_bytes());
+        }
+    }
+
+    /// What the run added up to.
+    pub fn summary(self, state: &MonitorState) -> Summary {
+        Summary {
+            samples: state.samples,
+            faults: state.faults,
+            conditions: state.conditions(),
+            state_hash: self.0.finalize(),
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! How hard a drop is on the machine, from position and speed alone.
+//!
+//! An episode begins where the rotor is released; what it adds up to stays until the next one begins.
+
+use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::Strain;
+use crate::event::{Event, EventKind, Moment, Notice};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::sqrt;
+
+/// Speed that the velocity index is measured in where there is no gravity, m/s.
+const DRIFT: f32 = 0.05;
+/// Part of the unit of speed to which a velocity must be known to count.
+const WELL_KNOWN: f32 = 0.05;
+/// Angle of whirl in a sample, rad, beyond which its rate is no longer followed well.
+const FOLLOWED: f32 = 0.3;
+
+/// What the last drop has done so far; SI.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Severity {
+    /// Impacts that were declared.
+    pub impacts: u16,
+    /// Greatest speed into the wall, m/s.
+    pub impact_speed: f32,
+    /// Greatest impulse along the normal, m (1 + restitution) times that speed, N s. The restitution is
+    /// the one seen so far; the whole mass counts, also where one end hits alone.
+    pub impulse: f32,
+    /// Sum over the impacts, with those at the end of a series that are too weak to see, N s.
+    pub total_impulse: f32,
+    /// Time in permanent contact, s.
+    pub dwell: f32,
+    /// Greatest speed of the centre in parts of sqrt(g rho0): 1.41 after a fall through the clearance.
+    pub velocity_index: f32,
+    /// Greatest frequency at which a declared whirl went round the retainer, Hz; what is faster than 0.3 rad
+    /// in a sample is left out.
+    pub whirl_frequency: f32,
+    /// Greatest force of it on the wall, m rho0 (2 pi f)^2 + m g, N.
+    pub whirl_load: f32,
+}
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Severeness {
+    machine: MachineConfig,
+    period: f32,
+    unit: f32,
+}
+
+/// What an episode carries from tick to tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SeverityState {
+    pub(crate) so_far: Severity,
+    /// Sum of the speeds into the wall, m/s.
+    speeds: f32,
+    was_released: bool,
+    was_in_contact: bool,
+}
+
+impl Severeness {
+    /// `config` must be valid.
+    pub(crate) fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let machine = config.machine;
+        let unit = sqrt(machine.gravity * machine.clearance);
+        Ok(Self {
+            machine,
+            period: 1.0 / config.sample_rate,
+            unit: if unit > 0.0 { unit } else { DRIFT },
+        })
+    }
+
+    /// After a tick that gave `notices`.
+    pub(crate) fn take(&self, state: &mut SeverityState, strain: &Strain, notices: &[Notice]) {
+        if strain.is_released && !state.was_released {
+            *state = SeverityState::default();
+        }
+        state.was_released = strain.is_released;
+        for notice in notices {
+            if let Notice::Declared(event) = notice {
+                self.event(state, event, strain.restitution);
+            }
+        }
+        self.contact(state, strain);
+        let so_far = &mut state.so_far;
+        if strain.speed_error < WELL_KNOWN * self.unit {
+            so_far.velocity_index = so_far.velocity_index.max(strain.speed / self.unit);
+        }
+        let followed = |rate: &f32| rate.abs() * self.period < FOLLOWED;
+        if let Some(rate) = strain.whirl.filter(followed) {
+            let machine = &self.machine;
+            let load = machine.mass * (machine.clearance * rate * rate + machine.gravity);
+            let frequency = rate.abs() / core::f32::consts::TAU;
+            so_far.whirl_frequency = so_far.whirl_frequency.max(frequency);
+            so_far.whirl_load = so_far.whirl_load.max(load);
+        }
+    }
+
+    fn event(&self, state: &mut SeverityState, event: &Event, restitution: f32) {
+        let so_far = &mut state.so_far;
+        match event.kind {
+            EventKind::Impact => {
+                state.speeds += event.normal_speed;
+                so_far.impacts = so_far.impacts.saturating_add(1);
+                so_far.impact_speed = so_far.impact_speed.max(event.normal_speed);
+                self.impulses(state, restitution);
+            }
+            EventKind::LiftOff => {
+                // It was over before it was declared.
+                let late = Moment::of_sample(event.declared).since(event.onset);
+                so_far.dwell = (so_far.dwell - late * self.period).max(0.0);
+            }
+            _ => {}
+        }
+    }
+
+    fn contact(&self, state: &mut SeverityState, strain: &Strain) {
+        if let Some(age) = strain.contact_age {
+            // It began before it was declared.
+            let samples = if state.was_in_contact { 1 } else { age };
+            state.so_far.dwell += samples as f32 * self.period;
+            if !state.was_in_contact {
+                state.speeds += strain.ahead;
+                self.impulses(state, strain.restitution);
+            }
+        }
+        state.was_in_contact = strain.contact_age.is_some();
+    }
+
+    fn impulses(&self, state: &mut SeverityState, restitution: f32) {
+        let per_speed = self.machine.mass * (1.0 + restitution);
+        state.so_far.impulse = per_speed * state.so_far.impact_speed;
+        state.so_far.total_impulse = per_speed * state.speeds;
+    }
+}
+
+impl Severity {
+    /// Words that show any difference.
+    pub(crate) fn words(&self) -> [f32; 8] {
+        [
+            f32::from(self.impacts),
+            self.impact_speed,
+            self.impulse,
+            self.total_impulse,
+            self.dwell,
+            self.velocity_index,
+            self.whirl_frequency,
+            self.whirl_load,
+        ]
+    }
+}

@@ -1,0 +1,24 @@
+//! Displacements in the plane, m.
+
+use touchdown_rotor::real::sqrt;
+
+/// Unit vector from the centre and distance, m.
+pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
+    let radius = sqrt(x * x + y * y);
+    if radius > 0.0 {
+        ([x / radius, y / radius], radius)
+    } else {
+        ([0.0, -1.0], 0.0)
+    }
+}
+
+/// Square of the distance, m^2.
+pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    dx * dx + dy * dy
+}
+
+/// Sum of two displacements, m.
+pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}

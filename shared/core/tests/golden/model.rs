@@ -1,0 +1,320 @@
+//! Drops of every rung in f64 and f32, as text.
+
+use std::fmt::Write;
+
+use touchdown_models::{
+    BallBearing, Bushing, Ends, Euler, Fixed, Hertz, HertzConfig, MagnetConfig, Materials, Moreau,
+    MountConfig, Placement, Point, RaceConfig, RingConfig, Sprung, Support, SupportConfig,
+    TwoPlane, TwoPlaneConfig, UnbalanceConfig, Verlet,
+};
+use touchdown_rotor::real::{Micro32, Poly32, Real};
+use touchdown_rotor::{
+    Change, Happening, Kinematics, Precision, Rigid, RigidConfig, Start, Stepper,
+};
+
+/// Changes of a drop that are told one by one.
+const TOLD: usize = 10;
+/// The rig's unit of speed, sqrt(g rho0), m/s, and its surface speed, in it.
+const SPEED: f64 = 0.054_249_4;
+const SPIN: f64 = -1_389.8;
+/// Steps of the rungs that go by steps, 20 us, and how many.
+const STEP: f64 = 2e-5;
+const STEPS: u64 = 4_000;
+
+/// The rig of the source paper, SI.
+const RIG: RigidConfig<f64> = RigidConfig {
+    mass: 3.42,
+    radius: 0.024,
+    polar_inertia: 9.849_6e-4,
+    clearance: 3e-4,
+    friction: 0.1,
+    restitution: 0.8,
+    gravity: 9.81,
+    speed: 0.05,
+    step: 1e-4,
+};
+
+/// A drop from beside the centre.
+const DROP: Start<f64> = Start::Free {
+    position: [0.066_7, 0.0],
+    velocity: [0.0, 0.0],
+};
+
+/// A start at the bottom of the wall with this speed, V.
+fn at_bottom(tangential: f64) -> Start<f64> {
+    Start::Wall {
+        sin: 0.0,
+        cos: 1.0,
+        tangential,
+    }
+}
+
+/// Every drop.
+pub fn text() -> String {
+    let mut text = String::from("Units of the model; time in steps.\n");
+    rigid(&mut text);
+    by_steps(&mut text);
+    rings(&mut text);
+    text
+}
+
+fn rigid(text: &mut String) {
+    let slow = RigidConfig {
+        friction: 0.15,
+        ..RIG
+    };
+    let weightless = RigidConfig {
+        gravity: 0.0,
+        step: 1e-2,
+        ..RIG
+    };
+    let low = at_bottom(0.095 / SPEED);
+    let cases = [
+        ("drop", RIG, DROP, SPIN, 3_000),
+        ("slow spin", slow, DROP, SPIN / 100.0, 8_000),
+        ("slow spin the other way", slow, DROP, -SPIN / 100.0, 8_000),
+        ("spin used up over whole periods", slow, DROP, SPIN, 300_000),
+        ("whirl", RIG, at_bottom(1.853), SPIN, 600),
+        ("swing with the spin", RIG, low, SPIN, 2_000),
+        ("lift-off", RIG, low, -SPIN, 1_500),
+        (
+            "whirl without weight",
+            weightless,
+            at_bottom(30.0),
+            SPIN,
+            100,
+        ),
+    ];
+    for (name, config, start, spin, steps) in cases {
+        let model = Rigid::<f64>::try_new(&config).expect("a valid machine");
+        run::<f64, _>(
+            text,
+            &format!("rigid, f64: {name}"),
+            &model,
+            &start,
+            spin,
+            steps,
+        );
+        run::<f32, _>(
+            text,
+            &format!("rigid, f32: {name}"),
+            &model.rounded(),
+            &start.rounded(),
+            spin,
+            steps,
+        );
+    }
+    let model = Rigid::<f64>::try_new(&RIG).expect("a valid machine");
+    let (poly, micro) = (model.rounded::<Poly32>(), model.rounded::<Micro32>());
+    run(
+        text,
+        "rigid, polynomials: drop",
+        &poly,
+        &DROP.rounded(),
+        SPIN,
+        3_000,
+    );
+    run(
+        text,
+        "rigid, micromath: drop",
+        &micro,
+        &DROP.rounded(),
+        SPIN,
+        3_000,
+    );
+}
+
+fn by_steps(text: &mut String) {
+    let fine = RigidConfig { step: STEP, ..RIG };
+    let moreau = Moreau::<f64>::try_new(&fine).expect("a valid machine");
+    let slow = RigidConfig {
+        friction: 0.15,
+        ..fine
+    };
+    let rolling = Moreau::<f64>::try_new(&slow).expect("a valid machine");
+    run::<f64, _>(text, "moreau, f64: drop", &moreau, &DROP, SPIN, STEPS);
+    run::<f64, _>(
+        text,
+        "moreau, f64: whirl",
+        &moreau,
+        &at_bottom(1.9),
+        SPIN,
+        1_000,
+    );
+    run::<f64, _>(
+        text,
+        "moreau, f64: slow spin",
+        &rolling,
+        &DROP,
+        SPIN / 100.0,
+        20_000,
+    );
+    let config = HertzConfig {
+        rigid: RigidConfig { step: 1e-6, ..RIG },
+        materials: Materials::steel(),
+        shape: Point,
+        fastest: 0.2,
+    };
+    let hertz = Hertz::<f64, Point, Verlet>::try_new(&config).expect("a valid machine");
+    run::<f64, _>(text, "hertz, verlet: drop", &hertz, &DROP, SPIN, 20_000);
+    let hertz = Hertz::<f64, Point, Euler>::try_new(&config).expect("a valid machine");
+    run::<f64, _>(text, "hertz, euler: drop", &hertz, &DROP, SPIN, 20_000);
+}
+
+fn rings(text: &mut String) {
+    let rigid = RigidConfig { step: STEP, ..RIG };
+    let mount = MountConfig {
+        mass: 0.5,
+        stiffness: 2.6e6,
+        damping: 320.0,
+        travel: Some(5e-4),
+    };
+    let race = RaceConfig {
+        inertia: 3e-5,
+        dry_drag: 0.005,
+        viscous_drag: 1e-5,
+        cage_ratio: 0.44,
+        heat_capacity: 50.0,
+        heat_loss: 0.5,
+    };
+    let soft = Support::<f64, Sprung<f64>, Bushing>::try_new(&SupportConfig {
+        rigid,
+        mount,
+        race: Bushing,
+    });
+    let soft = soft.expect("a valid machine");
+    run::<f64, _>(text, "support, sprung: drop", &soft, &DROP, SPIN, STEPS);
+    run::<f64, _>(
+        text,
+        "support, sprung: whirl",
+        &soft,
+        &at_bottom(2.2),
+        SPIN,
+        STEPS,
+    );
+    let bearing = Support::<f64, Fixed, BallBearing<f64>>::try_new(&SupportConfig {
+        rigid,
+        mount: Fixed,
+        race,
+    });
+    let bearing = bearing.expect("a valid machine");
+    run::<f64, _>(
+        text,
+        "support, ball bearing: drop",
+        &bearing,
+        &DROP,
+        SPIN / 10.0,
+        STEPS,
+    );
+    run::<f64, _>(
+        text,
+        "support, ball bearing: spun up",
+        &bearing,
+        &at_bottom(0.5),
+        SPIN / 200.0,
+        20_000,
+    );
+    two_plane(text);
+}
+
+fn two_plane(text: &mut String) {
+    let ring = |place| RingConfig {
+        place,
+        clearance: RIG.clearance,
+        radius: RIG.radius,
+        friction: RIG.friction,
+        restitution: RIG.restitution,
+    };
+    let config = TwoPlaneConfig {
+        mass: RIG.mass,
+        polar_inertia: RIG.polar_inertia,
+        transverse_inertia: 0.0308,
+        rings: [ring(-0.12), ring(0.12)],
+        gravity: [0.0, -RIG.gravity],
+        speed: RIG.speed,
+        unbalance: UnbalanceConfig {
+            eccentricity: 3.2e-7,
+            ..UnbalanceConfig::default()
+        },
+        magnets: [MagnetConfig::default(); 2],
+        step: STEP,
+    };
+    let model = TwoPlane::<f64, 2>::try_new(&config).expect("a valid machine");
+    let askew = Placement {
+        tilt: [0.0, 6e-4 / model.tilt_scale()],
+        ..Placement::default()
+    };
+    let ends = Ends::new(model, askew);
+    run::<f64, _>(text, "two-plane: askew", &ends, &DROP, SPIN, STEPS);
+    let ends = Ends::new(model.rounded::<f32>(), askew.rounded());
+    run::<f32, _>(
+        text,
+        "two-plane, f32: askew",
+        &ends,
+        &DROP.rounded(),
+        SPIN,
+        STEPS,
+    );
+}
+
+/// The first changes of motion, how many there were, and the end.
+fn run<R: Precision, M: Stepper<R>>(
+    text: &mut String,
+    name: &str,
+    model: &M,
+    start: &Start<R>,
+    spin: f64,
+    steps: u64,
+) {
+    let (mut count, mut told) = (0, String::new());
+    let mut sink = |happening: Happening<R>| {
+        count += 1;
+        if count <= TOLD {
+            writeln!(told, "  {}", line(&happening)).expect("a string");
+        }
+    };
+    let state = model.start(start, R::lit(spin), &mut sink);
+    let mut state = state.expect("a valid start");
+    model.run(&mut state, steps, R::ZERO, &mut sink);
+    let end = kinematics(&model.kinematics(&state));
+    write!(text, "\n{name}\n{told}  {count} changes\n  end {end}\n").expect("a string");
+}
+
+fn line<R: Real>(happening: &Happening<R>) -> String {
+    let change = match &happening.change {
+        Change::Impact(normal) => format!("impact {}", number(*normal)),
+        Change::Released(pulse) => format!(
+            "released {} {} {}",
+            number(pulse.peak_force),
+            number(pulse.duration),
+            number(pulse.impulse)
+        ),
+        other => format!("{other:?}"),
+    };
+    format!(
+        "{}+{} {change} {}",
+        happening.at.tick,
+        number(happening.at.fraction),
+        kinematics(&happening.after)
+    )
+}
+
+fn kinematics<R: Real>(it: &Kinematics<R>) -> String {
+    let ([x, y], [u, v]) = (it.position, it.velocity);
+    let values = [x, y, u, v, it.spin].map(number).join(" ");
+    format!(
+        "{values} {:?} turns {} {}",
+        it.touch,
+        it.turns.0,
+        number(it.turns.1)
+    )
+}
+
+/// In as many digits as tell it from its neighbours.
+fn number<R: Real>(value: R) -> String {
+    if size_of::<R>() == size_of::<f32>() {
+        (value.to_f64() as f32).to_string()
+    } else {
+        value.to_f64().to_string()
+    }
+}

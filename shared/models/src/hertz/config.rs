@@ -1,0 +1,79 @@
+//! A rotor, its retainer and what they are made of.
+
+use super::shape::{Materials, Pairing, Shape};
+use touchdown_rotor::RigidConfig;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::positive;
+
+/// A rotor and its compliant retainer, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HertzConfig<R, C> {
+    /// What it shares with the rigid rung.
+    pub rigid: RigidConfig<R>,
+    /// What rotor and retainer are made of.
+    pub materials: Materials<R>,
+    /// [`super::Point`] or [`super::Line`].
+    pub shape: C,
+    /// Speed of the fastest impact expected, m/s: it sets the longest step.
+    pub fastest: R,
+}
+
+/// How stiff the contact is, SI; without damping and without gravity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compliance<R> {
+    /// K in force = K d^n, N/m^n.
+    pub stiffness: R,
+    /// Compression of the fastest impact, m.
+    pub deepest: R,
+    /// Force of the fastest impact, N.
+    pub peak_force: R,
+    /// omega_c, the rate of small oscillations there, rad/s.
+    pub rate: R,
+    /// T_c, the duration of the fastest impact, s.
+    pub contact_time: R,
+}
+
+impl<R: Real> Compliance<R> {
+    /// 2/omega_c, s: beyond it a step is unstable.
+    pub fn longest_step(&self) -> R {
+        R::TWO / self.rate
+    }
+
+    /// T_c/25, s: up to it a step is accurate to a few percent of the force.
+    pub fn accurate_step(&self) -> R {
+        self.contact_time / R::from_i32(25)
+    }
+}
+
+impl<R: Real, C: Shape<R>> HertzConfig<R, C> {
+    /// Checks what the contact's stiffness depends on, and works it out.
+    pub fn compliance(&self) -> Result<Compliance<R>, ConfigError> {
+        let (mass, speed) = (self.rigid.mass, self.fastest);
+        positive("mass", mass)?;
+        positive("fastest", speed)?;
+        positive("radius", self.rigid.radius)?;
+        positive("clearance", self.rigid.clearance)?;
+        let stiffness = self.shape.stiffness(&Pairing {
+            modulus: self.materials.contact_modulus()?,
+            radius: self.rigid.radius,
+            clearance: self.rigid.clearance,
+            mass,
+            speed,
+        })?;
+        // K d^(n+1)/(n+1) = m V^2/2.
+        let n = C::exponent();
+        let deepest = C::deepest(R::HALF * (n + R::ONE) * mass / stiffness * speed * speed);
+        let force = stiffness * C::power(deepest);
+        let compliance = Compliance {
+            stiffness,
+            deepest,
+            peak_force: force,
+            rate: (n * force / (deepest * mass)).sqrt(),
+            contact_time: R::lit(C::DURATION) * deepest / speed,
+        };
+        positive("fastest", compliance.contact_time)?;
+        positive("fastest", compliance.rate)?;
+        Ok(compliance)
+    }
+}

@@ -1,0 +1,147 @@
+//! Rung `hertz`: a compliant contact, which has a force and takes time.
+//!
+//! The wall pushes with K d^n (1 + a d'/V) at depth d, n = 3/2 for a point contact (Hertz) and 1 for a
+//! line contact; friction is Coulomb's, and what would stop the slip within the step limits it, so
+//! sticking is exact and needs no constant. Between contacts the path is the rigid rung's parabola.
+
+mod config;
+mod damping;
+mod follow;
+mod press;
+mod scheme;
+mod shape;
+mod state;
+
+pub use config::{Compliance, HertzConfig};
+pub use scheme::{Euler, Scheme, Verlet};
+pub use shape::{Line, Materials, Pairing, Point, Shape};
+pub use state::HertzState;
+
+use core::marker::PhantomData;
+
+use touchdown_rotor::clock::Instant;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::kinematics::{Change, Happening, Kinematics};
+use touchdown_rotor::law::Law;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::Scales;
+use touchdown_rotor::start::Start;
+use touchdown_rotor::stepper::Stepper;
+
+/// Part of the fastest impact's speed below which a contact's damping is no longer scaled by its own
+/// entry speed. Chosen, because such a contact has 1e-6 of that impact's energy.
+const SLOWEST: f64 = 1e-3;
+
+/// Coefficients of the model; `C` is the shape of the contact, `S` the scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hertz<R, C, S> {
+    law: Law<R>,
+    /// K, dimensionless: force per mass in units of V^2/rho0 over depth in units of rho0.
+    stiffness: R,
+    /// a.
+    damping: R,
+    /// Lowest speed by which the damping is scaled, V.
+    slowest: R,
+    /// Length of a step, T.
+    step: R,
+    scales: Scales<R>,
+    kind: PhantomData<(C, S)>,
+}
+
+impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
+    /// Checks `config` and works out the coefficients. A step above 2/omega_c is refused.
+    pub fn try_new(config: &HertzConfig<R, C>) -> Result<Self, ConfigError> {
+        let (law, scales) = config.rigid.scaled()?;
+        let compliance = config.compliance()?;
+        if config.rigid.step > compliance.longest_step() {
+            let rule = "no more than 2/omega_c, the limit of stability in the fastest impact";
+            return Err(ConfigError::OutOfRange("step", rule));
+        }
+        let deepest = compliance.deepest / scales.length;
+        let fastest = config.fastest / scales.speed;
+        let n = C::exponent();
+        let stiffness = R::HALF * (n + R::ONE) * fastest * fastest / (C::power(deepest) * deepest);
+        // A fall through the static compression: slower, gravity and not the impact decides.
+        let settled = C::depth(law.gravity / stiffness);
+        let slowest = (R::TWO * law.gravity * settled).sqrt();
+        Ok(Self {
+            damping: damping::damping(law.restitution),
+            law,
+            stiffness,
+            slowest: slowest.most(R::lit(SLOWEST) * fastest),
+            step: config.rigid.step / scales.time,
+            scales,
+            kind: PhantomData,
+        })
+    }
+}
+
+impl<R: Real, C, S> Hertz<R, C, S> {
+    /// The model's units.
+    pub fn scales(&self) -> &Scales<R> {
+        &self.scales
+    }
+}
+
+impl<C, S> Hertz<f64, C, S> {
+    /// The same model with every coefficient rounded once; `D` is the shape in the other numbers.
+    pub fn rounded<R: Real, D>(&self) -> Hertz<R, D, S> {
+        Hertz {
+            law: self.law.rounded(),
+            stiffness: R::lit(self.stiffness),
+            damping: R::lit(self.damping),
+            slowest: R::lit(self.slowest),
+            step: R::lit(self.step),
+            scales: self.scales.rounded(),
+            kind: PhantomData,
+        }
+    }
+}
+
+impl<R: Precision, C: Shape<R>, S: Scheme> Stepper<R> for Hertz<R, C, S> {
+    type State = HertzState<R>;
+
+    fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) -> Result<HertzState<R>, ConfigError> {
+        start.check(spin)?;
+        Ok(self.placed(start, spin, &mut sink))
+    }
+
+    fn step(&self, state: &mut HertzState<R>, mut sink: impl FnMut(Happening<R>)) {
+        let next = Instant::at_tick(state.now.tick + 1);
+        S::advance(self, state, self.step, next, &mut sink);
+    }
+
+    fn part_step(
+        &self,
+        state: &mut HertzState<R>,
+        fraction: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) {
+        let tick = state.now.tick;
+        let time = self.step * fraction;
+        S::advance(self, state, time, Instant { tick, fraction }, &mut sink);
+    }
+
+    fn kinematics(&self, state: &HertzState<R>) -> Kinematics<R> {
+        state.kinematics()
+    }
+}
+
+fn tell<R: Precision>(
+    state: &HertzState<R>,
+    at: Instant<R>,
+    change: Change<R>,
+    sink: &mut impl FnMut(Happening<R>),
+) {
+    sink(Happening {
+        at,
+        change,
+        after: state.kinematics(),
+    });
+}

@@ -1,0 +1,102 @@
+//! What acts in a step: gravity, and in contact the wall.
+
+use super::state::Touching;
+use super::{Hertz, HertzState, Scheme, Shape, tell};
+use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::sum::Sum;
+
+impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
+    /// Gravity alone, for `time`.
+    pub(super) fn fall(&self, state: &mut HertzState<R>, time: R) {
+        state.velocity[1].add(-(self.law.gravity * time));
+    }
+
+    /// Gravity and the wall, for `time` at the place where the rotor is.
+    pub(super) fn press(
+        &self,
+        state: &mut HertzState<R>,
+        time: R,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let Some(mut touching) = state.touching else {
+            return;
+        };
+        let law = &self.law;
+        let [x, y] = state.position.map(Sum::value);
+        let [u, v] = state.velocity.map(Sum::value);
+        let distance = (x * x + y * y).sqrt();
+        let inverse = R::ONE / distance;
+        let (sin, cos) = (x * inverse, -y * inverse);
+        let depth = (distance - R::ONE).most(R::ZERO);
+        let force = self.stiffness * C::power(depth);
+
+        let fall = law.gravity * time;
+        let (normal, along) = (u * sin - v * cos, u * cos + v * sin);
+        let starts = !touching.stays && {
+            // Motion and compression together do not suffice to leave against what presses.
+            let stored = force * depth / (C::exponent() + R::ONE);
+            let pressing = along * along + law.gravity * cos;
+            R::HALF * normal * normal + stored < pressing * depth
+        };
+        let impulse = self.impulse(state, &touching, [depth, force], normal + fall * cos, time);
+        let tangential = along - fall * sin;
+        let (after, stuck) = law.rub(impulse, tangential, &mut state.spin);
+        let rubbed = after - tangential;
+        state.velocity[0].add(rubbed * cos - impulse * sin);
+        state.velocity[1].add(rubbed * sin + impulse * cos - fall);
+
+        touching.impulse += impulse;
+        touching.peak = touching.peak.most(impulse / time);
+        let rolled = touching.rolling;
+        if impulse > R::ZERO {
+            // Where the wall does not push, slip neither ends nor begins; and one push alone that lets
+            // it slip is half of a step that does not.
+            touching.rolling = stuck || (rolled && touching.gripped);
+            touching.gripped = stuck;
+        }
+        let change = if starts {
+            touching.stays = true;
+            Some(Change::ContactStarts)
+        } else if touching.stays {
+            touching.turns.add(time * along * inverse);
+            match (rolled, touching.rolling) {
+                (false, true) => Some(Change::RollingStarts),
+                (true, false) => Some(Change::SlidingStarts),
+                _ => None,
+            }
+        } else {
+            None
+        };
+        state.touching = Some(touching);
+        if let Some(change) = change {
+            tell(state, state.now, change, sink);
+        }
+    }
+
+    /// Normal impulse per mass of the wall in `time`, on a rotor that goes into it at `normal`. The
+    /// damping is taken at the mean of the speeds before and after, so that no step can turn it into a
+    /// pull.
+    fn impulse(
+        &self,
+        state: &mut HertzState<R>,
+        touching: &Touching<R>,
+        [depth, force]: [R; 2],
+        normal: R,
+        time: R,
+    ) -> R {
+        // h omega > 2 at this depth: faster than the fastest impact expected.
+        if C::exponent() * force * self.step * self.step > R::TWO * R::TWO * depth {
+            state.exceeded = state.exceeded.saturating_add(1);
+            return (R::ONE + self.law.restitution) * normal.most(R::ZERO);
+        }
+        let push = force * time;
+        let damp = R::HALF * push * touching.rate;
+        let after = if damp < R::ONE {
+            (normal * (R::ONE - damp) - push) / (R::ONE + damp)
+        } else {
+            -(R::ONE / touching.rate)
+        };
+        (normal - after).most(R::ZERO)
+    }
+}

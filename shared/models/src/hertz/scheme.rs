@@ -1,0 +1,80 @@
+//! How a step goes: both schemes are exact in the gap.
+
+use super::{Hertz, HertzState, Shape};
+use touchdown_rotor::clock::Instant;
+use touchdown_rotor::kinematics::Happening;
+use touchdown_rotor::precision::Precision;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Euler {}
+    impl Sealed for super::Verlet {}
+}
+
+/// A scheme.
+pub trait Scheme: sealed::Sealed + Copy {
+    /// Goes on by `time`, to `to`.
+    #[doc(hidden)]
+    fn advance<R: Precision, C: Shape<R>>(
+        model: &Hertz<R, C, Self>,
+        state: &mut HertzState<R>,
+        time: R,
+        to: Instant<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    );
+}
+
+/// Semi-implicit Euler: the velocity by the force here, then the place by the new velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Euler;
+
+/// Velocity Verlet: half the force, the place, half the force there. Twice the cost in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verlet;
+
+impl Scheme for Euler {
+    fn advance<R: Precision, C: Shape<R>>(
+        model: &Hertz<R, C, Self>,
+        state: &mut HertzState<R>,
+        time: R,
+        to: Instant<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        if state.touching.is_some() {
+            model.press(state, time, sink);
+            state.drift(time);
+        } else {
+            let half = R::HALF * time;
+            model.fall(state, half);
+            state.drift(time);
+            model.fall(state, half);
+        }
+        state.now = to;
+        model.follow(state, sink);
+    }
+}
+
+impl Scheme for Verlet {
+    fn advance<R: Precision, C: Shape<R>>(
+        model: &Hertz<R, C, Self>,
+        state: &mut HertzState<R>,
+        time: R,
+        to: Instant<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        let half = R::HALF * time;
+        if state.touching.is_some() {
+            model.press(state, half, sink);
+        } else {
+            model.fall(state, half);
+        }
+        state.drift(time);
+        state.now = to;
+        model.follow(state, sink);
+        if state.touching.is_some() {
+            model.press(state, half, sink);
+        } else {
+            model.fall(state, half);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Rung `moreau`: the laws of the rigid rung by time-stepping.
+//!
+//! Moreau's midpoint rule as Jean uses it: half a step of drift, then all that forces and wall do in
+//! the step as one change of velocity, then the other half. First order, because an impact counts
+//! from the middle of its step; any step is stable. Source: Moreau, "Unilateral contact and dry
+//! friction in finite freedom dynamics" (1988); Jean, "The non-smooth contact dynamics method"
+//! (1999). What is added for a round wall is said in `flight` and `contact`.
+
+mod contact;
+mod flight;
+mod state;
+
+pub use state::MoreauState;
+
+use state::Motion;
+use touchdown_rotor::RigidConfig;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::kinematics::{Change, Happening, Kinematics};
+use touchdown_rotor::law::Law;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::Scales;
+use touchdown_rotor::start::Start;
+use touchdown_rotor::stepper::Stepper;
+
+/// Coefficients of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moreau<R> {
+    law: Law<R>,
+    /// Length of a step, T.
+    step: R,
+    scales: Scales<R>,
+}
+
+/// A step, or a part of one.
+#[derive(Clone, Copy, Debug)]
+struct Stretch<R> {
+    /// T.
+    time: R,
+    /// Where in the step it begins, steps.
+    from: R,
+    /// Its length, steps.
+    part: R,
+}
+
+impl<R: Real> Stretch<R> {
+    /// The moment `part` of the way through, steps since the step's start.
+    fn at(&self, part: R) -> R {
+        self.from + part * self.part
+    }
+
+    fn second_half(&self) -> Self {
+        Self {
+            time: R::HALF * self.time,
+            from: self.at(R::HALF),
+            part: R::HALF * self.part,
+        }
+    }
+}
+
+impl<R: Precision> Moreau<R> {
+    /// Checks `config` and works out the coefficients.
+    pub fn try_new(config: &RigidConfig<R>) -> Result<Self, ConfigError> {
+        let (law, scales) = config.scaled()?;
+        Ok(Self {
+            law,
+            step: config.step / scales.time,
+            scales,
+        })
+    }
+
+    /// The model's units.
+    pub fn scales(&self) -> &Scales<R> {
+        &self.scales
+    }
+
+    fn go(&self, state: &mut MoreauState<R>, part: R, mut sink: impl FnMut(Happening<R>)) {
+        let stretch = Stretch {
+            time: self.step * part,
+            from: R::ZERO,
+            part,
+        };
+        match state.motion {
+            Motion::Flight(flight) => self.fly(state, flight, stretch, &mut sink),
+            Motion::Wall(wall) => self.slide(state, wall, stretch, &mut sink),
+        }
+    }
+
+    /// Tells of `change`, `part` of a step after the step's start.
+    fn tell(
+        &self,
+        state: &MoreauState<R>,
+        part: R,
+        change: Change<R>,
+        sink: &mut impl FnMut(Happening<R>),
+    ) {
+        sink(Happening {
+            at: state.in_step(part),
+            change,
+            after: self.kinematics(state),
+        });
+    }
+}
+
+impl Moreau<f64> {
+    /// The same model with every coefficient rounded once.
+    pub fn rounded<R: Real>(&self) -> Moreau<R> {
+        Moreau {
+            law: self.law.rounded(),
+            step: R::lit(self.step),
+            scales: self.scales.rounded(),
+        }
+    }
+}
+
+impl<R: Precision> Stepper<R> for Moreau<R> {
+    type State = MoreauState<R>;
+
+    fn start(
+        &self,
+        start: &Start<R>,
+        spin: R,
+        mut sink: impl FnMut(Happening<R>),
+    ) -> Result<MoreauState<R>, ConfigError> {
+        start.check(spin)?;
+        let state = MoreauState::new(start, spin, &self.law);
+        if let Motion::Wall(_) = state.motion {
+            self.tell(&state, R::ZERO, Change::ContactStarts, &mut sink);
+        }
+        Ok(state)
+    }
+
+    fn step(&self, state: &mut MoreauState<R>, sink: impl FnMut(Happening<R>)) {
+        self.go(state, R::ONE, sink);
+        state.tick += 1;
+    }
+
+    fn part_step(&self, state: &mut MoreauState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
+        self.go(state, fraction, sink);
+    }
+
+    fn kinematics(&self, state: &MoreauState<R>) -> Kinematics<R> {
+        state.kinematics()
+    }
+}

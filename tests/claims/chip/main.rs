@@ -1,0 +1,3 @@
+//! The images, in the emulator.
+
+automod::dir!("claims/chip");

@@ -1,0 +1,93 @@
+//! The built-in scenes on the emulated target: the same events, outputs, drop log, answers of the link and
+//! state as on the desktop.
+
+use std::io::Sink;
+
+use touchdown_core::event::EventKind;
+use touchdown_core::log::reader::Verdict;
+use touchdown_core::wire::Switching;
+use touchdown_files::drop_log::Dump;
+use touchdown_run::drop;
+use touchdown_run::emulator::Emulator;
+use touchdown_run::outcome::Outcome;
+use touchdown_run::target::Target;
+use touchdown_scene::{BUILT_IN, Scene};
+
+fn outcome(name: &str, target: &Target) -> Outcome {
+    let scene = Scene::load(name).expect("built-in scene");
+    let (outcome, _) = drop::run::<Sink>(&scene, target, None)
+        .unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
+    outcome
+}
+
+fn qemu() -> Target {
+    Target::Qemu(Emulator::find(None).unwrap_or_else(|error| panic!("{error}")))
+}
+
+#[test]
+fn every_built_in_scene_gives_the_same_bits() {
+    assert!(BUILT_IN.len() >= 5);
+    for scene in BUILT_IN {
+        let desktop = outcome(scene.name, &Target::Host);
+        let target = outcome(scene.name, &qemu());
+        let (detection, conduct) = (&target.detection, &target.conduct);
+        println!(
+            "{}: {:08x}, outputs {:?}",
+            scene.name, detection.state_hash, conduct.outputs
+        );
+        assert_eq!(*detection, desktop.detection, "{}", scene.name);
+        assert!(!detection.events.is_empty(), "{}", scene.name);
+        assert_eq!(conduct.outputs, desktop.conduct.outputs, "{}", scene.name);
+        assert_eq!(conduct.hello, desktop.conduct.hello, "{}", scene.name);
+        assert_eq!(conduct.state, desktop.conduct.state, "{}", scene.name);
+        // Not printed: 400 kB.
+        assert!(conduct.flash == desktop.conduct.flash, "{}", scene.name);
+        let log = Dump::of(&conduct.flash);
+        assert_eq!(log.counters.expect("counters").boots, 1);
+        assert_eq!(log.episodes.len(), 1, "{}", scene.name);
+    }
+}
+
+#[test]
+fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    // 1 s without a notice ends an episode.
+    scene.run.duration = 2.5;
+    let (outcome, _) = drop::run::<Sink>(&scene, &qemu(), None).expect("drops");
+    let fall = &outcome.detection.events[0];
+    assert_eq!(fall.event, EventKind::FreeFall);
+    let confirmed = fall.confirmed_s.expect("confirmed") + 0.2;
+    let bits = |it: &Switching| (it.sample, it.outputs.bits());
+    let [(_, arming), (_, watching), (tripped, safe), ..] =
+        outcome.conduct.outputs.iter().map(bits).collect::<Vec<_>>()[..]
+    else {
+        panic!("{:?}", outcome.conduct.outputs);
+    };
+    assert_eq!([arming, watching, safe], [0b0010, 0b1011, 0]);
+    assert_eq!(tripped as f64, (confirmed * scene.run.sample_rate).round());
+    let log = Dump::of(&outcome.conduct.flash);
+    let episode = &log.episodes[0];
+    assert_eq!(episode.verdict, Verdict::Whole);
+    assert_eq!(episode.samples.iter().flatten().count(), 4_500);
+    assert_eq!(log.counters.expect("counters").landings, 1);
+    assert_eq!(outcome.conduct.state.sample + 1, outcome.detection.samples);
+}
+
+#[test]
+fn the_four_phases_are_declared_on_the_target() {
+    let events = outcome("rolling", &qemu()).detection.events;
+    let first = |kind: EventKind| {
+        events
+            .iter()
+            .position(|event| event.event == kind)
+            .unwrap_or_else(|| panic!("no {kind:?} in {events:?}"))
+    };
+    let order = [
+        EventKind::FreeFall,
+        EventKind::Impact,
+        EventKind::Sliding,
+        EventKind::Rolling,
+    ]
+    .map(first);
+    assert!(order.is_sorted(), "{order:?}");
+}

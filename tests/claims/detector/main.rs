@@ -1,0 +1,3 @@
+//! The detector, its faults, severity and forecast.
+
+automod::dir!("claims/detector");

@@ -1,0 +1,3 @@
+//! The campaigns: score, limits, paper, trade, design guide.
+
+automod::dir!("claims/lab");

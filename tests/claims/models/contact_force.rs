@@ -1,0 +1,354 @@
+//! Rung `hertz`: force, duration and restitution of a contact against closed forms, the limit of
+//! stability, and the built-in scenes.
+
+use proptest::prelude::*;
+use touchdown_base::history::Regime;
+use touchdown_models::{
+    Compliance, Euler, Hertz, HertzConfig, Line, Materials, Point, Scheme as ContactScheme, Shape,
+    Verlet,
+};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Change, Precision, Pulse, RigidConfig, Start, Stepper};
+use touchdown_run::model::simulate;
+use touchdown_scene::scales::compliance;
+use touchdown_scene::{Rung, Scene, Scheme};
+
+/// Speed after a fall through the gap of the rig, m/s.
+const FALL: f64 = 0.076_720_271;
+const MASS: f64 = 3.42;
+const GAP: f64 = 0.3e-3;
+
+/// The rig of the paper without gravity.
+fn config<C>(shape: C, restitution: f64, step: f64) -> HertzConfig<f64, C> {
+    HertzConfig {
+        rigid: RigidConfig {
+            mass: MASS,
+            radius: 0.024,
+            polar_inertia: 0.5 * MASS * 0.024 * 0.024,
+            clearance: GAP,
+            friction: 0.0,
+            restitution,
+            gravity: 0.0,
+            speed: FALL,
+            step,
+        },
+        materials: Materials::steel(),
+        shape,
+        fastest: FALL,
+    }
+}
+
+/// A straight impact, SI.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    restitution: f64,
+    peak_force: f64,
+    duration: f64,
+    impulse: f64,
+    exceeded: u32,
+}
+
+/// The first impact at `speed` (in units of the fastest), released a part of a step away from the
+/// wall.
+fn hit<R, C, D, S>(config: &HertzConfig<f64, C>, speed: f64, phase: f64) -> Hit
+where
+    R: Precision,
+    C: Shape<f64>,
+    D: Shape<R>,
+    S: ContactScheme,
+{
+    let exact = Hertz::<f64, C, S>::try_new(config).expect("valid configuration");
+    let scales = *exact.scales();
+    let model = exact.rounded::<R, D>();
+    let step = config.rigid.step / scales.time;
+    let path = step * speed;
+    let whole = (1.0 / path).floor().min(20.0);
+    let start = Start::Free {
+        position: [R::ZERO, R::lit(-1.0 + (phase + whole) * path)],
+        velocity: [R::ZERO, R::lit(-speed)],
+    };
+    let mut state = model.start(&start, R::ZERO, |_| {}).expect("valid start");
+    let mut pulse: Option<(Pulse<R>, f64)> = None;
+    let mut entry = 0.0;
+    for _ in 0..10_000_000 {
+        model.step(&mut state, |h| match h.change {
+            Change::Impact(normal) => entry = normal.to_f64(),
+            Change::Released(p) => pulse = Some((p, h.after.velocity[1].to_f64())),
+            _ => panic!("{:?}", h.change),
+        });
+        if pulse.is_some() {
+            break;
+        }
+    }
+    let (pulse, launch) = pulse.expect("leaves the wall");
+    Hit {
+        restitution: launch / entry,
+        peak_force: pulse.peak_force.to_f64() * config.rigid.mass * scales.speed / scales.time,
+        duration: pulse.duration.to_f64() * scales.time,
+        impulse: pulse.impulse.to_f64() * config.rigid.mass * scales.speed,
+        exceeded: state.exceeded(),
+    }
+}
+
+fn near(name: &str, found: f64, want: f64, tolerance: f64) {
+    let off = found / want - 1.0;
+    println!("{name}: {found:.6e}, {off:+.1e} of {want:.6e}");
+    assert!(off.abs() <= tolerance, "{name}: {found:e}, not {want:e}");
+}
+
+/// F0 = 0.81145 (V^6 m^3 r E_r^2/(1 - r/R))^(1/5), T_c = 4.53398 (m^2 (1 - r/R)/(V r E_r^2))^(1/5).
+#[test]
+fn a_point_contact_has_the_force_and_duration_of_hertz() {
+    let (radius, modulus) = (0.024_f64, 3.625e11_f64);
+    let gap = 1.0 - radius / (radius + GAP);
+    for speed in [1.0, 0.3, 0.01] {
+        let v = speed * FALL;
+        let force = (v.powi(6) * MASS.powi(3) * radius * modulus * modulus / gap).powf(0.2);
+        let force = 0.81145 * force;
+        let time = 4.53398 * (MASS * MASS * gap / (v * radius * modulus * modulus)).powf(0.2);
+        let config = config(Point, 1.0, 0.26e-3 / 2000.0);
+        let both = [
+            (
+                "euler",
+                hit::<f64, Point, Point, Euler>(&config, speed, 0.5),
+            ),
+            (
+                "verlet",
+                hit::<f64, Point, Point, Verlet>(&config, speed, 0.5),
+            ),
+            (
+                "euler, f32",
+                hit::<f32, Point, Point, Euler>(&config, speed, 0.5),
+            ),
+            (
+                "verlet, f32",
+                hit::<f32, Point, Point, Verlet>(&config, speed, 0.5),
+            ),
+        ];
+        for (name, hit) in both {
+            println!("{name} at {v:.4} m/s");
+            near("force, N", hit.peak_force, force, 2e-4);
+            near("contact time, s", hit.duration, time, 2e-4);
+            near("impulse, N s", hit.impulse, 2.0 * MASS * v, 2e-5);
+            let product = hit.peak_force * hit.duration / (MASS * v);
+            near("F0 T_c/(m V)", product, 3.6791, 2e-4);
+        }
+    }
+    let compliance = config(Point, 1.0, 1e-6).compliance().expect("valid");
+    near("its own force, N", compliance.peak_force, 3741.0, 1e-3);
+}
+
+/// Half a period of a spring: pi sqrt(m/K), and V sqrt(K m).
+#[test]
+fn a_line_contact_is_a_spring() {
+    let shape = Line { length: 0.02 };
+    let stiffness = config(shape, 1.0, 1e-6)
+        .compliance()
+        .expect("valid")
+        .stiffness;
+    let time = std::f64::consts::PI * (MASS / stiffness).sqrt();
+    for speed in [1.0, 0.1] {
+        let config = config(shape, 1.0, time / 2000.0);
+        for hit in [
+            hit::<f64, Line<f64>, Line<f64>, Euler>(&config, speed, 0.5),
+            hit::<f64, Line<f64>, Line<f64>, Verlet>(&config, speed, 0.5),
+            hit::<f32, Line<f64>, Line<f32>, Euler>(&config, speed, 0.5),
+            hit::<f32, Line<f64>, Line<f32>, Verlet>(&config, speed, 0.5),
+        ] {
+            let force = speed * FALL * (stiffness * MASS).sqrt();
+            near("force, N", hit.peak_force, force, 2e-4);
+            near("contact time, s", hit.duration, time, 2e-4);
+        }
+    }
+}
+
+/// The secant agrees with Johnson's logarithm at the peak force, and is stiffer below it.
+#[test]
+fn a_line_contact_is_the_secant_of_the_logarithm() {
+    let shape = Line { length: 0.02 };
+    let compliance = config(shape, 1.0, 1e-6).compliance().expect("valid");
+    let plane = std::f64::consts::PI * 210e9 / (2.0 * 0.91) * 0.02;
+    let approach = |f: f64| f / plane * ((4.0 * plane * GAP / f).ln() - 1.0);
+    let peak = compliance.peak_force;
+    near("depth, m", compliance.deepest, approach(peak), 1e-9);
+    let below = approach(0.1 * peak) / (0.1 * peak / compliance.stiffness);
+    near("log over linear at a tenth of the force", below, 1.36, 0.02);
+    let short = config(Line { length: 1e-7 }, 1.0, 1e-6).compliance();
+    assert!(
+        matches!(short, Err(ConfigError::OutOfRange("length", _))),
+        "{short:?}"
+    );
+}
+
+#[test]
+fn restitution_is_what_was_asked_for() {
+    let time = |c: Result<Compliance<f64>, _>| c.expect("valid").contact_time;
+    let (point, line) = (
+        time(config(Point, 1.0, 1e-6).compliance()),
+        time(config(Line { length: 0.02 }, 1.0, 1e-6).compliance()),
+    );
+    for (parts, tolerance) in [(1000.0, 1e-4), (100.0, 1e-3), (25.0, 5e-3)] {
+        let mut worst = 0.0_f64;
+        for asked in [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.99] {
+            for speed in [1.0, 0.3, 0.1, 0.01] {
+                for phase in [0.05, 0.5, 0.8] {
+                    let a = config(Point, asked, point / parts);
+                    let b = config(Line { length: 0.02 }, asked, line / parts);
+                    for hit in [
+                        hit::<f64, Point, Point, Euler>(&a, speed, phase),
+                        hit::<f64, Point, Point, Verlet>(&a, speed, phase),
+                        hit::<f32, Point, Point, Euler>(&a, speed, phase),
+                        hit::<f64, Line<f64>, Line<f64>, Euler>(&b, speed, phase),
+                        hit::<f64, Line<f64>, Line<f64>, Verlet>(&b, speed, phase),
+                    ] {
+                        worst = worst.max((hit.restitution / asked - 1.0).abs());
+                        assert_eq!(hit.exceeded, 0);
+                    }
+                }
+            }
+        }
+        println!("T_c/{parts}: {worst:.1e} of {tolerance:.0e}");
+        assert!(worst <= tolerance, "T_c/{parts}: {worst:e}");
+    }
+    // Below the floor the rotor creeps out at the floor.
+    let hit = hit::<f64, Point, Point, Euler>(&config(Point, 0.0, 1e-7), 1.0, 0.5);
+    near("restitution for 0", hit.restitution, 0.02, 5e-3);
+}
+
+/// The plain scheme at `step`, without the model's guard: launch speed over entry speed, worst of
+/// many phases.
+fn unguarded(compliance: &Compliance<f64>, step: f64) -> f64 {
+    (0..200).fold(0.0, |worst, phase| {
+        let mut depth = f64::from(phase) / 200.0 * step * FALL;
+        let mut speed = FALL;
+        while depth > 0.0 {
+            speed -= step * compliance.stiffness * depth * depth.sqrt() / MASS;
+            depth += step * speed;
+            if depth == 0.0 {
+                break;
+            }
+        }
+        f64::max(worst, -speed / FALL)
+    })
+}
+
+#[test]
+fn a_step_above_the_limit_is_refused_and_would_blow_up() {
+    let compliance = config(Point, 1.0, 1e-6).compliance().expect("valid");
+    let limit = compliance.longest_step();
+    near("limit, s", limit, 128e-6, 2e-3);
+    let build = |step| Hertz::<f64, Point, Euler>::try_new(&config(Point, 1.0, step));
+    assert!(build(0.999 * limit).is_ok());
+    assert!(matches!(
+        build(1.001 * limit),
+        Err(ConfigError::OutOfRange("step", _))
+    ));
+    let gain = |factor: f64| unguarded(&compliance, factor * limit);
+    for factor in [0.08, 0.5, 1.0, 1.2, 1.5, 2.0] {
+        println!("{factor} of the limit: {:.3} of the speed", gain(factor));
+    }
+    assert!(
+        gain(0.08) < 1.01 && gain(1.5) > 1.5,
+        "{} {}",
+        gain(0.08),
+        gain(1.5)
+    );
+}
+
+/// Faster than the fastest impact expected: the impact law takes over where the step is too long.
+#[test]
+fn an_impact_beyond_expectation_gains_nothing() {
+    for restitution in [1.0, 0.8, 0.2] {
+        let config = config(Point, restitution, 0.9 * 128e-6);
+        let mut exceeded = 0;
+        for speed in [3.0, 10.0, 30.0] {
+            for phase in [0.1, 0.4, 0.7] {
+                let hit = hit::<f64, Point, Point, Euler>(&config, speed, phase);
+                assert!(hit.restitution <= 1.1 && hit.restitution > 0.0, "{hit:?}");
+                exceeded += hit.exceeded;
+            }
+        }
+        assert!(exceeded > 0);
+    }
+}
+
+#[test]
+fn built_in_scenes_end_as_with_the_rigid_rung() {
+    for (name, regime) in [
+        ("rig", Regime::Pendulum),
+        ("rig-wide-gap", Regime::Pendulum),
+        ("backward-whirl", Regime::BackwardWhirl),
+        ("rolling", Regime::Pendulum),
+        ("lift-off", Regime::BackwardWhirl),
+    ] {
+        let rigid = simulate(&Scene::load(name).expect("built in")).expect("valid");
+        for scheme in [Scheme::Euler, Scheme::Verlet] {
+            for precision in [
+                touchdown_scene::Precision::F64,
+                touchdown_scene::Precision::F32,
+            ] {
+                let mut scene = Scene::load(name).expect("built in");
+                scene.model.rung = Rung::Hertz;
+                scene.model.scheme = scheme;
+                scene.model.precision = precision;
+                scene.model.step = compliance(&scene).expect("valid").contact_time / 50.0;
+                let found = simulate(&scene).expect("valid");
+                assert_eq!(found.regime, regime, "{name}");
+                assert_eq!(found.lift_offs.len(), rigid.lift_offs.len(), "{name}");
+                let released = found.impacts.iter().filter(|impact| impact.pulse.is_some());
+                println!(
+                    "{name} {scheme:?}: {} impacts, {} of {} permanent",
+                    found.impacts.len(),
+                    released.count(),
+                    found.contact_starts.len()
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None,
+                                        rng_seed: prop::test_runner::RngSeed::Fixed(1),
+                                        ..ProptestConfig::default() })]
+
+    /// Friction to 100, spin to 1e6 rpm either way, whirl far beyond the fastest impact expected.
+    #[test]
+    fn everything_stays_finite(
+        friction in prop_oneof![Just(0.0), 0.0..2.0_f64, 0.0..100.0_f64],
+        restitution in prop_oneof![Just(0.0), Just(1.0), Just(0.99), 0.0..1.0_f64],
+        spin in prop_oneof![Just(0.0), -1e4..1e4_f64, -5e4..5e4_f64],
+        gravity in prop::bool::weighted(0.8),
+        part in prop_oneof![Just(0.08), Just(0.5), Just(0.999)],
+        angle in 0.0..std::f64::consts::TAU,
+        speed in -50.0..50.0_f64,
+        wall in any::<bool>(),
+    ) {
+        let mut config = config(Point, restitution, 1e-6);
+        config.rigid.friction = friction;
+        config.rigid.gravity = if gravity { 9.81 } else { 0.0 };
+        config.rigid.step = part * config.compliance().expect("valid").longest_step();
+        let exact = Hertz::<f64, Point, Euler>::try_new(&config).expect("valid");
+        let model = exact.rounded::<f32, Point>();
+        let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
+        let start = if wall {
+            Start::Wall { sin, cos, tangential: speed as f32 }
+        } else {
+            Start::Free { position: [0.9 * sin, -0.9 * cos], velocity: [speed as f32, 0.0] }
+        };
+        let mut state = model.start(&start, spin as f32, |_| {}).expect("valid");
+        let mut changes = 0;
+        for _ in 0..5000 {
+            model.step(&mut state, |_| changes += 1);
+            let k = model.kinematics(&state);
+            let [x, y] = k.position;
+            let [u, v] = k.velocity;
+            prop_assert!(x.is_finite() && y.is_finite() && u.is_finite() && v.is_finite());
+            // Spin can be turned into whirl of a third of its surface speed.
+            let most = 1e3 + speed.abs() + spin.abs();
+            prop_assert!(f64::from(u.hypot(v)) <= most, "{u} {v}");
+            prop_assert!(f64::from(x.hypot(y)) <= 2.0 + most, "{x} {y}");
+        }
+        prop_assert!(changes <= 15_000, "{changes}");
+    }
+}

@@ -1,0 +1,3 @@
+//! The levels of fidelity beyond the rigid one.
+
+automod::dir!("claims/models");

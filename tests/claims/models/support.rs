@@ -1,0 +1,180 @@
+//! Rung `support`: a ring on a spring and damper, and one that turns, against closed forms and the reference.
+
+use touchdown_run::model::run;
+use touchdown_run::model::support::watch;
+use touchdown_scene::{Precision, Scene, Start, Support};
+
+fn scene(name: &str, precision: Precision, step: f64) -> Scene {
+    let mut scene = Scene::load(name).expect("built-in scene");
+    scene.model.precision = precision;
+    scene.model.step = step;
+    scene
+}
+
+/// At rest at the bottom, without spin, on a support that is let go.
+fn resting(step: f64) -> Scene {
+    let mut scene = scene("soft-support", Precision::F64, step);
+    scene.rotor.spin = 0.0;
+    scene.start = Start::Wall {
+        angle: 0.0,
+        tangential: 0.0,
+    };
+    scene
+}
+
+/// x'' + 2 d x' + w^2 x = 0 from the rest place of the unloaded ring, w^2 = k/(m + m_s), around the sag m g/k.
+#[test]
+fn rotor_and_ring_swing_and_decay_together() {
+    let mut errors = Vec::new();
+    for step in [2e-5, 1e-5] {
+        let mut worst = 0.0_f64;
+        for periods in [0.25, 1.0, 3.3, 7.0] {
+            let mut scene = resting(step);
+            let Support {
+                mass,
+                stiffness,
+                damping,
+                ..
+            } = scene.support.expect("a support");
+            let moved = scene.rotor.mass + mass;
+            let rate = (stiffness / moved).sqrt();
+            let decay = 0.5 * damping / moved;
+            let swing = (rate * rate - decay * decay).sqrt();
+            let time = periods * std::f64::consts::TAU / swing;
+            scene.run.duration = time;
+            let sag = scene.rotor.mass * scene.run.gravity / stiffness;
+            let left = (swing * time).cos() + decay / swing * (swing * time).sin();
+            let expected = -sag * (1.0 - (-decay * time).exp() * left);
+            let ring = run(&scene).unwrap().ring.expect("a ring").position[1];
+            worst = worst.max((ring - expected).abs() / sag);
+        }
+        errors.push(worst);
+    }
+    // Second order: (w h)^2/24 of phase a radian is 1.5e-4 after seven periods at 20 us.
+    assert!(errors[0] < 2e-3, "{errors:?}");
+    assert!(errors[1] < 0.3 * errors[0], "{errors:?}");
+}
+
+#[test]
+fn drops_follow_the_reference() {
+    for name in ["soft-support", "ball-bearing"] {
+        for (precision, times) in [(Precision::F64, 1e-5), (Precision::F32, 2e-5)] {
+            let mut scene = scene(name, precision, 1e-5);
+            scene.run.duration = 0.05;
+            let (ours, truth) = (run(&scene).unwrap(), touchdown_truth::simulate(&scene));
+            let pairs = ours.histories.whole.impacts.iter().zip(&truth.impacts);
+            let mut compared = 0;
+            for (a, b) in pairs.take(6) {
+                let late = (a.state.time - b.state.time).abs();
+                assert!(late < times, "{name}: {late} s");
+                compared += 1;
+            }
+            assert_eq!(compared, 6, "{name}");
+        }
+    }
+}
+
+/// Backward whirl on the support settles; radius, speed and load are those of the reference.
+#[test]
+fn whirl_settles_at_the_support() {
+    let mut scene = scene("soft-support", Precision::F64, 1e-5);
+    scene.run.duration = 0.3;
+    let ours = run(&scene).unwrap().histories.whole;
+    let truth = touchdown_truth::simulate(&scene);
+    assert_eq!(ours.regime, truth.regime);
+    let polar = |history: &touchdown_base::history::History| {
+        let ([x, y], [u, v]) = (history.end.position, history.end.velocity);
+        let radius = x.hypot(y);
+        (radius, (x * v - y * u) / (radius * radius))
+    };
+    let ((radius, rate), (true_radius, true_rate)) = (polar(&ours), polar(&truth));
+    assert!(
+        (radius / true_radius - 1.0).abs() < 0.01,
+        "{radius} {true_radius}"
+    );
+    assert!((rate / true_rate - 1.0).abs() < 0.01, "{rate} {true_rate}");
+    // 50 to 300 Hz is what machines show.
+    assert!(
+        (50.0..300.0).contains(&(rate.abs() / std::f64::consts::TAU)),
+        "{rate}"
+    );
+}
+
+/// Where slip has ended; the rotor still swings in the ring, at a phase of its own.
+#[test]
+fn the_inner_ring_spins_up_as_in_the_reference() {
+    for precision in Precision::ALL {
+        let scene = scene("ball-bearing", precision, 2e-5);
+        let ours = run(&scene).unwrap();
+        let [inner, cage, _] = ours.ring.and_then(|ring| ring.race).expect("a race");
+        let (ours, truth) = (ours.histories.whole, touchdown_truth::simulate(&scene));
+        let [a, b] = [&ours, &truth].map(|history| history.rolling_starts[0]);
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+        assert!((ours.end.spin / truth.end.spin - 1.0).abs() < 1e-3);
+        assert!((cage / inner - 0.44).abs() < 1e-6);
+        let ([x, y], [u, v]) = (ours.end.position, ours.end.velocity);
+        let along = (x * v - y * u) / x.hypot(y);
+        let radius = scene.rotor.radius;
+        let slip = along + radius * ours.end.spin - (radius + scene.retainer.clearance) * inner;
+        assert!(slip.abs() < 1e-4, "{slip} m/s");
+    }
+}
+
+/// Without loss to the surroundings all friction and drag is in the bearing.
+#[test]
+fn heat_is_what_friction_and_drag_took() {
+    let mut scene = scene("ball-bearing", Precision::F64, 1e-5);
+    let bearing = scene.ball_bearing.as_mut().expect("a ball bearing");
+    bearing.heat_loss = 0.0;
+    let capacity = bearing.heat_capacity;
+    let ours = run(&scene).unwrap();
+    let [_, _, rise] = ours.ring.and_then(|ring| ring.race).expect("a race");
+    let ledger = ours.ledger.expect("a ledger");
+    let taken = |name| {
+        ledger
+            .gone
+            .iter()
+            .find(|it| it.name == name)
+            .expect(name)
+            .energy_j
+    };
+    let heat = taken("friction heat") + taken("drag");
+    assert!((rise * capacity / heat - 1.0).abs() < 1e-9, "{rise} {heat}");
+}
+
+#[test]
+fn the_ledger_closes() {
+    for name in ["soft-support", "ball-bearing"] {
+        for (precision, limit) in [(Precision::F64, 1e-12), (Precision::F32, 1e-5)] {
+            let scene = scene(name, precision, 2e-5);
+            let (mut start, mut worst) = (None, 0.0_f64);
+            watch(&scene, &mut |sight| {
+                let start = *start.get_or_insert(sight.total);
+                worst = worst.max((sight.total / start - 1.0).abs());
+            })
+            .unwrap();
+            assert!(worst < limit, "{name} {precision:?}: {worst}");
+        }
+    }
+}
+
+/// A stiff, heavy ring is a fixed one: the rig's drop.
+#[test]
+fn a_rigid_support_is_none() {
+    let rig = Scene::load("rig").expect("built-in scene");
+    let truth = touchdown_truth::simulate(&rig);
+    let mut scene = scene("soft-support", Precision::F64, 1e-5);
+    scene.start = rig.start;
+    scene.support = Some(Support {
+        mass: 1e6,
+        stiffness: 1e12,
+        damping: 0.0,
+        travel: None,
+    });
+    let ours = run(&scene).unwrap().histories.whole;
+    for (a, b) in ours.impacts.iter().zip(&truth.impacts).take(20) {
+        assert!((a.state.time - b.state.time).abs() < 1e-6, "{a:?} {b:?}");
+    }
+    assert!(ours.impacts.len() > 20);
+    assert_eq!(ours.regime, truth.regime);
+}

@@ -1,0 +1,3 @@
+//! The rigid model and its functions.
+
+automod::dir!("claims/rotor");

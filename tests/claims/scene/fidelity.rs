@@ -1,0 +1,202 @@
+//! `fidelity = "auto"`: what it takes gives what is asked, and is the cheapest of the table that does.
+
+use std::fs;
+
+use predicates::str::contains;
+use serde_json::Value;
+use tempfile::TempDir;
+use touchdown_base::history::History;
+use touchdown_run::fidelity::choose;
+use touchdown_run::model::simulate;
+use touchdown_scene::{BUILT_IN, Math, Model, Precision, Rung, Scene, Scheme};
+use touchdown_tests::binary::touchdown;
+
+fn text(name: &str, model: &str, outputs: &str) -> String {
+    let built_in = BUILT_IN.iter().find(|scene| scene.name == name);
+    let text = built_in.expect("a built-in scene").text;
+    format!("{text}\n[model]\nfidelity = \"auto\"\n{model}\n[outputs]\n{outputs}\n")
+}
+
+/// The table of the same scene, from the command.
+fn rows(name: &str) -> Vec<Value> {
+    let folder = TempDir::new().unwrap();
+    let output = touchdown(folder.path())
+        .args(["trade", name, "--json", "-"])
+        .output()
+        .unwrap();
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    json["rows"].as_array().expect("rows").clone()
+}
+
+fn model(row: &Value) -> Model {
+    let name = |key: &str| row[key].as_str().unwrap().to_owned();
+    let schemes = [
+        Scheme::Launch,
+        Scheme::Midpoint,
+        Scheme::Euler,
+        Scheme::Verlet,
+    ];
+    let maths = [Math::Libm, Math::Polynomial, Math::Micromath];
+    Model {
+        rung: Rung::ALL
+            .into_iter()
+            .find(|it| it.name() == name("rung"))
+            .unwrap(),
+        scheme: schemes
+            .into_iter()
+            .find(|it| it.name() == name("scheme"))
+            .unwrap(),
+        precision: Precision::ALL
+            .into_iter()
+            .find(|it| it.name() == name("precision"))
+            .unwrap(),
+        math: maths
+            .into_iter()
+            .find(|it| it.name() == name("math"))
+            .unwrap(),
+        step: row["step_s"].as_f64().unwrap(),
+        cutoff: 0.0,
+    }
+}
+
+/// Instructions a simulated second.
+fn cost(row: &Value) -> Option<f64> {
+    Some(row["mcu_instructions_per_step"].as_f64()? / row["step_s"].as_f64()?)
+}
+
+/// The choice for `outputs` against all of the table's rows that pass `suffices`.
+fn check(name: &str, outputs: &str, suffices: impl Fn(&History, &History) -> bool) -> Model {
+    let scene = Scene::parse(name, &text(name, "", outputs)).expect("a valid scene");
+    assert!(scene.run.duration <= 1.0, "measured whole");
+    let choice = choose(&scene, scene.auto.as_ref().expect("open"));
+    let best = choice.best().expect("something suffices");
+    let truth = touchdown_truth::simulate(&scene);
+    let mut found = false;
+    for row in rows(name) {
+        let model = model(&row);
+        let Some(cost) = cost(&row) else { continue };
+        let history = simulate(&Scene {
+            model,
+            ..scene.clone()
+        })
+        .expect("a row is possible");
+        let good = suffices(&history, &truth);
+        if model == best.model {
+            found = true;
+            assert!(good, "{model:?} does not give what is asked");
+            assert!((cost / best.cost - 1.0).abs() < 1e-9);
+        }
+        assert!(
+            !good || cost >= best.cost,
+            "{model:?} costs {cost}, less than {}",
+            best.cost
+        );
+    }
+    assert!(found, "the choice is not in the table");
+    best.model
+}
+
+fn same_regime(history: &History, truth: &History) -> bool {
+    history.regime == truth.regime
+}
+
+fn impact_times(history: &History, truth: &History, tolerance: f64) -> bool {
+    let wanted = truth.impacts.len().min(10);
+    history.impacts.len() >= wanted
+        && history.impacts[..wanted]
+            .iter()
+            .zip(&truth.impacts)
+            .all(|(a, b)| (a.state.time - b.state.time).abs() <= tolerance)
+}
+
+#[test]
+fn the_choice_is_the_cheapest_of_the_table() {
+    let loose = check("rig", "regime = true", same_regime);
+    let times = check("rig", "impact_time_us = 50", |ours, truth| {
+        impact_times(ours, truth, 50e-6)
+    });
+    let exact = check("rig", "impact_time_us = 1e-6", |ours, truth| {
+        impact_times(ours, truth, 1e-12)
+    });
+    println!("regime {loose:?}\n50 us {times:?}\n1 ps {exact:?}");
+    assert_eq!(times.precision, Precision::F32, "f32 is enough for 50 us");
+    assert_eq!(exact.precision, Precision::F64, "1 ps needs f64");
+    check(
+        "lift-off",
+        "regime = true\nimpact_time_us = 20",
+        |ours, truth| same_regime(ours, truth) && impact_times(ours, truth, 20e-6),
+    );
+    check("backward-whirl", "regime = true", same_regime);
+}
+
+/// Hertz' F0 and T_c of the first impact; at restitution 1 the pulse is theirs.
+#[test]
+fn a_force_needs_the_rung_that_has_one() {
+    let outputs = "peak_force_percent = 2\ncontact_time_percent = 2";
+    let text = text("rig", "", outputs).replace("restitution = 0.8", "restitution = 1.0");
+    let mut scene = Scene::parse("rig", &text).expect("a valid scene");
+    assert_eq!(scene.retainer.restitution, 1.0);
+    scene.run.duration = 0.02;
+    let choice = choose(&scene, scene.auto.as_ref().expect("open"));
+    let best = choice.best().expect("something suffices");
+    assert_eq!(best.model.rung, Rung::Hertz);
+    scene.model = best.model;
+    let impact = simulate(&scene).expect("possible").impacts[0];
+    let pulse = impact.pulse.expect("a pulse");
+    let (mass, radius) = (scene.rotor.mass, scene.rotor.radius);
+    let outer = radius + scene.retainer.clearance;
+    let modulus = 3.625e11;
+    let flat = 1.0 - radius / outer;
+    let speed = impact.normal_speed;
+    let force =
+        0.811_45 * (speed.powi(6) * mass.powi(3) * radius * modulus * modulus / flat).powf(0.2);
+    let time = 4.533_98 * (mass * mass * flat / (speed * radius * modulus * modulus)).powf(0.2);
+    println!(
+        "{:?}: {} N of {force}, {} s of {time}",
+        best.model, pulse.peak_force, pulse.duration
+    );
+    // The weight, a hundredth of the force, is not in the formulas.
+    assert!((pulse.peak_force / force - 1.0).abs() < 0.02 + 0.01);
+    assert!((pulse.duration / time - 1.0).abs() < 0.02 + 0.01);
+    for candidate in &choice.candidates {
+        let given = candidate.errors.iter().all(|error| error.is_finite());
+        assert_eq!(given, candidate.model.rung == Rung::Hertz, "{candidate:?}");
+    }
+}
+
+#[test]
+fn keys_of_the_model_are_kept() {
+    let text = text("rig", "precision = \"f64\"\nstep_us = 37", "regime = true");
+    let scene = Scene::parse("rig", &text).expect("a valid scene");
+    let choice = choose(&scene, scene.auto.as_ref().expect("open"));
+    assert!(choice.candidates.len() > 6);
+    for candidate in &choice.candidates {
+        assert_eq!(candidate.model.precision, Precision::F64);
+        assert_eq!(candidate.model.step, 37e-6);
+    }
+}
+
+fn drop_of(text: &str) -> assert_cmd::assert::Assert {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("auto.toml"), text).unwrap();
+    touchdown(folder.path())
+        .args(["drop", "auto.toml", "--json", "drop.json"])
+        .assert()
+}
+
+#[test]
+fn a_drop_says_what_was_taken_and_why() {
+    drop_of(&text("rig", "", "impact_time_us = 1e-6"))
+        .success()
+        .stdout(contains("fidelity: rigid launch f64"))
+        .stdout(contains("cheaper, but: "))
+        .stdout(contains("instructions a simulated second"));
+}
+
+#[test]
+fn what_nothing_gives_is_refused_with_the_best_there_is() {
+    drop_of(&text("rig", "", "impact_time_us = 1e-12"))
+        .code(2)
+        .stderr(contains("none of "))
+        .stderr(contains("impact times: "));
+}

@@ -1,0 +1,3 @@
+//! Scenes: what is read, refused and chosen.
+
+automod::dir!("claims/scene");

@@ -1,0 +1,198 @@
+//! An episode of the drop log replays: from what the detector had learnt before it, it tells the same events.
+
+use std::fs::{self, File};
+use std::io::Sink;
+
+use touchdown_core::learnt::Learnt;
+use touchdown_core::log::block::Kind;
+use touchdown_core::log::header::Header;
+use touchdown_core::monitor::Monitor;
+use touchdown_files::drop_log::{Dump, Episode, stream};
+use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample};
+use touchdown_run::drop;
+use touchdown_run::outcome::DetectedEvent;
+use touchdown_run::replay;
+use touchdown_run::target::Target;
+use touchdown_scene::{BUILT_IN, Scene};
+use touchdown_tests::binary::touchdown;
+
+/// What adding times of different zeros may cost, s.
+const ROUNDING: f64 = 1e-9;
+
+/// The log after a drop, and what the controller told.
+fn dropped(scene: &Scene) -> (Dump, Vec<DetectedEvent>) {
+    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("drops");
+    (Dump::of(&outcome.conduct.flash), outcome.detection.events)
+}
+
+/// What was told while the episode's samples were taken, the first of which gets number 0.
+fn told(episode: &Episode, events: Vec<DetectedEvent>) -> Vec<DetectedEvent> {
+    let header = episode.header.as_ref().expect("a header");
+    let end = header.first + episode.samples.len() as u64;
+    let taken = events
+        .into_iter()
+        .filter(|it| (header.first..end).contains(&it.sample));
+    let from_first = taken.map(|it| DetectedEvent {
+        sample: it.sample - header.first,
+        ..it
+    });
+    from_first.collect()
+}
+
+fn replayed(episode: &Episode, scene: &Scene) -> Vec<DetectedEvent> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("e.csv");
+    assert!(stream(episode, File::create(&path).expect("a file")).expect("is written"));
+    replay::run(&path, scene, &Target::Host)
+        .expect("replays")
+        .events
+}
+
+fn assert_same(name: &str, told: &[DetectedEvent], again: &[DetectedEvent]) {
+    let kinds = |events: &[DetectedEvent]| -> Vec<_> { events.iter().map(|it| it.event).collect() };
+    assert_eq!(kinds(again), kinds(told), "{name}");
+    for (was, is) in told.iter().zip(again) {
+        assert_eq!(was.sample, is.sample, "{name}: {was:?}");
+        assert_eq!(was.normal_speed_m_s, is.normal_speed_m_s, "{name}: {was:?}");
+        let [latency, again] = [was, is].map(|it| it.declared_s - it.onset_s);
+        assert!((latency - again).abs() < ROUNDING, "{name}: {was:?} {is:?}");
+    }
+}
+
+#[test]
+fn every_built_in_scene_replays_as_it_was_told() {
+    for built_in in BUILT_IN {
+        let name = built_in.name;
+        let scene = Scene::load(name).expect("built-in scene");
+        let (dump, events) = dropped(&scene);
+        let episode = dump.episodes.first().expect("an episode");
+        let told = told(episode, events);
+        let replayed = replayed(episode, &scene);
+        let from = if episode.learnt.is_some() {
+            "learnt"
+        } else {
+            "cold"
+        };
+        println!("{name}: {} events, {from}", told.len());
+        assert!(!told.is_empty(), "{name}");
+        assert_same(name, &told, &replayed);
+    }
+}
+
+/// The export has the very pulses that the monitor saw, and none where an episode has none, as in earlier formats.
+#[test]
+fn pulses_are_handed_on_where_they_are_known() {
+    let scene = Scene::load("ball-bearing").expect("built-in scene");
+    let (dump, events) = dropped(&scene);
+    let mut episode = dump.episodes[0].clone();
+    let header = episode.header.expect("a header");
+    let known = episode.samples_with_pulses.expect("pulse sensors");
+    assert_eq!(known, episode.samples.len());
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let rate = f64::from(header.sample_rate);
+    let mut reader = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    for (row, shown) in reader.by_ref().zip(&episode.pulses) {
+        let sample = to_sample(&row.expect("a row"), &scene.sensors, rate);
+        assert_eq!(Some(sample.edges), *shown);
+    }
+    // Cut short: what is beyond has no value.
+    episode.pulses.truncate(100);
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let rows = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let rows = rows.map(|row| row.expect("a row").edges != [None; 2]);
+    assert_eq!(rows.filter(|it| *it).count(), 100);
+    // As it was before there were pulses.
+    let old = Header {
+        pulsed: 0,
+        ..header
+    };
+    episode.header = Some(old);
+    episode.pulses.clear();
+    let learnt = episode.learnt.take().expect("learnt");
+    let parts: Vec<_> = learnt.split('-').collect();
+    assert_eq!(parts.len(), 10);
+    episode.learnt = Some(parts[..8].join("-"));
+    let mut out = Vec::new();
+    assert!(stream(&episode, &mut out).expect("is written"));
+    let head = String::from_utf8_lossy(&out);
+    assert!(
+        head.starts_with("time_s,ax_um,ay_um,bx_um,by_um,speed_rpm,learnt\n"),
+        "{}",
+        &head[..60]
+    );
+    let told = told(&episode, events);
+    assert_eq!(replayed(&episode, &scene)[0].event, told[0].event);
+}
+
+#[test]
+fn what_the_pulse_channels_knew_comes_back() {
+    let scene = Scene::load("ball-bearing").expect("built-in scene");
+    let (dump, _) = dropped(&scene);
+    let field = dump.episodes[0].learnt.clone().expect("learnt");
+    let learnt = of_field(&field).expect("is read");
+    let parts: Vec<_> = (0..).map_while(|it| learnt.part(it)).collect();
+    assert_eq!(to_field(parts.iter().map(|it| it.payload())), field);
+    // A part more or less is of no known episode.
+    let parts = || parts.iter().map(|it| it.payload());
+    assert!(Learnt::of_parts(parts().take(8)).is_some());
+    assert!(Learnt::of_parts(parts().take(9)).is_none());
+    assert!(Learnt::of_parts(parts().chain(parts().take(1))).is_none());
+}
+
+#[test]
+fn without_what_was_learnt_the_fall_is_lost() {
+    let scene = Scene::load("rig").expect("built-in scene");
+    let (mut dump, events) = dropped(&scene);
+    let episode = &mut dump.episodes[0];
+    episode.learnt = None;
+    let first = replayed(episode, &scene)[0].event;
+    assert_ne!(first, told(episode, events)[0].event);
+}
+
+#[test]
+fn an_exported_drop_compares_with_its_own_stream() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let scene = Scene::load("rig").expect("built-in scene");
+    let (outcome, _) = drop::run::<Sink>(&scene, &Target::Host, None).expect("drops");
+    fs::write(at.join("flash.bin"), &outcome.conduct.flash).expect("a dump");
+    for run in [
+        &["drop", "rig", "--stream", "rig.csv"][..],
+        &["log", "export", "flash.bin", "--out", "e.csv"],
+        &["compare", "e.csv", "rig.csv", "--scene", "rig"],
+    ] {
+        touchdown(at).args(run).assert().success();
+    }
+    // The first line is that of a stream, and only the first row has more.
+    let text = fs::read_to_string(at.join("e.csv")).expect("a stream");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("time_s,ax_um,ay_um,bx_um,by_um,learnt"));
+    assert!(lines.next().is_some_and(|it| it.len() > 1_000));
+    assert!(lines.all(|it| it.ends_with(',')));
+    // What cannot be handed on is refused.
+    let damaged = text.replacen(",0100", ",0200", 1);
+    fs::write(at.join("d.csv"), damaged).expect("a stream");
+    let run = ["replay", "d.csv", "--scene", "rig"];
+    touchdown(at).args(run).assert().code(2);
+}
+
+#[test]
+fn what_was_learnt_comes_back() {
+    let scene = Scene::load("rig").expect("built-in scene");
+    let (dump, _) = dropped(&scene);
+    let field = dump.episodes[0].learnt.clone().expect("learnt");
+    let learnt = of_field(&field).expect("is read");
+    let parts: Vec<_> = (0..).map_while(|it| learnt.part(it)).collect();
+    assert!(parts.iter().all(|it| it.kind() == Kind::Learnt));
+    assert_eq!(to_field(parts.iter().map(|it| it.payload())), field);
+    let parts = || parts.iter().map(|it| it.payload());
+    assert!(Learnt::of_parts(parts().take(7)).is_none());
+    assert!(Learnt::of_parts(parts().chain(parts())).is_none());
+    // Nothing has been learnt yet.
+    let monitor = Monitor::try_new(&scene.monitor_config()).expect("valid");
+    let mut learnt = learnt;
+    learnt.update(&monitor.start());
+    assert!(!learnt.is_known());
+}

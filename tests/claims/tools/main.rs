@@ -1,0 +1,3 @@
+//! The program: its commands, files, outputs and views.
+
+automod::dir!("claims/tools");

@@ -1,0 +1,3 @@
+//! The independent reference.
+
+automod::dir!("claims/truth");

@@ -1,0 +1,17 @@
+//! What the tests share: reference cases and their tolerances, and the counts of the emulated target.
+
+pub mod binary;
+pub mod cases;
+#[cfg(unix)]
+pub mod controller;
+pub mod counting;
+pub mod drops;
+pub mod episode;
+#[cfg(unix)]
+pub mod file_options;
+pub mod growth;
+pub mod minimal_scene;
+pub mod moment;
+pub mod ring_scenes;
+pub mod rotors;
+pub mod sweep_runs;
