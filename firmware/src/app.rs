@@ -1,13 +1,13 @@
 //! The application: the monitor's tick, what follows from it for the outputs, and what latches.
 
-use touchdown_core::config_block::Patrol;
-use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::forecast::Sight;
-use touchdown_core::link::{Counters, State};
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
+use touchdown_protocol::config_block::Patrol;
+use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
+use touchdown_protocol::link::{Counters, State};
 use touchdown_rotor::error::ConfigError;
 
 use crate::blind::Blind;

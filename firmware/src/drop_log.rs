@@ -1,9 +1,9 @@
 //! The drop log of a board: the recorder's blocks into flash, and episodes out of it for the link.
 
 use embedded_storage::nor_flash::MultiwriteNorFlash;
-use touchdown_core::link::{CHUNK_BYTES, Chunk, Log, Refusal};
-use touchdown_core::log::block::Block;
-use touchdown_core::log::counters::Counters;
+use touchdown_protocol::link::{CHUNK_BYTES, Chunk, Log, Refusal};
+use touchdown_protocol::log::block::Block;
+use touchdown_protocol::log::counters::Counters;
 
 use crate::store::{EPISODE_BYTES, MountError, Store};
 

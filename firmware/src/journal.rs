@@ -1,9 +1,9 @@
 //! What the images log.
 
 use defmt::{Str, info, intern, warn};
-use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
+use touchdown_protocol::controller::{Faults, Outputs};
 
 /// The configuration in force.
 pub fn config(config: &MonitorConfig) {

@@ -5,9 +5,9 @@
 
 use core::mem::MaybeUninit;
 
-use touchdown_core::controller::Faults;
 use touchdown_core::forecast::Lookout;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
 
 use crate::app::App;

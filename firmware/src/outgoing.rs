@@ -1,7 +1,7 @@
 //! Frames on their way out of the link.
 
 use heapless::Deque;
-use touchdown_core::link::{FRAME_BYTES, Frame};
+use touchdown_protocol::link::{FRAME_BYTES, Frame};
 
 /// Room for two of the longest frames, bytes.
 const ROOM: usize = 2 * FRAME_BYTES;

@@ -1,6 +1,6 @@
 //! What each state means for the outputs: the table of docs/build/firmware.md.
 
-use touchdown_core::controller::{Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Faults, Mode, Outputs};
 
 /// All that the outputs depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

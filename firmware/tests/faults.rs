@@ -1,11 +1,12 @@
 //! Each fault of docs/build/firmware.md brings the outputs to safety within the ticks stated there.
 
-use touchdown_core::config_block::{self, Block, Patrol};
-use touchdown_core::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, Patrol};
+use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
 
 /// Ticks from power-on until watching: self-test and `arming_time`, and what rounding adds.
 const ARMED: u32 = 3_000;

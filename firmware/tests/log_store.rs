@@ -5,10 +5,10 @@ mod common;
 
 use common::chip::{Bus, Chip, NoDelay, flash, random};
 use common::rig::{Rig, read};
-use touchdown_core::log::reader::Verdict;
-use touchdown_core::log::waveform::Counts;
 use touchdown_firmware::store::{EPISODE_BYTES, LockError, MountError, Store, bytes_of};
 use touchdown_firmware::w25q::W25q;
+use touchdown_protocol::log::reader::Verdict;
+use touchdown_protocol::log::waveform::Counts;
 
 const SLOTS: usize = 5;
 const CAPACITY: u8 = 20;

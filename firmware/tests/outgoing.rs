@@ -1,8 +1,8 @@
 //! Frames that find no room on the line are told, and never sent in part.
 
 use touchdown_core::event::Notice;
-use touchdown_core::link::{Decoder, Reply, Server};
 use touchdown_firmware::outgoing::Outgoing;
+use touchdown_protocol::link::{Decoder, Reply, Server};
 
 #[test]
 fn a_notice_without_room_is_told_and_the_others_come_whole() {

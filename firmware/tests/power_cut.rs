@@ -6,11 +6,11 @@ mod common;
 
 use common::chip::{Bus, Chip, NoDelay, Tear, flash};
 use common::rig::{Rig, read};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::reader::Verdict;
-use touchdown_core::log::waveform::Counts;
 use touchdown_firmware::store::{EPISODE_BYTES, Store};
 use touchdown_firmware::w25q::W25q;
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::reader::Verdict;
+use touchdown_protocol::log::waveform::Counts;
 
 const SLOTS: usize = 4;
 /// 256 KiB: counters and four slots.

@@ -6,15 +6,15 @@ use common::rig::{IDENTITY, Read, Rig, config, read};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::{PARTS, RING_PARTS};
-use touchdown_core::log::block::{BLOCK_BYTES, Kind};
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::reader::{Item, Reader, Verdict};
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_firmware::recorder::{CAPACITY, Memory, Recorder};
 use touchdown_firmware::store::EPISODE_BYTES;
+use touchdown_protocol::log::block::{BLOCK_BYTES, Kind};
+use touchdown_protocol::log::ending::{Closing, Ending};
+use touchdown_protocol::log::reader::{Item, Reader, Verdict};
 
 /// All blocks that are ready, sealed one after another.
 fn fetch(rig: &mut Rig) -> Vec<u8> {

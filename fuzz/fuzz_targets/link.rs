@@ -5,9 +5,9 @@
 
 use libfuzzer_sys::fuzz_target;
 use touchdown_core::checksum::CRC;
-use touchdown_core::config_block;
-use touchdown_core::link::{Decoder, Reply, Request, encode};
-use touchdown_core::wire::decode_record;
+use touchdown_protocol::config_block;
+use touchdown_protocol::link::{Decoder, Reply, Request, encode};
+use touchdown_protocol::wire::decode_record;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut decoder = Decoder::default();

@@ -6,9 +6,10 @@
 use libfuzzer_sys::fuzz_target;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use touchdown_core::config_block::{self, Settings, Wiring};
-use touchdown_core::link::Reply;
-use touchdown_core::wire::{Record, decode_record};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::link::Reply;
+use touchdown_protocol::wire::{Record, decode_record};
 use touchdown_firmware::board::default_config;
 use touchdown_files::drop_log::Episode;
 use touchdown_sim::live::{Greeting, Said, Update, View, Watched, draw, line};

@@ -10,14 +10,15 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use touchdown_core::config_block::{self, Block, Settings, Wiring};
-use touchdown_core::controller::{Faults, Mode, Outputs};
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::link::{Chunk, Device, Log, Recent, Refusal, Server, State};
-use touchdown_core::log::counters::Counters;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::controller::{Faults, Mode, Outputs};
+use touchdown_protocol::link::{Chunk, Device, Log, Recent, Refusal, Server, State};
+use touchdown_protocol::log::counters::Counters;
 
 /// Samples per second, Hz.
 pub const SAMPLE_RATE: f32 = 20_000.0;

@@ -1,12 +1,12 @@
 //! Episodes as the firmware writes them.
 
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::header::Header;
-use touchdown_core::log::waveform::Waveform;
-use touchdown_core::wire::{Record, encode_record};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::ending::{Closing, Ending};
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::waveform::Waveform;
+use touchdown_protocol::wire::{Record, encode_record};
 
 const SLOT: usize = 49_152;
 /// Samples of an episode.

@@ -2,7 +2,7 @@
 
 use touchdown_firmware::board::qemu::Counter;
 use touchdown_rotor::real::{Micro32, Poly32, Poly64};
-use touchdown_rotor::{Precision, Rigid, Stepper};
+use touchdown_rotor::{Precision, Rigid};
 
 use crate::drop::{Run, STEPS, config};
 use crate::table::{Name, Table};

@@ -6,13 +6,13 @@
 mod image {
     use core::panic::PanicInfo;
 
-    use touchdown_core::controller::Outputs;
     use touchdown_core::event::{Notice, Notices};
     use touchdown_core::forecast::Lookout;
     use touchdown_core::sample::Sample;
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
     use touchdown_firmware::recorder::Recorder;
+    use touchdown_protocol::controller::Outputs;
 
     /// Registers that notices and outputs go to.
     struct Bare(&'static [u8]);

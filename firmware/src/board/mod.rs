@@ -7,12 +7,12 @@ pub mod qemu;
 #[cfg(target_os = "none")]
 mod serial;
 
-use touchdown_core::config_block::{Settings, Wiring};
-use touchdown_core::controller::Outputs;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
+use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::controller::Outputs;
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {

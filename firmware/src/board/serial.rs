@@ -1,7 +1,7 @@
 //! USART1, polled: in the emulator as on silicon.
 
 use stm32f4::stm32f405::USART1;
-use touchdown_core::link::Frame;
+use touchdown_protocol::link::Frame;
 
 use crate::outgoing::Outgoing;
 

@@ -3,16 +3,18 @@
 use heapless::Vec;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::Learnt;
-use touchdown_core::link::Recent;
-use touchdown_core::log::block::{Block, Kind};
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::header::Header;
-use touchdown_core::log::reader;
-use touchdown_core::log::severity;
-use touchdown_core::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
-use touchdown_core::wire::{self, NOTICE_BYTES, Record};
+use touchdown_protocol::link::Recent;
+use touchdown_protocol::log::block::{Block, Kind};
+use touchdown_protocol::log::ending::{Closing, Ending};
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::learnt;
+use touchdown_protocol::log::reader;
+use touchdown_protocol::log::severity;
+use touchdown_protocol::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::wire;
+use touchdown_protocol::wire::{NOTICE_BYTES, Record};
 
 use super::pulses::{Pulses, Ring};
 use super::{CAPACITY, Plan};
@@ -20,7 +22,7 @@ use super::{CAPACITY, Plan};
 /// Notices of an episode; those beyond are counted.
 const NOTICES: usize = 64;
 /// Notices of a block.
-const NOTICES_PER_BLOCK: usize = touchdown_core::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
+const NOTICES_PER_BLOCK: usize = touchdown_protocol::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
 const COPIES: u8 = reader::COPIES as u8;
 
 /// What began an episode.
@@ -276,7 +278,7 @@ impl Capture {
     }
 
     fn learnt(&mut self, learnt: &Learnt) -> Option<Block> {
-        let block = learnt.part(self.fetched.learnt)?;
+        let block = learnt::part(learnt, self.fetched.learnt)?;
         self.fetched.learnt += 1;
         Some(block)
     }

@@ -1,8 +1,9 @@
 //! Pulses of a buffer's samples: as these, a history, then an episode's.
 
-use touchdown_core::log::block::Block;
-use touchdown_core::log::pulses::{self, PULSE_BYTES, PULSES_PER_BLOCK, Pulse, Shown};
 use touchdown_core::sample::Sample;
+use touchdown_protocol::log::block::Block;
+use touchdown_protocol::log::pulses;
+use touchdown_protocol::log::pulses::{PULSE_BYTES, PULSES_PER_BLOCK, Pulse, Shown};
 
 /// Pulses that wait for the store, of a buffer.
 pub(super) const ROOM: usize = 128;

@@ -1,7 +1,7 @@
 //! Where things are in flash.
 
-use touchdown_core::log::block::BLOCK_BYTES;
-use touchdown_core::log::marks::RELEASE_BYTES;
+use touchdown_protocol::log::block::BLOCK_BYTES;
+use touchdown_protocol::log::marks::RELEASE_BYTES;
 
 /// Bytes that are erased at once, 4 KiB in the usual serial NOR flash.
 pub(super) const SECTOR_BYTES: u32 = 4096;

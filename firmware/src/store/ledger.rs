@@ -2,7 +2,7 @@
 //! older sector is erased only when the newer one is full, so the newest record is always there.
 
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
-use touchdown_core::log::counters::{COUNTERS_BYTES, Counters};
+use touchdown_protocol::log::counters::{COUNTERS_BYTES, Counters};
 
 use super::layout::{COUNTER_SECTORS, Layout, SECTOR_BYTES};
 

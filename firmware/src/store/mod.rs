@@ -9,9 +9,9 @@ mod ledger;
 mod slots;
 
 use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash, ReadNorFlash};
-use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::ending::Ending;
+use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::ending::Ending;
 
 use self::layout::{BLOCKS_PER_SLOT, Layout, SECTORS_PER_SLOT};
 pub use self::layout::{EPISODE_BYTES, bytes_of};

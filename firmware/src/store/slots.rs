@@ -1,9 +1,9 @@
 //! Which episode is in which slot.
 
 use embedded_storage::nor_flash::ReadNorFlash;
-use touchdown_core::log::block::{BLOCK_BYTES, Kind, Page};
-use touchdown_core::log::ending::Ending;
-use touchdown_core::log::marks::{MARKS_BYTES, Marks};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Kind, Page};
+use touchdown_protocol::log::ending::Ending;
+use touchdown_protocol::log::marks::{MARKS_BYTES, Marks};
 
 use super::layout::{BLOCKS_PER_SLOT, Layout};
 

@@ -2,13 +2,13 @@
 
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::log::header::Header;
-use touchdown_core::log::reader::{Item, Reader, Report, Verdict};
-use touchdown_core::log::waveform::Counts;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::board::default_config;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::reader::{Item, Reader, Report, Verdict};
+use touchdown_protocol::log::waveform::Counts;
 
 use super::chip::random;
 

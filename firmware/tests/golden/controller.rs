@@ -3,19 +3,20 @@
 use std::fmt::Write;
 
 use touchdown_core::checksum::CRC;
-use touchdown_core::config_block::{self, Block, Settings, Wiring};
-use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::Lookout;
-use touchdown_core::link::{Chunk, Log};
-use touchdown_core::log::block::BLOCK_BYTES;
-use touchdown_core::log::reader::{Item, Reader};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::w25q::W25q;
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::link::{Chunk, Log};
+use touchdown_protocol::log::block::BLOCK_BYTES;
+use touchdown_protocol::log::reader::{Item, Reader};
 
 use crate::common::chip::{Bus, Chip, NoDelay, flash};
 use crate::stream::Stream;

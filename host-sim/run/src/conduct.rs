@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
-use touchdown_core::controller::{Fault, Mode, Outputs};
-use touchdown_core::link::{Hello, State};
-use touchdown_core::wire::Switching;
+use touchdown_protocol::controller::{Fault, Mode, Outputs};
+use touchdown_protocol::link::{Hello, State};
+use touchdown_protocol::wire::Switching;
 
 use crate::timebase::Timebase;
 use touchdown_base::paint::Paint;

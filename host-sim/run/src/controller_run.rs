@@ -1,20 +1,21 @@
 //! The whole controller on the desktop: what the emulator's image runs, over flash in RAM.
 
-use touchdown_core::config_block::{self, Block, Settings, Wiring};
-use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::Lookout;
-use touchdown_core::link::{
-    Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
-};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_core::sample::Sample;
-use touchdown_core::wire::Switching;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::store::bytes_of;
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::link::{
+    Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
+};
+use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::conduct::Conduct;

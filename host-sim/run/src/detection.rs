@@ -91,8 +91,8 @@ pub fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
 mod tests {
     use super::*;
     use touchdown_core::event::{Event, Moment};
+    use touchdown_core::monitor::Summary;
     use touchdown_core::severity::Severity;
-    use touchdown_core::wire::Summary;
 
     #[test]
     fn stamps_are_whole_samples() {

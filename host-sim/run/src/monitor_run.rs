@@ -3,10 +3,10 @@
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::Lookout;
 use touchdown_core::learnt::Learnt;
+use touchdown_core::monitor::Summary;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
-use touchdown_core::wire::Summary;
 use touchdown_rotor::error::ConfigError;
 
 /// Notices that are kept; a recording of any length has to fit.

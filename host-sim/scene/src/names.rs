@@ -1,9 +1,9 @@
 //! What phases, events and regimes are called in text.
 
-use touchdown_core::controller::{Fault, Mode};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 use touchdown_core::sample::CHANNELS;
+use touchdown_protocol::controller::{Fault, Mode};
 
 use touchdown_base::history::{PhaseKind, Regime};
 

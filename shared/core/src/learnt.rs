@@ -1,4 +1,4 @@
-//! What the monitor has learnt of a floating rotor, in parts that fit a block of the drop log: a monitor
+//! What the monitor has learnt of a floating rotor, in parts that fit a page of the drop log: a monitor
 //! that starts with it says of the samples behind it what the one that learnt it said.
 //!
 //! Not in it: a search for an orbit under way.
@@ -11,15 +11,12 @@ use serde::de::DeserializeOwned;
 use crate::detect::{Afloat, DetectorState};
 use crate::event::Moment;
 use crate::health::HealthState;
-use crate::log::block::{Block, Kind};
 use crate::monitor::MonitorState;
 use crate::sample::TACHOMETERS;
 use crate::tachometer::TachometersState;
 use crate::tachometer::learnt::{self, Rings};
 
-/// Version of the parts.
-pub const VERSION: u8 = 1;
-/// Parts, each a block.
+/// Parts.
 pub const PARTS: u8 = 8;
 /// Further parts where a pulse channel has shown a value, one a channel.
 pub const RING_PARTS: u8 = TACHOMETERS as u8;
@@ -73,49 +70,31 @@ impl Learnt {
         self.told.1
     }
 
-    /// Part `number`, from 0, as a block; nothing beyond the last.
-    pub fn part(&self, number: u8) -> Option<Block> {
+    /// Writes the values of part `number`, from 0, in postcard; nothing beyond the last, or where they do not fit.
+    pub fn write(&self, number: u8, to: impl Flavor<Output = ()>) -> Option<()> {
         let [a, b, c, d] = &self.health.channels;
         let release = &self.detector.release;
-        let mut block = Block::of(Kind::Learnt, &[VERSION, number]);
-        let room = &mut block;
         match number {
-            0 => put(room, &(&self.told, &self.detector.place, release)),
-            1 => put(room, &self.detector.orbit),
+            0 => put(to, &(&self.told, &self.detector.place, release)),
+            1 => put(to, &self.detector.orbit),
             2..=4 => {
                 let from = INSTANTS * usize::from(number - FIRST_INSTANTS);
                 let rest = release.candidates().get(from..).unwrap_or_default();
-                put(room, rest.get(..INSTANTS).unwrap_or(rest))
+                put(to, rest.get(..INSTANTS).unwrap_or(rest))
             }
-            5 => put(room, &(a, b)),
-            6 => put(room, &(c, d)),
-            7 => put(room, &self.health.planes),
+            5 => put(to, &(a, b)),
+            6 => put(to, &(c, d)),
+            7 => put(to, &self.health.planes),
             8.. if learnt::are_known(&self.rings) => {
-                put(room, self.rings.get(usize::from(number - PARTS))?)
+                put(to, self.rings.get(usize::from(number - PARTS))?)
             }
             _ => None,
-        }?;
-        Some(block)
-    }
-
-    /// From the payloads of all parts, in their order; nothing where one is missing or of another version.
-    pub fn of_parts<'a>(parts: impl Iterator<Item = &'a [u8]>) -> Option<Self> {
-        let mut learnt = Self {
-            known: true,
-            ..Self::default()
-        };
-        let mut number = 0;
-        for part in parts {
-            match part {
-                [VERSION, it, body @ ..] if *it == number => learnt.take(number, body)?,
-                _ => return None,
-            }
-            number += 1;
         }
-        (number == PARTS || number == PARTS + RING_PARTS).then_some(learnt)
     }
 
-    fn take(&mut self, number: u8, body: &[u8]) -> Option<()> {
+    /// Reads them back, part by part from 0; nothing where they are none of that part.
+    pub fn read(&mut self, number: u8, body: &[u8]) -> Option<()> {
+        self.known = true;
         match number {
             0 => (self.told, self.detector.place, self.detector.release) = get(body)?,
             1 => self.detector.orbit = get(body)?,
@@ -152,31 +131,8 @@ impl From<&Learnt> for MonitorState {
 }
 
 /// Nothing where it does not fit.
-fn put(block: &mut Block, what: &(impl Serialize + ?Sized)) -> Option<()> {
-    postcard::serialize_with_flavor(what, Room(block)).ok()
-}
-
-/// A block's payload as a place for values. One copy of what fills it: they are many.
-struct Room<'a>(&'a mut Block);
-
-impl Flavor for Room<'_> {
-    type Output = ();
-
-    #[inline(never)]
-    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.try_extend(&[byte])
-    }
-
-    #[inline(never)]
-    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
-        let fits = self.0.push(bytes);
-        fits.then_some(())
-            .ok_or(postcard::Error::SerializeBufferFull)
-    }
-
-    fn finalize(self) -> postcard::Result<()> {
-        Ok(())
-    }
+fn put(to: impl Flavor<Output = ()>, what: &(impl Serialize + ?Sized)) -> Option<()> {
+    postcard::serialize_with_flavor(what, to).ok()
 }
 
 fn get<T: DeserializeOwned>(body: &[u8]) -> Option<T> {

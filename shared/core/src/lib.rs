@@ -9,9 +9,6 @@
 
 pub mod checksum;
 pub mod config;
-#[cfg(feature = "serde")]
-pub mod config_block;
-pub mod controller;
 pub mod detect;
 pub mod event;
 pub mod fault;
@@ -19,9 +16,6 @@ pub mod forecast;
 pub mod health;
 #[cfg(feature = "serde")]
 pub mod learnt;
-#[cfg(feature = "serde")]
-pub mod link;
-pub mod log;
 pub mod monitor;
 pub mod phase;
 pub mod sample;
@@ -29,4 +23,3 @@ pub mod sensing;
 pub mod severity;
 pub mod tachometer;
 mod vector;
-pub mod wire;

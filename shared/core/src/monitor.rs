@@ -13,7 +13,6 @@ use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severeness, Severity, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
-use crate::wire::Summary;
 use touchdown_rotor::error::ConfigError;
 
 /// All that the monitor is told.
@@ -61,6 +60,19 @@ pub struct MonitorState {
     #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
+}
+
+/// What a whole run adds up to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Samples seen.
+    pub samples: u64,
+    /// Channel values that were unusable, or not used.
+    pub faults: u64,
+    /// What can be had of each channel at the end.
+    pub conditions: [Condition; CHANNELS],
+    /// Fingerprint of the detector's state over all ticks.
+    pub state_hash: u32,
 }
 
 impl Monitor {

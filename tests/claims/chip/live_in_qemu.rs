@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_core::wire::{REPLAY_MAGIC, encode_sample};
+use touchdown_protocol::wire::{REPLAY_MAGIC, encode_sample};
 use touchdown_run::emulator::built;
 use touchdown_tests::binary::{program, touchdown};
 use touchdown_tests::controller::settings;

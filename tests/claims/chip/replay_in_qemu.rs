@@ -4,8 +4,8 @@
 use std::io::Sink;
 
 use touchdown_core::event::EventKind;
-use touchdown_core::log::reader::Verdict;
-use touchdown_core::wire::Switching;
+use touchdown_protocol::log::reader::Verdict;
+use touchdown_protocol::wire::Switching;
 use touchdown_files::drop_log::Dump;
 use touchdown_run::drop;
 use touchdown_run::emulator::Emulator;

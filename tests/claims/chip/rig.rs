@@ -11,11 +11,12 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-use touchdown_core::config_block::{self, Settings};
-use touchdown_core::controller::{Busy, Fault, Mode};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::controller::{Busy, Fault, Mode};
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::link::{Refusal, Request, State};
-use touchdown_core::log::reader::Verdict;
+use touchdown_protocol::link::{Refusal, Request, State};
+use touchdown_protocol::log::reader::Verdict;
 use touchdown_files::drop_log::{Dump, Episode};
 use touchdown_files::link::{Client, LinkError, Told};
 use touchdown_run::drop;

@@ -7,7 +7,7 @@ use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::tachometer::{Speed, Tachometers as Core, TachometersConfig};
-use touchdown_core::wire;
+use touchdown_protocol::wire;
 use touchdown_files::stream::{Columns, StreamReader, StreamWriter, to_row, to_sample};
 use touchdown_rotor::error::ConfigError;
 use touchdown_run::monitor_run;

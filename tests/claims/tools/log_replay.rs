@@ -3,9 +3,9 @@
 use std::fs::{self, File};
 use std::io::Sink;
 
-use touchdown_core::learnt::Learnt;
-use touchdown_core::log::block::Kind;
-use touchdown_core::log::header::Header;
+use touchdown_protocol::log::learnt::{of_parts, part};
+use touchdown_protocol::log::block::Kind;
+use touchdown_protocol::log::header::Header;
 use touchdown_core::monitor::Monitor;
 use touchdown_files::drop_log::{Dump, Episode, stream};
 use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample};
@@ -132,13 +132,13 @@ fn what_the_pulse_channels_knew_comes_back() {
     let (dump, _) = dropped(&scene);
     let field = dump.episodes[0].learnt.clone().expect("learnt");
     let learnt = of_field(&field).expect("is read");
-    let parts: Vec<_> = (0..).map_while(|it| learnt.part(it)).collect();
+    let parts: Vec<_> = (0..).map_while(|it| part(&learnt, it)).collect();
     assert_eq!(to_field(parts.iter().map(|it| it.payload())), field);
     // A part more or less is of no known episode.
     let parts = || parts.iter().map(|it| it.payload());
-    assert!(Learnt::of_parts(parts().take(8)).is_some());
-    assert!(Learnt::of_parts(parts().take(9)).is_none());
-    assert!(Learnt::of_parts(parts().chain(parts().take(1))).is_none());
+    assert!(of_parts(parts().take(8)).is_some());
+    assert!(of_parts(parts().take(9)).is_none());
+    assert!(of_parts(parts().chain(parts().take(1))).is_none());
 }
 
 #[test]
@@ -184,12 +184,12 @@ fn what_was_learnt_comes_back() {
     let (dump, _) = dropped(&scene);
     let field = dump.episodes[0].learnt.clone().expect("learnt");
     let learnt = of_field(&field).expect("is read");
-    let parts: Vec<_> = (0..).map_while(|it| learnt.part(it)).collect();
+    let parts: Vec<_> = (0..).map_while(|it| part(&learnt, it)).collect();
     assert!(parts.iter().all(|it| it.kind() == Kind::Learnt));
     assert_eq!(to_field(parts.iter().map(|it| it.payload())), field);
     let parts = || parts.iter().map(|it| it.payload());
-    assert!(Learnt::of_parts(parts().take(7)).is_none());
-    assert!(Learnt::of_parts(parts().chain(parts())).is_none());
+    assert!(of_parts(parts().take(7)).is_none());
+    assert!(of_parts(parts().chain(parts())).is_none());
     // Nothing has been learnt yet.
     let monitor = Monitor::try_new(&scene.monitor_config()).expect("valid");
     let mut learnt = learnt;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 use touchdown_base::input_error::InputError;
-use touchdown_core::link::Refusal;
+use touchdown_protocol::link::Refusal;
 use touchdown_files::link::LinkError;
 use touchdown_files::recording::{Mapping, Reading, Recording};
 use touchdown_scene::Scene;

@@ -9,9 +9,10 @@ mod scenes;
 use core::hint::black_box;
 use core::mem::MaybeUninit;
 
-use touchdown_core::config_block::{self, Block, Settings, Wiring};
-use touchdown_core::controller::{Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::controller::{Faults, Outputs};
 
 use self::scenes::{SCENES, Scene};
 use touchdown_firmware::board::qemu::Counter;

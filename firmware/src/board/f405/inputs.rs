@@ -1,7 +1,7 @@
 //! The speed pulse and "levitation on".
 
 use stm32f4::stm32f405::{GPIOB, RCC, TIM4};
-use touchdown_core::config_block::Settings;
+use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::speed::{Speed, SpeedState};

@@ -23,12 +23,13 @@ use defmt::{error, info};
 use embedded_hal::delay::DelayNs;
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
-use touchdown_core::config_block::{self, Block, BlockError, Settings};
-use touchdown_core::controller::{Fault, Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::Lookout;
-use touchdown_core::link::Server;
 use touchdown_core::sample::Sample;
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, BlockError, Settings};
+use touchdown_protocol::controller::{Fault, Faults, Outputs};
+use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
 
 use self::chip::{Chip, Cycles, Spi};

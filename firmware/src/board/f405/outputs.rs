@@ -1,7 +1,7 @@
 //! The outputs, and the watchdog that makes them fail-safe against a stuck core.
 
 use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
-use touchdown_core::controller::Outputs;
+use touchdown_protocol::controller::Outputs;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs.

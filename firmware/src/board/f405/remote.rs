@@ -2,8 +2,8 @@
 
 use cortex_m::peripheral::DWT;
 use stm32f4::stm32f405::{FLASH, GPIOB, RCC};
-use touchdown_core::config_block::{Block, Settings};
-use touchdown_core::link::{Device, Log, Recent, Refusal, State};
+use touchdown_protocol::config_block::{Block, Settings};
+use touchdown_protocol::link::{Device, Log, Recent, Refusal, State};
 
 use super::clocks::CORE_HZ;
 use super::outputs::Watchdog;

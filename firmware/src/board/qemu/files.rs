@@ -5,7 +5,8 @@ use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_core::wire::{self, Record};
+use touchdown_protocol::wire;
+use touchdown_protocol::wire::Record;
 
 use super::Failure;
 use super::name::Name;

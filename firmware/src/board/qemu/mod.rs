@@ -1,5 +1,5 @@
 //! QEMU's netduinoplus2: samples from a replay file, notices to an answer file, both by
-//! semihosting. Formats: [`touchdown_core::wire`].
+//! semihosting. Formats: [`touchdown_protocol::wire`].
 
 mod counter;
 mod files;
@@ -9,11 +9,12 @@ mod remote;
 mod settings;
 
 use defmt::{Debug2Format, Display2Format, error, info};
-use touchdown_core::config_block::{self, Block, BlockError, Settings, Wiring};
-use touchdown_core::controller::{Fault, Faults, Outputs};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
-use touchdown_core::wire::{Record, Switching};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Block, BlockError, Settings, Wiring};
+use touchdown_protocol::controller::{Fault, Faults, Outputs};
+use touchdown_protocol::wire::{Record, Switching};
 
 pub use self::counter::Counter;
 use self::files::{Answer, Files};

@@ -4,9 +4,9 @@ use core::time::Duration;
 
 use semihosting::experimental::time::Instant;
 use stm32f4::stm32f405::Peripherals;
-use touchdown_core::config_block::{Block, Settings};
 use touchdown_core::event::Notice;
-use touchdown_core::link::{Device, Log, Recent, Refusal, Server, State};
+use touchdown_protocol::config_block::{Block, Settings};
+use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
 use super::FileLog;
 use super::settings::SettingsFile;

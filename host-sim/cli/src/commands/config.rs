@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use touchdown_core::config_block::Settings;
+use touchdown_protocol::config_block::Settings;
 
 use super::args::ConfigArgs;
 use crate::gate::Gate;

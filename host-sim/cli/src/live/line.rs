@@ -1,9 +1,9 @@
 //! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
 
 use serde_json::{Map, Value, json};
-use touchdown_core::controller::Fault;
 use touchdown_core::event::Notice;
-use touchdown_core::link::State;
+use touchdown_protocol::controller::Fault;
+use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;

@@ -1,10 +1,10 @@
 //! What the watcher passes on.
 
-use touchdown_core::config_block::Settings;
 use touchdown_core::event::Notice;
-use touchdown_core::link::{Recent, State};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::header::Header;
+use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::link::{Recent, State};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::header::Header;
 
 /// Something that was heard, and when.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,9 +5,9 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
-use touchdown_core::controller::{Fault, Mode};
 use touchdown_core::detect::Phase;
-use touchdown_core::link::State;
+use touchdown_protocol::controller::{Fault, Mode};
+use touchdown_protocol::link::State;
 
 use super::orbit::orbit;
 use super::watched::{Link, Watched};

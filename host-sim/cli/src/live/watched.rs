@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use touchdown_core::event::Notice;
-use touchdown_core::link::{Recent, State};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::header::Header;
-use touchdown_core::log::waveform::NO_VALUE;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::{PLANES, Sensing};
+use touchdown_protocol::link::{Recent, State};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::waveform::NO_VALUE;
 
 use super::update::{Greeting, Said, Update};
 use touchdown_run::detection::declared;

@@ -15,8 +15,8 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use touchdown_core::wire;
 use touchdown_firmware::board::BLOCK_SAMPLES;
+use touchdown_protocol::wire;
 
 use touchdown_base::failure::Failure;
 use touchdown_run::emulator::{Emulator, EmulatorError, RESTART, Session};

@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use touchdown_core::config_block::Settings;
+use touchdown_protocol::config_block::Settings;
 
 use crate::link::{Client, LinkError, Port};
 use touchdown_base::plain::shown;

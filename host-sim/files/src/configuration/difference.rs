@@ -1,7 +1,7 @@
 //! What two configurations differ in.
 
 use serde::Serialize;
-use touchdown_core::config_block::Settings;
+use touchdown_protocol::config_block::Settings;
 
 use super::file;
 

@@ -1,6 +1,6 @@
 //! Text to settings that are valid, and back.
 
-use touchdown_core::config_block::Settings;
+use touchdown_protocol::config_block::Settings;
 use touchdown_rotor::error::ConfigError;
 
 use super::table::Tables;

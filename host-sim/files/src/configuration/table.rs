@@ -1,12 +1,12 @@
 //! The configuration as it is written: tables and units of a scene, and what only a controller has.
 
 use serde::{Deserialize, Serialize};
-use touchdown_core::config_block::{Settings, Wiring};
 use touchdown_core::detect::{DetectorConfig, Tuning};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{PLANES, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
+use touchdown_protocol::config_block::{Settings, Wiring};
 
 use super::decimal::shortest;
 use touchdown_scene::check::gravity;

@@ -1,7 +1,7 @@
 //! An episode as COMTRADE (IEEE C37.111-1999): a configuration and an ASCII data file.
 
-use touchdown_core::log::waveform::NO_VALUE;
 use touchdown_core::sample::CHANNELS;
+use touchdown_protocol::log::waveform::NO_VALUE;
 
 use super::episode::Episode;
 use touchdown_scene::names::channel_name;

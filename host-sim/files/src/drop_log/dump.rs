@@ -5,9 +5,9 @@ use std::path::Path;
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use serde::Serialize;
-use touchdown_core::log::block::{BLOCK_BYTES, Page};
-use touchdown_core::log::counters::Counters;
 use touchdown_firmware::store::{self, EPISODE_BYTES, Slot, bytes_of};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Page};
+use touchdown_protocol::log::counters::Counters;
 
 use super::episode::{Completeness, Episode};
 use crate::ram_nor::RamNor;

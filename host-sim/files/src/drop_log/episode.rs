@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::log::ending::Ending;
-use touchdown_core::log::header::Header;
-use touchdown_core::log::pulses::Pulses;
-use touchdown_core::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
-use touchdown_core::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_core::sample::{Edges, TACHOMETERS};
+use touchdown_protocol::log::ending::Ending;
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::pulses::Pulses;
+use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
+use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 
 use crate::stream::{of_field, to_field};
 

@@ -1,7 +1,7 @@
 //! The log for people.
 
-use touchdown_core::log::ending::Closing;
-use touchdown_core::log::reader::DamageKind;
+use touchdown_protocol::log::ending::Closing;
+use touchdown_protocol::log::reader::DamageKind;
 
 use super::dump::Dump;
 use super::episode::{Completeness, Episode};

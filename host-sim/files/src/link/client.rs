@@ -3,13 +3,14 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use touchdown_core::config_block::{self, Settings};
 use touchdown_core::event::Notice;
-use touchdown_core::link::{
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::link::{
     Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode,
 };
-use touchdown_core::log::counters::Counters;
-use touchdown_core::wire::{Record, decode_record};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::wire::{Record, decode_record};
 
 use super::error::LinkError;
 use super::line::Line;

@@ -2,9 +2,9 @@
 
 use std::io::{self, ErrorKind};
 
-use touchdown_core::config_block::BlockError;
-use touchdown_core::controller::Busy;
-use touchdown_core::link::{Refusal, VERSION};
+use touchdown_protocol::config_block::BlockError;
+use touchdown_protocol::controller::Busy;
+use touchdown_protocol::link::{Refusal, VERSION};
 
 use touchdown_base::input_error::reason;
 use touchdown_base::plain::shown;

@@ -2,6 +2,7 @@
 //! digits, with hyphens between.
 
 use touchdown_core::learnt::Learnt;
+use touchdown_protocol::log::learnt::of_parts;
 
 /// Name of the column; only its first row has a value.
 pub const LEARNT: &str = "learnt";
@@ -15,7 +16,7 @@ pub fn to_field<'a>(parts: impl Iterator<Item = &'a [u8]>) -> String {
 /// From a field.
 pub fn of_field(text: &str) -> Option<Learnt> {
     let parts: Option<Vec<Vec<u8>>> = text.split('-').map(bytes).collect();
-    Learnt::of_parts(parts?.iter().map(Vec::as_slice))
+    of_parts(parts?.iter().map(Vec::as_slice))
 }
 
 fn bytes(digits: &str) -> Option<Vec<u8>> {

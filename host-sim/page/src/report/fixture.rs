@@ -5,7 +5,7 @@ use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
-use touchdown_core::link::{Hello, State, Text};
+use touchdown_protocol::link::{Hello, State, Text};
 use touchdown_run::conduct::Conduct;
 use touchdown_run::matching::regime_event;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_core::wire::{self, Record, Switching};
+use touchdown_protocol::wire;
+use touchdown_protocol::wire::{Record, Switching};
 
 use crate::monitor_run::{Answer, MOST_NOTICES};
 
@@ -71,9 +72,9 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<(Answer, Vec<Switching>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_core::controller::Outputs;
     use touchdown_core::event::Notice;
     use touchdown_core::severity::Severity;
+    use touchdown_protocol::controller::Outputs;
 
     #[test]
     fn answer_without_a_summary_is_damaged() {

@@ -7,7 +7,7 @@ use std::process::{Child, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use touchdown_core::wire::Switching;
+use touchdown_protocol::wire::Switching;
 
 use super::{Emulator, EmulatorError, decode_answer, read};
 use crate::monitor_run::Answer;

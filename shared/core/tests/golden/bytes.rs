@@ -2,21 +2,25 @@
 
 use std::fmt::Write;
 
-use touchdown_core::config_block::{self, Patrol, Settings, Wiring};
-use touchdown_core::controller::{Busy, Outputs};
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::forecast::{Onset, Outlook};
 use touchdown_core::health::{Condition, Fault, FaultKind};
-use touchdown_core::link::{Chunk, Decoder, Recent, Reply, Request, State, encode};
-use touchdown_core::log::block::{Block, Kind, Page};
-use touchdown_core::log::counters::Counters;
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::header::Header;
-use touchdown_core::log::severity;
-use touchdown_core::log::waveform::{self, Waveform};
+use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::severity::Severity;
-use touchdown_core::wire::{self, Record, Summary, Switching};
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{Patrol, Settings, Wiring};
+use touchdown_protocol::controller::{Busy, Outputs};
+use touchdown_protocol::link::{Chunk, Decoder, Recent, Reply, Request, State, encode};
+use touchdown_protocol::log::block::{Block, Kind, Page};
+use touchdown_protocol::log::counters::Counters;
+use touchdown_protocol::log::ending::{Closing, Ending};
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::severity;
+use touchdown_protocol::log::waveform;
+use touchdown_protocol::log::waveform::Waveform;
+use touchdown_protocol::wire;
+use touchdown_protocol::wire::{Record, Switching};
 
 use crate::stream::Stream;
 

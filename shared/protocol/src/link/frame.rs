@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::cobs::{self, Unstuffer};
-use crate::checksum::CRC;
+use touchdown_core::checksum::CRC;
 
 /// Version of the frames and of all messages.
 pub const VERSION: u8 = 2;

@@ -3,9 +3,9 @@
 use super::frame::{self, Decoder, Frame};
 use super::message::{Chunk, Hello, Recent, Refusal, Reply, Request, State, shortened};
 use crate::config_block::{self, Block, Settings};
-use crate::event::Notice;
 use crate::log::counters::Counters as Lifetime;
 use crate::wire::{Record, encode_record};
+use touchdown_core::event::Notice;
 
 /// The log, as the link sees it: numbered episodes of bytes.
 pub trait Log {

@@ -1,17 +1,18 @@
 //! The link takes any bytes; its frames are those of docs/formats/link.md, byte for byte.
 
 use proptest::prelude::*;
-use touchdown_core::config_block::{self, BlockError, Settings, Wiring};
-use touchdown_core::controller::{Busy, Faults, Mode, Outputs};
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
-use touchdown_core::link::{
-    Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
-    Reply, Request, Server, State, VERSION, encode,
-};
-use touchdown_core::log::counters::Counters as Lifetime;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::tachometer::TachometersConfig;
+use touchdown_protocol::config_block;
+use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
+use touchdown_protocol::controller::{Busy, Faults, Mode, Outputs};
+use touchdown_protocol::link::{
+    Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
+    Reply, Request, Server, State, VERSION, encode,
+};
+use touchdown_protocol::log::counters::Counters as Lifetime;
 use touchdown_rotor::error::ConfigError;
 
 const LIFETIME: Lifetime = Lifetime {

@@ -1,7 +1,7 @@
 //! Raw counts: 16 bits each, for 12-bit and 16-bit converters alike.
 
 use super::block::{Block, Kind, PAYLOAD_BYTES};
-use crate::sample::{CHANNELS, Sample};
+use touchdown_core::sample::{CHANNELS, Sample};
 
 /// The counts of one sample.
 pub type Counts = [u16; CHANNELS];

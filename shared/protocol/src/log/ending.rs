@@ -8,8 +8,8 @@ pub const ENDING_BYTES: usize = 28;
 /// Why an episode ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Closing {
     /// The rotor floats again.
     Levitated = 0,
@@ -26,8 +26,7 @@ impl Closing {
 }
 
 /// What an episode added up to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ending {
     /// Why it ended.
     pub closing: Closing,

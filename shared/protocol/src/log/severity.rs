@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::severity::Severity;
+use touchdown_core::severity::Severity;
 
 /// Version of the bytes behind it.
 pub const VERSION: u8 = 1;

@@ -7,8 +7,8 @@ use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Faults, Mode, Outputs};
 use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
-use crate::phase::Phase;
 use crate::wire::NOTICE_BYTES;
+use touchdown_core::phase::Phase;
 
 /// Most bytes of a log chunk.
 pub const CHUNK_BYTES: usize = 256;

@@ -9,14 +9,14 @@ pub mod counters;
 pub mod ending;
 mod fields;
 pub mod header;
+pub mod learnt;
 pub mod marks;
 pub mod pulses;
 pub mod reader;
-#[cfg(feature = "serde")]
 pub mod severity;
 pub mod waveform;
 
-use crate::checksum::CRC;
+use touchdown_core::checksum::CRC;
 
 /// Version of the format, in the header of an episode with pulses. All earlier ones are read as well.
 pub const FORMAT: u16 = 3;

@@ -2,14 +2,13 @@
 
 use super::fields::{Fields, Row};
 use super::{FORMAT, FORMAT_WITHOUT_PULSES};
-use crate::event::EventKind;
+use touchdown_core::event::EventKind;
 
 /// Bytes of a header.
 pub const HEADER_BYTES: usize = 68;
 
 /// What an episode is a record of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Header {
     /// The firmware's name and version, filled up with zeros.
     pub firmware: [u8; 16],
@@ -37,8 +36,8 @@ pub struct Header {
     pub zero_count: f32,
     /// Greatest count of the converter.
     pub full_scale: u16,
-    /// Bit i is set if the pulses of channel i of [`crate::sample::TACHOMETERS`] are recorded.
-    #[cfg_attr(feature = "serde", serde(default))]
+    /// Bit i is set if the pulses of channel i of [`touchdown_core::sample::TACHOMETERS`] are recorded.
+    #[serde(default)]
     pub pulsed: u8,
 }
 

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use super::block::{Block, Kind, PAYLOAD_BYTES};
 use super::fields::Fields;
-use crate::sample::{Edges, TACHOMETERS};
+use touchdown_core::sample::{Edges, TACHOMETERS};
 
 /// Version of the blocks.
 pub const VERSION: u8 = 1;

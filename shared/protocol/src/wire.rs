@@ -6,11 +6,12 @@
 //! [`Severity`], and last the one of [`Summary`].
 
 use crate::controller::Outputs;
-use crate::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use crate::event::{Onset, Outlook};
-use crate::fault::{Condition, Fault, FaultKind};
-use crate::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
-use crate::severity::Severity;
+use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::event::{Onset, Outlook};
+use touchdown_core::fault::{Condition, Fault, FaultKind};
+pub use touchdown_core::monitor::Summary;
+use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use touchdown_core::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
 pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x04";
@@ -72,19 +73,6 @@ pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
         levitated: (flags & LEVITATED_PRESENT != 0).then_some(flags & LEVITATED_ON != 0),
         edges,
     }
-}
-
-/// What a whole run adds up to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Summary {
-    /// Samples seen.
-    pub samples: u64,
-    /// Channel values that were unusable, or not used.
-    pub faults: u64,
-    /// What can be had of each channel at the end.
-    pub conditions: [Condition; CHANNELS],
-    /// Fingerprint of the detector's state over all ticks.
-    pub state_hash: u32,
 }
 
 /// A change of the outputs.

@@ -8,8 +8,8 @@ use core::fmt;
 use crc::Digest;
 use heapless::Vec;
 
-use crate::checksum::CRC;
-use crate::monitor::{Monitor, MonitorConfig};
+use touchdown_core::checksum::CRC;
+use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_rotor::error::ConfigError;
 
 /// First bytes of a block; the last is the version.

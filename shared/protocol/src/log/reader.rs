@@ -5,8 +5,8 @@ use super::ending::Ending;
 use super::header::Header;
 use super::pulses::Pulses;
 use super::waveform::Waveform;
-use crate::event::Notice;
 use crate::wire::{self, NOTICE_BYTES, Record};
+use touchdown_core::event::Notice;
 
 /// Most blocks of an episode.
 pub const MOST_BLOCKS: usize = 256;
@@ -49,9 +49,8 @@ impl<'a> Events<'a> {
 }
 
 /// Whether an episode is all there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No block at all.
     Empty,
@@ -64,9 +63,8 @@ pub enum Verdict {
 }
 
 /// What is wrong with a page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum DamageKind {
     /// Neither erased nor a block.
     Broken,
@@ -79,8 +77,7 @@ pub enum DamageKind {
 }
 
 /// A page that costs the episode something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Damage {
     /// Place in the episode, from 0.
     pub page: usize,
@@ -89,8 +86,7 @@ pub struct Damage {
 }
 
 /// What reading found. Every page is counted in one of the first five.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
     /// Right blocks of the episode.
     pub blocks: u32,
@@ -107,7 +103,7 @@ pub struct Report {
     /// Those of them that are the copy of a header or ending that is there.
     pub spared: u32,
     /// Pages that cost the episode something: no copy, and not the page that a cut of power has torn.
-    #[cfg_attr(feature = "serde", serde(default))]
+    #[serde(default)]
     pub damaged: u32,
     /// Bytes after the last page.
     pub rest: u32,

@@ -3,8 +3,8 @@
 /// What the controller is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
     #[default]
@@ -32,8 +32,7 @@ impl Mode {
 
 /// The outputs, each `true` where its coil or lamp has current. Without current all are safe, so loss
 /// of power, reset and a trip look the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Outputs {
     /// Trip relay: with current, the machine may run.
     pub run: bool,
@@ -79,8 +78,8 @@ impl Outputs {
 /// What can be wrong with the controller; latched until cleared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Fault {
     /// A tick came too late and lost a sample.
     Overrun = 0,
@@ -117,8 +116,7 @@ impl Fault {
 }
 
 /// A set of faults; bit i is the fault of code i.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Faults(pub u16);
 
 impl Faults {
@@ -150,8 +148,7 @@ impl Faults {
 }
 
 /// Why the controller does not do what it was asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Busy {
     /// The rotor falls, bounces, slides or whirls.
     DropRuns,

@@ -13,8 +13,7 @@ const GREATEST_INDEX: f32 = 1e4;
 const MAGIC: [u8; 4] = *b"TDC\x01";
 
 /// Lifetime counters. Each only grows, and stays at its greatest value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counters {
     /// Records written: the newest is the one that holds.
     pub generation: u32,

@@ -15,7 +15,7 @@ pub const PAYLOAD_BYTES: usize = BLOCK_BYTES - HEAD_BYTES - 4;
 pub enum Kind {
     /// [`super::header::Header`].
     Header = b'H',
-    /// A part of [`crate::learnt::Learnt`].
+    /// A part of [`touchdown_core::learnt::Learnt`].
     Learnt = b'L',
     /// [`super::waveform::Waveform`].
     Waveform = b'W',

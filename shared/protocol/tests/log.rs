@@ -2,16 +2,17 @@
 
 use proptest::prelude::*;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::log::block::{BLOCK_BYTES, Block, Kind, PAYLOAD_BYTES, Page};
-use touchdown_core::log::counters::{COUNTERS_BYTES, Counters};
-use touchdown_core::log::ending::{Closing, Ending};
-use touchdown_core::log::header::Header;
-use touchdown_core::log::marks::{MARKS_BYTES, Marks};
-use touchdown_core::log::pulses::{Pulse, Pulses};
-use touchdown_core::log::reader::{Item, Reader, Report, Verdict};
-use touchdown_core::log::waveform::{SAMPLES_PER_BLOCK, Waveform};
 use touchdown_core::sample::Edges;
-use touchdown_core::wire::{self, Record};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind, PAYLOAD_BYTES, Page};
+use touchdown_protocol::log::counters::{COUNTERS_BYTES, Counters};
+use touchdown_protocol::log::ending::{Closing, Ending};
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::marks::{MARKS_BYTES, Marks};
+use touchdown_protocol::log::pulses::{Pulse, Pulses};
+use touchdown_protocol::log::reader::{Item, Reader, Report, Verdict};
+use touchdown_protocol::log::waveform::{SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::wire;
+use touchdown_protocol::wire::Record;
 
 const SEQUENCE: u32 = 42;
 const HEADER: Header = Header {
