@@ -2,27 +2,27 @@
 
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice, Notices};
-use touchdown_core::forecast::Sight;
+use touchdown_core::forecast::ForecastInput;
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
-use touchdown_protocol::config_block::Patrol;
+use touchdown_protocol::config_block::ConfigScrub;
 use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Counters, State};
 use touchdown_rotor::error::ConfigError;
 
-use crate::blind::Blind;
+use crate::blind_timer::BlindTimer;
 use crate::board::Board;
+use crate::lift_interlock::LiftInterlock;
 use crate::outputs::{self, Condition};
-use crate::permit::Permit;
 
 /// The monitor, what is latched, and the outputs.
 #[derive(Clone)]
 pub struct App {
     monitor: Monitor,
     state: MonitorState,
-    patrol: Patrol,
-    blind: Blind,
-    permit: Permit,
+    patrol: ConfigScrub,
+    blind: BlindTimer,
+    permit: LiftInterlock,
     condition: Condition,
     tested: Tested,
     lost: u32,
@@ -47,9 +47,9 @@ impl App {
         Self {
             state: monitor.start(),
             monitor,
-            patrol: Patrol::default(),
-            blind: Blind::new(sample_rate),
-            permit: Permit::new(sample_rate, config.fitted),
+            patrol: ConfigScrub::default(),
+            blind: BlindTimer::new(sample_rate),
+            permit: LiftInterlock::new(sample_rate, config.fitted),
             condition: Condition {
                 mode: if found.trip() {
                     Mode::Faulted
@@ -79,8 +79,8 @@ impl App {
     }
 
     /// What the forecast below the tick needs; an estimate only where it `asks` for one.
-    pub fn sight(&self, asks: bool) -> Sight {
-        self.monitor.sight(&self.state, asks)
+    pub fn forecast_input(&self, wants_input: bool) -> ForecastInput {
+        self.monitor.forecast_input(&self.state, wants_input)
     }
 
     /// What follows from the notices of a tick, outputs included.

@@ -7,17 +7,17 @@
 
 pub mod ad7606;
 pub mod app;
-mod blind;
+mod blind_timer;
 pub mod board;
 pub mod crash;
 pub mod drop_log;
 #[cfg(target_os = "none")]
 mod journal;
+pub mod lift_interlock;
 pub mod memory;
 pub mod outgoing;
 pub mod outputs;
 pub mod overrun;
-pub mod permit;
 pub mod recorder;
 pub mod speed;
 pub mod store;

@@ -5,7 +5,7 @@
 
 use core::mem::MaybeUninit;
 
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
@@ -55,8 +55,8 @@ pub fn application<'a>(
 
 /// The forecast, which whoever runs below the tick keeps.
 #[inline(never)]
-pub fn lookout(config: &MonitorConfig) -> Result<Lookout, ConfigError> {
-    Lookout::try_new(&config.detector)
+pub fn forecast_task(config: &MonitorConfig) -> Result<ForecastTask, ConfigError> {
+    ForecastTask::try_new(&config.detector)
 }
 
 #[inline(never)]

@@ -5,7 +5,7 @@ use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, Patrol};
+use touchdown_protocol::config_block::{Block, ConfigScrub};
 use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
 
 /// Ticks from power-on until watching: self-test and `arming_time`, and what rounding adds.
@@ -350,7 +350,7 @@ fn samples_lost_before_clear_do_not_count_after_it() {
 #[test]
 fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
     let block = config_block::encode(&default_settings());
-    let limit = Patrol::steps(block.len()) as u32;
+    let limit = ConfigScrub::steps(block.len()) as u32;
     let mut longest = 0;
     let bench = Bench::watching();
     let watching = |ahead: u32| {

@@ -6,7 +6,7 @@ use touchdown_models::{
     BallBearing, Bushing, Fixed, Load, Mount, MountConfig, Race, RaceConfig, Sprung, Support,
     SupportConfig, SupportState,
 };
-use touchdown_rotor::{Change, Happening, Precision, RigidConfig, Start, Stepper};
+use touchdown_rotor::{Change, ModelEvent, Precision, RigidConfig, Start, Stepper};
 use touchdown_truth::reference;
 use touchdown_truth::reference::coupled::{SupportMachine, SupportReference, SupportStart};
 
@@ -186,7 +186,7 @@ impl Fall {
         };
         let step = self.rigid.step;
         let told = core::cell::RefCell::new(Vec::new());
-        let sink = |h: Happening<R>| {
+        let on_event = |h: ModelEvent<R>| {
             let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
             let change = match h.change {
                 Change::Impact(normal) => Change::Impact(normal.to_f64() * speed),
@@ -199,11 +199,11 @@ impl Fall {
             told.borrow_mut().push((at, change));
         };
         let mut state = model
-            .start(&start, R::lit(self.spin / spin), sink)
+            .start(&start, R::lit(self.spin / spin), on_event)
             .expect("valid start");
         each(&self.moment(model, &state));
         for _ in 0..(time / step).round() as u64 {
-            model.step(&mut state, sink);
+            model.step(&mut state, on_event);
             each(&self.moment(model, &state));
         }
         told.into_inner()

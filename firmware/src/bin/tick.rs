@@ -7,7 +7,7 @@ mod image {
     use core::panic::PanicInfo;
 
     use touchdown_core::event::{Notice, Notices};
-    use touchdown_core::forecast::Lookout;
+    use touchdown_core::forecast::ForecastTask;
     use touchdown_core::sample::Sample;
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
@@ -61,14 +61,15 @@ mod image {
         sample: &Sample,
         lost: u32,
         notices: &mut Notices,
-        lookout: &mut Lookout,
+        forecast_task: &mut ForecastTask,
     ) {
         app.tick(&mut Bare(config), sample, lost, notices);
         recorder.set_severity(app.state().severity());
         recorder.set_phase(app.state().phase());
         recorder.take(sample, notices);
         recorder.keep(app.state());
-        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+        if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
+        {
             recorder.hear(&outlook);
         }
     }

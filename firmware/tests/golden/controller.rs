@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Notice, Notices};
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board};
@@ -78,7 +78,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     let mut memory = Box::new(Memory::EMPTY);
     let mut recorder = Recorder::new(&mut memory, config, Identity::new(&desk.0, log.boot()));
     let mut app = App::try_new(config, Faults::NONE).expect("a valid configuration");
-    let mut lookout = Lookout::try_new(&config.detector).expect("a valid configuration");
+    let mut forecast_task = ForecastTask::try_new(&config.detector).expect("a valid configuration");
     let mut notices = Notices::new();
     let mut last = None;
     for (number, sample) in (0_usize..).zip(&stream.samples) {
@@ -86,7 +86,8 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
         recorder.set_severity(app.state().severity());
         recorder.set_phase(app.state().phase());
         recorder.take(sample, &notices);
-        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+        if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
+        {
             recorder.hear(&outlook);
         }
         let now = (

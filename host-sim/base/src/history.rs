@@ -44,7 +44,7 @@ pub struct Pulse {
 
 /// A change of motion, in the order of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Happening {
+pub enum ModelEvent {
     /// The rotor hit the retainer.
     Impact(Impact),
     /// It left the retainer again, where that takes time: this is the state after the last impact.
@@ -199,16 +199,16 @@ impl Recorder {
     }
 
     /// Takes the next happening.
-    pub fn take(&mut self, happening: Happening) {
+    pub fn take(&mut self, happening: ModelEvent) {
         match happening {
-            Happening::Impact(impact) => {
+            ModelEvent::Impact(impact) => {
                 // Another ring may hold the rotor all the while.
                 if !self.in_contact() {
                     self.change(PhaseKind::Impact, impact.state.time);
                 }
                 self.impacts.push(impact);
             }
-            Happening::Released { state, pulse } => {
+            ModelEvent::Released { state, pulse } => {
                 if let Some(impact) = self.impacts.last_mut() {
                     let time = impact.state.time;
                     impact.state = RotorState { time, ..state };
@@ -216,7 +216,7 @@ impl Recorder {
                     impact.pulse = Some(pulse);
                 }
             }
-            Happening::ContactStart { time, rolling } => {
+            ModelEvent::ContactStart { time, rolling } => {
                 self.contact_starts.push(time);
                 if rolling {
                     self.rolling_starts.push(time);
@@ -225,12 +225,12 @@ impl Recorder {
                     self.change(PhaseKind::Sliding, time);
                 }
             }
-            Happening::RollingStart(time) => {
+            ModelEvent::RollingStart(time) => {
                 self.rolling_starts.push(time);
                 self.change(PhaseKind::Rolling, time);
             }
-            Happening::SlidingStart(time) => self.change(PhaseKind::Sliding, time),
-            Happening::LiftOff(time) => {
+            ModelEvent::SlidingStart(time) => self.change(PhaseKind::Sliding, time),
+            ModelEvent::LiftOff(time) => {
                 self.lift_offs.push(time);
                 self.change(PhaseKind::FreeFall, time);
             }

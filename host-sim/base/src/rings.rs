@@ -1,6 +1,6 @@
 //! Several rings seen as one: the rotor is in contact while it is in any, and slides while it does in any.
 
-use crate::history::{Happening, History};
+use crate::history::{History, ModelEvent};
 
 /// What a drop did.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,32 +34,32 @@ impl Merge {
     }
 
     /// What `happening` in `ring` is to the rotor, if anything.
-    pub fn take(&mut self, ring: usize, happening: Happening) -> Option<Happening> {
+    pub fn take(&mut self, ring: usize, happening: ModelEvent) -> Option<ModelEvent> {
         let (touch, time) = match happening {
-            Happening::Impact(_) | Happening::Released { .. } => return Some(happening),
-            Happening::ContactStart {
+            ModelEvent::Impact(_) | ModelEvent::Released { .. } => return Some(happening),
+            ModelEvent::ContactStart {
                 time,
                 rolling: false,
             }
-            | Happening::SlidingStart(time) => (Touch::Sliding, time),
-            Happening::ContactStart {
+            | ModelEvent::SlidingStart(time) => (Touch::Sliding, time),
+            ModelEvent::ContactStart {
                 time,
                 rolling: true,
             }
-            | Happening::RollingStart(time) => (Touch::Rolling, time),
-            Happening::LiftOff(time) => (Touch::None, time),
+            | ModelEvent::RollingStart(time) => (Touch::Rolling, time),
+            ModelEvent::LiftOff(time) => (Touch::None, time),
         };
         let before = self.overall();
         *self.touches.get_mut(ring)? = touch;
         match (before, self.overall()) {
             (before, after) if before == after => None,
-            (_, Touch::None) => Some(Happening::LiftOff(time)),
-            (Touch::None, after) => Some(Happening::ContactStart {
+            (_, Touch::None) => Some(ModelEvent::LiftOff(time)),
+            (Touch::None, after) => Some(ModelEvent::ContactStart {
                 time,
                 rolling: after == Touch::Rolling,
             }),
-            (_, Touch::Rolling) => Some(Happening::RollingStart(time)),
-            (_, Touch::Sliding) => Some(Happening::SlidingStart(time)),
+            (_, Touch::Rolling) => Some(ModelEvent::RollingStart(time)),
+            (_, Touch::Sliding) => Some(ModelEvent::SlidingStart(time)),
         }
     }
 
@@ -78,8 +78,8 @@ impl Merge {
 mod tests {
     use super::*;
 
-    fn start(time: f64, rolling: bool) -> Happening {
-        Happening::ContactStart { time, rolling }
+    fn start(time: f64, rolling: bool) -> ModelEvent {
+        ModelEvent::ContactStart { time, rolling }
     }
 
     #[test]
@@ -88,20 +88,20 @@ mod tests {
         assert_eq!(merge.take(1, start(1.0, false)), Some(start(1.0, false)));
         assert_eq!(merge.take(0, start(2.0, true)), None);
         assert_eq!(
-            merge.take(1, Happening::RollingStart(3.0)),
-            Some(Happening::RollingStart(3.0))
+            merge.take(1, ModelEvent::RollingStart(3.0)),
+            Some(ModelEvent::RollingStart(3.0))
         );
         assert_eq!(
-            merge.take(0, Happening::SlidingStart(4.0)),
-            Some(Happening::SlidingStart(4.0))
+            merge.take(0, ModelEvent::SlidingStart(4.0)),
+            Some(ModelEvent::SlidingStart(4.0))
         );
         assert_eq!(
-            merge.take(0, Happening::LiftOff(5.0)),
-            Some(Happening::RollingStart(5.0))
+            merge.take(0, ModelEvent::LiftOff(5.0)),
+            Some(ModelEvent::RollingStart(5.0))
         );
         assert_eq!(
-            merge.take(1, Happening::LiftOff(6.0)),
-            Some(Happening::LiftOff(6.0))
+            merge.take(1, ModelEvent::LiftOff(6.0)),
+            Some(ModelEvent::LiftOff(6.0))
         );
     }
 }

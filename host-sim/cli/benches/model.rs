@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Change, Happening, Precision, Stepper};
+use touchdown_rotor::{Change, ModelEvent, Precision, Stepper};
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::Scene;
 
@@ -119,7 +119,7 @@ impl Use for Drops<'_> {
         let step = self.scene.model.step;
         let digits = self.scene.model.precision.name();
         let steps = whole_steps(self.scene.run.duration, step);
-        let mut history: Vec<Happening<R>> = Vec::new();
+        let mut history: Vec<ModelEvent<R>> = Vec::new();
         let mut group = self.criterion.benchmark_group("drop of 0.3 s");
         group.sample_size(20);
         group.bench_function(

@@ -255,10 +255,10 @@ impl Outputs {
         output::commit(files)?;
         let text = text(&told);
         if aside {
-            remark(&text);
+            note(&text);
             return Ok(());
         }
-        say(&text)
+        print(&text)
     }
 
     /// How text for people may be coloured.
@@ -277,7 +277,7 @@ impl Outputs {
 }
 
 /// Text for people on standard output.
-pub fn say(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     said(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
@@ -291,6 +291,6 @@ pub fn said(text: io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Text for people beside the result: on standard error, if somebody reads that.
-pub fn remark(text: &str) {
+pub fn note(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }

@@ -8,7 +8,7 @@ fn main() -> ExitCode {
     match commands::main() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            commands::complain(&failure);
+            commands::report_error(&failure);
             ExitCode::from(failure.status())
         }
     }

@@ -14,7 +14,7 @@ use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::forecast::{Lookout, Outlook};
+use touchdown_core::forecast::{ForecastTask, Outlook};
 use touchdown_core::monitor::Monitor;
 use touchdown_rotor::error::ConfigError;
 
@@ -54,7 +54,7 @@ pub struct Whirl {
 
 /// A forecast that answers an event: the first one whose estimate is not older.
 #[derive(Clone, Copy, Debug)]
-pub struct Answer {
+pub struct MonitorOutput {
     /// Declared impact, or contact.
     pub event: EventKind,
     /// When the forecast was ready, s.
@@ -69,7 +69,7 @@ pub struct Case {
     /// What happened.
     pub whirl: Option<Whirl>,
     /// The forecasts after events, up to the first turn's end.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<MonitorOutput>,
     /// Every forecast up to there: when ready (s), forward, backward.
     pub all: Vec<[f64; 3]>,
     /// When the monitor declared that whirl, s.
@@ -115,7 +115,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
     let mut seen = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&told.monitor_config())?;
     let mut state = monitor.start();
-    let mut lookout = Lookout::try_new(&told.monitor_config().detector)?;
+    let mut forecast_task = ForecastTask::try_new(&told.monitor_config().detector)?;
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
     let (mut case, mut contact, mut asked) = (Case::new(), None, None);
@@ -162,9 +162,9 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
                 _ => {}
             }
         }
-        let before = lookout.last().map(|it| it.made_at);
-        monitor.look(&state, &mut lookout);
-        let outlook = lookout.last().filter(|it| Some(it.made_at) != before);
+        let before = forecast_task.last().map(|it| it.made_at);
+        monitor.look(&state, &mut forecast_task);
+        let outlook = forecast_task.last().filter(|it| Some(it.made_at) != before);
         let (Some(&outlook), None) = (outlook, case.whirl) else {
             continue;
         };
@@ -178,7 +178,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
         }
         if let Some((event, _)) = asked.filter(|(_, k)| outlook.from.samples() >= *k as f64) {
             asked = None;
-            case.answers.push(Answer {
+            case.answers.push(MonitorOutput {
                 event,
                 made: time,
                 outlook,

@@ -6,13 +6,13 @@ use touchdown_core::sample::CHANNELS;
 
 use touchdown_base::history::{Impact, Phase, Regime};
 use touchdown_base::ledger::Ledger;
-use touchdown_run::conduct::Controller;
+use touchdown_run::controller_trace::Controller;
 use touchdown_run::model::RingEnd;
 use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::elastic::Validity;
 use touchdown_scene::scales::validity;
-use touchdown_scene::{Precision, Rung, Scene};
+use touchdown_scene::{Fidelity, Precision, Scene};
 use touchdown_truth::reference::energy;
 
 #[derive(Serialize)]
@@ -42,7 +42,7 @@ struct DropJson<'a> {
 
 #[derive(Serialize)]
 struct ModelJson {
-    rung: Rung,
+    rung: Fidelity,
     precision: Precision,
     step_s: f64,
 }

@@ -203,7 +203,7 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
     }
     let head = format!(
         "\n{:<12}{:>12}{:>12}{:>15}",
-        "foretold", "forward", "backward", "whirls from ms"
+        "predicted", "forward", "backward", "whirls from ms"
     );
     let mut text = paint.bold(&head) + "\n";
     for forecast in all.iter().take(LISTED) {

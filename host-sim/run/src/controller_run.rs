@@ -1,7 +1,7 @@
 //! The whole controller on the desktop: what the emulator's image runs, over flash in RAM.
 
 use touchdown_core::event::{Notice, Notices};
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_firmware::app::App;
@@ -18,8 +18,8 @@ use touchdown_protocol::link::{
 use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
-use crate::conduct::Conduct;
-use crate::monitor_run::{Answer, MOST_NOTICES};
+use crate::controller_trace::ControllerTrace;
+use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
 use touchdown_files::ram_nor::RamNor;
 
 type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
@@ -28,7 +28,7 @@ type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
 pub fn run(
     config: &MonitorConfig,
     samples: impl Iterator<Item = Sample>,
-) -> Result<(Answer, Conduct), ConfigError> {
+) -> Result<(MonitorOutput, ControllerTrace), ConfigError> {
     let mut log =
         RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
     let mut desk = Desk::new(config);
@@ -36,7 +36,7 @@ pub fn run(
     let identity = Identity::new(&desk.block, log.boot());
     let mut recorder = Recorder::new(&mut memory, config, identity);
     let mut app = App::try_new(config, Faults::NONE)?;
-    let mut lookout = Lookout::try_new(&config.detector)?;
+    let mut forecast_task = ForecastTask::try_new(&config.detector)?;
     let mut notices = Notices::new();
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
@@ -45,17 +45,18 @@ pub fn run(
         recorder.set_phase(app.state().phase());
         recorder.take(&sample, &notices);
         recorder.keep(app.state());
-        if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+        if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
+        {
             desk.report(&outlook);
             recorder.hear(&outlook);
         }
-        fingerprint.take(app.state(), &lookout);
+        fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
             while log.work(recorder.lost(), || recorder.fetch()) {}
         }
     }
     while log.work(recorder.lost(), || recorder.fetch()) {}
-    let answer = Answer {
+    let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,
         severity: *app.state().severity(),
@@ -74,7 +75,7 @@ pub fn run(
     else {
         unreachable!("each request has its own answer");
     };
-    let conduct = Conduct {
+    let conduct = ControllerTrace {
         outputs: desk.switchings,
         hello,
         state,

@@ -3,7 +3,7 @@
 use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
 use touchdown_core::forecast::Outlook;
 
-use crate::monitor_run::Answer;
+use crate::monitor_run::MonitorOutput;
 use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast};
 use crate::timebase::Timebase;
 use touchdown_scene::names::channel_name;
@@ -36,7 +36,7 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
 }
 
 /// The events of `answer`; a free fall has its confirmation or withdrawal with it.
-pub fn detection(answer: &Answer, timebase: Timebase) -> Detection {
+pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
     let mut events: Vec<DetectedEvent> = Vec::new();
     let mut forecasts = Vec::new();
     let mut numbers = Vec::new();
@@ -116,7 +116,7 @@ mod tests {
                 fault: None,
             })
         };
-        let answer = Answer {
+        let answer = MonitorOutput {
             notices: vec![
                 fall(0, 100),
                 Notice::Withdrawn {

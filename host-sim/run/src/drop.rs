@@ -35,7 +35,7 @@ pub fn run<W: Write>(
         ledger,
         ring,
     } = model::run(scene).map_err(refused)?;
-    let mut feed = Feed::new(scene, stream).map_err(refused)?;
+    let mut feed = SampleSource::new(scene, stream).map_err(refused)?;
     let (answer, conduct) = target.control(&scene.monitor_config(), &mut feed)?;
     let timebase = Timebase::of(scene);
     let (truth, trace, spectrogram, stream) = feed.finish();
@@ -55,7 +55,7 @@ pub fn run<W: Write>(
 }
 
 /// The samples of a drop, one after the other.
-struct Feed<'a, W> {
+struct SampleSource<'a, W> {
     scene: &'a Scene,
     truth: Truth<'a>,
     sensors: Sensors,
@@ -72,7 +72,7 @@ struct Feed<'a, W> {
     samples: u64,
 }
 
-impl<'a, W: Write> Feed<'a, W> {
+impl<'a, W: Write> SampleSource<'a, W> {
     fn new(scene: &'a Scene, stream: Option<W>) -> Result<Self, ConfigError> {
         let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
         let levitated = scene.levitated_samples();
@@ -126,7 +126,7 @@ impl<'a, W: Write> Feed<'a, W> {
     }
 }
 
-impl<W: Write> Iterator for Feed<'_, W> {
+impl<W: Write> Iterator for SampleSource<'_, W> {
     type Item = Sample;
 
     fn next(&mut self) -> Option<Sample> {
@@ -144,7 +144,7 @@ impl<W: Write> Iterator for Feed<'_, W> {
             bearing: bearing(self.scene, state.moving),
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
-        self.faults.spoil(&mut sample, time);
+        self.faults.inject(&mut sample, time);
         let [sensed, _] = self
             .sensing
             .convert(&sample, self.scene.sensors.fitted())

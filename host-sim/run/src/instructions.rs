@@ -120,12 +120,12 @@ impl Use for CountSteps<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_scene::{Precision, Rung};
+    use touchdown_scene::{Fidelity, Precision};
 
     #[test]
     fn every_kind_of_number_of_the_rigid_rung_is_counted() {
         let mut model = Scene::load("rig").unwrap().model;
-        assert_eq!(model.rung, Rung::Rigid);
+        assert_eq!(model.rung, Fidelity::Rigid);
         for precision in Precision::ALL {
             for &math in precision.maths() {
                 model.precision = precision;

@@ -4,8 +4,8 @@ pub mod model;
 
 pub mod monitor_run;
 
-pub mod conduct;
 pub mod controller_run;
+pub mod controller_trace;
 pub mod emulator;
 pub mod target;
 

@@ -199,7 +199,7 @@ fn contradicted(truth: &History, event: &DetectedEvent) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_base::history::{Happening, Impact, Recorder, RotorState};
+    use touchdown_base::history::{Impact, ModelEvent, Recorder, RotorState};
 
     fn at(time: f64) -> RotorState {
         RotorState {
@@ -227,14 +227,14 @@ mod tests {
     fn truth(impacts: &[f64], contact: f64) -> History {
         let mut recorder = Recorder::new(0.2);
         for &time in impacts {
-            recorder.take(Happening::Impact(Impact {
+            recorder.take(ModelEvent::Impact(Impact {
                 state: at(time),
                 normal_speed: 0.05,
                 normal_impulse: 0.1,
                 pulse: None,
             }));
         }
-        recorder.take(Happening::ContactStart {
+        recorder.take(ModelEvent::ContactStart {
             time: contact,
             rolling: false,
         });

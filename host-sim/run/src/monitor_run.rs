@@ -1,7 +1,7 @@
 //! The monitor on the desktop.
 
 use touchdown_core::event::Notice;
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::Summary;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
@@ -14,7 +14,7 @@ pub const MOST_NOTICES: usize = 100_000;
 
 /// What the monitor said over a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct MonitorOutput {
     /// In the order of the ticks.
     pub notices: Vec<Notice>,
     /// Later ones, counted.
@@ -31,7 +31,7 @@ pub struct Answer {
 pub fn run(
     config: &MonitorConfig,
     samples: impl Iterator<Item = Sample>,
-) -> Result<Answer, ConfigError> {
+) -> Result<MonitorOutput, ConfigError> {
     go_on(config, MonitorState::default(), samples)
 }
 
@@ -40,7 +40,7 @@ pub fn resume(
     config: &MonitorConfig,
     learnt: &Learnt,
     samples: impl Iterator<Item = Sample>,
-) -> Result<Answer, ConfigError> {
+) -> Result<MonitorOutput, ConfigError> {
     go_on(config, learnt.into(), samples)
 }
 
@@ -48,14 +48,14 @@ fn go_on(
     config: &MonitorConfig,
     mut state: MonitorState,
     samples: impl Iterator<Item = Sample>,
-) -> Result<Answer, ConfigError> {
+) -> Result<MonitorOutput, ConfigError> {
     let monitor = Monitor::try_new(config)?;
-    let mut lookout = Lookout::try_new(&config.detector)?;
+    let mut forecast_task = ForecastTask::try_new(&config.detector)?;
     let mut fingerprint = Fingerprint::default();
     let (mut notices, mut left_out) = (Vec::new(), 0);
     for sample in samples {
         let said = monitor.update(&mut state, &sample);
-        let outlook = monitor.look(&state, &mut lookout);
+        let outlook = monitor.look(&state, &mut forecast_task);
         for notice in said.into_iter().chain(outlook) {
             if notices.len() < MOST_NOTICES {
                 notices.push(notice);
@@ -63,9 +63,9 @@ fn go_on(
                 left_out += 1;
             }
         }
-        fingerprint.take(&state, &lookout);
+        fingerprint.take(&state, &forecast_task);
     }
-    Ok(Answer {
+    Ok(MonitorOutput {
         notices,
         left_out,
         severity: *state.severity(),

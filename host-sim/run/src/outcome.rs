@@ -1,7 +1,7 @@
 //! What a drop gives: the model's history, the reference's, what the sensors saw and what the
 //! detector said.
 
-use crate::conduct::Conduct;
+use crate::controller_trace::ControllerTrace;
 use crate::model::RingEnd;
 use serde::Serialize;
 use touchdown_base::history::{History, PhaseKind, RotorState};
@@ -158,5 +158,5 @@ pub struct Outcome {
     /// The detector.
     pub detection: Detection,
     /// The controller.
-    pub conduct: Conduct,
+    pub conduct: ControllerTrace,
 }

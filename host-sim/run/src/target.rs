@@ -6,10 +6,10 @@ use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 
-use crate::conduct::Conduct;
 use crate::controller_run;
+use crate::controller_trace::ControllerTrace;
 use crate::emulator::{Emulator, EmulatorError};
-use crate::monitor_run::{self, Answer};
+use crate::monitor_run::{self, MonitorOutput};
 use touchdown_base::failure::Failure;
 
 /// Where the detector runs.
@@ -35,7 +35,7 @@ impl Target {
         &self,
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
-    ) -> Result<Answer, Failure> {
+    ) -> Result<MonitorOutput, Failure> {
         match self {
             Self::Host => monitor_run::run(config, samples)
                 .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
@@ -49,7 +49,7 @@ impl Target {
         config: &MonitorConfig,
         learnt: &Learnt,
         samples: impl Iterator<Item = Sample>,
-    ) -> Result<Answer, Failure> {
+    ) -> Result<MonitorOutput, Failure> {
         match self {
             Self::Host => monitor_run::resume(config, learnt, samples)
                 .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
@@ -66,7 +66,7 @@ impl Target {
         &self,
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
-    ) -> Result<(Answer, Conduct), Failure> {
+    ) -> Result<(MonitorOutput, ControllerTrace), Failure> {
         match self {
             Self::Host => controller_run::run(config, samples)
                 .map_err(|error| Failure::Usage(format!("monitor: {error}"))),

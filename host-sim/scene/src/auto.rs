@@ -1,8 +1,8 @@
 //! `fidelity = "auto"` and `[outputs]`: from the file to what is asked.
 
 use super::Model;
+use super::diagnostic::Diagnostic;
 use super::file::{ModelTable, OutputsTable, SceneFile};
-use super::flaw::Flaw;
 use super::outputs::{Auto, Fixed, Output, Request};
 use touchdown_base::plain::Number;
 
@@ -12,17 +12,21 @@ const PERCENT: f64 = 1e-2;
 const DEFAULT_PHASES: f64 = 100e-6;
 
 /// What the scene leaves open; `model` has what it gives.
-pub(super) fn auto(file: &SceneFile, model: &Model) -> Result<Option<Auto>, Flaw> {
+pub(super) fn auto(file: &SceneFile, model: &Model) -> Result<Option<Auto>, Diagnostic> {
     let both = file.fidelity.is_some() && file.model.fidelity.is_some();
     if both {
-        return Err(Flaw::new("model", "fidelity", "fidelity is given twice"));
+        return Err(Diagnostic::new(
+            "model",
+            "fidelity",
+            "fidelity is given twice",
+        ));
     }
     let given = file.fidelity.as_deref().or(file.model.fidelity.as_deref());
     match (given, &file.outputs) {
         (None, None) => Ok(None),
         (None, Some(_)) => {
             let rule = "[outputs] says what fidelity = \"auto\" has to give, but the scene has no such line";
-            Err(Flaw::new("outputs", "", rule))
+            Err(Diagnostic::new("outputs", "", rule))
         }
         (Some("auto"), outputs) => Ok(Some(Auto {
             asked: asked(outputs.as_ref())?,
@@ -33,7 +37,7 @@ pub(super) fn auto(file: &SceneFile, model: &Model) -> Result<Option<Auto>, Flaw
             // At the top of the scene the key stands where a table's name would.
             let top = file.fidelity.is_some();
             let table = if top { "fidelity" } else { "model" };
-            Err(Flaw::new(table, "fidelity", rule))
+            Err(Diagnostic::new(table, "fidelity", rule))
         }
     }
 }
@@ -49,7 +53,7 @@ fn fixed(table: &ModelTable, model: &Model) -> Fixed {
     }
 }
 
-fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Flaw> {
+fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Diagnostic> {
     let Some(table) = table else {
         return Ok(vec![
             Request {
@@ -109,7 +113,7 @@ fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Flaw> {
                 "{key} is a tolerance and must be above 0, is {}",
                 Number(given)
             );
-            return Err(Flaw::new("outputs", key, rule));
+            return Err(Diagnostic::new("outputs", key, rule));
         }
         asked.push(Request {
             output,
@@ -117,7 +121,11 @@ fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Flaw> {
         });
     }
     if asked.is_empty() {
-        return Err(Flaw::new("outputs", "regime", "[outputs] asks for nothing"));
+        return Err(Diagnostic::new(
+            "outputs",
+            "regime",
+            "[outputs] asks for nothing",
+        ));
     }
     Ok(asked)
 }

@@ -4,18 +4,20 @@ use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
 use super::contact::{materials, step_in_contact};
+use super::diagnostic::Diagnostic;
 use super::faults::faults;
 use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
-use super::flaw::Flaw;
 use super::limits;
 use super::machine::{retainer, rotor, start};
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
 use super::support::{BallBearingTable, SupportTable};
-use super::{Math, Model, Precision, Retainer, Rotor, Run, Rung, Scene, Scheme, Start, TwoPlane};
+use super::{
+    Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start, TwoPlane,
+};
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
 
-pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
+pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let rotor = rotor(&file.rotor)?;
     let retainer = retainer(&file.retainer)?;
     // The rings of a rotor that tilts are looked at below.
@@ -54,21 +56,21 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Flaw> {
         faults,
         tuning: file.detector,
     };
-    if scene.model.rung == Rung::Hertz {
+    if scene.model.rung == Fidelity::Hertz {
         scene.model.step = step_in_contact(&scene, file.model.step_us.is_some())?;
     }
     monitor(&scene)?;
     Ok(scene)
 }
 
-fn run(table: &RunTable) -> Result<Run, Flaw> {
+fn run(table: &RunTable) -> Result<Run, Diagnostic> {
     let duration = above_zero("run", "duration_s", table.duration_s)?;
     if duration > 86_400.0 {
         let rule = format!(
             "duration_s must be no more than 86400, is {}",
             Number(duration)
         );
-        return Err(Flaw::new("run", "duration_s", rule));
+        return Err(Diagnostic::new("run", "duration_s", rule));
     }
     let rate = table.sample_rate_hz;
     let gravity = gravity(table.gravity_m_s2)?;
@@ -94,7 +96,7 @@ fn run(table: &RunTable) -> Result<Run, Flaw> {
 }
 
 /// Gravity, m/s^2.
-pub fn gravity(given: f64) -> Result<f64, Flaw> {
+pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
     let gravity = zero_or_more("run", "gravity_m_s2", given)?;
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
         let rule = format!(
@@ -102,13 +104,13 @@ pub fn gravity(given: f64) -> Result<f64, Flaw> {
             Number(limits::LEAST_GRAVITY_M_S2),
             Number(gravity)
         );
-        return Err(Flaw::new("run", "gravity_m_s2", rule));
+        return Err(Diagnostic::new("run", "gravity_m_s2", rule));
     }
     between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)
 }
 
 /// The lowest rung that has all parts of the machine.
-fn needed(file: &SceneFile) -> Result<Rung, Flaw> {
+fn needed(file: &SceneFile) -> Result<Fidelity, Diagnostic> {
     let gives_way = [
         ("support", file.support.is_some()),
         ("ball_bearing", file.ball_bearing.is_some()),
@@ -117,11 +119,11 @@ fn needed(file: &SceneFile) -> Result<Rung, Flaw> {
     match (gives_way, file.two_plane.is_some()) {
         (Some((table, _)), true) => {
             let rule = format!("no rung has both [{table}] and [two_plane]: leave one out");
-            Err(Flaw::new(table, "", rule))
+            Err(Diagnostic::new(table, "", rule))
         }
-        (Some(_), false) => Ok(Rung::Support),
-        (None, true) => Ok(Rung::TwoPlane),
-        (None, false) => Ok(Rung::Rigid),
+        (Some(_), false) => Ok(Fidelity::Support),
+        (None, true) => Ok(Fidelity::TwoPlane),
+        (None, false) => Ok(Fidelity::Rigid),
     }
 }
 
@@ -130,13 +132,13 @@ fn two_plane(
     rotor: &Rotor,
     retainer: &Retainer,
     start: &Start,
-) -> Result<Option<TwoPlane>, Flaw> {
+) -> Result<Option<TwoPlane>, Diagnostic> {
     let Some(table) = &file.two_plane else {
         let without = [("ring", file.ring.len()), ("magnet", file.magnet.len())];
         return match without.iter().find(|(_, count)| *count > 0) {
             Some((table, _)) => {
                 let rule = format!("[[{table}]] needs [two_plane]");
-                Err(Flaw::new(table, "z_mm", rule))
+                Err(Diagnostic::new(table, "z_mm", rule))
             }
             None => Ok(None),
         };
@@ -146,19 +148,19 @@ fn two_plane(
     Ok(Some(two_plane))
 }
 
-fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
+fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
     let rung = match table.rung.as_deref() {
         None => needed,
-        Some(name) => named("model", "rung", name, &Rung::ALL, Rung::name)?,
+        Some(name) => named("model", "rung", name, &Fidelity::ALL, Fidelity::name)?,
     };
     let parts = match rung {
-        Rung::Support => "[support] or [ball_bearing]",
-        Rung::TwoPlane => "[two_plane] and [[ring]]",
-        Rung::Rigid | Rung::Moreau | Rung::Hertz => "",
+        Fidelity::Support => "[support] or [ball_bearing]",
+        Fidelity::TwoPlane => "[two_plane] and [[ring]]",
+        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
     };
     if !parts.is_empty() && needed != rung {
         let rule = format!("rung = \"{}\" needs {parts}", rung.name());
-        return Err(Flaw::new("model", "rung", rule));
+        return Err(Diagnostic::new("model", "rung", rule));
     }
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
@@ -178,9 +180,9 @@ fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
     };
     let cutoff = match table.cutoff_mm_s {
         None => 0.0,
-        Some(_) if rung != Rung::Rigid => {
+        Some(_) if rung != Fidelity::Rigid => {
             let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
-            return Err(Flaw::new("model", "cutoff_mm_s", rule));
+            return Err(Diagnostic::new("model", "cutoff_mm_s", rule));
         }
         Some(speed) => MILLI * between("model", "cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
     };
@@ -194,7 +196,10 @@ fn model(table: &ModelTable, run: &Run, needed: Rung) -> Result<Model, Flaw> {
     })
 }
 
-fn sensors(table: &SensorsTable, tachometers: Option<Tachometers>) -> Result<SensorsConfig, Flaw> {
+fn sensors(
+    table: &SensorsTable,
+    tachometers: Option<Tachometers>,
+) -> Result<SensorsConfig, Diagnostic> {
     let config = SensorsConfig {
         planes: table.planes,
         bits: table.bits,
@@ -216,7 +221,7 @@ fn sensors(table: &SensorsTable, tachometers: Option<Tachometers>) -> Result<Sen
 }
 
 /// The core has the last word: what it refuses is a flaw of the key that the value came from.
-fn monitor(scene: &Scene) -> Result<(), Flaw> {
+fn monitor(scene: &Scene) -> Result<(), Diagnostic> {
     Monitor::try_new(&scene.monitor_config())
         .map(|_| ())
         .map_err(|error| translate(&error))

@@ -2,8 +2,8 @@
 
 use touchdown_models::Materials as Elastic;
 
+use super::diagnostic::Diagnostic;
 use super::file::MaterialsTable;
-use super::flaw::Flaw;
 use super::limits;
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate};
 use super::{Contact, Materials, Scene};
@@ -14,7 +14,7 @@ const GIGA: f64 = 1e9;
 
 /// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
 /// that is accurate.
-pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
+pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Diagnostic> {
     let compliance = compliance(scene).map_err(|error| translate(&error))?;
     let step = scene.model.step;
     if !given {
@@ -27,13 +27,13 @@ pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Flaw> {
             Number(longest / MICRO),
             Number(step / MICRO)
         );
-        return Err(Flaw::new("model", "step_us", rule));
+        return Err(Diagnostic::new("model", "step_us", rule));
     }
     Ok(step)
 }
 
 /// The materials, and how they touch.
-pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Flaw> {
+pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Diagnostic> {
     const TABLE: &str = "materials";
     let steel = MaterialsTable::default();
     let table = given.unwrap_or(&steel);
@@ -57,11 +57,11 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Fla
         }
         ("line", None) => {
             let rule = "contact = \"line\" needs length_mm";
-            return Err(Flaw::new(TABLE, "contact", rule));
+            return Err(Diagnostic::new(TABLE, "contact", rule));
         }
         (_, Some(_)) => {
             let rule = "length_mm is that of contact = \"line\"";
-            return Err(Flaw::new(TABLE, "length_mm", rule));
+            return Err(Diagnostic::new(TABLE, "length_mm", rule));
         }
         (_, None) => Contact::Point,
     };

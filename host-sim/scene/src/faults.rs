@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use touchdown_core::sample::CHANNELS;
 
-use super::flaw::Flaw;
+use super::diagnostic::Diagnostic;
 use super::rule::{MICRO, above_zero, between, named};
 use super::{LEVITATED_BEFORE, Run};
 use crate::names::channel_name;
@@ -31,13 +31,13 @@ pub(super) fn faults(
     tables: &[FaultTable],
     sensors: &SensorsConfig,
     run: &Run,
-) -> Result<Vec<SensorFault>, Flaw> {
+) -> Result<Vec<SensorFault>, Diagnostic> {
     if tables.len() > FAULTS {
         let rule = format!(
             "[[fault]] must stand no more than {FAULTS} times, stands {} times",
             tables.len()
         );
-        return Err(Flaw::new("fault", "kind", rule).in_row(FAULTS));
+        return Err(Diagnostic::new("fault", "kind", rule).in_row(FAULTS));
     }
     let rows = tables.iter().enumerate();
     rows.map(|(row, table)| {
@@ -48,7 +48,7 @@ pub(super) fn faults(
 }
 
 impl FaultTable {
-    fn check(&self, sensors: &SensorsConfig, run: &Run) -> Result<SensorFault, Flaw> {
+    fn check(&self, sensors: &SensorsConfig, run: &Run) -> Result<SensorFault, Diagnostic> {
         let kind = named("fault", "kind", &self.kind, &KINDS, |kind| kind)?;
         let fitted = &[0, 1, 2, 3][..CHANNELS / 2 * usize::from(sensors.planes)];
         let channel = named("fault", "channel", &self.channel, fitted, channel_name)?;
@@ -67,12 +67,12 @@ impl FaultTable {
         })
     }
 
-    fn failing(&self, kind: &str) -> Result<Failing, Flaw> {
+    fn failing(&self, kind: &str) -> Result<Failing, Diagnostic> {
         let size = |unit: &str| {
             let rule = || format!("kind = \"{kind}\" needs size, in {unit}");
             let size = self
                 .size
-                .ok_or_else(|| Flaw::new("fault", "kind", rule()))?;
+                .ok_or_else(|| Diagnostic::new("fault", "kind", rule()))?;
             between("fault", "size", size, -1e6..=1e6)
         };
         let failing = match kind {
@@ -81,7 +81,7 @@ impl FaultTable {
             "gain" => Failing::Gain(size("%")? / 100.0),
             _ if self.size.is_some() => {
                 let rule = format!("kind = \"{kind}\" has no size");
-                return Err(Flaw::new("fault", "size", rule));
+                return Err(Diagnostic::new("fault", "size", rule));
             }
             "open" => Failing::Open,
             "short" => Failing::Short,

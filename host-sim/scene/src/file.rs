@@ -4,8 +4,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use touchdown_core::detect::Tuning;
 
+use super::diagnostic;
 use super::faults::FaultTable;
-use super::flaw;
 use super::list;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
@@ -20,7 +20,7 @@ pub fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError
             .replacen("unknown field", "unknown key", 1);
         InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
     })?;
-    match flaw::not_finite(text) {
+    match diagnostic::not_finite(text) {
         Some((key, span)) => {
             let rule = format!("{key} must be a finite number");
             Err(InputError::at_span(name, text, span, rule))

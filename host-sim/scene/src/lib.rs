@@ -4,10 +4,10 @@ mod auto;
 mod builtin;
 pub mod check;
 mod contact;
+pub mod diagnostic;
 pub mod elastic;
 mod faults;
 pub mod file;
-pub mod flaw;
 pub mod limits;
 pub mod list;
 pub mod machine;
@@ -24,7 +24,7 @@ mod two_plane;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use materials::{Contact, Materials};
-pub use model::{Math, Model, Precision, Rung, Scheme};
+pub use model::{Fidelity, Math, Model, Precision, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
 pub use support::{BallBearing, Support};
 pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
@@ -178,7 +178,7 @@ impl Scene {
     }
 
     fn step_warning(&self) -> Option<String> {
-        if self.model.rung != Rung::Hertz {
+        if self.model.rung != Fidelity::Hertz {
             return None;
         }
         let limit = compliance(self).ok()?.accurate_step();

@@ -1,14 +1,14 @@
 //! The rotor, its retainer, and how it starts.
 
+use super::diagnostic::Diagnostic;
 use super::file::{RetainerTable, RotorTable, StartTable};
-use super::flaw::Flaw;
 use super::limits;
 use super::rule::{MILLI, ON_THE_WALL, RPM, above_zero, between, zero_or_more};
 use super::{Retainer, Rotor, Start};
 use touchdown_base::plain::Number;
 
 /// Checks `[rotor]`.
-pub fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
+pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
     let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
     let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
     let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
@@ -25,7 +25,7 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
                      ({solid:.3e}), is {}",
                     Number(inertia)
                 );
-                return Err(Flaw::new("rotor", "polar_inertia_kg_m2", rule));
+                return Err(Diagnostic::new("rotor", "polar_inertia_kg_m2", rule));
             }
             inertia
         }
@@ -41,7 +41,7 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Flaw> {
 }
 
 /// Checks `[retainer]`.
-pub fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
+pub fn retainer(table: &RetainerTable) -> Result<Retainer, Diagnostic> {
     let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
     let friction = zero_or_more("retainer", "friction", table.friction)?;
     Ok(Retainer {
@@ -52,7 +52,7 @@ pub fn retainer(table: &RetainerTable) -> Result<Retainer, Flaw> {
 }
 
 /// A free start must be within `clearance`, m.
-pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Flaw> {
+pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnostic> {
     let free = [
         ("x_mm", table.x_mm),
         ("y_mm", table.y_mm),
@@ -73,7 +73,7 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Flaw> {
             let rule = format!(
                 "{wall_key} starts the rotor on the wall, {free_key} starts it free: give one kind"
             );
-            return Err(Flaw::new("start", wall_key, rule));
+            return Err(Diagnostic::new("start", wall_key, rule));
         }
         let angle = table.angle_deg.unwrap_or(0.0);
         let angle = between("start", "angle_deg", angle, limits::ANGLE_DEG)?;
@@ -96,7 +96,7 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Flaw> {
             Number(distance / MILLI),
             Number(clearance / MILLI)
         );
-        return Err(Flaw::new("start", key, rule));
+        return Err(Diagnostic::new("start", key, rule));
     }
     Ok(Start::Free {
         position: [x, y],

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Rung of the ladder of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rung {
+pub enum Fidelity {
     /// Restitution and Coulomb friction on a rigid ring, each impact located.
     Rigid,
     /// The same laws by time-stepping.
@@ -58,7 +58,7 @@ pub enum Math {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// The rung.
-    pub rung: Rung,
+    pub rung: Fidelity,
     /// How it goes through time.
     pub scheme: Scheme,
     /// Its number format.
@@ -72,7 +72,7 @@ pub struct Model {
     pub cutoff: f64,
 }
 
-impl Rung {
+impl Fidelity {
     /// All, by rising cost.
     pub const ALL: [Self; 5] = [
         Self::Rigid,

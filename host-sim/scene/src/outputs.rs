@@ -1,6 +1,6 @@
 //! What a scene asks of its model, and how closely.
 
-use super::model::{Math, Model, Precision, Rung, Scheme};
+use super::model::{Fidelity, Math, Model, Precision, Scheme};
 
 /// Something that a drop gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub struct Auto {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fixed {
     /// Rung.
-    pub rung: Option<Rung>,
+    pub rung: Option<Fidelity>,
     /// Scheme.
     pub scheme: Option<Scheme>,
     /// Number format.
@@ -66,7 +66,7 @@ impl Fixed {
             && self.math.is_none_or(|math| math == model.math);
         fits.then(|| Model {
             step: self.step.unwrap_or(model.step),
-            cutoff: if model.rung == Rung::Rigid {
+            cutoff: if model.rung == Fidelity::Rigid {
                 self.cutoff
             } else {
                 0.0

@@ -1,6 +1,6 @@
 //! The parts of a machine: which of them a scene has, and which its rung models.
 
-use super::{Rung, Scene};
+use super::{Fidelity, Scene};
 
 /// A part of the machine or of its physics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     let bearing = scene.ball_bearing.as_ref();
     let two_plane = scene.two_plane.as_ref();
     let laws = match rung {
-        Rung::Hertz => "as losses of a contact that takes time",
+        Fidelity::Hertz => "as losses of a contact that takes time",
         _ => "the laws that all rungs share",
     };
     let mut parts = vec![
@@ -37,21 +37,21 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         },
         Part {
             name: "contact force and its duration",
-            modelled: rung == Rung::Hertz,
+            modelled: rung == Fidelity::Hertz,
             asked: false,
-            reason: if rung == Rung::Hertz {
+            reason: if rung == Fidelity::Hertz {
                 "rung hertz is asked for"
             } else {
                 "rung hertz has them"
             },
         },
     ];
-    let mut part = |name, asked: bool, needs: Rung, given, absent| {
+    let mut part = |name, asked: bool, needs: Fidelity, given, absent| {
         let modelled = asked && rung == needs;
         let reason = match (asked, modelled) {
             (_, true) => given,
             (true, false) => match needs {
-                Rung::Support => "given, but only rung support has it",
+                Fidelity::Support => "given, but only rung support has it",
                 _ => "given, but only rung two-plane has it",
             },
             (false, _) => absent,
@@ -63,7 +63,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
             reason,
         });
     };
-    let s = Rung::Support;
+    let s = Fidelity::Support;
     part(
         SPRING,
         support.is_some(),
@@ -85,7 +85,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         "[ball_bearing] is given",
         "no [ball_bearing]",
     );
-    let t = Rung::TwoPlane;
+    let t = Fidelity::TwoPlane;
     part(
         "tilt, gyroscopic effect, both ends",
         two_plane.is_some(),
@@ -120,9 +120,9 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
 pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
     let (ring, race) = (scene.support.is_some(), scene.ball_bearing.is_some());
     match scene.model.rung {
-        Rung::Rigid | Rung::Moreau | Rung::Hertz => (3, "x, y, spin"),
-        Rung::TwoPlane => (5, "x, y, two tilts, spin"),
-        Rung::Support => match (ring, race) {
+        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => (3, "x, y, spin"),
+        Fidelity::TwoPlane => (5, "x, y, two tilts, spin"),
+        Fidelity::Support => match (ring, race) {
             (false, false) => (3, "x, y, spin"),
             (true, false) => (5, "x, y, spin; ring x, y"),
             (false, true) => (4, "x, y, spin; inner ring's spin"),

@@ -3,7 +3,7 @@
 use touchdown_base::plain::Number;
 use touchdown_rotor::error::ConfigError;
 
-use super::flaw::Flaw;
+use super::diagnostic::Diagnostic;
 
 /// A turn a minute, rad/s.
 pub const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -14,11 +14,15 @@ pub const MICRO: f64 = 1e-6;
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 pub(super) const ON_THE_WALL: f64 = 1e-9;
 
-pub(super) fn above_zero(table: &'static str, key: &'static str, value: f64) -> Result<f64, Flaw> {
+pub(super) fn above_zero(
+    table: &'static str,
+    key: &'static str,
+    value: f64,
+) -> Result<f64, Diagnostic> {
     if value > 0.0 {
         return Ok(value);
     }
-    Err(Flaw::new(
+    Err(Diagnostic::new(
         table,
         key,
         format!("{key} must be above 0, is {}", Number(value)),
@@ -29,11 +33,11 @@ pub(crate) fn zero_or_more(
     table: &'static str,
     key: &'static str,
     value: f64,
-) -> Result<f64, Flaw> {
+) -> Result<f64, Diagnostic> {
     if value >= 0.0 {
         return Ok(value);
     }
-    Err(Flaw::new(
+    Err(Diagnostic::new(
         table,
         key,
         format!("{key} must be 0 or more, is {}", Number(value)),
@@ -45,14 +49,14 @@ pub(crate) fn between(
     key: &'static str,
     value: f64,
     range: std::ops::RangeInclusive<f64>,
-) -> Result<f64, Flaw> {
+) -> Result<f64, Diagnostic> {
     if range.contains(&value) {
         return Ok(value);
     }
     let (low, high) = range.into_inner();
     let [low, high, value] = [low, high, value].map(Number);
     let rule = format!("{key} must be {low} to {high}, is {value}");
-    Err(Flaw::new(table, key, rule))
+    Err(Diagnostic::new(table, key, rule))
 }
 
 /// The one of `all` that has this name.
@@ -62,7 +66,7 @@ pub(super) fn named<T: Copy>(
     given: &str,
     all: &[T],
     name: impl Fn(T) -> &'static str,
-) -> Result<T, Flaw> {
+) -> Result<T, Diagnostic> {
     all.iter()
         .copied()
         .find(|&item| name(item) == given)
@@ -72,12 +76,12 @@ pub(super) fn named<T: Copy>(
                 .map(|&item| format!("\"{}\"", name(item)))
                 .collect();
             let rule = format!("{key} must be {}, is \"{given}\"", names.join(" or "));
-            Flaw::new(table, key, rule)
+            Diagnostic::new(table, key, rule)
         })
 }
 
 /// A rule in the words of the configuration, in those of the file.
-pub fn translate(error: &ConfigError) -> Flaw {
+pub fn translate(error: &ConfigError) -> Diagnostic {
     let parameter = error.parameter();
     let (table, key) = match parameter {
         "clearance" => ("retainer", "clearance_mm"),
@@ -108,5 +112,5 @@ pub fn translate(error: &ConfigError) -> Flaw {
         tuning => ("detector", tuning),
     };
     let rule = error.to_string().replacen(parameter, key, 1);
-    Flaw::new(table, key, rule)
+    Diagnostic::new(table, key, rule)
 }

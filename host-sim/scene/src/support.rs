@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::flaw::Flaw;
+use super::diagnostic::Diagnostic;
 use super::limits;
 use super::rule::{MILLI, above_zero, between, zero_or_more};
 use crate::sensors::Tachometers;
@@ -100,7 +100,7 @@ fn usual_heat_capacity() -> f64 {
 }
 
 impl SupportTable {
-    pub fn check(&self) -> Result<Support, Flaw> {
+    pub fn check(&self) -> Result<Support, Diagnostic> {
         const TABLE: &str = "support";
         let mass = above_zero(TABLE, "mass_kg", self.mass_kg)?;
         let stiffness = above_zero(TABLE, "stiffness_n_m", self.stiffness_n_m)?;
@@ -122,7 +122,7 @@ impl SupportTable {
 }
 
 impl BallBearingTable {
-    pub fn check(&self) -> Result<BallBearing, Flaw> {
+    pub fn check(&self) -> Result<BallBearing, Diagnostic> {
         const TABLE: &str = "ball_bearing";
         let inertia = "inner_ring_inertia_kg_m2";
         let given = above_zero(TABLE, inertia, self.inner_ring_inertia_kg_m2)?;

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::flaw::Flaw;
+use super::diagnostic::Diagnostic;
 use super::limits;
 use super::list;
 use super::rule::ON_THE_WALL;
@@ -72,10 +72,10 @@ impl TwoPlane {
     }
 
     /// The start must be within every ring.
-    pub(super) fn check_start(&self, start: &Start) -> Result<(), Flaw> {
+    pub(super) fn check_start(&self, start: &Start) -> Result<(), Diagnostic> {
         let Start::Free { position, .. } = *start else {
             let rule = "a start on the wall is for one plane: give x_mm, y_mm and tilt_mrad";
-            return Err(Flaw::new("start", "angle_deg", rule));
+            return Err(Diagnostic::new("start", "angle_deg", rule));
         };
         for (row, ring) in self.rings.iter().enumerate() {
             let [x, y] = Self::at(position, self.tilt, ring.place);
@@ -87,7 +87,7 @@ impl TwoPlane {
                     Number(x.hypot(y) / MILLI),
                     Number(clearance / MILLI)
                 );
-                return Err(Flaw::new("ring", "z_mm", rule).in_row(row));
+                return Err(Diagnostic::new("ring", "z_mm", rule).in_row(row));
             }
         }
         Ok(())
@@ -143,7 +143,7 @@ impl TwoPlaneTable {
         retainer: &Retainer,
         rings: &[RingTable],
         magnets: &[MagnetTable],
-    ) -> Result<TwoPlane, Flaw> {
+    ) -> Result<TwoPlane, Diagnostic> {
         let rings = all_rings(rotor, retainer, rings)?;
         let ends = rings.iter().map(|ring| ring.place);
         let lowest = ends.clone().fold(f64::INFINITY, f64::min);
@@ -202,7 +202,7 @@ impl TwoPlaneTable {
     }
 
     /// As given, or that of a solid cylinder of the given length.
-    fn transverse_inertia(&self, rotor: &Rotor) -> Result<f64, Flaw> {
+    fn transverse_inertia(&self, rotor: &Rotor) -> Result<f64, Diagnostic> {
         let key = "transverse_inertia_kg_m2";
         let (inertia, key) = match (self.transverse_inertia_kg_m2, self.rotor_length_mm) {
             (Some(inertia), None) => (above_zero(TABLE, key, inertia)?, key),
@@ -219,7 +219,7 @@ impl TwoPlaneTable {
                 } else {
                     "transverse_inertia_kg_m2 or rotor_length_mm must be given"
                 };
-                return Err(Flaw::new(TABLE, key, rule));
+                return Err(Diagnostic::new(TABLE, key, rule));
             }
         };
         let ratio = rotor.polar_inertia / inertia;
@@ -231,18 +231,22 @@ impl TwoPlaneTable {
             "polar over transverse inertia must be {low:e} to {high} (a thin disc), is {:.6}",
             Number(ratio)
         );
-        Err(Flaw::new(TABLE, key, rule))
+        Err(Diagnostic::new(TABLE, key, rule))
     }
 }
 
-fn all_rings(rotor: &Rotor, retainer: &Retainer, tables: &[RingTable]) -> Result<Vec<Ring>, Flaw> {
+fn all_rings(
+    rotor: &Rotor,
+    retainer: &Retainer,
+    tables: &[RingTable],
+) -> Result<Vec<Ring>, Diagnostic> {
     if tables.is_empty() || tables.len() > RINGS {
         let rule = format!(
             "[[ring]] must stand 1 to {RINGS} times, stands {} times",
             tables.len()
         );
         let table = if tables.is_empty() { TABLE } else { "ring" };
-        return Err(Flaw::new(table, "z_mm", rule));
+        return Err(Diagnostic::new(table, "z_mm", rule));
     }
     let rings = tables.iter().enumerate();
     rings
@@ -264,7 +268,7 @@ fn all_rings(rotor: &Rotor, retainer: &Retainer, tables: &[RingTable]) -> Result
 }
 
 impl RingTable {
-    fn check(&self, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Flaw> {
+    fn check(&self, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Diagnostic> {
         const TABLE: &str = "ring";
         let optional = |key, value: Option<f64>, scale: f64, other: f64, range| match value {
             Some(value) => between(TABLE, key, value, range).map(|value| scale * value),
@@ -307,14 +311,14 @@ impl RingTable {
     }
 }
 
-fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Flaw> {
+fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
     const TABLE: &str = "magnet";
     if tables.len() > MAGNETS {
         let rule = format!(
             "[[magnet]] must stand {MAGNETS} times at most, stands {} times",
             tables.len()
         );
-        return Err(Flaw::new(TABLE, "z_mm", rule));
+        return Err(Diagnostic::new(TABLE, "z_mm", rule));
     }
     let magnets = tables.iter().enumerate();
     magnets
@@ -338,7 +342,7 @@ fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Flaw> {
                     force: table.force_n,
                 })
             };
-            check().map_err(|flaw: Flaw| flaw.in_row(index))
+            check().map_err(|flaw: Diagnostic| flaw.in_row(index))
         })
         .collect()
 }

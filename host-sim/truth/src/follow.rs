@@ -8,7 +8,7 @@ use crate::reference::coupled::{
     Magnet, Mount, Race, Ring, SupportMachine, SupportReference, SupportStart, SupportState,
     TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
 };
-use touchdown_base::history::{Happening, PhaseKind, Recorder, RotorState};
+use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
 use touchdown_scene::{RINGS, Scene, Start, TwoPlane};
 
@@ -99,7 +99,7 @@ impl<'a> Truth<'a> {
             }
             Source::TwoPlane(reference) => {
                 let (whole, rings, merge) = (&mut self.whole, &mut self.rings, &mut self.merge);
-                let state = reference.advance(time, &mut |ring, happening: Happening| {
+                let state = reference.advance(time, &mut |ring, happening: ModelEvent| {
                     rings[ring].take(happening);
                     if let Some(happening) = merge.take(ring, happening) {
                         whole.take(happening);

@@ -7,11 +7,11 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
-use crate::forecast::{Lookout, Sight};
+use crate::forecast::{ForecastInput, ForecastTask};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
-use crate::severity::{Severeness, Severity, SeverityState};
+use crate::severity::{Severity, SeverityModel, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use touchdown_rotor::error::ConfigError;
 
@@ -36,7 +36,7 @@ pub struct Monitor {
     health: Health,
     tachometers: Option<Tachometers>,
     detector: Detector,
-    severeness: Severeness,
+    severeness: SeverityModel,
 }
 
 /// What the sensors say in a tick.
@@ -86,7 +86,7 @@ impl Monitor {
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
-            severeness: Severeness::try_new(&config.detector)?,
+            severeness: SeverityModel::try_new(&config.detector)?,
         })
     }
 
@@ -107,7 +107,7 @@ impl Monitor {
     pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
         let seen = self.sense(state, sample);
         self.detect(state, &seen, notices);
-        self.weigh(state, notices);
+        self.update_severity(state, notices);
     }
 
     /// First part of a tick: what the sensors say, and whether they can be believed.
@@ -150,20 +150,20 @@ impl Monitor {
 
     /// Last part: what it does to the machine.
     #[inline]
-    pub fn weigh(&self, state: &mut MonitorState, notices: &[Notice]) {
+    pub fn update_severity(&self, state: &mut MonitorState, notices: &[Notice]) {
         let strain = self.detector.strain(&state.detector);
         self.severeness.take(&mut state.severity, &strain, notices);
     }
 
     /// What the forecast below the tick needs of the last one; an estimate only where it `asks` for one.
-    pub fn sight(&self, state: &MonitorState, asks: bool) -> Sight {
+    pub fn forecast_input(&self, state: &MonitorState, wants_input: bool) -> ForecastInput {
         let is_released = state.detector.phase() >= Phase::FreeFall;
-        let estimate = if asks && is_released {
+        let estimate = if wants_input && is_released {
             self.detector.estimate(&state.detector, state.spin)
         } else {
             None
         };
-        Sight {
+        ForecastInput {
             sample: state.samples.saturating_sub(1),
             is_released,
             estimate,
@@ -171,8 +171,8 @@ impl Monitor {
     }
 
     /// A slice of the forecast after a tick, where the two take turns.
-    pub fn look(&self, state: &MonitorState, lookout: &mut Lookout) -> Option<Notice> {
-        lookout.work(&self.sight(state, lookout.asks()))
+    pub fn look(&self, state: &MonitorState, forecast_task: &mut ForecastTask) -> Option<Notice> {
+        forecast_task.work(&self.forecast_input(state, forecast_task.wants_input()))
     }
 
     fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
@@ -261,7 +261,7 @@ impl Default for Fingerprint {
 
 impl Fingerprint {
     /// Takes in the state after a tick, and that of the forecast below it.
-    pub fn take(&mut self, state: &MonitorState, lookout: &Lookout) {
+    pub fn take(&mut self, state: &MonitorState, forecast_task: &ForecastTask) {
         self.0.update(&state.samples.to_le_bytes());
         self.0.update(&state.faults.to_le_bytes());
         state
@@ -271,7 +271,7 @@ impl Fingerprint {
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
         let severity = state.severity().words();
-        for value in lookout.words().into_iter().chain(severity) {
+        for value in forecast_task.words().into_iter().chain(severity) {
             self.0.update(&bits(value).to_le_bytes());
         }
     }

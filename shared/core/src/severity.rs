@@ -3,7 +3,7 @@
 //! An episode begins where the rotor is released; what it adds up to stays until the next one begins.
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::Strain;
+use crate::detect::Exposure;
 use crate::event::{Event, EventKind, Moment, Notice};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sqrt;
@@ -41,7 +41,7 @@ pub struct Severity {
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Severeness {
+pub(crate) struct SeverityModel {
     machine: MachineConfig,
     period: f32,
     unit: f32,
@@ -57,7 +57,7 @@ pub(crate) struct SeverityState {
     was_in_contact: bool,
 }
 
-impl Severeness {
+impl SeverityModel {
     /// `config` must be valid.
     pub(crate) fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
         config.validate()?;
@@ -71,7 +71,7 @@ impl Severeness {
     }
 
     /// After a tick that gave `notices`.
-    pub(crate) fn take(&self, state: &mut SeverityState, strain: &Strain, notices: &[Notice]) {
+    pub(crate) fn take(&self, state: &mut SeverityState, strain: &Exposure, notices: &[Notice]) {
         if strain.is_released && !state.was_released {
             *state = SeverityState::default();
         }
@@ -114,7 +114,7 @@ impl Severeness {
         }
     }
 
-    fn contact(&self, state: &mut SeverityState, strain: &Strain) {
+    fn contact(&self, state: &mut SeverityState, strain: &Exposure) {
         if let Some(age) = strain.contact_age {
             // It began before it was declared.
             let samples = if state.was_in_contact { 1 } else { age };

@@ -124,17 +124,17 @@ impl Settings {
     }
 }
 
-/// Bytes that one call of [`Patrol::step`] takes in.
+/// Bytes that one call of [`ConfigScrub::step`] takes in.
 pub const SLICE_BYTES: usize = 4;
 
 /// Checks a block over and over, a slice a tick.
 #[derive(Clone)]
-pub struct Patrol {
+pub struct ConfigScrub {
     at: usize,
     digest: Digest<'static, u32>,
 }
 
-impl Default for Patrol {
+impl Default for ConfigScrub {
     fn default() -> Self {
         Self {
             at: 0,
@@ -143,7 +143,7 @@ impl Default for Patrol {
     }
 }
 
-impl Patrol {
+impl ConfigScrub {
     /// Takes in the next slice; at the end of a pass, whether the block still is what it was.
     pub fn step(&mut self, block: &[u8]) -> Option<bool> {
         let Some((checked, checksum)) = block.split_last_chunk() else {

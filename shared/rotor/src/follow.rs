@@ -3,7 +3,7 @@
 use crate::clock::Instant;
 use crate::contact::{Contact, Ending, Grip};
 use crate::flight::{Flight, Landing};
-use crate::kinematics::{Change, Happening, Kinematics, Touch};
+use crate::kinematics::{Change, Kinematics, ModelEvent, Touch};
 use crate::law::Law;
 use crate::period::Round;
 use crate::precision::Precision;
@@ -29,10 +29,10 @@ const LONGEST_REST: f64 = 1e-2;
 impl<R: Precision> Rigid<R> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` in the order of time.
     #[inline]
-    pub fn step(&self, state: &mut RigidState<R>, mut sink: impl FnMut(Happening<R>)) {
+    pub fn step(&self, state: &mut RigidState<R>, mut on_event: impl FnMut(ModelEvent<R>)) {
         state.now = Instant::at_tick(state.now.tick + 1);
         if state.ends.is_reached_at(state.now) {
-            self.follow(state, &mut sink, |_| false);
+            self.follow(state, &mut on_event, |_| false);
         }
     }
 
@@ -44,7 +44,7 @@ impl<R: Precision> Rigid<R> {
         &self,
         state: &mut RigidState<R>,
         until: Instant<R>,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
         let mut round = Round::new(until);
         while state.ends.is_reached_at(until) {
@@ -53,11 +53,11 @@ impl<R: Precision> Rigid<R> {
                 break;
             }
             state.now = Instant::at_tick(eventful);
-            self.follow(state, &mut sink, |state| round.take(self, state));
+            self.follow(state, &mut on_event, |state| round.take(self, state));
         }
         if state.now != until {
             state.now = until;
-            self.follow(state, &mut sink, |_| false);
+            self.follow(state, &mut on_event, |_| false);
         }
     }
 
@@ -67,7 +67,7 @@ impl<R: Precision> Rigid<R> {
     pub(crate) fn follow(
         &self,
         state: &mut RigidState<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
         mut watch: impl FnMut(&mut RigidState<R>) -> bool,
     ) {
         let (mut impacts, mut stretches) = (0, 0);
@@ -76,19 +76,19 @@ impl<R: Precision> Rigid<R> {
                 &Motion::Flight { flight, to } => {
                     impacts += 1;
                     let hurry = impacts > IMPACTS_PER_STEP;
-                    self.impact(state, &flight, to, hurry, sink);
+                    self.impact(state, &flight, to, hurry, on_event);
                 }
-                &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, sink),
+                &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, on_event),
                 Motion::Contact(_) if stretches < STRETCHES_PER_STEP => {
                     if watch(state) {
                         continue;
                     }
                     stretches += 1;
-                    self.end_of_stretch(state, sink);
+                    self.end_of_stretch(state, on_event);
                 }
                 Motion::Contact(contact) => {
                     let (base, mode) = (contact.base, contact.mode);
-                    self.hurry_on(state, &base, mode, sink);
+                    self.hurry_on(state, &base, mode, on_event);
                     break;
                 }
             }
@@ -102,16 +102,16 @@ impl<R: Precision> Rigid<R> {
     pub fn next_change(
         &self,
         state: &mut RigidState<R>,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> bool {
         if state.ends == Instant::NEVER {
             return false;
         }
         state.now = state.ends;
         match &state.motion {
-            &Motion::Flight { flight, to } => self.impact(state, &flight, to, false, &mut sink),
-            &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, &mut sink),
-            Motion::Contact(_) => self.end_of_stretch(state, &mut sink),
+            &Motion::Flight { flight, to } => self.impact(state, &flight, to, false, &mut on_event),
+            &Motion::Settling { onto, stuck } => self.settled(state, onto, stuck, &mut on_event),
+            Motion::Contact(_) => self.end_of_stretch(state, &mut on_event),
         }
         true
     }
@@ -121,10 +121,10 @@ impl<R: Precision> Rigid<R> {
         state: &mut RigidState<R>,
         onto: WallState<R>,
         stuck: bool,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         state.begun = state.ends;
-        self.enter_contact(state, onto, grip(stuck), sink);
+        self.enter_contact(state, onto, grip(stuck), on_event);
     }
 
     fn impact(
@@ -133,7 +133,7 @@ impl<R: Precision> Rigid<R> {
         flight: &Flight<R>,
         Landing { after, normal }: Landing<R>,
         hurry: bool,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let law = &self.law;
         let (position, velocity) = flight.at(after, law);
@@ -143,19 +143,19 @@ impl<R: Precision> Rigid<R> {
         let excess = R::HALF * (x * x + y * y - R::ONE);
         let (sin, cos) = (x - excess * x, excess * y - y);
         let tangential = velocity[0] * cos + velocity[1] * sin;
-        let pressing = |tangential: R| tangential * tangential + law.gravity * cos;
+        let normal_acceleration = |tangential: R| tangential * tangential + law.gravity * cos;
         state.begun = state.ends;
-        if normal <= R::CUTOFF_SPEED && pressing(tangential) <= R::ZERO {
+        if normal <= R::CUTOFF_SPEED && normal_acceleration(tangential) <= R::ZERO {
             // A graze: the wall gives no impulse and the path bends away from it.
             self.launch(state, sin, cos, R::ZERO, tangential);
             return;
         }
         let hit = law.collide(normal, tangential, &mut state.spin);
-        let pressing = pressing(hit.tangential);
+        let normal_acceleration = normal_acceleration(hit.tangential);
         if normal > R::CUTOFF_SPEED {
             let launched = Flight::from_wall(sin, cos, hit.launch_speed, hit.tangential);
             let (position, velocity) = launched.at(R::ZERO, law);
-            sink(Happening {
+            on_event(ModelEvent {
                 at: state.begun,
                 change: Change::Impact(normal),
                 after: Kinematics {
@@ -168,9 +168,10 @@ impl<R: Precision> Rigid<R> {
             });
         }
         let ends = hit.launch_speed <= self.cutoff
-            && (pressing > R::ZERO || hit.launch_speed <= R::ZERO && pressing >= R::ZERO);
+            && (normal_acceleration > R::ZERO
+                || hit.launch_speed <= R::ZERO && normal_acceleration >= R::ZERO);
         if ends || hurry {
-            let rest = law.rest_of_series(hit.launch_speed, pressing);
+            let rest = law.rest_of_series(hit.launch_speed, normal_acceleration);
             if rest <= R::lit(LONGEST_REST) || hurry {
                 let onto = state.on_wall(sin, cos, hit.tangential);
                 self.settle(state, onto, hit.launch_speed, rest, grip(hit.stuck));
@@ -243,11 +244,11 @@ impl<R: Precision> Rigid<R> {
         state: &mut RigidState<R>,
         onto: WallState<R>,
         grip: Grip,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         state.turns = Turns::default();
         self.touch(state, onto, grip);
-        self.tell(state, Change::ContactStarts, sink);
+        self.tell(state, Change::ContactStarts, on_event);
     }
 
     /// Starts the next stretch of contact at `state.begun`.
@@ -259,7 +260,7 @@ impl<R: Precision> Rigid<R> {
         state.motion = Motion::Contact(contact);
     }
 
-    fn end_of_stretch(&self, state: &mut RigidState<R>, sink: &mut impl FnMut(Happening<R>)) {
+    fn end_of_stretch(&self, state: &mut RigidState<R>, on_event: &mut impl FnMut(ModelEvent<R>)) {
         let Motion::Contact(contact) = &state.motion else {
             return;
         };
@@ -281,19 +282,19 @@ impl<R: Precision> Rigid<R> {
                 } else {
                     self.launch(state, sin, cos, R::ZERO, speed);
                 }
-                self.tell(state, Change::LiftsOff, sink);
+                self.tell(state, Change::LiftsOff, on_event);
             }
             Ending::SlipEnds => {
                 let mut onto = onto;
                 onto.spin = onto.tangential.negative();
                 self.touch(state, onto, Grip::Caught);
                 if state.is_rolling() {
-                    self.tell(state, Change::RollingStarts, sink);
+                    self.tell(state, Change::RollingStarts, on_event);
                 }
             }
             Ending::Slips => {
                 self.touch(state, onto, Grip::Breaks);
-                self.tell(state, Change::SlidingStarts, sink);
+                self.tell(state, Change::SlidingStarts, on_event);
             }
             Ending::Continues => self.touch(state, onto, grip(was_rolling)),
         }
@@ -306,7 +307,7 @@ impl<R: Precision> Rigid<R> {
         state: &mut RigidState<R>,
         base: &WallState<R>,
         mode: Mode<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let speed = base.tangential.value();
         if speed * speed < R::lit(WHIRL) {
@@ -320,12 +321,17 @@ impl<R: Precision> Rigid<R> {
         let was_rolling = mode == Mode::Rolling;
         self.touch(state, onto, grip(stuck));
         if stuck && !was_rolling && state.is_rolling() {
-            self.tell(state, Change::RollingStarts, sink);
+            self.tell(state, Change::RollingStarts, on_event);
         }
     }
 
-    fn tell(&self, state: &RigidState<R>, change: Change<R>, sink: &mut impl FnMut(Happening<R>)) {
-        sink(Happening {
+    fn tell(
+        &self,
+        state: &RigidState<R>,
+        change: Change<R>,
+        on_event: &mut impl FnMut(ModelEvent<R>),
+    ) {
+        on_event(ModelEvent {
             at: state.begun,
             change,
             after: self.kinematics_after(state, R::ZERO),

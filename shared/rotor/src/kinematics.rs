@@ -32,7 +32,7 @@ pub struct Pulse<R> {
 
 /// A change of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Happening<R> {
+pub struct ModelEvent<R> {
     /// When.
     pub at: Instant<R>,
     /// What.

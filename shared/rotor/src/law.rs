@@ -75,13 +75,13 @@ impl<R: Real> Law<R> {
     }
 
     /// How long the rest of a bounce series lasts from launch speed `launch` where the wall presses with
-    /// `pressing`; 0 where there is none, or no end of it.
-    pub fn rest_of_series(&self, launch: R, pressing: R) -> R {
+    /// `normal_acceleration`; 0 where there is none, or no end of it.
+    pub fn rest_of_series(&self, launch: R, normal_acceleration: R) -> R {
         let lost = R::ONE - self.restitution;
-        if launch <= R::ZERO || lost <= R::ZERO || pressing <= R::ZERO {
+        if launch <= R::ZERO || lost <= R::ZERO || normal_acceleration <= R::ZERO {
             return R::ZERO;
         }
-        R::TWO * launch / (pressing * lost)
+        R::TWO * launch / (normal_acceleration * lost)
     }
 }
 

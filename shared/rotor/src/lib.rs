@@ -35,7 +35,7 @@ mod rigid;
 mod state;
 
 pub use clock::Instant;
-pub use kinematics::{Change, Happening, Kinematics, Pulse, Touch};
+pub use kinematics::{Change, Kinematics, ModelEvent, Pulse, Touch};
 pub use precision::Precision;
 pub use rigid::{Rigid, RigidConfig};
 pub use start::Start;

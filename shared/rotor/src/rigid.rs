@@ -4,7 +4,7 @@ use crate::clock::{Instant, StepLength};
 use crate::contact::Grip;
 use crate::error::ConfigError;
 use crate::flight::{Flight, Landing};
-use crate::kinematics::{Happening, Kinematics, Touch};
+use crate::kinematics::{Kinematics, ModelEvent, Touch};
 use crate::law::Law;
 use crate::precision::Precision;
 use crate::real::Real;
@@ -121,17 +121,22 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
         &self,
         start: &Start<R>,
         spin: R,
-        sink: impl FnMut(Happening<R>),
+        on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<RigidState<R>, ConfigError> {
-        self.start(start, spin, sink)
+        self.start(start, spin, on_event)
     }
 
-    fn step(&self, state: &mut RigidState<R>, sink: impl FnMut(Happening<R>)) {
-        self.step(state, sink);
+    fn step(&self, state: &mut RigidState<R>, on_event: impl FnMut(ModelEvent<R>)) {
+        self.step(state, on_event);
     }
 
-    fn part_step(&self, state: &mut RigidState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
-        Stepper::run(self, state, 0, fraction, sink);
+    fn part_step(
+        &self,
+        state: &mut RigidState<R>,
+        fraction: R,
+        on_event: impl FnMut(ModelEvent<R>),
+    ) {
+        Stepper::run(self, state, 0, fraction, on_event);
     }
 
     fn run(
@@ -139,10 +144,10 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
         state: &mut RigidState<R>,
         steps: u64,
         fraction: R,
-        sink: impl FnMut(Happening<R>),
+        on_event: impl FnMut(ModelEvent<R>),
     ) {
         let tick = state.now.tick.saturating_add(steps);
-        self.run(state, Instant { tick, fraction }, sink);
+        self.run(state, Instant { tick, fraction }, on_event);
     }
 
     fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
@@ -160,7 +165,7 @@ impl<R: Precision> Rigid<R> {
         &self,
         start: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<RigidState<R>, ConfigError> {
         start.check(spin)?;
         let mut state = RigidState {
@@ -184,10 +189,10 @@ impl<R: Precision> Rigid<R> {
                 tangential,
             } => {
                 let onto = state.on_wall(sin, cos, tangential);
-                self.enter_contact(&mut state, onto, Grip::Open, &mut sink);
+                self.enter_contact(&mut state, onto, Grip::Open, &mut on_event);
             }
         }
-        self.follow(&mut state, &mut sink, |_| false);
+        self.follow(&mut state, &mut on_event, |_| false);
         Ok(state)
     }
 

@@ -1,7 +1,7 @@
 //! What all rungs of the ladder have in common: they start, and go on by equal steps.
 
 use crate::error::ConfigError;
-use crate::kinematics::{Happening, Kinematics};
+use crate::kinematics::{Kinematics, ModelEvent};
 use crate::precision::Precision;
 use crate::start::Start;
 use crate::state::Solved;
@@ -16,14 +16,14 @@ pub trait Stepper<R: Precision> {
         &self,
         start: &Start<R>,
         spin: R,
-        sink: impl FnMut(Happening<R>),
+        on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError>;
 
     /// One step. Bounded; cannot fail. Changes of motion go to `sink`.
-    fn step(&self, state: &mut Self::State, sink: impl FnMut(Happening<R>));
+    fn step(&self, state: &mut Self::State, on_event: impl FnMut(ModelEvent<R>));
 
     /// The last part of a run: `fraction` of a step, below 1.
-    fn part_step(&self, state: &mut Self::State, fraction: R, sink: impl FnMut(Happening<R>));
+    fn part_step(&self, state: &mut Self::State, fraction: R, on_event: impl FnMut(ModelEvent<R>));
 
     /// `steps` whole steps and `fraction` of one, below 1, that nobody looks at on their way: by steps,
     /// unless the rung can do without. With a fraction, the end of the run.
@@ -32,13 +32,13 @@ pub trait Stepper<R: Precision> {
         state: &mut Self::State,
         steps: u64,
         fraction: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
         for _ in 0..steps {
-            self.step(state, &mut sink);
+            self.step(state, &mut on_event);
         }
         if fraction > R::ZERO {
-            self.part_step(state, fraction, &mut sink);
+            self.part_step(state, fraction, &mut on_event);
         }
     }
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use touchdown_run::instructions::{Instructions, Steps};
-use touchdown_scene::{Model, Precision, Rung, Scene};
+use touchdown_scene::{Model, Precision, Fidelity, Scene};
 use touchdown_tests::counting::count;
 
 /// Set by `cargo xtask instructions`.
@@ -165,7 +165,7 @@ fn tables_are_current_and_counts_repeat() {
 }
 
 /// Rungs of the plane: the others do more than one thing in a long step.
-const PLANAR: [Rung; 3] = [Rung::Rigid, Rung::Moreau, Rung::Hertz];
+const PLANAR: [Fidelity; 3] = [Fidelity::Rigid, Fidelity::Moreau, Fidelity::Hertz];
 
 /// All models of these rungs.
 fn models(model: &Model) -> Vec<Model> {
@@ -188,9 +188,9 @@ fn models(model: &Model) -> Vec<Model> {
 }
 
 /// Steps that the image runs, us.
-fn counted_steps(rung: Rung) -> [u32; 2] {
+fn counted_steps(rung: Fidelity) -> [u32; 2] {
     match rung {
-        Rung::Hertz => [10, 100],
+        Fidelity::Hertz => [10, 100],
         _ => [10, 1_000],
     }
 }

@@ -14,7 +14,7 @@ use touchdown_core::sample::Sample;
 use touchdown_run::drop;
 use touchdown_run::matching::match_events;
 use touchdown_run::monitor_run;
-use touchdown_run::monitor_run::Answer;
+use touchdown_run::monitor_run::MonitorOutput;
 use touchdown_run::outcome::{Detection, Outcome};
 use touchdown_run::target::Target;
 use touchdown_scene::sensors::{Failing, Faults, Motion, SensorFault, Sensors};
@@ -117,7 +117,7 @@ fn watched(
     seconds: f64,
     faults: &[SensorFault],
     planes: impl Fn(f64) -> [[f64; 2]; 2],
-) -> Answer {
+) -> MonitorOutput {
     let rate = scene.run.sample_rate;
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("valid sensors");
     let mut state = sensors.start(scene.run.seed);
@@ -131,14 +131,14 @@ fn watched(
             bearing: None,
         };
         let mut sample = sensors.read(&mut state, &motion);
-        faults.spoil(&mut sample, time);
+        faults.inject(&mut sample, time);
         sample
     });
     monitor_run::run(&scene.monitor_config(), samples).expect("a valid scene")
 }
 
 /// Kind, channel and sample of what was told; and how many events of other kinds.
-fn notices(answer: &Answer) -> (Vec<(FaultKind, &'static str, u64)>, usize) {
+fn notices(answer: &MonitorOutput) -> (Vec<(FaultKind, &'static str, u64)>, usize) {
     let declared = answer.notices.iter().filter_map(|notice| match notice {
         Notice::Declared(event) => Some(event),
         _ => None,

@@ -12,20 +12,20 @@ use touchdown_run::target::Target;
 use touchdown_tests::binary::touchdown;
 
 /// Exit status, what it says, JSON and page.
-struct Answer {
+struct MonitorOutput {
     status: Option<i32>,
     said: String,
     json: String,
     page: String,
 }
 
-impl Answer {
+impl MonitorOutput {
     fn value(&self) -> Value {
         serde_json::from_str(&self.json).unwrap()
     }
 }
 
-fn asked(threads: &str, seed: &str) -> Answer {
+fn asked(threads: &str, seed: &str) -> MonitorOutput {
     let folder = TempDir::new().unwrap();
     let output = touchdown(folder.path())
         .env("RAYON_NUM_THREADS", threads)
@@ -34,7 +34,7 @@ fn asked(threads: &str, seed: &str) -> Answer {
         .output()
         .unwrap();
     let read = |name| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    Answer {
+    MonitorOutput {
         status: output.status.code(),
         said: String::from_utf8(output.stdout).unwrap(),
         json: read("s.json"),
@@ -43,8 +43,8 @@ fn asked(threads: &str, seed: &str) -> Answer {
 }
 
 /// Run once for all tests.
-fn answer() -> &'static Answer {
-    static ANSWER: OnceLock<Answer> = OnceLock::new();
+fn answer() -> &'static MonitorOutput {
+    static ANSWER: OnceLock<MonitorOutput> = OnceLock::new();
     ANSWER.get_or_init(|| asked("2", "7"))
 }
 

@@ -11,7 +11,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Precision, Pulse, RigidConfig, Start, Stepper};
 use touchdown_run::model::simulate;
 use touchdown_scene::scales::compliance;
-use touchdown_scene::{Rung, Scene, Scheme};
+use touchdown_scene::{Fidelity, Scene, Scheme};
 
 /// Speed after a fall through the gap of the rig, m/s.
 const FALL: f64 = 0.076_720_271;
@@ -288,7 +288,7 @@ fn built_in_scenes_end_as_with_the_rigid_rung() {
                 touchdown_scene::Precision::F32,
             ] {
                 let mut scene = Scene::load(name).expect("built in");
-                scene.model.rung = Rung::Hertz;
+                scene.model.rung = Fidelity::Hertz;
                 scene.model.scheme = scheme;
                 scene.model.precision = precision;
                 scene.model.step = compliance(&scene).expect("valid").contact_time / 50.0;

@@ -3,7 +3,7 @@
 
 use std::iter::zip;
 
-use touchdown_base::history::Happening;
+use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_models::Moreau;
 use touchdown_rotor::{Change, Precision, Start, Stepper};
@@ -90,7 +90,7 @@ fn impacts_are_those_of_the_reference() {
             .collect();
         let mut truth = Vec::new();
         fall.reference().advance(time, &mut |link, happening| {
-            if let (0, Happening::Impact(impact)) = (link, happening) {
+            if let (0, ModelEvent::Impact(impact)) = (link, happening) {
                 truth.push((impact.state.time, impact.normal_speed));
             }
         });

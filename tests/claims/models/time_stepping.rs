@@ -6,13 +6,13 @@ use touchdown_base::history::{History, Recorder, Regime};
 use touchdown_models::Moreau;
 use touchdown_rotor::{Change, Precision, Start, Stepper, Touch};
 use touchdown_run::model::simulate;
-use touchdown_scene::{Rung, Scene, Scheme};
+use touchdown_scene::{Fidelity, Scene, Scheme};
 use touchdown_tests::drops::{Drop, inside};
 use touchdown_truth::reference::Reference;
 
 fn scene(name: &str, step: f64) -> Scene {
     let mut scene = Scene::load(name).expect("built-in scene");
-    scene.model.rung = Rung::Moreau;
+    scene.model.rung = Fidelity::Moreau;
     scene.model.scheme = Scheme::Midpoint;
     scene.model.step = step;
     scene

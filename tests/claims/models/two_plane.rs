@@ -7,7 +7,7 @@ use touchdown_models::{MagnetConfig, Placement, TwoPlane};
 use touchdown_rotor::Change;
 use touchdown_rotor::error::ConfigError;
 use touchdown_run::model::simulate;
-use touchdown_scene::{Rung, Scene, Scheme};
+use touchdown_scene::{Fidelity, Scene, Scheme};
 use touchdown_tests::rotors::{built, ring, rotor, run};
 use touchdown_truth::reference::Reference;
 
@@ -106,7 +106,7 @@ fn drops_of_the_plane_converge_to_the_reference() {
             let spin = scene.rotor.spin / model.scales().spin;
             let mut times = Vec::new();
             let mut contact = None;
-            let mut keep = |_: usize, h: touchdown_rotor::Happening<f64>| {
+            let mut keep = |_: usize, h: touchdown_rotor::ModelEvent<f64>| {
                 let time = (h.at.tick as f64 + h.at.fraction) * step;
                 match h.change {
                     Change::Impact(_) => times.push(time),
@@ -120,7 +120,7 @@ fn drops_of_the_plane_converge_to_the_reference() {
             }
             let error = |k: usize| (times[k] - truth.impacts[k].state.time).abs() / unit;
             let mut moreau = scene.clone();
-            (moreau.model.rung, moreau.model.scheme) = (Rung::Moreau, Scheme::Midpoint);
+            (moreau.model.rung, moreau.model.scheme) = (Fidelity::Moreau, Scheme::Midpoint);
             moreau.model.step = step;
             let stepped = simulate(&moreau).expect("valid");
             let other = (times[0] - stepped.impacts[0].state.time).abs();
@@ -275,7 +275,7 @@ fn tilted_ends_land_at_their_times() {
         ];
         let first = if want[0] < want[1] { 0 } else { 1 };
         let mut landed = None;
-        let mut keep = |ring: usize, h: touchdown_rotor::Happening<f64>| {
+        let mut keep = |ring: usize, h: touchdown_rotor::ModelEvent<f64>| {
             if let (Change::Impact(_), None) = (h.change, landed) {
                 landed = Some((ring, (h.at.tick as f64 + h.at.fraction) * 1e-3));
             }

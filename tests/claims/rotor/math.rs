@@ -6,7 +6,7 @@ use std::f64::consts::{LN_10, PI, TAU};
 use touchdown_base::history::{History, Recorder};
 use touchdown_rotor::real::{Micro32, Poly32, Poly64, Real};
 use touchdown_run::model::simulate;
-use touchdown_scene::{BUILT_IN, Math, Precision, Rung, Scene};
+use touchdown_scene::{BUILT_IN, Math, Precision, Fidelity, Scene};
 use touchdown_truth::reference::Reference;
 
 const GRID: u32 = 200_000;
@@ -113,7 +113,7 @@ fn regimes_of_the_built_in_scenes_are_those_of_the_reference() {
     for scene in BUILT_IN {
         let name = scene.name;
         let scene = Scene::load(name).expect("built-in scene");
-        if scene.model.rung != Rung::Rigid {
+        if scene.model.rung != Fidelity::Rigid {
             continue;
         }
         let truth = reference(&scene);

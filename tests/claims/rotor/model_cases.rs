@@ -4,7 +4,7 @@
 use touchdown_base::history::{History, Impact};
 use touchdown_base::machine::Start;
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Change, Happening, Kinematics, Precision as Digits, Stepper};
+use touchdown_rotor::{Change, ModelEvent, Kinematics, Precision as Digits, Stepper};
 use touchdown_run::model::{Subject, Use, simulate, with_model};
 use touchdown_scene::{Math, Precision, Scene};
 use touchdown_tests::cases::{Case, open_cases};
@@ -288,7 +288,7 @@ impl Use for BothWays {
             return Ok((told.len(), false));
         }
         assert_eq!(told.len(), seen.len());
-        let contact = |h: &Happening<R>| h.change == Change::ContactStarts;
+        let contact = |h: &ModelEvent<R>| h.change == Change::ContactStarts;
         let same = seen.iter().position(contact).map_or(0, |index| index + 1);
         assert_eq!(told[..same], seen[..same]);
         let apart = far_apart(&last[0], &last[1]);

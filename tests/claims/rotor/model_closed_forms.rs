@@ -2,7 +2,7 @@
 
 use touchdown_rotor::real::{Micro32, Poly32, Poly64};
 use touchdown_rotor::{
-    Change, Happening, Instant, Kinematics, Precision, Rigid, RigidConfig, RigidState, Start, Touch,
+    Change, ModelEvent, Instant, Kinematics, Precision, Rigid, RigidConfig, RigidState, Start, Touch,
 };
 
 /// Dimensionless: gap, radius and gravity (or the scaling speed) are 1.
@@ -44,7 +44,7 @@ fn run<R: Precision>(
     start: &Start<R>,
     spin: f64,
     count: u64,
-) -> (RigidState<R>, Vec<Happening<R>>) {
+) -> (RigidState<R>, Vec<ModelEvent<R>>) {
     let mut happenings = Vec::new();
     let mut state = model
         .start(start, R::lit(spin), |h| happenings.push(h))

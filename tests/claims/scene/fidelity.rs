@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use touchdown_base::history::History;
 use touchdown_run::fidelity::choose;
 use touchdown_run::model::simulate;
-use touchdown_scene::{BUILT_IN, Math, Model, Precision, Rung, Scene, Scheme};
+use touchdown_scene::{BUILT_IN, Math, Model, Precision, Fidelity, Scene, Scheme};
 use touchdown_tests::binary::touchdown;
 
 fn text(name: &str, model: &str, outputs: &str) -> String {
@@ -38,7 +38,7 @@ fn model(row: &Value) -> Model {
     ];
     let maths = [Math::Libm, Math::Polynomial, Math::Micromath];
     Model {
-        rung: Rung::ALL
+        rung: Fidelity::ALL
             .into_iter()
             .find(|it| it.name() == name("rung"))
             .unwrap(),
@@ -139,7 +139,7 @@ fn a_force_needs_the_rung_that_has_one() {
     scene.run.duration = 0.02;
     let choice = choose(&scene, scene.auto.as_ref().expect("open"));
     let best = choice.best().expect("something suffices");
-    assert_eq!(best.model.rung, Rung::Hertz);
+    assert_eq!(best.model.rung, Fidelity::Hertz);
     scene.model = best.model;
     let impact = simulate(&scene).expect("possible").impacts[0];
     let pulse = impact.pulse.expect("a pulse");
@@ -160,7 +160,7 @@ fn a_force_needs_the_rung_that_has_one() {
     assert!((pulse.duration / time - 1.0).abs() < 0.02 + 0.01);
     for candidate in &choice.candidates {
         let given = candidate.errors.iter().all(|error| error.is_finite());
-        assert_eq!(given, candidate.model.rung == Rung::Hertz, "{candidate:?}");
+        assert_eq!(given, candidate.model.rung == Fidelity::Hertz, "{candidate:?}");
     }
 }
 

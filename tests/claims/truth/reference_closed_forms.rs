@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use touchdown_base::history::{Happening, History, PhaseKind, Recorder, Regime, RotorState};
+use touchdown_base::history::{ModelEvent, History, PhaseKind, Recorder, Regime, RotorState};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_truth::reference::{Reference, energy};
 
@@ -106,7 +106,7 @@ fn sliding_invariant() {
             tangential: 0.02,
         };
         let mut reference = Reference::new(&RIG, &start, spin);
-        let mut none = |_: Happening| {};
+        let mut none = |_: ModelEvent| {};
         let first = invariant(&reference.advance(0.0, &mut none));
         let mut worst = 0.0_f64;
         for k in 1..=10_000 {
@@ -156,7 +156,7 @@ fn rolling_pendulum_keeps_energy_and_period() {
         tangential: 0.0,
     };
     let mut reference = Reference::new(&machine, &start, 0.0);
-    let mut none = |_: Happening| {};
+    let mut none = |_: ModelEvent| {};
     let first = reference.advance(0.0, &mut none);
     let end = reference.advance(10_000.0 * period, &mut none);
     assert_eq!(reference.phase(), PhaseKind::Rolling);
@@ -185,8 +185,8 @@ fn rolling_slips_where_friction_cannot_hold_it() {
     let mut times = Vec::new();
     let mut reference = Reference::new(&machine, &start, -square.sqrt());
     reference.advance(1.0, &mut |happening| match happening {
-        Happening::ContactStart { rolling, .. } => assert!(rolling),
-        Happening::SlidingStart(time) => times.push(time),
+        ModelEvent::ContactStart { rolling, .. } => assert!(rolling),
+        ModelEvent::SlidingStart(time) => times.push(time),
         other => panic!("{other:?}"),
     });
     let (angle, speed) =
@@ -261,8 +261,8 @@ fn flight_after_lift_off() {
     let mut reference = Reference::new(&RIG, &start, SPIN);
     let mut times = Vec::new();
     reference.advance(0.02, &mut |happening| match happening {
-        Happening::LiftOff(time) => times.push(time),
-        Happening::Impact(impact) => times.push(impact.state.time),
+        ModelEvent::LiftOff(time) => times.push(time),
+        ModelEvent::Impact(impact) => times.push(impact.state.time),
         _ => {}
     });
     let at_lift_off = Reference::new(&RIG, &start, SPIN).advance(times[0], &mut |_| {});
@@ -291,7 +291,7 @@ fn elastic_frictionless_bounces_keep_energy() {
     let first = energy(&machine, &reference.advance(0.0, &mut |_| {}));
     let (mut worst, mut count) = (0.0_f64, 0);
     reference.advance(30.0, &mut |happening| {
-        if let Happening::Impact(impact) = happening {
+        if let ModelEvent::Impact(impact) = happening {
             worst = worst.max((energy(&machine, &impact.state) - first).abs());
             count += 1;
         }
@@ -498,15 +498,15 @@ proptest! {
         let mut last = 0.0;
         for happening in happenings {
             let time = match happening {
-                Happening::Impact(impact) => {
+                ModelEvent::Impact(impact) => {
                     prop_assert!(impact.normal_speed > 0.0);
                     impact.state.time
                 }
-                Happening::Released { state, .. } => state.time,
-                Happening::ContactStart { time, .. }
-                | Happening::RollingStart(time)
-                | Happening::SlidingStart(time)
-                | Happening::LiftOff(time) => time,
+                ModelEvent::Released { state, .. } => state.time,
+                ModelEvent::ContactStart { time, .. }
+                | ModelEvent::RollingStart(time)
+                | ModelEvent::SlidingStart(time)
+                | ModelEvent::LiftOff(time) => time,
             };
             prop_assert!(time >= last);
             last = time;

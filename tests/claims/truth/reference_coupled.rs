@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use touchdown_base::history::{Happening, Impact};
+use touchdown_base::history::{ModelEvent, Impact};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_truth::reference::Reference;
 use touchdown_truth::reference::coupled::{
@@ -65,9 +65,9 @@ fn long(rotor: &Machine, places: &[f64]) -> TwoPlaneMachine {
     }
 }
 
-fn impacts(happenings: &[(usize, Happening)], contact: usize) -> Vec<Impact> {
-    let impact = |(of, happening): &(usize, Happening)| match happening {
-        Happening::Impact(impact) if *of == contact => Some(*impact),
+fn impacts(happenings: &[(usize, ModelEvent)], contact: usize) -> Vec<Impact> {
+    let impact = |(of, happening): &(usize, ModelEvent)| match happening {
+        ModelEvent::Impact(impact) if *of == contact => Some(*impact),
         _ => None,
     };
     happenings.iter().filter_map(impact).collect()
@@ -460,10 +460,10 @@ fn inner_ring_spins_up_to_the_rotor() {
     );
     let end = reference.advance(together + 0.2, &mut |_, h| rolling.push(h));
     assert!(
-        rolling.is_empty() || matches!(rolling[..], [Happening::RollingStart(_)]),
+        rolling.is_empty() || matches!(rolling[..], [ModelEvent::RollingStart(_)]),
         "{rolling:?}"
     );
-    let Happening::RollingStart(time) = rolling[0] else {
+    let ModelEvent::RollingStart(time) = rolling[0] else {
         panic!("{rolling:?}")
     };
     close(time, together, 1e-9 * together);
@@ -642,7 +642,7 @@ fn walls_are_started_on() {
         let time = 0.0;
         (
             ring,
-            Happening::ContactStart {
+            ModelEvent::ContactStart {
                 time,
                 rolling: false,
             },

@@ -95,7 +95,7 @@ impl Path {
         let mut faults = Faults::new(&self.faults, &scene.sensors);
         let samples = self.motions.iter().enumerate().map(|(k, motion)| {
             let mut sample = sensors.read(&mut state, motion);
-            faults.spoil(&mut sample, k as f64 / rate);
+            faults.inject(&mut sample, k as f64 / rate);
             sample
         });
         Stream {

@@ -103,7 +103,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     let app = application(scene, app);
     let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
-    let mut lookout = memory::lookout(&scene.config()).expect("a valid configuration");
+    let mut forecast_task = memory::forecast_task(&scene.config()).expect("a valid configuration");
     let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
     scene.play(|sample| {
@@ -112,14 +112,15 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
         let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
-        let ((), severity) = counter.count(|| monitor.weigh(state, &notices));
+        let ((), severity) = counter.count(|| monitor.update_severity(state, &notices));
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
             recorder.set_phase(app.state().phase());
             recorder.take(sample, &notices);
         });
-        let (outlook, forecast) = counter.count(|| lookout.work(&app.sight(lookout.asks())));
+        let (outlook, forecast) =
+            counter.count(|| forecast_task.work(&app.forecast_input(forecast_task.wants_input())));
         if let Some(outlook) = outlook {
             recorder.hear(&outlook);
         }

@@ -24,7 +24,7 @@ use embedded_hal::delay::DelayNs;
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::event::{Notice, Notices};
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, BlockError, Settings};
@@ -136,7 +136,7 @@ struct Below {
     serial: Serial,
     remote: Remote,
     inbox: Consumer<'static, Notice>,
-    lookout: Lookout,
+    forecast_task: ForecastTask,
 }
 
 /// Starts sampling; looks ahead, logs, and serves the link.
@@ -145,7 +145,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
         mut serial,
         mut remote,
         mut inbox,
-        mut lookout,
+        mut forecast_task,
     }) = start(memory)
     else {
         idle()
@@ -159,8 +159,8 @@ pub fn main(memory: &'static mut Memory) -> ! {
                 remote.lose_notice();
             }
         }
-        let sight = with_tick(|tick| tick.app.sight(lookout.asks()));
-        if let Some(outlook) = sight.and_then(|it| lookout.work(&it)) {
+        let forecast_input = with_tick(|tick| tick.app.forecast_input(forecast_task.wants_input()));
+        if let Some(outlook) = forecast_input.and_then(|it| forecast_task.work(&it)) {
             with_tick(|tick| {
                 tick.board.report(&outlook);
                 tick.recorder.hear(&outlook);
@@ -222,7 +222,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
     let (app, recorder) = filled.inspect_err(refused).ok()?;
-    let lookout = memory::lookout(&settings.monitor)
+    let forecast_task = memory::forecast_task(&settings.monitor)
         .inspect_err(refused)
         .ok()?;
     let board = Silicon {
@@ -250,7 +250,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
         serial,
         remote: Remote::new(chip.FLASH, chip.RCC, log),
         inbox,
-        lookout,
+        forecast_task,
     })
 }
 

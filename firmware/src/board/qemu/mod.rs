@@ -138,7 +138,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
-    let mut lookout = memory::lookout(&config).map_err(|_| Failure::Config)?;
+    let mut forecast_task = memory::forecast_task(&config).map_err(|_| Failure::Config)?;
     let mut notices = Notices::new();
     // Outside the tick: silicon has neither the time nor the use for it.
     let mut fingerprint = Fingerprint::default();
@@ -151,11 +151,13 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
                 recorder.set_phase(app.state().phase());
                 recorder.take(&sample, &notices);
                 recorder.keep(app.state());
-                if let Some(outlook) = lookout.work(&app.sight(lookout.asks())) {
+                if let Some(outlook) =
+                    forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
+                {
                     board.report(&outlook);
                     recorder.hear(&outlook);
                 }
-                fingerprint.take(app.state(), &lookout);
+                fingerprint.take(app.state(), &forecast_task);
             }
         } else if !is_over {
             is_over = true;

@@ -60,8 +60,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     };
     out.json("--json", || json::text(&told))?;
     // What goes into a file of TOML stays TOML.
-    let remark = |line: &str| format!("# {line}\n");
-    out.finish_with(|files| shown + &files.lines().map(remark).collect::<String>())
+    let note = |line: &str| format!("# {line}\n");
+    out.finish_with(|files| shown + &files.lines().map(note).collect::<String>())
 }
 
 fn load(name: &str) -> Result<Settings, Failure> {

@@ -26,7 +26,7 @@ use clap::{CommandFactory, Parser};
 
 use args::{Command, DropArgs, ReplayArgs};
 
-use crate::gate::{Gate, remark, said};
+use crate::gate::{Gate, note, said};
 use touchdown_base::failure::Failure;
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
@@ -151,12 +151,12 @@ fn load(name: &str) -> Result<Scene, Failure> {
 
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        remark(&format!("warning: {}\n", shown(warning)));
+        note(&format!("warning: {}\n", shown(warning)));
     }
 }
 
 /// Shows why a command failed.
-pub fn complain(failure: &Failure) {
+pub fn report_error(failure: &Failure) {
     let theme = if io::stderr().is_terminal() && Paint::wanted() {
         miette::GraphicalTheme::unicode()
     } else {
@@ -169,5 +169,5 @@ pub fn complain(failure: &Failure) {
     if handler.render_report(&mut text, failure).is_err() {
         text = failure.to_string();
     }
-    remark(&format!("error:\n{}\n", text.trim_end()));
+    note(&format!("error:\n{}\n", text.trim_end()));
 }

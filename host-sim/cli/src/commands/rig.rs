@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::args::RigArgs;
 use super::load;
-use crate::gate::{Gate, say};
+use crate::gate::{Gate, print};
 use crate::rig::{Options, Order, Rig};
 use touchdown_base::failure::Failure;
 use touchdown_base::interrupt::TemporaryFolder;
@@ -49,7 +49,7 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
             fast: args.fast,
         },
     )?;
-    say(&format!(
+    print(&format!(
         "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n\
          lift, drop, fault CHANNEL KIND, repair, noise PART, cut, quit\n",
         rig.address(),
@@ -74,7 +74,7 @@ fn obey(rig: &Rig, lines: &Receiver<String>) -> Result<(), Failure> {
             Ok(None) if line.trim() == "quit" => return Ok(()),
             Ok(None) => {}
             Ok(Some(order)) => drop(rig.order(order)),
-            Err(rule) => say(&format!("{}: {rule}\n", line.trim()))?,
+            Err(rule) => print(&format!("{}: {rule}\n", line.trim()))?,
         }
     }
     Ok(())

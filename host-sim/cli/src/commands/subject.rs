@@ -4,7 +4,7 @@ use touchdown_page::report::{RingSubject, Subject};
 use touchdown_run::fidelity::force::press;
 use touchdown_scene::parts::parts;
 use touchdown_scene::scales::validity;
-use touchdown_scene::{Ring, Rung, Scene};
+use touchdown_scene::{Fidelity, Ring, Scene};
 
 pub(super) fn subject(scene: &Scene) -> Subject {
     let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
@@ -15,7 +15,7 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         restitution: ring.retainer.restitution,
     };
     // Rung `hertz` takes steel for what the scene does not give.
-    let known = scene.materials.given || scene.model.rung == Rung::Hertz;
+    let known = scene.materials.given || scene.model.rung == Fidelity::Hertz;
     Subject {
         title: scene.heading().to_owned(),
         source: scene.source.clone().unwrap_or_else(|| scene.name.clone()),

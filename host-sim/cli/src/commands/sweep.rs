@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
-use crate::gate::{Gate, Outputs, remark};
+use crate::gate::{Gate, Outputs, note};
 use touchdown_base::failure::Failure;
 use touchdown_sweep::{Part, Plan, RESULTS, found, run, table, write};
 
@@ -38,7 +38,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .open()?;
     let had = run(&plan, &parts, Path::new(&folder))?;
     if had > 0 {
-        remark(&format!("{folder} had {had} drops already\n"));
+        note(&format!("{folder} had {had} drops already\n"));
     }
     if let Some(Part { part, parts }) = args.shard {
         let text = format!(

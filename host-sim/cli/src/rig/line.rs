@@ -62,8 +62,8 @@ impl Line {
         if asked.is_empty() && said.is_empty() {
             thread::sleep(LOOK);
         }
-        self.device.write(&self.noise.spoil(&asked));
-        self.desktop.write(&self.noise.spoil(&said));
+        self.device.write(&self.noise.inject(&asked));
+        self.desktop.write(&self.noise.inject(&said));
         true
     }
 }

@@ -77,7 +77,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Makes a channel fail from now on.
-    pub fn spoil(&mut self, channel: usize, failing: Failing) {
+    pub fn inject(&mut self, channel: usize, failing: Failing) {
         self.ordered.push(SensorFault {
             channel,
             failing,
@@ -156,9 +156,9 @@ impl Iterator for Machine<'_> {
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
         if falls {
-            self.scenes_faults.spoil(&mut sample, time);
+            self.scenes_faults.inject(&mut sample, time);
         }
-        self.faults.spoil(&mut sample, time);
+        self.faults.inject(&mut sample, time);
         Some(sample)
     }
 }

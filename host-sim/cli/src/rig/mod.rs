@@ -177,7 +177,7 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
         match orders.try_recv() {
             Ok(Order::Lift) => machine.lift(),
             Ok(Order::Drop) => machine.let_go(),
-            Ok(Order::Spoil(channel, failing)) => machine.spoil(channel, failing),
+            Ok(Order::Spoil(channel, failing)) => machine.inject(channel, failing),
             Ok(Order::Repair) => machine.repair(),
             // The line lives as long as this.
             Ok(Order::Noise(part)) => drop(supply.line.send(LineOrder::Noise(part))),

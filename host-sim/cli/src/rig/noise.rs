@@ -26,7 +26,7 @@ impl Noise {
     }
 
     /// What comes out at the other end.
-    pub fn spoil(&mut self, bytes: &[u8]) -> Vec<u8> {
+    pub fn inject(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::with_capacity(bytes.len());
         for &byte in bytes {
             let is_spoilt = u64::from(self.random.next_u32()) < self.spoilt;
@@ -49,11 +49,11 @@ mod tests {
     #[test]
     fn as_many_bytes_are_spoilt_as_was_asked() {
         let bytes = [0x55; 30_000];
-        assert_eq!(Noise::new(0.0, 1).spoil(&bytes), bytes);
-        let spoilt = Noise::new(0.01, 1).spoil(&bytes);
+        assert_eq!(Noise::new(0.0, 1).inject(&bytes), bytes);
+        let spoilt = Noise::new(0.01, 1).inject(&bytes);
         let changed = spoilt.iter().filter(|it| **it != 0x55).count();
         // Flipped and invented ones, two thirds of 300: within 4 standard deviations of 14.
         assert!((144..=256).contains(&changed), "{changed}");
-        assert!(Noise::new(1.0, 1).spoil(&bytes) != bytes);
+        assert!(Noise::new(1.0, 1).inject(&bytes) != bytes);
     }
 }

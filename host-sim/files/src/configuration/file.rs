@@ -5,8 +5,8 @@ use touchdown_rotor::error::ConfigError;
 
 use super::table::Tables;
 use touchdown_base::input_error::InputError;
+use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::read;
-use touchdown_scene::flaw::Flaw;
 use touchdown_scene::rule::translate;
 
 /// The settings of the file `text`, as valid as the controller wants them; errors name it `name`.
@@ -26,7 +26,7 @@ pub fn text(settings: &Settings) -> String {
 }
 
 /// A rule in the words of the controller, in those of the file.
-fn key_of(error: &ConfigError) -> Flaw {
+fn key_of(error: &ConfigError) -> Diagnostic {
     let parameter = error.parameter();
     let (table, key) = match parameter {
         "resolution" => ("sensors", "resolution_um"),
@@ -38,5 +38,5 @@ fn key_of(error: &ConfigError) -> Flaw {
         // As in a scene.
         _ => return translate(error),
     };
-    Flaw::new(table, key, error.to_string().replacen(parameter, key, 1))
+    Diagnostic::new(table, key, error.to_string().replacen(parameter, key, 1))
 }

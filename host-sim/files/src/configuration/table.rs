@@ -10,8 +10,8 @@ use touchdown_protocol::config_block::{Settings, Wiring};
 
 use super::decimal::shortest;
 use touchdown_scene::check::gravity;
+use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
-use touchdown_scene::flaw::Flaw;
 use touchdown_scene::list;
 use touchdown_scene::machine::{retainer, rotor};
 use touchdown_scene::machine_config;
@@ -128,7 +128,7 @@ impl From<&TachometersConfig> for BallBearingTable {
 
 impl Tables {
     /// In SI. The core's own rules are not looked at yet.
-    pub(super) fn settings(&self) -> Result<Settings, Flaw> {
+    pub(super) fn settings(&self) -> Result<Settings, Diagnostic> {
         let rotor = rotor(&self.rotor)?;
         let retainer = retainer(&self.retainer)?;
         let gravity = gravity(self.run.gravity_m_s2)?;
@@ -159,9 +159,9 @@ impl Tables {
 
 impl SensorsTable {
     /// A bit for each channel.
-    fn fitted(&self) -> Result<u8, Flaw> {
+    fn fitted(&self) -> Result<u8, Diagnostic> {
         let rule = "channels must be \"ax\" and \"ay\", \"bx\" and \"by\", or all four, each once";
-        let flaw = || Flaw::new("sensors", "channels", rule);
+        let flaw = || Diagnostic::new("sensors", "channels", rule);
         let mut fitted = 0;
         for name in &self.channels {
             let channel = (0..CHANNELS as u8).find(|it| channel_name(*it) == name);

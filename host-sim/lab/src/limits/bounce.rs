@@ -9,7 +9,7 @@ use touchdown_base::failure::Failure;
 use touchdown_base::machine::Start;
 use touchdown_run::model::simulate;
 use touchdown_scene::scales::compliance;
-use touchdown_scene::{Precision, Rung, Scene, Scheme};
+use touchdown_scene::{Fidelity, Precision, Scene, Scheme};
 
 /// Asked for, as given (`docs/know/model.md`: below 0.02 it is 0.02), and in words.
 const ASKED: [(f64, f64, &str); 4] = [
@@ -45,7 +45,7 @@ pub fn rows() -> Result<Vec<Row>, Failure> {
 fn worst(rig: &Scene, asked: f64, given: f64, precision: Precision) -> Result<f64, ConfigError> {
     let mut worst = 0.0_f64;
     for gap in GAPS {
-        for &scheme in Rung::Hertz.schemes() {
+        for &scheme in Fidelity::Hertz.schemes() {
             let mut scene = straight(rig, gap, asked);
             scene.model.precision = precision;
             for phase in 0..PHASES {
@@ -66,7 +66,7 @@ fn straight(rig: &Scene, gap: f64, restitution: f64) -> Scene {
     scene.retainer.friction = 0.0;
     scene.retainer.restitution = restitution;
     scene.run.gravity = 0.0;
-    scene.model.rung = Rung::Hertz;
+    scene.model.rung = Fidelity::Hertz;
     scene.start = Start::Free {
         position: [0.0; 2],
         velocity: [0.0, -speed],

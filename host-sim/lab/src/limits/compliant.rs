@@ -9,7 +9,7 @@ use crate::limits::press::{Press, Pressed};
 use crate::limits::row::{Row, Worst};
 use touchdown_run::model::with_model;
 use touchdown_scene::scales::{compliance, fastest_impact};
-use touchdown_scene::{Precision, Rung, Scene, Scheme};
+use touchdown_scene::{Fidelity, Precision, Scene, Scheme};
 
 /// Part of 2/omega_c that is still taken, and the part that no longer is.
 const TAKEN: f64 = 0.999;
@@ -31,7 +31,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
 
     let (mut pressed, mut energy) = (Pressed::default(), Worst::default());
     let (mut drawn, mut accepted) = (0.0, 0);
-    for &scheme in Rung::Hertz.schemes() {
+    for &scheme in Fidelity::Hertz.schemes() {
         let at = |step| {
             let mut scene = compliant(extreme, precision, step);
             scene.model.scheme = scheme;
@@ -106,6 +106,6 @@ fn press<'a>(scene: &'a Scene, stiff: &'a Compliance<f64>) -> Press<'a> {
 
 fn compliant(extreme: &Extreme, precision: Precision, step: f64) -> Scene {
     let mut scene = extreme.at(precision, step);
-    scene.model.rung = Rung::Hertz;
+    scene.model.rung = Fidelity::Hertz;
     scene
 }

@@ -9,7 +9,7 @@ use super::row::{Row, Worst};
 use crate::{limits::support, limits::two_plane};
 use touchdown_base::failure::Failure;
 use touchdown_run::model::ModelRun;
-use touchdown_scene::{Precision, Rung, Scene};
+use touchdown_scene::{Fidelity, Precision, Scene};
 use touchdown_truth::{Units, simulate};
 
 /// Of a place or an energy, in units of the last digit.
@@ -36,7 +36,7 @@ pub fn rows() -> Result<Vec<Row>, Failure> {
 
 fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
-        Rung::TwoPlane => two_plane::run(scene, each),
+        Fidelity::TwoPlane => two_plane::run(scene, each),
         _ => support::run(scene, each),
     }
 }

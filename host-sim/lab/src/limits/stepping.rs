@@ -7,7 +7,7 @@ use crate::limits::extreme::Extreme;
 use crate::limits::row::{Row, Worst};
 use crate::limits::watch::{Watch, Watched};
 use touchdown_run::model::with_model;
-use touchdown_scene::{Precision, Rung, Scheme};
+use touchdown_scene::{Fidelity, Precision, Scheme};
 use touchdown_truth::Units;
 
 /// Changes of motion in a step: impact, start of contact, and one of slip (`docs/know/model.md`).
@@ -25,7 +25,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
     let mut energy = Worst::default();
     for &step in extreme.steps {
         let mut scene = extreme.at(precision, step);
-        scene.model.rung = Rung::Moreau;
+        scene.model.rung = Fidelity::Moreau;
         scene.model.scheme = Scheme::Midpoint;
         let seen = with_model(&scene, Watch(&scene))?;
         let h = step / Units::of(&scene).time;

@@ -4,7 +4,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Kinematics, Precision, Stepper};
 
 use touchdown_run::model::{Subject, Use};
-use touchdown_scene::{Rung, Scene};
+use touchdown_scene::{Fidelity, Scene};
 
 /// Of a place, in units of the last digit.
 pub const ROUNDED: f64 = 16.0;
@@ -61,7 +61,7 @@ impl Use for Watch<'_> {
             scales,
         } = subject;
         let step = self.0.model.step / scales.time;
-        let rounded_in_a_step = u64::from(self.0.model.rung != Rung::Rigid);
+        let rounded_in_a_step = u64::from(self.0.model.rung != Fidelity::Rigid);
         let mut watched = Watched {
             outside: -1.0,
             ..Watched::default()

@@ -7,7 +7,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Precision, Stepper, Touch};
 
 use touchdown_base::failure::Failure;
-use touchdown_base::history::{Happening, PhaseKind};
+use touchdown_base::history::{ModelEvent, PhaseKind};
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::Scene;
 use touchdown_truth::reference::Reference;
@@ -57,7 +57,7 @@ impl Use for ToItsEnd<'_> {
         subject: &Subject<R, M>,
     ) -> Result<Ending, ConfigError> {
         let mut lift_offs = 0;
-        let mut count = |happening: touchdown_rotor::Happening<R>| {
+        let mut count = |happening: touchdown_rotor::ModelEvent<R>| {
             lift_offs += u32::from(happening.change == Change::LiftsOff);
         };
         let model = &subject.model;
@@ -87,7 +87,7 @@ pub fn of_reference(scene: &Scene) -> Ending {
         let time = f64::from(step) * scene.model.step;
         turns = reference
             .advance(time, &mut |happening| {
-                lift_offs += u32::from(matches!(happening, Happening::LiftOff(_)));
+                lift_offs += u32::from(matches!(happening, ModelEvent::LiftOff(_)));
             })
             .turns_in_contact;
         if turns.abs() >= 1.0 {

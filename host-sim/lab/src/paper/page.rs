@@ -111,7 +111,7 @@ fn numbers(rows: &[Row]) -> Markup {
                             td.number { (number(row.ours)) }
                             td { (row.unit) }
                             td.missed[row.agrees == Some(false)] { (agreement(row)) }
-                            td.remark { (row.note) }
+                            td.note { (row.note) }
                         }
                     }
                 }

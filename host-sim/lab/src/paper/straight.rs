@@ -10,7 +10,7 @@ use touchdown_base::failure::Failure;
 use touchdown_base::history::Pulse;
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::scales::compliance;
-use touchdown_scene::{Rung, Scene, Scheme, Start};
+use touchdown_scene::{Fidelity, Scene, Scheme, Start};
 
 /// Steps of a contact. Both schemes are of second order, and a peak that falls between two steps is
 /// missed by (omega_c h)^2/8: 2e-6.
@@ -49,7 +49,7 @@ fn scene(base: &Scene, contact: &Contact) -> Result<Scene, Failure> {
     scene.retainer.friction = 0.0;
     scene.retainer.restitution = 1.0;
     scene.run.gravity = 0.0;
-    scene.model.rung = Rung::Hertz;
+    scene.model.rung = Fidelity::Hertz;
     scene.model.scheme = Scheme::Verlet;
     let start = |height: f64| Start::Free {
         position: [0.0, height - contact.clearance],

@@ -1,7 +1,7 @@
 //! One drop: it floats, falls and bounces by the reference; sensors and monitor watch.
 
 use touchdown_core::detect::Phase;
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_rotor::error::ConfigError;
@@ -11,7 +11,7 @@ use super::{Plan, bound};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact, PhaseKind, Regime};
 use touchdown_run::detection::detection;
-use touchdown_run::monitor_run::Answer;
+use touchdown_run::monitor_run::MonitorOutput;
 use touchdown_run::outcome::Detection;
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
@@ -141,18 +141,18 @@ impl Drop {
     pub fn watch(&self) -> Result<Watched, Failure> {
         let monitor = Monitor::try_new(&self.monitor).map_err(refused)?;
         let mut state = monitor.start();
-        let mut lookout = Lookout::try_new(&self.monitor.detector).map_err(refused)?;
+        let mut forecast_task = ForecastTask::try_new(&self.monitor.detector).map_err(refused)?;
         let mut feed = Feed::new(self).map_err(refused)?;
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
         while let Some((sample, instant)) = feed.next() {
             notices.extend(monitor.update(&mut state, &sample));
-            notices.extend(monitor.look(&state, &mut lookout));
+            notices.extend(monitor.look(&state, &mut forecast_task));
             instants.extend(instant.map(|instant| Instant {
                 told: state.phase(),
                 ..instant
             }));
         }
-        let answer = Answer {
+        let answer = MonitorOutput {
             notices,
             left_out: 0,
             severity: *state.severity(),
@@ -228,7 +228,7 @@ impl<'a> Feed<'a> {
             _ => self.fallen(time),
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
-        self.faults.spoil(&mut sample, time);
+        self.faults.inject(&mut sample, time);
         Some((sample, instant))
     }
 

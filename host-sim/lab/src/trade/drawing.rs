@@ -6,7 +6,7 @@ use super::Trade;
 use super::row::Row;
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_chart::text::si;
-use touchdown_scene::{Precision, Rung};
+use touchdown_scene::{Fidelity, Precision};
 
 /// Errors below it are drawn on it.
 const LEAST_ERROR: f64 = 1e-17;
@@ -86,14 +86,14 @@ fn key(rows: &[Row]) -> Markup {
 }
 
 /// The rungs of the table.
-fn shown(rows: &[Row]) -> impl Iterator<Item = Rung> {
-    Rung::ALL
+fn shown(rows: &[Row]) -> impl Iterator<Item = Fidelity> {
+    Fidelity::ALL
         .into_iter()
         .filter(|rung| rows.iter().any(|row| row.rung == *rung))
 }
 
 /// Style class of a rung.
-pub(super) fn rung_class(rung: Rung) -> String {
+pub(super) fn rung_class(rung: Fidelity) -> String {
     format!("rung-{}", rung.name())
 }
 

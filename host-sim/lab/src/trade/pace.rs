@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Happening, Precision, Stepper};
+use touchdown_rotor::{ModelEvent, Precision, Stepper};
 
 use touchdown_run::fidelity::cost;
 use touchdown_run::model::{Subject, Use, with_model};
@@ -59,13 +59,13 @@ fn timed<R: Precision, M: Stepper<R>>(
     }: &Subject<R, M>,
     steps: u64,
 ) -> Result<Duration, ConfigError> {
-    let sink = |happening: Happening<R>| {
+    let on_event = |happening: ModelEvent<R>| {
         black_box(happening);
     };
-    let mut state = model.start(start, *spin, sink)?;
+    let mut state = model.start(start, *spin, on_event)?;
     let begin = Instant::now();
     for _ in 0..steps {
-        model.step(&mut state, sink);
+        model.step(&mut state, on_event);
         black_box(model.kinematics(&state));
     }
     Ok(begin.elapsed())

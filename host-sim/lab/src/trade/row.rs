@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::accuracy::Accuracy;
 use super::pace::Pace;
-use touchdown_scene::{Math, Model, Precision, Rung, Scheme};
+use touchdown_scene::{Fidelity, Math, Model, Precision, Scheme};
 
 /// One combination: how wrong it is, and what it costs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Rung.
-    pub rung: Rung,
+    pub rung: Fidelity,
     /// Scheme.
     pub scheme: Scheme,
     /// Number format.

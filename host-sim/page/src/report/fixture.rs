@@ -6,7 +6,7 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
 use touchdown_protocol::link::{Hello, State, Text};
-use touchdown_run::conduct::Conduct;
+use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use touchdown_truth::reference::Reference;
@@ -107,8 +107,8 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
 }
 
 /// A controller that was never asked anything.
-pub fn conduct() -> Conduct {
-    Conduct {
+pub fn conduct() -> ControllerTrace {
+    ControllerTrace {
         outputs: Vec::new(),
         flash: Vec::new(),
         hello: Hello {

@@ -34,8 +34,8 @@ pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
     }
 }
 
-fn figure(name: &str, value: &str, remark: &str) -> Markup {
-    html! { div { dt { (name) } dd { (value) } dd.note { (remark) } } }
+fn figure(name: &str, value: &str, note: &str) -> Markup {
+    html! { div { dt { (name) } dd { (value) } dd.note { (note) } } }
 }
 
 fn motion(truth: &History) -> String {
@@ -162,7 +162,7 @@ fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
     let fall = matches.of_kind(EventKind::FreeFall).next();
     let levitated =
         outcome.truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
-    let remark = match fall.and_then(|fall| fall.detected) {
+    let note = match fall.and_then(|fall| fall.detected) {
         None if levitated => "never declared".to_owned(),
         None => "no release in this run".to_owned(),
         Some(index) => match outcome.detection.events[index].confirmed_s {
@@ -170,18 +170,18 @@ fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
             None => "declared, never confirmed".to_owned(),
         },
     };
-    figure("Free fall: latency", &latency(fall), &remark)
+    figure("Free fall: latency", &latency(fall), &note)
 }
 
 fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
     let kind = regime_event(outcome.truth.regime);
     let regime = kind.and_then(|kind| matches.of_kind(kind).next());
-    let remark = match regime {
+    let note = match regime {
         Some(found) if found.detected.is_some() => "from the start of the last contact",
         Some(_) => "never declared",
         None => "no event names this regime",
     };
-    figure("Regime: latency", &latency(regime), remark)
+    figure("Regime: latency", &latency(regime), note)
 }
 
 fn latency(found: Option<&Match>) -> String {

@@ -9,7 +9,7 @@ use touchdown_core::sample::Sample;
 use touchdown_protocol::wire;
 use touchdown_protocol::wire::{Record, Switching};
 
-use crate::monitor_run::{Answer, MOST_NOTICES};
+use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
 
 /// Writes a replay file; how many samples it has.
 pub(super) fn write_replay(
@@ -37,7 +37,7 @@ pub fn replay_head(config: &MonitorConfig) -> io::Result<Vec<u8>> {
 
 /// A whole answer, its log still empty, and the changes of the outputs; `None` for one that is damaged or
 /// not at its end.
-pub(super) fn decode_answer(bytes: &[u8]) -> Option<(Answer, Vec<Switching>)> {
+pub(super) fn decode_answer(bytes: &[u8]) -> Option<(MonitorOutput, Vec<Switching>)> {
     let (records, []) = bytes
         .strip_prefix(&wire::ANSWER_MAGIC)?
         .as_chunks::<{ wire::NOTICE_BYTES }>()
@@ -59,7 +59,7 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<(Answer, Vec<Switching>)> {
             Record::Severity(_) | Record::Summary(_) => return None,
         }
     }
-    let answer = Answer {
+    let answer = MonitorOutput {
         notices,
         left_out,
         severity,
@@ -105,7 +105,7 @@ mod tests {
             state_hash: 5,
         };
         bytes.extend(wire::encode_record(&Record::Summary(summary)));
-        let answer = Answer {
+        let answer = MonitorOutput {
             notices: vec![notice],
             left_out: 0,
             severity,

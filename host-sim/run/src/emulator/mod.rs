@@ -11,8 +11,8 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::conduct::Conduct;
-use crate::monitor_run::Answer;
+use crate::controller_trace::ControllerTrace;
+use crate::monitor_run::MonitorOutput;
 use defmt_decoder::{DecodeError, Table};
 use touchdown_base::interrupt::{Registered, TemporaryFolder, spawn};
 use touchdown_core::monitor::MonitorConfig;
@@ -112,7 +112,7 @@ impl Emulator {
         &self,
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
-    ) -> Result<Answer, EmulatorError> {
+    ) -> Result<MonitorOutput, EmulatorError> {
         let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let replay = folder.path().join("replay");
         let count = write_replay(&replay, config, samples)
@@ -123,7 +123,7 @@ impl Emulator {
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;
         let (answer, _) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
-        Ok(Answer { log, ..answer })
+        Ok(MonitorOutput { log, ..answer })
     }
 
     /// Runs the image over `samples` with a new drop log, and talks to it.
@@ -131,7 +131,7 @@ impl Emulator {
         &self,
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
-    ) -> Result<(Answer, Conduct), EmulatorError> {
+    ) -> Result<(MonitorOutput, ControllerTrace), EmulatorError> {
         let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let count = write_replay(&folder.path().join("replay"), config, samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
@@ -139,14 +139,14 @@ impl Emulator {
         let mut session = self.open(folder.path())?;
         let (answer, outputs) = session.answer(limit)?;
         let mut client = session.client()?;
-        let conduct = Conduct {
+        let conduct = ControllerTrace {
             outputs,
             hello: client.hello()?,
             state: client.state()?,
             flash: read(&folder.path().join("log"))?,
         };
         let log = session.cut()?;
-        Ok((Answer { log, ..answer }, conduct))
+        Ok((MonitorOutput { log, ..answer }, conduct))
     }
 
     /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use touchdown_base::plain::shown;
 use touchdown_scene::parts::{Part, parts};
-use touchdown_scene::{Rung, Scene};
+use touchdown_scene::{Fidelity, Scene};
 
 type Row = (&'static str, String);
 
@@ -39,7 +39,7 @@ struct Named {
 pub fn explanation(scene: &Scene) -> Explanation {
     let parts = parts(scene);
     let mut sections = vec![section("Model", model::model(scene))];
-    if scene.model.rung == Rung::Hertz {
+    if scene.model.rung == Fidelity::Hertz {
         sections.push(section("Contact", contact::contact(scene)));
     }
     sections.extend([

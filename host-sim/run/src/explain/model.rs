@@ -8,28 +8,28 @@ use crate::instructions::Instructions;
 use crate::model::{Subject, Use, with_model};
 use touchdown_scene::parts::degrees_of_freedom;
 use touchdown_scene::scales::validity;
-use touchdown_scene::{Rung, Scene, Start};
+use touchdown_scene::{Fidelity, Scene, Start};
 
 pub(super) fn model(scene: &Scene) -> Vec<Row> {
     let step = scene.model.step * 1e6;
     let (rung, step) = match scene.model.rung {
-        Rung::Rigid => (
+        Fidelity::Rigid => (
             "rigid: impacts take no time",
             format!("{step:.4} us, output only: impacts lie between steps"),
         ),
-        Rung::Moreau => (
+        Fidelity::Moreau => (
             "moreau: impacts take no time, and lie in the middle of a step",
             format!("{step:.4} us; times are off by about as much an impact"),
         ),
-        Rung::Hertz => (
+        Fidelity::Hertz => (
             "hertz: impacts have a force and take time",
             format!("{step:.4} us; the limits stand below"),
         ),
-        Rung::Support => (
+        Fidelity::Support => (
             "support: the retainer gives way or turns; impacts as in moreau",
             format!("{step:.4} us; times are off by about as much an impact"),
         ),
-        Rung::TwoPlane => (
+        Fidelity::TwoPlane => (
             "two-plane: the rotor tilts, each ring touches on its own; impacts as in moreau",
             format!("{step:.4} us; times are off by about as much an impact"),
         ),

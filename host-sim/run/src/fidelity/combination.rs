@@ -1,6 +1,6 @@
 //! What is compared.
 
-use touchdown_scene::{Model, Precision, Rung};
+use touchdown_scene::{Fidelity, Model, Precision};
 
 /// Steps that are compared, us.
 pub const STEPS_US: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -8,7 +8,7 @@ pub const STEPS_US: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 /// Every combination of rung, scheme, precision, math and step.
 pub fn all() -> Vec<Model> {
     let mut all = Vec::new();
-    for rung in Rung::ALL {
+    for rung in Fidelity::ALL {
         for &scheme in rung.schemes() {
             for precision in Precision::ALL {
                 for &math in precision.maths() {

@@ -18,7 +18,7 @@ use touchdown_rotor::{Precision, Rigid, Start as ScaledStart, Stepper};
 
 use touchdown_base::machine::Start;
 use touchdown_scene::scales::{compliant, config};
-use touchdown_scene::{Contact, Math, Rung, Scene, Scheme};
+use touchdown_scene::{Contact, Fidelity, Math, Scene, Scheme};
 
 /// What is done with a model, whatever its rung and numbers.
 pub trait Use {
@@ -86,15 +86,15 @@ impl<U: Use> InNumbers for InRung<'_, U> {
 
 fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
     match scene.model.rung {
-        Rung::Rigid => {
+        Fidelity::Rigid => {
             let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
             what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
         }
-        Rung::Moreau => {
+        Fidelity::Moreau => {
             let model = Moreau::try_new(&config(scene))?;
             what.with(&subject(scene, Once(model.rounded::<R>()), *model.scales()))
         }
-        Rung::Hertz => match (scene.materials.contact, scene.model.scheme) {
+        Fidelity::Hertz => match (scene.materials.contact, scene.model.scheme) {
             (Contact::Point, Scheme::Verlet) => {
                 hertz::<R, Point, Point, Verlet, U>(scene, Point, what)
             }
@@ -106,8 +106,8 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
-        Rung::Support => support::with_parts::<R, U>(scene, what),
-        Rung::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
+        Fidelity::Support => support::with_parts::<R, U>(scene, what),
+        Fidelity::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
     }
 }
 

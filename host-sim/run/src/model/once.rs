@@ -1,7 +1,7 @@
 //! A model's code once, whatever is done with it.
 
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Happening, Kinematics, Precision, Solved, Start, Stepper};
+use touchdown_rotor::{Kinematics, ModelEvent, Precision, Solved, Start, Stepper};
 
 /// The model, whose sink is called through a pointer: built for each use of it, the larger rungs in all
 /// kinds of numbers would take the most of this crate's compile time.
@@ -14,17 +14,22 @@ impl<R: Precision, M: Stepper<R>> Stepper<R> for Once<M> {
         &self,
         start: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<M::State, ConfigError> {
-        self.0.start(start, spin, pointer(&mut sink))
+        self.0.start(start, spin, pointer(&mut on_event))
     }
 
-    fn step(&self, state: &mut M::State, mut sink: impl FnMut(Happening<R>)) {
-        self.0.step(state, pointer(&mut sink));
+    fn step(&self, state: &mut M::State, mut on_event: impl FnMut(ModelEvent<R>)) {
+        self.0.step(state, pointer(&mut on_event));
     }
 
-    fn part_step(&self, state: &mut M::State, fraction: R, mut sink: impl FnMut(Happening<R>)) {
-        self.0.part_step(state, fraction, pointer(&mut sink));
+    fn part_step(
+        &self,
+        state: &mut M::State,
+        fraction: R,
+        mut on_event: impl FnMut(ModelEvent<R>),
+    ) {
+        self.0.part_step(state, fraction, pointer(&mut on_event));
     }
 
     fn run(
@@ -32,9 +37,9 @@ impl<R: Precision, M: Stepper<R>> Stepper<R> for Once<M> {
         state: &mut M::State,
         steps: u64,
         fraction: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
-        self.0.run(state, steps, fraction, pointer(&mut sink));
+        self.0.run(state, steps, fraction, pointer(&mut on_event));
     }
 
     fn kinematics(&self, state: &M::State) -> Kinematics<R> {
@@ -46,6 +51,8 @@ impl<R: Precision, M: Stepper<R>> Stepper<R> for Once<M> {
     }
 }
 
-pub(super) fn pointer<R>(sink: &mut impl FnMut(Happening<R>)) -> &mut dyn FnMut(Happening<R>) {
-    sink
+pub(super) fn pointer<R>(
+    on_event: &mut impl FnMut(ModelEvent<R>),
+) -> &mut dyn FnMut(ModelEvent<R>) {
+    on_event
 }

@@ -1,6 +1,6 @@
 //! What a model made of a drop, in SI.
 
-use touchdown_base::history::{Happening, Impact, Pulse, RotorState};
+use touchdown_base::history::{Impact, ModelEvent, Pulse, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_base::rings::Histories;
 use touchdown_rotor as model;
@@ -57,8 +57,8 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn happening<R: Real>(&self, happening: &model::Happening<R>) -> Happening {
-        let model::Happening { at, change, after } = happening;
+    pub(super) fn happening<R: Real>(&self, happening: &model::ModelEvent<R>) -> ModelEvent {
+        let model::ModelEvent { at, change, after } = happening;
         let time = (at.tick as f64 + at.fraction.to_f64()) * self.step;
         let Scales {
             speed, time: unit, ..
@@ -67,14 +67,14 @@ impl Seen {
         match *change {
             Change::Impact(normal) => {
                 let normal_speed = normal.to_f64() * speed;
-                Happening::Impact(Impact {
+                ModelEvent::Impact(Impact {
                     state,
                     normal_speed,
                     normal_impulse: self.mass * (1.0 + self.restitution) * normal_speed,
                     pulse: None,
                 })
             }
-            Change::Released(pulse) => Happening::Released {
+            Change::Released(pulse) => ModelEvent::Released {
                 state,
                 pulse: Pulse {
                     peak_force: pulse.peak_force.to_f64() * self.mass * speed / unit,
@@ -82,13 +82,13 @@ impl Seen {
                     impulse: pulse.impulse.to_f64() * self.mass * speed,
                 },
             },
-            Change::ContactStarts => Happening::ContactStart {
+            Change::ContactStarts => ModelEvent::ContactStart {
                 time,
                 rolling: after.touch == Touch::Rolling,
             },
-            Change::RollingStarts => Happening::RollingStart(time),
-            Change::SlidingStarts => Happening::SlidingStart(time),
-            Change::LiftsOff => Happening::LiftOff(time),
+            Change::RollingStarts => ModelEvent::RollingStart(time),
+            Change::SlidingStarts => ModelEvent::SlidingStart(time),
+            Change::LiftsOff => ModelEvent::LiftOff(time),
         }
     }
 

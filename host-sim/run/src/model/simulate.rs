@@ -8,13 +8,13 @@ use super::seen::{ModelRun, STILL, Seen, steps_of_run};
 use super::{Subject, Use, support, two_plane, with_model};
 use touchdown_base::history::{History, Recorder};
 use touchdown_base::rings::Histories;
-use touchdown_scene::{Rung, Scene};
+use touchdown_scene::{Fidelity, Scene};
 
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
-        Rung::Support => support::run(scene),
-        Rung::TwoPlane => two_plane::run(scene),
+        Fidelity::Support => support::run(scene),
+        Fidelity::TwoPlane => two_plane::run(scene),
         _ => Ok(ModelRun {
             histories: Histories {
                 whole: with_model(scene, Simulate(scene))?,
@@ -54,7 +54,7 @@ impl Use for Simulate<'_> {
             restitution: scene.retainer.restitution,
         };
         let mut recorder = Recorder::new(-scene.first_sample_time());
-        let mut take = |happening: model::Happening<R>| recorder.take(seen.happening(&happening));
+        let mut take = |happening: model::ModelEvent<R>| recorder.take(seen.happening(&happening));
         let mut state = model.start(start, *spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
         model.run(&mut state, steps, R::lit(fraction), &mut take);

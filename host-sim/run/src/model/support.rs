@@ -5,7 +5,7 @@ use touchdown_models::{
     Sprung, Support, SupportConfig,
 };
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Happening, Precision, Stepper};
+use touchdown_rotor::{ModelEvent, Precision, Stepper};
 
 use super::once::{Once, pointer};
 use super::seen::{ModelRun, RingEnd, STILL, Seen, steps_of_run};
@@ -111,7 +111,7 @@ fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
 
 /// Rotor and ring after a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct ForecastInput {
     /// Of the rotor beyond the ring's wall, its clearance; below 0 in flight.
     pub beyond: f64,
     /// Of the ring beyond its hard stop, the clearance; below 0 before it, or without.
@@ -128,11 +128,11 @@ pub(super) fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
 }
 
 /// The same, watched after each step.
-pub fn watch(scene: &Scene, each: &mut dyn FnMut(Sight)) -> Result<ModelRun, ConfigError> {
+pub fn watch(scene: &Scene, each: &mut dyn FnMut(ForecastInput)) -> Result<ModelRun, ConfigError> {
     in_numbers(scene, Run(scene, each))
 }
 
-struct Run<'a>(&'a Scene, &'a mut dyn FnMut(Sight));
+struct Run<'a>(&'a Scene, &'a mut dyn FnMut(ForecastInput));
 
 impl InNumbers for Run<'_> {
     type Output = ModelRun;
@@ -166,16 +166,16 @@ impl UseSupport for Run<'_> {
         let travel = scene.support.and_then(|support| support.travel);
         let travel = travel.map_or(f64::INFINITY, |travel| travel / scales.length);
         let mut recorder = Recorder::new(-scene.first_sample_time());
-        let mut take = |happening: Happening<R>| recorder.take(seen.happening(&happening));
-        let sink = pointer(&mut take);
-        let mut state = model.start(&start, spin, &mut *sink)?;
+        let mut take = |happening: ModelEvent<R>| recorder.take(seen.happening(&happening));
+        let on_event = pointer(&mut take);
+        let mut state = model.start(&start, spin, &mut *on_event)?;
         let begun = model.ledger(&state).stored().to_f64();
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
         for _ in 0..steps {
-            model.step(&mut state, &mut *sink);
+            model.step(&mut state, &mut *on_event);
             let size = |[x, y]: [R; 2]| x.to_f64().hypot(y.to_f64());
             let ledger = model.ledger(&state);
-            each(Sight {
+            each(ForecastInput {
                 beyond: size(state.displacement()) - 1.0,
                 stop: size(model.ring(&state).position) - travel,
                 energy: ledger.to_f64(),
@@ -183,7 +183,7 @@ impl UseSupport for Run<'_> {
             });
         }
         if fraction > 0.0 {
-            model.part_step(&mut state, R::lit(fraction), sink);
+            model.part_step(&mut state, R::lit(fraction), on_event);
         }
         let end = Seen::state(&model.kinematics(&state), scene.run.duration, &scales);
         let unit = scene.rotor.mass * scales.speed * scales.speed;

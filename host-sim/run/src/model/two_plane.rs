@@ -6,7 +6,7 @@ use touchdown_models::{
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
-use touchdown_rotor::{Happening, Precision, Start, Stepper};
+use touchdown_rotor::{ModelEvent, Precision, Start, Stepper};
 
 use super::once::Once;
 use super::seen::{ModelRun, STILL, Seen, steps_of_run};
@@ -125,7 +125,7 @@ fn placement<const N: usize>(
 
 /// The rotor after a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct ForecastInput {
     /// Farthest beyond the wall of any ring, its clearance; below 0 in flight.
     pub beyond: f64,
     /// What energy there is and was, in m V^2.
@@ -140,11 +140,11 @@ pub(super) fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
 }
 
 /// The same, watched after each step.
-pub fn watch(scene: &Scene, each: &mut dyn FnMut(Sight)) -> Result<ModelRun, ConfigError> {
+pub fn watch(scene: &Scene, each: &mut dyn FnMut(ForecastInput)) -> Result<ModelRun, ConfigError> {
     in_numbers(scene, Run(scene, each))
 }
 
-struct Run<'a>(&'a Scene, &'a mut dyn FnMut(Sight));
+struct Run<'a>(&'a Scene, &'a mut dyn FnMut(ForecastInput));
 
 impl InNumbers for Run<'_> {
     type Output = ModelRun;
@@ -161,7 +161,7 @@ impl InNumbers for Run<'_> {
 
 fn in_rings<R: Precision, const N: usize>(
     scene: &Scene,
-    each: &mut dyn FnMut(Sight),
+    each: &mut dyn FnMut(ForecastInput),
 ) -> Result<ModelRun, ConfigError> {
     let exact = TwoPlane::try_new(&config::<N>(scene)?)?;
     let scales = *exact.scales();
@@ -177,7 +177,7 @@ fn in_rings<R: Precision, const N: usize>(
         spin: scales.speed / machine.rings[ring].radius,
         ..scales
     };
-    let mut take = |ring: usize, happening: Happening<R>| {
+    let mut take = |ring: usize, happening: ModelEvent<R>| {
         let seen = Seen {
             scales: at_ring(ring),
             step: scene.model.step,
@@ -195,7 +195,7 @@ fn in_rings<R: Precision, const N: usize>(
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
         model.step(&mut state, &mut take);
-        each(sight(&model, &state, machine, scales.length));
+        each(forecast_input(&model, &state, machine, scales.length));
     }
     if fraction > 0.0 {
         model.part_step(&mut state, R::lit(fraction), &mut take);
@@ -226,18 +226,18 @@ fn in_rings<R: Precision, const N: usize>(
     })
 }
 
-fn sight<R: Precision, const N: usize>(
+fn forecast_input<R: Precision, const N: usize>(
     model: &TwoPlane<R, N>,
     state: &TwoPlaneState<R, N>,
     machine: &touchdown_scene::TwoPlane,
     length: f64,
-) -> Sight {
+) -> ForecastInput {
     let reach = |(index, ring): (usize, &touchdown_scene::Ring)| {
         let [x, y] = model.kinematics_at(state, index).position.map(R::to_f64);
         x.hypot(y) * length / ring.retainer.clearance - 1.0
     };
     let energy = model.energy(state);
-    Sight {
+    ForecastInput {
         beyond: machine
             .rings
             .iter()

@@ -58,7 +58,7 @@ impl Faults {
     }
 
     /// Spoils the sample of this time (s), one failure after the other.
-    pub fn spoil(&mut self, sample: &mut Sample, time: f64) {
+    pub fn inject(&mut self, sample: &mut Sample, time: f64) {
         let (resolution, zero) = (self.config.resolution(), self.config.zero_count());
         let full = f64::from(self.config.full_scale());
         for (fault, stands) in &mut self.all {

@@ -162,7 +162,10 @@ impl Contact {
         };
         match self.grip {
             Grip::Slip(sign) => {
-                let falls = first_fall(&series.pressing, wall.pressing_rounding(&self.law));
+                let falls = first_fall(
+                    &series.normal_acceleration,
+                    wall.pressing_rounding(&self.law),
+                );
                 earlier(falls, Ending::LiftsOff);
                 let mut slip = series.speed;
                 for (slip, surface) in slip.iter_mut().zip(&series.surface) {
@@ -188,7 +191,7 @@ impl Contact {
 /// What friction has left before slip of a sign begins, in rolling.
 fn grip_margin(law: &Law, rolling: &Series, sign: f64) -> Coefficients {
     let share = sign * law.inertia / (1.0 + law.inertia);
-    let mut margin = rolling.pressing;
+    let mut margin = rolling.normal_acceleration;
     for (margin, weight) in margin.iter_mut().zip(&rolling.weight) {
         *margin = law.friction * *margin + share * weight;
     }

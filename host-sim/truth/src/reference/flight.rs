@@ -41,11 +41,11 @@ impl Flight {
 
     /// From the wall, with the speed `launch` inward; 0 where the wall falls away.
     pub fn from_wall(law: &Law, wall: WallState, launch: f64) -> Self {
-        let pressing = wall.pressing(law);
-        let curve = launch * launch + pressing;
+        let normal_acceleration = wall.normal_acceleration(law);
+        let curve = launch * launch + normal_acceleration;
         let touching = if launch > 0.0 {
             1
-        } else if pressing.abs() > LIFT_OFF_ROUNDING * wall.pressing_rounding(law) {
+        } else if normal_acceleration.abs() > LIFT_OFF_ROUNDING * wall.pressing_rounding(law) {
             2
         } else {
             3

@@ -71,12 +71,12 @@ impl Settling {
     /// The limit after an impact that launches at `launch` (inward, positive), or `None` where the
     /// flight has to be followed.
     pub fn after(law: &Law, wall: WallState, launch: f64) -> Option<Self> {
-        let pressing = wall.pressing(law);
-        if pressing <= 0.0 {
+        let normal_acceleration = wall.normal_acceleration(law);
+        if normal_acceleration <= 0.0 {
             return None;
         }
-        let change = (1.0 + wall.speed.abs()) / pressing;
-        let hop = 2.0 * launch / pressing;
+        let change = (1.0 + wall.speed.abs()) / normal_acceleration;
+        let hop = 2.0 * launch / normal_acceleration;
         if law.restitution > NEARLY_ELASTIC {
             let vanishes = 0.25 * launch * hop <= VANISHING_HEIGHT
                 && hop <= VANISHING_TIME

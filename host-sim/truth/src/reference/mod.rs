@@ -19,7 +19,7 @@ use contact::{Change, Contact};
 use flight::Flight;
 use impact::Settling;
 use scale::{Law, Scale, Sum};
-use touchdown_base::history::{Happening, Impact, PhaseKind, RotorState};
+use touchdown_base::history::{Impact, ModelEvent, PhaseKind, RotorState};
 pub use touchdown_base::machine::{Machine, Start};
 use wall::WallState;
 
@@ -104,7 +104,7 @@ impl Reference {
 
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
     /// happening on the way in order.
-    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(Happening)) -> RotorState {
+    pub fn advance(&mut self, time: f64, on_event: &mut impl FnMut(ModelEvent)) -> RotorState {
         loop {
             let elapsed = (self.since.up_to(time) / self.scale.time).max(0.0);
             let duration = self.motion.duration();
@@ -112,7 +112,7 @@ impl Reference {
                 return self.state(time, elapsed);
             }
             self.since.add(duration * self.scale.time);
-            self.pass(sink);
+            self.pass(on_event);
         }
     }
 
@@ -136,26 +136,26 @@ impl Reference {
         STILL * self.scale.speed
     }
 
-    fn pass(&mut self, sink: &mut impl FnMut(Happening)) {
+    fn pass(&mut self, on_event: &mut impl FnMut(ModelEvent)) {
         let time = self.since.value;
         match &mut self.motion {
             Motion::Flight(flight) => {
                 let (wall, normal_speed) = flight.landing();
-                self.land(wall, normal_speed, sink);
+                self.land(wall, normal_speed, on_event);
             }
             Motion::Settling(settling) => {
                 let contact = Contact::new(&self.law, settling.to);
                 let rolling = contact.rolls();
-                sink(Happening::ContactStart { time, rolling });
+                on_event(ModelEvent::ContactStart { time, rolling });
                 self.in_series = false;
                 self.motion = Motion::Contact(Box::new(contact));
             }
             Motion::Contact(contact) => match contact.pass() {
                 None => {}
-                Some(Change::Rolls) => sink(Happening::RollingStart(time)),
-                Some(Change::Slides) => sink(Happening::SlidingStart(time)),
+                Some(Change::Rolls) => on_event(ModelEvent::RollingStart(time)),
+                Some(Change::Slides) => on_event(ModelEvent::SlidingStart(time)),
                 Some(Change::LiftsOff) => {
-                    sink(Happening::LiftOff(time));
+                    on_event(ModelEvent::LiftOff(time));
                     let flight = Flight::from_wall(&self.law, contact.wall(), 0.0);
                     self.motion = Motion::Flight(flight);
                 }
@@ -163,13 +163,13 @@ impl Reference {
         }
     }
 
-    fn land(&mut self, wall: WallState, normal_speed: f64, sink: &mut impl FnMut(Happening)) {
+    fn land(&mut self, wall: WallState, normal_speed: f64, on_event: &mut impl FnMut(ModelEvent)) {
         let impulse = (1.0 + self.law.restitution) * normal_speed;
         let launch = self.law.restitution * normal_speed;
         let wall = impact::rub(&self.law, wall, impulse);
         if normal_speed > 0.0 {
             self.in_series = true;
-            sink(Happening::Impact(Impact {
+            on_event(ModelEvent::Impact(Impact {
                 state: self.on_wall(self.since.value, &wall, -launch),
                 normal_speed: normal_speed * self.scale.speed,
                 normal_impulse: self.machine.mass * impulse * self.scale.speed,

@@ -34,7 +34,7 @@ pub struct Series {
     /// Radius times spin.
     pub surface: Coefficients,
     /// Normal force per mass.
-    pub pressing: Coefficients,
+    pub normal_acceleration: Coefficients,
     /// Tangential weight per mass.
     pub weight: Coefficients,
 }
@@ -53,7 +53,7 @@ impl Series {
         };
         let zero = [0.0; ORDER + 1];
         let (mut angle, mut speed, mut surface) = (zero, zero, zero);
-        let (mut sine, mut cosine, mut pressing) = (zero, zero, zero);
+        let (mut sine, mut cosine, mut normal_acceleration) = (zero, zero, zero);
         (angle[0], speed[0], surface[0]) = (wall.angle, wall.speed, wall.surface);
         (sine[0], cosine[0]) = wall.angle.sin_cos();
         for k in 0..=ORDER {
@@ -64,10 +64,10 @@ impl Series {
                 turned_sine += cosine[i] * other;
                 turned_cosine -= sine[i] * other;
             }
-            pressing[k] = square + law.gravity * cosine[k];
+            normal_acceleration[k] = square + law.gravity * cosine[k];
             if k < ORDER {
                 let part = 1.0 / (rate * (k + 1) as f64);
-                let rubbed = rub * pressing[k];
+                let rubbed = rub * normal_acceleration[k];
                 angle[k + 1] = part * speed[k];
                 speed[k + 1] = part * (pull * sine[k] + rubbed);
                 surface[k + 1] = part * (spin_up * sine[k] + rubbed / law.inertia);
@@ -87,14 +87,14 @@ impl Series {
             angle,
             speed,
             surface,
-            pressing,
+            normal_acceleration,
             weight: sine.map(|s| law.gravity * s),
         };
         for coefficients in [
             &mut series.angle,
             &mut series.speed,
             &mut series.surface,
-            &mut series.pressing,
+            &mut series.normal_acceleration,
             &mut series.weight,
         ] {
             let mut power = 1.0;

@@ -41,7 +41,7 @@ impl WallState {
     }
 
     /// Normal force per mass that contact takes.
-    pub fn pressing(&self, law: &Law) -> f64 {
+    pub fn normal_acceleration(&self, law: &Law) -> f64 {
         self.speed * self.speed + law.gravity * self.angle.cos()
     }
 

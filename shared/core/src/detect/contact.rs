@@ -4,12 +4,12 @@ use core::f32::consts::TAU;
 
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::estimate::Place;
-use crate::detect::fix::Fix;
 use crate::detect::lift_off::LiftOff;
+use crate::detect::measurement::Measurement;
 use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Kind, Slip, Verdict};
 use crate::detect::still::Still;
-use crate::detect::wall::{Evidence, Swing, WallFilter, WallTrack};
+use crate::detect::wall::{Cusum, WallAngle, WallFilter, WallTrack};
 use crate::vector::direction;
 use touchdown_rotor::real::sqrt;
 
@@ -134,13 +134,13 @@ impl ContactTest {
     /// the slip (m/s) that is certainly left.
     pub(crate) fn start(
         &self,
-        fix: &Fix,
+        measurement: &Measurement,
         velocity: [f32; 2],
         spread: f32,
         age: f32,
         slip_left: f32,
     ) -> Touching {
-        let (outward, _) = direction(fix.position);
+        let (outward, _) = direction(measurement.position);
         let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
         Touching {
             track: self.filter.start(outward, speed, spread),
@@ -154,7 +154,7 @@ impl ContactTest {
     pub(crate) fn take(
         &self,
         state: &mut Touching,
-        fix: Option<&Fix>,
+        measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
         state.age = state.age.saturating_add(1);
@@ -172,29 +172,31 @@ impl ContactTest {
                 error: bore.error + spread,
             });
         }
-        let sample = fix.map(|fix| (fix.position, fix.variance));
+        let sample = measurement.map(|measurement| (measurement.position, measurement.variance));
         self.filter.take(&mut state.track, sample, slip);
-        if let Some(age) = fix.and_then(|fix| self.lift_off(state, fix)) {
+        if let Some(age) = measurement.and_then(|measurement| self.lift_off(state, measurement)) {
             return [Some(Finding::LiftOff(age)), None];
         }
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
         let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
-        let on_wall = fix.filter(|_| state.lift.is_at_wall());
-        let regime = on_wall.and_then(|fix| self.regime(state, fix, surface, slip));
+        let on_wall = measurement.filter(|_| state.lift.is_at_wall());
+        let regime = on_wall.and_then(|measurement| self.regime(state, measurement, surface, slip));
         [kind, regime]
     }
 
-    fn lift_off(&self, state: &mut Touching, fix: &Fix) -> Option<f32> {
-        let (_, radius) = direction(fix.position);
-        state.lift.take(radius, fix.variance, self.threshold)
+    fn lift_off(&self, state: &mut Touching, measurement: &Measurement) -> Option<f32> {
+        let (_, radius) = direction(measurement.position);
+        state
+            .lift
+            .take(radius, measurement.variance, self.threshold)
     }
 
     /// `slip` as against a wall that does not turn, m/s, where measured.
     fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
         let swing = state.swing();
-        let pressing = self.pressing(swing);
+        let normal_acceleration = self.normal_acceleration(swing);
         let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
-        let taken = per_impulse * pressing.max(0.0) * self.period;
+        let taken = per_impulse * normal_acceleration.max(0.0) * self.period;
         state.slip_left -= taken;
         let (found, age) = match slip {
             _ if state.slip.is_some() => self.by_slip(state, taken),
@@ -221,13 +223,13 @@ impl ContactTest {
             age
         };
         state.kind = Some(found);
-        state.track.for_rolling = Evidence::default();
-        state.track.for_sliding = Evidence::default();
+        state.track.for_rolling = Cusum::default();
+        state.track.for_sliding = Cusum::default();
         Some(Finding::Kind(found, age))
     }
 
     /// Acceleration with which the wall presses, m/s^2.
-    fn pressing(&self, swing: &Swing) -> f32 {
+    fn normal_acceleration(&self, swing: &WallAngle) -> f32 {
         self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
     }
 
@@ -268,10 +270,16 @@ impl ContactTest {
         rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
     }
 
-    fn regime(&self, state: &mut Touching, fix: &Fix, surface: f32, slip: f32) -> Option<Finding> {
+    fn regime(
+        &self,
+        state: &mut Touching,
+        measurement: &Measurement,
+        surface: f32,
+        slip: f32,
+    ) -> Option<Finding> {
         let swing = *state.swing();
-        let block = state.still.take(fix.position, self.still_samples);
-        let clear = CLEAR_SWING * sqrt(fix.variance) / self.machine.clearance;
+        let block = state.still.take(measurement.position, self.still_samples);
+        let clear = CLEAR_SWING * sqrt(measurement.variance) / self.machine.clearance;
         let turned_back = state.turning.take(swing.turned, swing.cos, clear);
         let lowest = if state.turning.cos < ASIDE {
             BACK
@@ -290,9 +298,9 @@ impl ContactTest {
             (whirl, state.age as f32)
         } else if turned_back && swing.cos >= lowest {
             (Regime::Pendulum, state.turning.age as f32)
-        } else if block
-            .is_some_and(|b| b.variance < 2.0 * fix.variance && b.moved * b.moved < fix.variance)
-        {
+        } else if block.is_some_and(|b| {
+            b.variance < 2.0 * measurement.variance && b.moved * b.moved < measurement.variance
+        }) {
             (Regime::Rest, self.still_samples as f32)
         } else {
             return None;
@@ -364,7 +372,7 @@ impl Touching {
     }
 
     /// The estimate of the likelier hypothesis.
-    pub(crate) fn swing(&self) -> &Swing {
+    pub(crate) fn swing(&self) -> &WallAngle {
         if self.kind == Some(Kind::Rolling) {
             &self.track.roll
         } else {

@@ -10,17 +10,17 @@ use crate::config::DetectorConfig;
 use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
 use crate::detect::estimate::Estimate;
-use crate::detect::fix::Fix;
-use crate::detect::flight::{FlightTest, Listener};
-use crate::detect::ladder::{Fall, Ladder, Rungs};
+use crate::detect::event_writer::{EventWriter, Pending};
+use crate::detect::exposure::Exposure;
+use crate::detect::flight::{FlightTest, NoiseFloor};
 use crate::detect::levitation::{Learning, Levitation};
+use crate::detect::measurement::Measurement;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
+use crate::detect::phase_machine::{Fall, PhaseMachine, PhaseState};
 use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
-use crate::detect::strain::Strain;
-use crate::detect::teller::{Pending, Teller};
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
 use crate::phase::Phase;
 use crate::sensing::{PLANES, Reading};
@@ -45,7 +45,7 @@ pub struct Detector {
     release: Release,
     /// Of the floating rotor.
     flight: FlightTest,
-    ladder: Ladder,
+    phase_machine: PhaseMachine,
     ends: EndsTest,
     start_samples: u32,
 }
@@ -59,10 +59,10 @@ pub struct DetectorState {
     levitation: Levitation,
     orbit: OrbitState,
     release: ReleaseBank,
-    listener: Listener,
+    listener: NoiseFloor,
     pending: Option<Pending>,
     /// The rotor as a whole.
-    rotor: Rungs,
+    rotor: PhaseState,
     ends: Ends,
     /// First position, m, and whether the rotor has been at the wall since.
     origin: Option<[f32; 2]>,
@@ -83,7 +83,7 @@ impl Detector {
             orbiting: Orbiting::new(tuning.arming_time, rate),
             release: Release::new(tuning, rate, config.machine.gravity, threshold),
             flight: FlightTest::new(config, threshold),
-            ladder: Ladder::new(config, threshold),
+            phase_machine: PhaseMachine::new(config, threshold),
             ends: EndsTest::new(config, threshold),
             start_samples: ((0.2 * tuning.still_time * rate).max(1.0) as u32).max(64),
         })
@@ -100,7 +100,7 @@ impl Detector {
         let sample = state.sample;
         state.sample += 1;
         let mut next_number = state.next_number;
-        let mut teller = Teller {
+        let mut writer = EventWriter {
             sample,
             plane: match reading.planes {
                 [Some(_), None] => Plane::A,
@@ -113,41 +113,41 @@ impl Detector {
         };
         for (channel, found) in (0..).zip(reading.found) {
             if let Some(found) = found {
-                teller.tell_fault(channel, found);
+                writer.tell_fault(channel, found);
             }
         }
         if reading.moved != [0.0; 2] {
             state.shift(reading.moved);
         }
         self.orbiting.advance(&mut state.orbit, signals.spin);
-        let fix = reading.mean().map(|(position, planes)| {
+        let measurement = reading.mean().map(|(position, planes)| {
             state.noise.take(position, planes);
-            Fix {
+            Measurement {
                 now: Moment::of_sample(sample),
                 position,
                 variance: state.noise.variance(planes, self.resolution),
             }
         });
-        if fix.is_none() {
+        if measurement.is_none() {
             state.noise.skip();
         }
         let known = state.noise.is_known();
-        let fix = fix.filter(|_| known);
+        let measurement = measurement.filter(|_| known);
         match reading.planes {
             [Some(a), Some(b)] if known => {
                 let floats = state.rotor.phase == Phase::Levitated;
                 let variance = state.noise.variance(1, self.resolution);
                 self.ends.take(&mut state.ends, a, b, variance, floats);
-                teller.motion = state.ends.motion();
+                writer.motion = state.ends.motion();
             }
             _ => state.ends.lose_sight(),
         }
         if state.ends.are_alone() {
-            self.apart(state, reading, signals, &mut teller);
+            self.apart(state, reading, signals, &mut writer);
         } else {
-            self.together(state, fix.as_ref(), signals, &mut teller);
+            self.together(state, measurement.as_ref(), signals, &mut writer);
             if state.ends.have_parted() {
-                self.part(state, reading, &mut teller);
+                self.part(state, reading, &mut writer);
             }
         }
         state.next_number = next_number;
@@ -160,12 +160,12 @@ impl Detector {
             return None;
         }
         let at = Moment::of_sample(state.sample.saturating_sub(1));
-        self.ladder.estimate(&state.rotor, at, spin)
+        self.phase_machine.estimate(&state.rotor, at, spin)
     }
 
     /// What the rotor goes through; of ends that are apart the one that is worse off.
-    pub(crate) fn strain(&self, state: &DetectorState) -> Strain {
-        let of = |rungs: &Rungs| self.ladder.strain(rungs);
+    pub(crate) fn strain(&self, state: &DetectorState) -> Exposure {
+        let of = |phase_state: &PhaseState| self.phase_machine.strain(phase_state);
         match state.ends.alone() {
             [a, b] => of(a).worse(&of(b)),
             _ => of(&state.rotor),
@@ -173,53 +173,60 @@ impl Detector {
     }
 
     /// Each end's position, where seen.
-    fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Fix>; PLANES] {
-        let fix = |position| Fix {
+    fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Measurement>; PLANES] {
+        let measurement = |position| Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(1, self.resolution),
         };
-        reading.planes.map(|position| position.map(fix))
+        reading.planes.map(|position| position.map(measurement))
     }
 
     /// The rotor as a whole.
     fn together(
         &self,
         state: &mut DetectorState,
-        fix: Option<&Fix>,
+        measurement: Option<&Measurement>,
         signals: &Signals,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
-        match (state.rotor.phase, fix) {
-            (Phase::Starting, Some(fix)) => self.starting(state, fix),
-            (Phase::Levitated, Some(fix)) => self.levitated(state, fix, signals, teller),
-            (Phase::FreeFall | Phase::Impact, Some(fix)) => {
-                self.airborne(state, fix, signals, teller);
+        match (state.rotor.phase, measurement) {
+            (Phase::Starting, Some(measurement)) => self.starting(state, measurement),
+            (Phase::Levitated, Some(measurement)) => {
+                self.levitated(state, measurement, signals, writer)
             }
-            (Phase::Sliding | Phase::Rolling, fix) => self.touching(state, fix, signals, teller),
-            (Phase::FreeFall | Phase::Impact, None) => self.ladder.skip(&mut state.rotor),
+            (Phase::FreeFall | Phase::Impact, Some(measurement)) => {
+                self.airborne(state, measurement, signals, writer);
+            }
+            (Phase::Sliding | Phase::Rolling, measurement) => {
+                self.touching(state, measurement, signals, writer)
+            }
+            (Phase::FreeFall | Phase::Impact, None) => self.phase_machine.skip(&mut state.rotor),
             (Phase::Starting | Phase::Levitated, None) => {}
         }
     }
 
     /// Switched on: floats, or lies on the wall already. What moves along the wall is in contact; what
     /// keeps still there is, if it could lie there.
-    fn starting(&self, state: &mut DetectorState, fix: &Fix) {
-        let (outward, radius) = direction(fix.position);
+    fn starting(&self, state: &mut DetectorState, measurement: &Measurement) {
+        let (outward, radius) = direction(measurement.position);
         let machine = &self.config.machine;
-        state.off_wall |= radius < self.ladder.near;
-        self.learning.take(&mut state.levitation, fix.position);
-        let origin = *state.origin.get_or_insert(fix.position);
-        let moved = square(fix.position, origin) > MOVED * MOVED * fix.variance;
+        state.off_wall |= radius < self.phase_machine.near;
+        self.learning
+            .take(&mut state.levitation, measurement.position);
+        let origin = *state.origin.get_or_insert(measurement.position);
+        let moved = square(measurement.position, origin) > MOVED * MOVED * measurement.variance;
         let since_start = state.sample.saturating_sub(1) as f32;
         if state.off_wall {
             state.rotor.phase = Phase::Levitated;
         } else if moved {
-            self.ladder.lie(&mut state.rotor, fix, since_start);
+            self.phase_machine
+                .lie(&mut state.rotor, measurement, since_start);
         } else if state.sample >= u64::from(self.start_samples) {
             let lies = outward[0].abs() <= -outward[1] * (machine.friction + RESTING_ANGLE);
             if lies || machine.gravity == 0.0 {
-                self.ladder.lie(&mut state.rotor, fix, since_start);
+                self.phase_machine
+                    .lie(&mut state.rotor, measurement, since_start);
             } else {
                 state.rotor.phase = Phase::Levitated;
             }
@@ -229,11 +236,12 @@ impl Detector {
     fn levitated(
         &self,
         state: &mut DetectorState,
-        fix: &Fix,
+        measurement: &Measurement,
         signals: &Signals,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
-        self.learning.take(&mut state.levitation, fix.position);
+        self.learning
+            .take(&mut state.levitation, measurement.position);
         if state.levitation.is_fresh() {
             // It still moved: what the tests learnt of it goes as well.
             state.listener.forget();
@@ -241,9 +249,12 @@ impl Detector {
             state.orbit.forget();
         }
         let floats = (state.levitation.mean, state.levitation.variance);
-        let residual = self
-            .orbiting
-            .take(&mut state.orbit, fix.position, floats, fix.variance);
+        let residual = self.orbiting.take(
+            &mut state.orbit,
+            measurement.position,
+            floats,
+            measurement.variance,
+        );
         if residual.first {
             state.release.restart();
         }
@@ -257,64 +268,73 @@ impl Detector {
             .flatten();
         if !state.levitation.is_armed() && is_known {
             let [x, y] = state.orbit.ending();
-            let position = [fix.position[0] - x, fix.position[1] - y];
-            self.flight
-                .listen(&mut state.listener, &Fix { position, ..*fix });
+            let position = [measurement.position[0] - x, measurement.position[1] - y];
+            self.flight.listen(
+                &mut state.listener,
+                &Measurement {
+                    position,
+                    ..*measurement
+                },
+            );
         }
-        let loudness = state.listener.loudness();
+        let threshold_scale = state.listener.threshold_scale();
         if !state.levitation.is_armed() {
             // Fell before anything was learnt: the wall shows it.
-            let (_, radius) = direction(fix.position);
-            if state.off_wall && radius >= self.ladder.near {
-                self.ladder.fly(&mut state.rotor, fix, None, loudness);
+            let (_, radius) = direction(measurement.position);
+            if state.off_wall && radius >= self.phase_machine.near {
+                self.phase_machine
+                    .fly(&mut state.rotor, measurement, None, threshold_scale);
             }
             return;
         }
         let Some(age) = released else {
             return;
         };
-        self.ladder.fly(&mut state.rotor, fix, None, loudness);
-        let number = teller.tell(EventKind::FreeFall, age, 0.0);
-        state.pending = Some(Pending::new(number, fix.now.later(-age)));
+        self.phase_machine
+            .fly(&mut state.rotor, measurement, None, threshold_scale);
+        let number = writer.declare(EventKind::FreeFall, age, 0.0);
+        state.pending = Some(Pending::new(number, measurement.now.later(-age)));
         if signals.levitated == Some(false) {
-            teller.close(&mut state.pending, true);
+            writer.resolve(&mut state.pending, true);
         }
     }
 
     fn airborne(
         &self,
         state: &mut DetectorState,
-        fix: &Fix,
+        measurement: &Measurement,
         signals: &Signals,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
         let (rotor, pending) = (&mut state.rotor, &mut state.pending);
-        let home = state.levitation.mean;
-        self.ladder.land(rotor, fix, home, signals, pending, teller);
+        let centre = state.levitation.mean;
+        self.phase_machine
+            .land(rotor, measurement, centre, signals, pending, writer);
         if rotor.phase.is_contact() {
             return;
         }
-        let fall = pending
-            .as_mut()
-            .map(|pending| self.ladder.fall(rotor, fix, &state.levitation, pending));
+        let fall = pending.as_mut().map(|pending| {
+            self.phase_machine
+                .fall(rotor, measurement, &state.levitation, pending)
+        });
         match fall {
-            Some(Fall::Certain) => teller.close(pending, true),
+            Some(Fall::Certain) => writer.resolve(pending, true),
             Some(Fall::Caught) => {
-                teller.close(pending, false);
+                writer.resolve(pending, false);
                 state.release.restart();
                 rotor.phase = Phase::Levitated;
             }
             Some(Fall::Open) | None => {}
         }
-        if self.ladder.floats(rotor, fix) {
-            self.learn_again(state, teller);
-            self.ladder.tell_levitated(teller);
+        if self.phase_machine.floats(rotor, measurement) {
+            self.learn_again(state, writer);
+            self.phase_machine.tell_levitated(writer);
         }
     }
 
     /// Floats again: withdraws what is open.
-    fn learn_again(&self, state: &mut DetectorState, teller: &mut Teller) {
-        teller.close(&mut state.pending, false);
+    fn learn_again(&self, state: &mut DetectorState, writer: &mut EventWriter) {
+        writer.resolve(&mut state.pending, false);
         state.rotor.phase = Phase::Levitated;
         state.levitation = Levitation::default();
         state.listener.forget();
@@ -326,59 +346,61 @@ impl Detector {
     fn touching(
         &self,
         state: &mut DetectorState,
-        fix: Option<&Fix>,
+        measurement: Option<&Measurement>,
         signals: &Signals,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
         // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
         let learnt = state.levitation.learnt_variance();
         let wavering = state.rotor.contact.wavering();
         let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
-        let fix = fix.map(|fix| Fix {
-            variance: fix.variance.max(shown),
-            ..*fix
+        let measurement = measurement.map(|measurement| Measurement {
+            variance: measurement.variance.max(shown),
+            ..*measurement
         });
-        let loudness = state.listener.loudness();
+        let threshold_scale = state.listener.threshold_scale();
         let ends = &mut state.ends;
         let whose = |contact: &Touching| ends.lifting(contact);
-        let (rotor, fix) = (&mut state.rotor, fix.as_ref());
+        let (rotor, measurement) = (&mut state.rotor, measurement.as_ref());
         if !self
-            .ladder
-            .touching(rotor, fix, signals, loudness, whose, teller)
+            .phase_machine
+            .touching(rotor, measurement, signals, threshold_scale, whose, writer)
         {
             state.ends.lift_one();
         }
     }
 
     /// Gives each end a ladder of its own where they have moved apart.
-    fn part(&self, state: &mut DetectorState, reading: &Reading, teller: &mut Teller) {
+    fn part(&self, state: &mut DetectorState, reading: &Reading, writer: &mut EventWriter) {
         let [Some(a), Some(b)] = self.fixes(state, reading) else {
             return;
         };
         let ends = [&a, &b];
-        let loudness = state.listener.loudness();
+        let threshold_scale = state.listener.threshold_scale();
         match state.rotor.phase {
             Phase::Starting => return,
             Phase::Levitated => {
                 // The mean of both need not move when the rotor only tilts.
                 let (homes, variance) = state.ends.homes(&state.levitation);
                 let [home_a, home_b] = homes;
-                let far = [(a, home_a), (b, home_b)].map(|(fix, home)| {
-                    let position = fix.position;
-                    self.ladder.is_far(position, home) && Ends::is_off(position, home, variance)
+                let far = [(a, home_a), (b, home_b)].map(|(measurement, centre)| {
+                    let position = measurement.position;
+                    self.phase_machine.is_far(position, centre)
+                        && Ends::is_off(position, centre, variance)
                 });
                 if far == [false; PLANES] || !state.levitation.is_armed() {
                     return;
                 }
-                let number = teller.tell_of(far, EventKind::FreeFall);
+                let number = writer.declare_at(far, EventKind::FreeFall);
                 state.pending = Some(Pending::new(number, ends[0].now));
-                teller.close(&mut state.pending, true);
-                self.ladder.fly(&mut state.rotor, ends[0], None, loudness);
+                writer.resolve(&mut state.pending, true);
+                self.phase_machine
+                    .fly(&mut state.rotor, ends[0], None, threshold_scale);
             }
             _ => {}
         }
         self.ends
-            .part(&mut state.ends, &state.rotor, ends, loudness);
+            .part(&mut state.ends, &state.rotor, ends, threshold_scale);
     }
 
     /// Each end for itself, until they move as one again.
@@ -387,16 +409,16 @@ impl Detector {
         state: &mut DetectorState,
         reading: &Reading,
         signals: &Signals,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
         let fixes = &self.fixes(state, reading);
         let (ends, pending) = (&mut state.ends, &mut state.pending);
-        let floating = (&state.levitation, state.listener.loudness());
+        let floating = (&state.levitation, state.listener.threshold_scale());
         let is_caught = self
             .ends
-            .step(ends, fixes, signals, floating, pending, teller);
+            .step(ends, fixes, signals, floating, pending, writer);
         if is_caught {
-            teller.close(pending, false);
+            writer.resolve(pending, false);
             ends.unite();
             state.release.restart();
             state.rotor.phase = Phase::Levitated;
@@ -405,7 +427,7 @@ impl Detector {
         if let Some(joined) = self.ends.join(ends, fixes) {
             state.rotor = *joined;
             if state.rotor.phase == Phase::Levitated {
-                self.learn_again(state, teller);
+                self.learn_again(state, writer);
             }
         }
     }
@@ -453,8 +475,10 @@ impl DetectorState {
         } else {
             ends
         };
-        let mut contacts = all.iter().filter(|rungs| rungs.phase.is_contact());
-        contacts.find_map(|rungs| rungs.contact.slip)
+        let mut contacts = all
+            .iter()
+            .filter(|phase_state| phase_state.phase.is_contact());
+        contacts.find_map(|phase_state| phase_state.contact.slip)
     }
 
     /// Whether noise and position have been learnt.

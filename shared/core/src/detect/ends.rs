@@ -10,11 +10,11 @@ mod learnt;
 pub(crate) use self::learnt::Together;
 use crate::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
-use crate::detect::fix::Fix;
-use crate::detect::ladder::{Ladder, Lifting, Rungs, is_home};
+use crate::detect::event_writer::{EventWriter, Pending};
 use crate::detect::levitation::{Learning, Levitation};
+use crate::detect::measurement::Measurement;
+use crate::detect::phase_machine::{Lifting, PhaseMachine, PhaseState, within_gate};
 use crate::detect::signals::Signals;
-use crate::detect::teller::{Pending, Teller};
 use crate::event::{Motion, Plane};
 use crate::phase::Phase;
 use crate::sensing::PLANES;
@@ -35,7 +35,7 @@ const CLEAR: f32 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EndsTest {
     learning: Learning,
-    ladder: Ladder,
+    phase_machine: PhaseMachine,
     /// Square of the e that sensors may show of ends that are together, m^2.
     tolerance: f32,
     /// Samples over which the mean runs, and part of the way that the power goes in one.
@@ -62,7 +62,7 @@ pub(crate) struct Ends {
     lean: [f32; 2],
     lifts: bool,
     /// Each end's own, while they are apart.
-    alone: [Rungs; PLANES],
+    alone: [PhaseState; PLANES],
     are_alone: bool,
 }
 
@@ -80,7 +80,7 @@ impl EndsTest {
         let mean_samples = (tuning.still_time * rate).max(16.0) as u32;
         Self {
             learning: Learning::new(tuning, rate),
-            ladder: Ladder::new(&alone, threshold),
+            phase_machine: PhaseMachine::new(&alone, threshold),
             tolerance: tolerance * tolerance,
             mean_samples,
             power_gain: 1.0 / (tuning.catch_time * rate).max(1.0),
@@ -126,15 +126,18 @@ impl EndsTest {
     pub(crate) fn part(
         &self,
         ends: &mut Ends,
-        rotor: &Rungs,
-        fixes: [&Fix; PLANES],
-        loudness: f32,
+        rotor: &PhaseState,
+        fixes: [&Measurement; PLANES],
+        threshold_scale: f32,
     ) {
         let outward = rotor.contact.outward();
         let [_, e] = ends.mean;
         let wall = e[0] * outward[0] + e[1] * outward[1];
-        for ((rungs, fix), wall) in ends.alone.iter_mut().zip(fixes).zip([wall, -wall]) {
-            self.ladder.part(rungs, rotor, fix, wall, loudness);
+        for ((phase_state, measurement), wall) in
+            ends.alone.iter_mut().zip(fixes).zip([wall, -wall])
+        {
+            self.phase_machine
+                .part(phase_state, rotor, measurement, wall, threshold_scale);
         }
         ends.are_alone = true;
         ends.together = 0;
@@ -145,73 +148,86 @@ impl EndsTest {
     pub(crate) fn step(
         &self,
         ends: &mut Ends,
-        fixes: &[Option<Fix>; PLANES],
+        fixes: &[Option<Measurement>; PLANES],
         signals: &Signals,
         floating: (&Levitation, f32),
         pending: &mut Option<Pending>,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) -> bool {
-        let (levitation, loudness) = floating;
+        let (levitation, threshold_scale) = floating;
         let (homes, variance) = ends.homes(levitation);
-        let whole = teller.plane;
+        let whole = writer.plane;
         let alone = ends.alone.iter_mut();
-        for (((rungs, fix), home), plane) in alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B]) {
-            teller.plane = plane;
-            match (rungs.phase, fix) {
-                (Phase::Sliding | Phase::Rolling, fix) => {
-                    let fix = fix.map(|fix| Fix {
-                        variance: fix.variance.max(levitation.learnt_variance()),
-                        ..fix
+        for (((phase_state, measurement), centre), plane) in
+            alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B])
+        {
+            writer.plane = plane;
+            match (phase_state.phase, measurement) {
+                (Phase::Sliding | Phase::Rolling, measurement) => {
+                    let measurement = measurement.map(|measurement| Measurement {
+                        variance: measurement.variance.max(levitation.learnt_variance()),
+                        ..measurement
                     });
-                    self.ladder.touching(
-                        rungs,
-                        fix.as_ref(),
+                    self.phase_machine.touching(
+                        phase_state,
+                        measurement.as_ref(),
                         signals,
-                        loudness,
+                        threshold_scale,
                         |_| Lifting::Both,
-                        teller,
+                        writer,
                     );
                 }
-                (Phase::FreeFall | Phase::Impact, Some(fix)) => {
-                    self.ladder.land(rungs, fix, home, signals, pending, teller);
-                    if rungs.phase.is_contact() {
+                (Phase::FreeFall | Phase::Impact, Some(measurement)) => {
+                    self.phase_machine.land(
+                        phase_state,
+                        measurement,
+                        centre,
+                        signals,
+                        pending,
+                        writer,
+                    );
+                    if phase_state.phase.is_contact() {
                         continue;
                     }
-                    let at = rungs.flight.track.position;
+                    let at = phase_state.flight.track.position;
                     let has_fallen = pending.as_ref().is_some_and(|open| {
-                        self.ladder.is_far(at, home) && self.ladder.fell(open, fix.now, at, home)
+                        self.phase_machine.is_far(at, centre)
+                            && self.phase_machine.fell(open, measurement.now, at, centre)
                     });
                     if has_fallen {
-                        teller.close(pending, true);
+                        writer.resolve(pending, true);
                     }
-                    if self.ladder.floats(rungs, fix) {
-                        rungs.phase = Phase::Levitated;
-                        self.ladder.tell_levitated(teller);
+                    if self.phase_machine.floats(phase_state, measurement) {
+                        phase_state.phase = Phase::Levitated;
+                        self.phase_machine.tell_levitated(writer);
                     }
                 }
-                (Phase::FreeFall | Phase::Impact, None) => self.ladder.skip(rungs),
-                (Phase::Starting | Phase::Levitated, Some(fix)) => {
-                    if self.ladder.is_near(fix) {
-                        self.ladder.fly(rungs, fix, None, loudness);
+                (Phase::FreeFall | Phase::Impact, None) => self.phase_machine.skip(phase_state),
+                (Phase::Starting | Phase::Levitated, Some(measurement)) => {
+                    if self.phase_machine.is_near(measurement) {
+                        self.phase_machine
+                            .fly(phase_state, measurement, None, threshold_scale);
                     }
                 }
                 (Phase::Starting | Phase::Levitated, None) => {}
             }
         }
-        teller.plane = whole;
+        writer.plane = whole;
         let mut seen = fixes.iter().zip(homes);
-        let are_home = seen.all(|(fix, home)| fix.is_some_and(|fix| is_home(&fix, home, variance)));
+        let are_home = seen.all(|(measurement, centre)| {
+            measurement.is_some_and(|measurement| within_gate(&measurement, centre, variance))
+        });
         pending
             .as_mut()
-            .is_some_and(|pending| self.ladder.is_caught(pending, are_home, variance))
+            .is_some_and(|pending| self.phase_machine.is_caught(pending, are_home, variance))
     }
 
     /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.
     pub(crate) fn join<'a>(
         &self,
         ends: &'a mut Ends,
-        fixes: &[Option<Fix>; PLANES],
-    ) -> Option<&'a Rungs> {
+        fixes: &[Option<Measurement>; PLANES],
+    ) -> Option<&'a PhaseState> {
         let [a, b] = &mut ends.alone;
         let joined = match fixes {
             [Some(_), None] => a,
@@ -237,8 +253,8 @@ impl Ends {
 
     /// Whether what is learnt of both the rotor and its tilt excludes that an end floats at
     /// `position` (m) and not at `home`.
-    pub(crate) fn is_off(position: [f32; 2], home: [f32; 2], variance: f32) -> bool {
-        square(position, home) > APART * APART * variance
+    pub(crate) fn is_off(position: [f32; 2], centre: [f32; 2], variance: f32) -> bool {
+        square(position, centre) > APART * APART * variance
     }
 
     /// Forgets all.
@@ -272,7 +288,7 @@ impl Ends {
     }
 
     /// Each end's own, while they are apart.
-    pub(crate) fn alone(&self) -> &[Rungs] {
+    pub(crate) fn alone(&self) -> &[PhaseState] {
         if self.are_alone { &self.alone } else { &[] }
     }
 

@@ -4,8 +4,8 @@
 mod learnt;
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::fix::Fix;
 use crate::detect::jump::{Approach, JumpBank, JumpTest};
+use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
 use crate::detect::series::{Bounce, Known, Series};
 use crate::detect::track::Jump;
@@ -88,8 +88,8 @@ pub(crate) struct Airborne {
 
 impl Airborne {
     /// Nothing has been seen of the wall yet.
-    fn restart(&mut self, loudness: f32) {
-        self.bank.begin(loudness);
+    fn restart(&mut self, threshold_scale: f32) {
+        self.bank.begin(threshold_scale);
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
@@ -100,20 +100,20 @@ impl Airborne {
         self.track = other.track;
         self.series = other.series;
         self.lies = other.lies;
-        self.restart(other.bank.loudness());
+        self.restart(other.bank.threshold_scale());
     }
 }
 
 /// How loud the impact test is while the rotor floats.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Listener {
+pub(crate) struct NoiseFloor {
     track: Track,
     bank: JumpBank,
     level: f32,
     count: f32,
 }
 
-impl Listener {
+impl NoiseFloor {
     /// Forgets all.
     pub(crate) fn forget(&mut self) {
         self.bank.begin(0.0);
@@ -128,7 +128,7 @@ impl Listener {
 
     /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
     /// clearly louder counts.
-    pub(crate) fn loudness(&self) -> f32 {
+    pub(crate) fn threshold_scale(&self) -> f32 {
         let ratio = self.level / WHITE_LEVEL;
         if ratio > LOUD { ratio } else { 1.0 }
     }
@@ -199,33 +199,62 @@ impl FlightTest {
 
     /// A flight from `position` (m) with unknown velocity. Where it lifted off, `wall` is the radius
     /// (m) at which it lay: what is clearly inside of it is no contact, however near.
-    pub(crate) fn start(&self, flight: &mut Airborne, fix: &Fix, wall: Option<f32>, loudness: f32) {
-        let clear = CLEAR_OF_WALL * sqrt(fix.variance);
-        flight.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+    pub(crate) fn start(
+        &self,
+        flight: &mut Airborne,
+        measurement: &Measurement,
+        wall: Option<f32>,
+        threshold_scale: f32,
+    ) {
+        let clear = CLEAR_OF_WALL * sqrt(measurement.variance);
+        flight.track = Track::new(
+            measurement.position,
+            measurement.variance,
+            [0.0; 2],
+            UNKNOWN_SPEED,
+        );
         flight.series = Series::default();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
-        flight.restart(loudness);
+        flight.restart(threshold_scale);
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
-    pub(crate) fn part(&self, flight: &mut Airborne, both: &Airborne, fix: &Fix, loudness: f32) {
+    pub(crate) fn part(
+        &self,
+        flight: &mut Airborne,
+        both: &Airborne,
+        measurement: &Measurement,
+        threshold_scale: f32,
+    ) {
         let velocity = both.track.velocity;
-        flight.track = Track::new(fix.position, fix.variance, velocity, UNKNOWN_SPEED);
+        flight.track = Track::new(
+            measurement.position,
+            measurement.variance,
+            velocity,
+            UNKNOWN_SPEED,
+        );
         flight.series = both.series.anew();
         flight.lies = both.lies;
-        flight.restart(loudness);
+        flight.restart(threshold_scale);
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
     /// much so is learnt.
-    pub(crate) fn listen(&self, listener: &mut Listener, fix: &Fix) {
+    pub(crate) fn listen(&self, listener: &mut NoiseFloor, measurement: &Measurement) {
         if listener.count == 0.0 {
-            listener.track = Track::new(fix.position, fix.variance, [0.0; 2], UNKNOWN_SPEED);
+            listener.track = Track::new(
+                measurement.position,
+                measurement.variance,
+                [0.0; 2],
+                UNKNOWN_SPEED,
+            );
         }
         self.calm.predict(&mut listener.track);
-        let innovation = self
-            .calm
-            .correct(&mut listener.track, fix.position, fix.variance);
+        let innovation = self.calm.correct(
+            &mut listener.track,
+            measurement.position,
+            measurement.variance,
+        );
         self.jumps
             .update(&mut listener.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
@@ -239,20 +268,22 @@ impl FlightTest {
     }
 
     /// Takes the next sample.
-    pub(crate) fn take(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
+    pub(crate) fn take(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
         self.ballistic.predict(&mut flight.track);
-        if !self.is_possible(&flight.track, fix) {
+        if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
                 flight.left_out += 1;
                 self.jumps.skip(&mut flight.bank);
-                return self.contact(flight, fix);
+                return self.contact(flight, measurement);
             }
         } else {
             flight.left_out = 0;
         }
-        let innovation = self
-            .ballistic
-            .correct(&mut flight.track, fix.position, fix.variance);
+        let innovation = self.ballistic.correct(
+            &mut flight.track,
+            measurement.position,
+            measurement.variance,
+        );
         let (outward, _) = direction(flight.track.position);
         let [u, v] = flight.track.velocity;
         let approach = Approach {
@@ -263,7 +294,7 @@ impl FlightTest {
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
-            let impact = self.judge(flight, &jump, fix);
+            let impact = self.judge(flight, &jump, measurement);
             flight.track.shift(&jump);
             flight.bank.restart();
             if let Some(hit) = impact {
@@ -274,8 +305,8 @@ impl FlightTest {
                 });
             }
         }
-        self.relaunch(flight, fix);
-        self.contact(flight, fix)
+        self.relaunch(flight, measurement);
+        self.contact(flight, measurement)
     }
 
     fn take_in(&self, flight: &mut Airborne, hit: &Hit) {
@@ -293,22 +324,22 @@ impl FlightTest {
 
     /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
     /// the one before, which takes it inward and along the wall by no more than its speed.
-    fn is_possible(&self, track: &Track, fix: &Fix) -> bool {
-        let noise = self.certain * track.spread(fix.variance);
+    fn is_possible(&self, track: &Track, measurement: &Measurement) -> bool {
+        let noise = self.certain * track.spread(measurement.variance);
         let [u, v] = track.velocity;
         let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
         let kick = KICK * self.period * speed;
         let ([nx, ny], _) = direction(track.position);
         let [x, y] = track.position;
-        let [dx, dy] = [fix.position[0] - x, fix.position[1] - y];
+        let [dx, dy] = [measurement.position[0] - x, measurement.position[1] - y];
         let (out, along) = (dx * nx + dy * ny, dy * nx - dx * ny);
         out < noise && out > -noise - kick && along.abs() < noise + kick
     }
 
     /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
     /// well, it does not.
-    fn relaunch(&self, flight: &mut Airborne, fix: &Fix) {
-        if flight.bank.loudness() > 1.0 {
+    fn relaunch(&self, flight: &mut Airborne, measurement: &Measurement) {
+        if flight.bank.threshold_scale() > 1.0 {
             return;
         }
         let (Some(after), Some(last)) =
@@ -316,7 +347,7 @@ impl FlightTest {
         else {
             return;
         };
-        let flown = fix.now.since(last.at);
+        let flown = measurement.now.since(last.at);
         if flown >= after {
             let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
             let error = flight.track.speed_error();
@@ -327,7 +358,7 @@ impl FlightTest {
     /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
     /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
     /// it finds after the time t in which a fall is found, as a jump of pressing times t.
-    fn judge(&self, flight: &Airborne, jump: &Jump, fix: &Fix) -> Option<Hit> {
+    fn judge(&self, flight: &Airborne, jump: &Jump, measurement: &Measurement) -> Option<Hit> {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
@@ -337,15 +368,19 @@ impl FlightTest {
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
         let mut bounce = Bounce {
-            at: fix.now.later(-jump.age),
+            at: measurement.now.later(-jump.age),
             normal_speed,
             known: Known::to(normal_speed, flight.track.speed_error()),
             along,
             outward,
-            pressing: along * along / self.machine.clearance - self.machine.gravity * outward[1],
+            normal_acceleration: along * along / self.machine.clearance
+                - self.machine.gravity * outward[1],
         };
         let mut age = jump.dated;
-        let mut least = self.faintest(bounce.pressing, fix.variance * flight.bank.loudness());
+        let mut least = self.min_detectable_speed(
+            bounce.normal_acceleration,
+            measurement.variance * flight.bank.threshold_scale(),
+        );
         let mut launch_speed = 0.0;
         let mut foreseen = false;
         if let Some(last) = flight.series.last() {
@@ -355,12 +390,17 @@ impl FlightTest {
             }
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
             launch_speed = -(u * last.outward[0] + v * last.outward[1]);
-            let next = NextImpact::of(&flight.series, bounce.pressing, &self.machine, self.period);
+            let next = NextImpact::of(
+                &flight.series,
+                bounce.normal_acceleration,
+                &self.machine,
+                self.period,
+            );
             if let Some(next) = next.filter(|it| it.is(&bounce, age)) {
                 foreseen = next.is_weak(&bounce, least);
                 if foreseen {
-                    age = next.age(fix.now, age);
-                    bounce.at = fix.now.later(-age);
+                    age = next.age(measurement.now, age);
+                    bounce.at = measurement.now.later(-age);
                     bounce.known = next.known();
                     bounce.normal_speed = bounce.known.speed;
                     least *= FAINTER;
@@ -388,16 +428,17 @@ impl FlightTest {
     }
 
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
-    fn is_about_to_hit(&self, flight: &Airborne, fix: &Fix) -> bool {
-        let (track, loudness) = (&flight.track, flight.bank.loudness());
+    fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
+        let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
-        let pressing = self.pressing(track).max(self.slowest);
-        u * x + v * y > self.faintest(pressing, fix.variance * loudness)
+        let normal_acceleration = self.normal_acceleration(track).max(self.slowest);
+        u * x + v * y
+            > self.min_detectable_speed(normal_acceleration, measurement.variance * threshold_scale)
     }
 
     /// With what the wall presses on a rotor there, m/s^2.
-    fn pressing(&self, track: &Track) -> f32 {
+    fn normal_acceleration(&self, track: &Track) -> f32 {
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
         let along = v * x - u * y;
@@ -405,8 +446,8 @@ impl FlightTest {
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
-    fn faintest(&self, pressing: f32, variance: f32) -> f32 {
-        let a = pressing.max(LEAST_PRESSING * self.machine.gravity);
+    fn min_detectable_speed(&self, normal_acceleration: f32, variance: f32) -> f32 {
+        let a = normal_acceleration.max(LEAST_PRESSING * self.machine.gravity);
         if a <= 0.0 {
             return 0.0;
         }
@@ -414,8 +455,8 @@ impl FlightTest {
         a * root::<5>(fifth)
     }
 
-    fn contact(&self, flight: &mut Airborne, fix: &Fix) -> Option<Landing> {
-        let (_, seen) = direction(fix.position);
+    fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+        let (_, seen) = direction(measurement.position);
         flight.seen_near = if seen < self.near {
             0
         } else {
@@ -434,12 +475,12 @@ impl FlightTest {
         flight.near_wall += 1;
         let at_wall = flight.near_wall as f32 * self.period;
         if let Some(end) = flight.series.end() {
-            let over = fix.now.since(end) * self.period;
+            let over = measurement.now.since(end) * self.period;
             if over < SERIES_MARGIN {
                 return None;
             }
             // A rotor that left the wall after the foreseen end has refuted it, or will soon.
-            if at_wall >= over && !self.is_about_to_hit(flight, fix) {
+            if at_wall >= over && !self.is_about_to_hit(flight, measurement) {
                 return Some(Landing::Contact {
                     age: over / self.period,
                 });
@@ -452,11 +493,11 @@ impl FlightTest {
         flight.lying += 1;
         let age = flight.lying as f32;
         // A wall that presses less lets it fly for longer.
-        let pressing = self
-            .pressing(&flight.track)
+        let normal_acceleration = self
+            .normal_acceleration(&flight.track)
             .max(LEAST_PRESSING * self.slowest);
         let part = age / self.dwell as f32;
-        let lies = part * part * pressing.min(self.slowest) > self.slowest;
+        let lies = part * part * normal_acceleration.min(self.slowest) > self.slowest;
         lies.then_some(Landing::Contact { age })
     }
 }
@@ -480,10 +521,10 @@ mod tests {
 
     fn level(sample_rate: f32, runout: f32) -> f32 {
         let test = test(sample_rate);
-        let (mut listener, mut seed) = (Listener::default(), 1);
+        let (mut listener, mut seed) = (NoiseFloor::default(), 1);
         for k in 0..50_000_u16 {
             let (sin, cos) = libm::sincosf(3141.6 * f32::from(k) / sample_rate);
-            let fix = Fix {
+            let measurement = Measurement {
                 now: Moment::default(),
                 position: [
                     1e-6 * white(&mut seed) + runout * cos,
@@ -491,7 +532,7 @@ mod tests {
                 ],
                 variance: 1e-12,
             };
-            test.listen(&mut listener, &fix);
+            test.listen(&mut listener, &measurement);
         }
         listener.level
     }
@@ -520,7 +561,7 @@ mod tests {
             at: Moment::of_sample(1_000),
             normal_speed: 5e-3,
             known: Known::to(5e-3, 1e-4),
-            pressing: 9.81,
+            normal_acceleration: 9.81,
             outward: [0.0, -1.0],
             ..Bounce::default()
         };
@@ -532,12 +573,12 @@ mod tests {
             (1_000..1_105).find(|&sample| {
                 let y = if away.contains(&sample) { -2e-4 } else { -3e-4 };
                 flight.track.position = [0.0, y];
-                let fix = Fix {
+                let measurement = Measurement {
                     now: Moment::of_sample(sample),
                     position: [0.0, y],
                     variance: 1e-12,
                 };
-                test.contact(&mut flight, &fix).is_some()
+                test.contact(&mut flight, &measurement).is_some()
             })
         };
         assert!(contact(0..0).is_some_and(|at| at < 1_095));

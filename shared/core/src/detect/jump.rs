@@ -49,19 +49,19 @@ pub(crate) struct JumpBank {
     /// Largest statistic of the last sample.
     pub(crate) statistic: f32,
     /// Factor on the threshold: how much louder than white noise the sensors are.
-    loudness: f32,
+    threshold_scale: f32,
 }
 
 impl JumpBank {
     /// Empties it.
-    pub(crate) fn begin(&mut self, loudness: f32) {
-        self.loudness = loudness;
+    pub(crate) fn begin(&mut self, threshold_scale: f32) {
+        self.threshold_scale = threshold_scale;
         self.restart();
     }
 
     /// Factor on the threshold.
-    pub(crate) fn loudness(&self) -> f32 {
-        self.loudness
+    pub(crate) fn threshold_scale(&self) -> f32 {
+        self.threshold_scale
     }
 
     /// Forgets what was under way.
@@ -145,7 +145,7 @@ impl JumpTest {
         approach: &Approach,
     ) -> Option<Jump> {
         self.update(bank, innovation, approach.inward);
-        if bank.statistic <= self.threshold * bank.loudness {
+        if bank.statistic <= self.threshold * bank.threshold_scale {
             return None;
         }
         let index = self.likeliest(bank, approach)?;
@@ -219,7 +219,7 @@ impl JumpTest {
     /// sample as well as a large one now; what restitution makes of the speed into the wall decides. A jump that does
     /// not even stop the rotor at the wall waits for another sample, unless it is past doubt.
     fn likeliest(&self, bank: &JumpBank, approach: &Approach) -> Option<usize> {
-        let past_doubt = bank.statistic > 2.0 * self.threshold * bank.loudness;
+        let past_doubt = bank.statistic > 2.0 * self.threshold * bank.threshold_scale;
         let mut best = (f32::NEG_INFINITY, None);
         for (index, candidate) in bank.candidates().iter().enumerate() {
             if candidate.statistic(approach.inward) <= 0.5 * bank.statistic {

@@ -30,12 +30,12 @@ pub(crate) struct NextImpact {
 }
 
 impl NextImpact {
-    /// The flight ends where the wall presses with `pressing` (m/s^2), and on the way there it presses evenly more or less:
+    /// The flight ends where the wall presses with `normal_acceleration` (m/s^2), and on the way there it presses evenly more or less:
     /// from launch speed v under accelerations a at first and b at last it lasts 6 v/(2 a + b), and ends with
     /// v (a + 2 b)/(2 a + b). `None` where it does not press.
     pub(crate) fn of(
         series: &Series,
-        pressing: f32,
+        normal_acceleration: f32,
         machine: &MachineConfig,
         period: f32,
     ) -> Option<Self> {
@@ -46,7 +46,7 @@ impl NextImpact {
         } = series.launch();
         // The wall bends towards the rotor.
         let bend = launch * launch / machine.clearance;
-        let (first, then) = (last.pressing + bend, pressing + bend);
+        let (first, then) = (last.normal_acceleration + bend, normal_acceleration + bend);
         let early = 2.0 * first + then;
         (first > 0.0 && then > 0.0).then(|| Self {
             last: last.at,
@@ -68,8 +68,8 @@ impl NextImpact {
     }
 
     /// Whether, before the series ends, it was seen or foreseen weaker than `faintest`, m/s.
-    pub(crate) fn is_weak(&self, seen: &Bounce, faintest: f32) -> bool {
-        seen.normal_speed.min(self.known.speed) < faintest
+    pub(crate) fn is_weak(&self, seen: &Bounce, min_detectable_speed: f32) -> bool {
+        seen.normal_speed.min(self.known.speed) < min_detectable_speed
             && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
     }
 
@@ -92,30 +92,30 @@ mod tests {
 
     const PERIOD: f32 = 2e-5;
 
-    fn next(pressing: f32) -> NextImpact {
+    fn next(normal_acceleration: f32) -> NextImpact {
         let mut series = Series::default();
         let first = Bounce {
             at: Moment::of_sample(1000),
             normal_speed: 0.02,
             known: Known::to(0.02, 1e-4),
-            pressing: 50.0,
+            normal_acceleration: 50.0,
             outward: [0.0, -1.0],
             ..Bounce::default()
         };
         series.take(first, 0.0, &MACHINE, PERIOD);
-        NextImpact::of(&series, pressing, &MACHINE, PERIOD).expect("the wall presses")
+        NextImpact::of(&series, normal_acceleration, &MACHINE, PERIOD).expect("the wall presses")
     }
 
     /// Against the flight in small steps.
     #[test]
     fn it_is_where_the_flight_ends() {
-        for pressing in [40.0, 50.0, 75.0] {
-            let next = next(pressing);
+        for normal_acceleration in [40.0, 50.0, 75.0] {
+            let next = next(normal_acceleration);
             let bend = 0.016 * 0.016 / 3e-4;
             let (mut height, mut speed, mut samples) = (0.0_f64, 0.016_f64, 0.0);
             while height >= 0.0 {
                 let part = samples / f64::from(next.flight);
-                let back = 50.0 + bend + part * (f64::from(pressing) - 50.0);
+                let back = 50.0 + bend + part * (f64::from(normal_acceleration) - 50.0);
                 speed -= back * 1e-3 * f64::from(PERIOD);
                 height += speed * 1e-3 * f64::from(PERIOD);
                 samples += 1e-3;

@@ -14,7 +14,7 @@ use touchdown_rotor::real::sqrt;
 const WHITE_LEVEL: f32 = 1.8;
 /// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
 /// before it is that far in a sample.
-const LOUDEST: f32 = 6.0;
+const MAX_LLR_PER_SAMPLE: f32 = 6.0;
 /// Parts of the threshold that an instant needs which is no samples old, and for each that it is: below them, what a
 /// reading that jumps by a count in each plane at once adds to noise may be. With a shift of s standard deviations (of
 /// the mean of two planes of 1 um and 12 bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 over 25.3, between
@@ -70,10 +70,10 @@ impl ReleaseBank {
     }
 
     /// Whether an instant is above the threshold, and above what readings that jump by a count may do.
-    fn is_more_than_a_shift(&self, threshold: f32, loudness: f32, scale: f32) -> bool {
+    fn is_more_than_a_shift(&self, threshold: f32, threshold_scale: f32, scale: f32) -> bool {
         let mut candidates = self.candidates.iter().take(self.live);
         candidates.any(|it| {
-            let part = loudness.max(SHIFTED[0] + SHIFTED[1] * it.age);
+            let part = threshold_scale.max(SHIFTED[0] + SHIFTED[1] * it.age);
             it.statistic(scale) > threshold * part
         })
     }
@@ -140,8 +140,8 @@ impl Release {
             };
         }
         bank.wait -= 1;
-        let loudness = (bank.level / WHITE_LEVEL).max(1.0);
-        let most = LOUDEST * sqrt(variance * loudness);
+        let threshold_scale = (bank.level / WHITE_LEVEL).max(1.0);
+        let most = MAX_LLR_PER_SAMPLE * sqrt(variance * threshold_scale);
         let (x, y) = (x.min(most).max(-most), y.min(most).max(-most));
         let scale = 0.5 / variance;
         let mut best = (0.0, 0.0);
@@ -158,10 +158,11 @@ impl Release {
             }
         }
         bank.statistic = best.0;
-        let threshold = self.threshold * loudness;
+        let threshold = self.threshold * threshold_scale;
         bank.count = (bank.count + 1.0).min(self.memory);
         bank.level += (best.0 - bank.level) / bank.count;
-        if best.0 <= threshold || !bank.is_more_than_a_shift(self.threshold, loudness, scale) {
+        if best.0 <= threshold || !bank.is_more_than_a_shift(self.threshold, threshold_scale, scale)
+        {
             return None;
         }
         // With gravity known, the instant follows from the fall's shape far better.

@@ -68,7 +68,7 @@ pub(crate) struct Bounce {
     /// Outward unit vector at the contact.
     pub(crate) outward: [f32; 2],
     /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
-    pub(crate) pressing: f32,
+    pub(crate) normal_acceleration: f32,
 }
 
 /// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
@@ -84,7 +84,7 @@ impl Bounce {
     /// rotor slides along the wall as if it lay on it. `None` where the wall ceases to press.
     fn rest(&self, launch: f32, restitution: f32, machine: &MachineConfig) -> Option<f32> {
         let loss = 0.5 * (1.0 - restitution);
-        if loss <= 0.0 || self.pressing <= 0.0 {
+        if loss <= 0.0 || self.normal_acceleration <= 0.0 {
             return None;
         }
         let against = if machine.spin != 0.0 {
@@ -97,19 +97,20 @@ impl Bounce {
         } else {
             machine.friction
         };
-        let step = launch / (loss * self.pressing * f32::from(REST_STEPS));
+        let step = launch / (loss * self.normal_acceleration * f32::from(REST_STEPS));
         let [mut sin, minus_cos] = self.outward;
-        let (mut cos, mut along, mut pressing) = (-minus_cos, self.along, self.pressing);
+        let (mut cos, mut along, mut normal_acceleration) =
+            (-minus_cos, self.along, self.normal_acceleration);
         let (mut left, mut time) = (launch, 0.0);
         for _ in 0..3 * REST_STEPS {
             let before = along;
-            along += (friction * pressing - machine.gravity * sin) * step;
+            along += (friction * normal_acceleration - machine.gravity * sin) * step;
             let turn = 0.5 * (before + along) * step / machine.clearance;
             (sin, cos) = (sin + cos * turn, cos - sin * turn);
             let norm = 1.5 - 0.5 * (sin * sin + cos * cos);
             (sin, cos) = (sin * norm, cos * norm);
             let next = along * along / machine.clearance + machine.gravity * cos;
-            let mean = 0.5 * (pressing + next);
+            let mean = 0.5 * (normal_acceleration + next);
             let taken = loss * mean * step;
             if taken >= left {
                 return Some(time + step * left / taken);
@@ -118,9 +119,9 @@ impl Bounce {
                 return None;
             }
             left -= taken;
-            left += FOLLOWS * left * (next - pressing) / mean;
+            left += FOLLOWS * left * (next - normal_acceleration) / mean;
             time += step;
-            pressing = next;
+            normal_acceleration = next;
         }
         None
     }
@@ -177,9 +178,9 @@ impl Series {
     /// has been taken from there.
     pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.launch.speed / last.pressing;
+        let flight = 2.0 * self.launch.speed / last.normal_acceleration;
         let after = SHOWN * flight / period;
-        (last.pressing > 0.0 && after >= LONG_ENOUGH).then_some(after)
+        (last.normal_acceleration > 0.0 && after >= LONG_ENOUGH).then_some(after)
     }
 
     /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
@@ -199,7 +200,8 @@ impl Series {
         };
         let [x, y] = last.outward;
         last.along = v * x - u * y;
-        last.pressing = last.along * last.along / machine.clearance - machine.gravity * y;
+        last.normal_acceleration =
+            last.along * last.along / machine.clearance - machine.gravity * y;
         let shown = -(u * x + v * y);
         if (shown - self.launch.speed).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
             self.launch = Known::to(shown, error);
@@ -299,7 +301,7 @@ pub(crate) mod tests {
             known: Known::to(normal_speed, 1e-4),
             along: 0.0,
             outward: [0.0, -1.0],
-            pressing: 9.81,
+            normal_acceleration: 9.81,
         }
     }
 
@@ -326,7 +328,7 @@ pub(crate) mod tests {
                 normal_speed: 5e-3,
                 along,
                 outward: [sin, -cos],
-                pressing: along * along / MACHINE.clearance + MACHINE.gravity * cos,
+                normal_acceleration: along * along / MACHINE.clearance + MACHINE.gravity * cos,
                 ..Bounce::default()
             };
             let rest = bounce.rest(4e-3, 0.8, &MACHINE).expect("the wall presses");

@@ -8,11 +8,11 @@ pub(crate) struct Ballistic {
     period: f32,
     gravity: f32,
     /// Growth of the velocity's variance in one sample, (m/s)^2.
-    wander: f32,
+    process_noise: f32,
 }
 
 /// Time over which an error of the equations keeps its sign, s.
-const ERROR_TIME: f32 = 1e-3;
+const CORRELATION_TIME: f32 = 1e-3;
 
 /// The estimate and its covariance.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,7 +58,7 @@ impl Ballistic {
         Self {
             period: 1.0 / sample_rate,
             gravity,
-            wander: error * error * ERROR_TIME / sample_rate,
+            process_noise: error * error * CORRELATION_TIME / sample_rate,
         }
     }
 
@@ -73,7 +73,7 @@ impl Ballistic {
         track.covariance = [
             pp + (2.0 * pv + vv * dt) * dt,
             pv + vv * dt,
-            vv + self.wander,
+            vv + self.process_noise,
         ];
     }
 

@@ -8,10 +8,10 @@ use crate::config::{MachineConfig, Tuning};
 use touchdown_rotor::real::sqrt;
 
 /// Time over which an error of the equations keeps its sign, s.
-const ERROR_TIME: f32 = 1e-3;
+const CORRELATION_TIME: f32 = 1e-3;
 
 /// Most that one sample can say for a hypothesis: a lost track or a spike decides nothing alone.
-const LOUDEST: f32 = 3.0;
+const MAX_LLR_PER_SAMPLE: f32 = 3.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -22,12 +22,12 @@ pub(crate) struct WallFilter {
     friction: f32,
     rolling: f32,
     clearance: f32,
-    wander: f32,
+    process_noise: f32,
 }
 
 /// One hypothesis' estimate.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Swing {
+pub(crate) struct WallAngle {
     /// Sine and cosine of the angle from the bottom.
     pub(crate) sin: f32,
     /// See `sin`.
@@ -42,26 +42,26 @@ pub(crate) struct Swing {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WallTrack {
     /// Sliding.
-    pub(crate) slide: Swing,
+    pub(crate) slide: WallAngle,
     /// Rolling.
-    pub(crate) roll: Swing,
+    pub(crate) roll: WallAngle,
     /// Of angle, angle and rate, rate.
     covariance: [f32; 3],
     /// For rolling, against sliding.
-    pub(crate) for_rolling: Evidence,
+    pub(crate) for_rolling: Cusum,
     /// For sliding, against rolling.
-    pub(crate) for_sliding: Evidence,
+    pub(crate) for_sliding: Cusum,
 }
 
 /// A CUSUM of log-likelihoods.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Evidence {
+pub(crate) struct Cusum {
     pub(crate) sum: f32,
     /// Samples since it last was zero.
     pub(crate) age: u32,
 }
 
-impl Evidence {
+impl Cusum {
     fn add(&mut self, gain: f32) {
         self.sum = (self.sum + gain).max(0.0);
         self.age = if self.sum > 0.0 {
@@ -81,14 +81,14 @@ impl WallFilter {
             friction: machine.friction,
             rolling: 1.0 / (1.0 + machine.inertia_ratio),
             clearance: machine.clearance,
-            wander: error * error * ERROR_TIME / sample_rate,
+            process_noise: error * error * CORRELATION_TIME / sample_rate,
         }
     }
 
     /// Contact at `outward` (unit vector) with `speed` along the wall (m/s, counter-clockwise), known
     /// to `spread` (m/s).
     pub(crate) fn start(&self, outward: [f32; 2], speed: f32, spread: f32) -> WallTrack {
-        let swing = Swing {
+        let swing = WallAngle {
             sin: outward[0],
             cos: -outward[1],
             rate: speed / self.clearance,
@@ -115,17 +115,20 @@ impl WallFilter {
         };
         let k = self.stiffness;
         let slide = &mut track.slide;
-        let pressing = slide.rate * slide.rate + k * slide.cos;
+        let normal_acceleration = slide.rate * slide.rate + k * slide.cos;
         // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
         let growth = 1.0 + friction * slide.rate * dt;
-        slide.predict(growth * (friction * pressing.max(0.0) - k * slide.sin), dt);
+        slide.predict(
+            growth * (friction * normal_acceleration.max(0.0) - k * slide.sin),
+            dt,
+        );
         let roll = &mut track.roll;
         roll.predict(-k * self.rolling * roll.sin, dt);
         let [aa, ar, rr] = track.covariance;
         track.covariance = [
             aa + (2.0 * ar + rr * dt) * dt,
             ar + rr * dt,
-            rr + self.wander,
+            rr + self.process_noise,
         ];
         let Some((position, variance)) = sample else {
             return;
@@ -140,7 +143,7 @@ impl WallFilter {
         let slide = track.slide.correct(position, scale, gain);
         let roll = track.roll.correct(position, scale, gain);
         let for_rolling = 0.5 * (slide * slide - roll * roll) / total;
-        let for_rolling = for_rolling.clamp(-LOUDEST, LOUDEST);
+        let for_rolling = for_rolling.clamp(-MAX_LLR_PER_SAMPLE, MAX_LLR_PER_SAMPLE);
         track.for_rolling.add(for_rolling);
         track.for_sliding.add(-for_rolling);
     }
@@ -153,7 +156,7 @@ impl WallTrack {
     }
 }
 
-impl Swing {
+impl WallAngle {
     /// A rate of more than a radian in a sample is not followed.
     fn predict(&mut self, acceleration: f32, dt: f32) {
         let angle = (self.rate + 0.5 * acceleration * dt) * dt;

@@ -2,7 +2,7 @@
 //!
 //! From the estimated state the core's model runs ahead, once for the estimate and once for each end of
 //! its main uncertainties. The part of the runs that whirl is the probability. A run takes many ticks:
-//! each [`Lookout::work`] does a bounded slice of it, below the tick.
+//! each [`ForecastTask::work`] does a bounded slice of it, below the tick.
 //!
 //! | file | says |
 //! |---|---|
@@ -11,9 +11,9 @@
 //! | `run` | what becomes of one of them |
 //! | `threshold` | whether a rotor on the wall whirls, in closed form |
 
-mod lookout;
 mod points;
 mod run;
+mod task;
 mod threshold;
 
 use crate::config::{DetectorConfig, Tuning};
@@ -27,7 +27,7 @@ use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Rigid, RigidConfig};
 
 pub use crate::event::{Onset, Outlook};
-pub use lookout::{Lookout, Sight};
+pub use task::{ForecastInput, ForecastTask};
 
 /// Speed of a rotor without weight that the magnets let go, m/s: sets the scales where gravity is 0.
 const DRIFT: f32 = 0.05;

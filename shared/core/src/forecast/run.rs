@@ -2,7 +2,7 @@
 
 use crate::forecast::threshold::{Course, course};
 use touchdown_rotor::real::Poly32;
-use touchdown_rotor::{Change, Happening, Instant, Kinematics, Rigid, RigidState, Start, Touch};
+use touchdown_rotor::{Change, Instant, Kinematics, ModelEvent, Rigid, RigidState, Start, Touch};
 
 /// Most changes of motion that a run follows.
 const CHANGES: u16 = 96;
@@ -104,7 +104,7 @@ impl Run {
         time(&self.state.now())
     }
 
-    fn judge(&mut self, &Happening { at, change, after }: &Happening<Poly32>) -> Option<Fate> {
+    fn judge(&mut self, &ModelEvent { at, change, after }: &ModelEvent<Poly32>) -> Option<Fate> {
         let now = time(&at);
         match change {
             Change::Impact(normal) => {
@@ -137,11 +137,11 @@ impl Run {
         let launch = law.restitution.0 * normal;
         let [sin, minus_cos] = after.position.map(|it| it.0);
         let along = along(after);
-        let pressing = along * along - law.gravity.0 * minus_cos;
-        if launch > CUTOFF || pressing <= 0.0 {
+        let normal_acceleration = along * along - law.gravity.0 * minus_cos;
+        if launch > CUTOFF || normal_acceleration <= 0.0 {
             return None;
         }
-        let rest = 2.0 * launch / (pressing * (1.0 - law.restitution.0));
+        let rest = 2.0 * launch / (normal_acceleration * (1.0 - law.restitution.0));
         let against = if after.spin.0 + along > 0.0 {
             -1.0
         } else {

@@ -52,7 +52,7 @@ pub(crate) struct Watch {
 /// What is known of a channel.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Watched {
+pub(crate) struct ChannelMonitorState {
     position: f32,
     velocity: f32,
     acceleration: f32,
@@ -90,7 +90,7 @@ pub(crate) struct Watched {
     ready: bool,
 }
 
-impl Default for Watched {
+impl Default for ChannelMonitorState {
     fn default() -> Self {
         Self {
             position: 0.0,
@@ -149,7 +149,12 @@ impl Watch {
     /// The value of a sample that is as foreseen, or nearly, of a channel that is sound, and whether it is not
     /// quite: nothing has to be found out then. Else nothing is changed.
     #[inline]
-    pub(crate) fn glance(&self, it: &mut Watched, count: u16, floats: bool) -> Option<(f32, bool)> {
+    pub(crate) fn glance(
+        &self,
+        it: &mut ChannelMonitorState,
+        count: u16,
+        floats: bool,
+    ) -> Option<(f32, bool)> {
         let repeats = if count == it.count {
             it.repeats
         } else {
@@ -182,7 +187,12 @@ impl Watch {
     }
 
     /// Foresees the sample and looks at it; `floats` while the rotor does.
-    pub(crate) fn look(&self, it: &mut Watched, count: Option<u16>, floats: bool) -> Look {
+    pub(crate) fn look(
+        &self,
+        it: &mut ChannelMonitorState,
+        count: Option<u16>,
+        floats: bool,
+    ) -> Look {
         if it.condition != Condition::Lost {
             it.position += it.velocity + 0.5 * it.acceleration;
             it.velocity += it.acceleration;
@@ -224,7 +234,7 @@ impl Watch {
     }
 
     /// Square of what an innovation may be.
-    fn bound(&self, it: &Watched, floats: bool) -> f32 {
+    fn bound(&self, it: &ChannelMonitorState, floats: bool) -> f32 {
         let noise = 2.0 * self.threshold * it.variance;
         if floats || noise > self.reach {
             noise
@@ -237,7 +247,7 @@ impl Watch {
     /// where the other plane is sound.
     pub(crate) fn take(
         &self,
-        it: &mut Watched,
+        it: &mut ChannelMonitorState,
         look: Look,
         floats: bool,
         spare: bool,
@@ -253,7 +263,7 @@ impl Watch {
 
     fn judge(
         &self,
-        it: &mut Watched,
+        it: &mut ChannelMonitorState,
         look: Look,
         floats: bool,
         spare: bool,
@@ -321,7 +331,7 @@ impl Watch {
         (Some(it.position), found(FaultKind::Shift))
     }
 
-    fn sound(&self, it: &mut Watched, floats: bool) -> (Option<f32>, Option<Found>) {
+    fn sound(&self, it: &mut ChannelMonitorState, floats: bool) -> (Option<f32>, Option<Found>) {
         let value = it.value;
         if it.is_stuck(it.repeats, floats) {
             it.sound = 0;
@@ -369,7 +379,7 @@ impl Watch {
     }
 
     #[inline]
-    fn follow(&self, it: &mut Watched, innovation: f32) {
+    fn follow(&self, it: &mut ChannelMonitorState, innovation: f32) {
         it.position += POSITION_GAIN * innovation;
         it.velocity += VELOCITY_GAIN * innovation;
         it.acceleration += ACCELERATION_GAIN * innovation;
@@ -395,7 +405,7 @@ impl Watch {
 
     /// What follows slowly from the noise.
     #[inline]
-    pub(crate) fn refine(&self, it: &mut Watched) {
+    pub(crate) fn refine(&self, it: &mut ChannelMonitorState) {
         if it.stale {
             it.stale = false;
             it.stuck_after = stuck_after(it.quiet, self.threshold);
@@ -403,7 +413,7 @@ impl Watch {
     }
 }
 
-impl Watched {
+impl ChannelMonitorState {
     /// Whether a count that has come again so often is no measurement: noise does not let it, nor, once the rotor does not
     /// float, the way that the channel was going.
     #[inline]
@@ -493,7 +503,7 @@ mod tests {
     #[test]
     fn noise_is_known_once_it_is_used() {
         let watch = Watch::new(25.3, 80.0, 4095);
-        let mut it = Watched::default();
+        let mut it = ChannelMonitorState::default();
         for k in 0..WARM_UP {
             let count = 2_048 + 2 * (k % 2);
             let look = watch.look(&mut it, Some(count), true);
@@ -523,7 +533,7 @@ mod tests {
     #[test]
     fn what_was_motion_is_followed_before_it_is_judged() {
         let watch = Watch::new(25.3, 80.0, 4095);
-        let (mut it, mut seed) = (Watched::default(), 1);
+        let (mut it, mut seed) = (ChannelMonitorState::default(), 1);
         for k in 0..1_040_u16 {
             let way = f32::from(30 * k.saturating_sub(1_000));
             let count = (2_048.0 + way + 2.0 * white(&mut seed)) as u16;

@@ -8,16 +8,16 @@
 //! | `lying` | a plane of a rotor on the wall: whether it lies where it can |
 
 mod channel;
-mod floating;
-mod lying;
-mod pair;
+mod contact_check;
+mod orbit_sense;
+mod plane_offset;
 
 pub use crate::fault::{Condition, Fault, FaultKind, Found};
 
-use self::channel::{Look, Watch, Watched};
-use self::floating::{Float, Floating};
-use self::lying::{Lie, Lying, Place};
-use self::pair::{Pair, Pairing};
+use self::channel::{ChannelMonitorState, Look, Watch};
+use self::contact_check::{ContactCheck, ContactCheckState, Place};
+use self::orbit_sense::{OrbitSense, OrbitSenseState};
+use self::plane_offset::{PlaneOffset, PlaneOffsetState};
 use crate::config::DetectorConfig;
 use crate::phase::Phase;
 use crate::sample::{CHANNELS, Sample};
@@ -42,9 +42,9 @@ const LOOKS_PER_SECOND: f32 = 1_000.0;
 pub struct Health {
     fitted: u8,
     watch: Watch,
-    pair: Pair,
-    float: Float,
-    lie: Lie,
+    pair: PlaneOffset,
+    float: OrbitSense,
+    lie: ContactCheck,
     /// Samples between two looks at the planes.
     look_every: u16,
     /// m.
@@ -55,7 +55,7 @@ pub struct Health {
 /// What is known of the sensors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HealthState {
-    pub(crate) channels: [Watched; CHANNELS],
+    pub(crate) channels: [ChannelMonitorState; CHANNELS],
     pub(crate) planes: PlanesState,
 }
 
@@ -63,9 +63,9 @@ pub struct HealthState {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PlanesState {
-    pairing: Pairing,
-    floating: [Floating; PLANES],
-    lying: [Lying; PLANES],
+    pairing: PlaneOffsetState,
+    floating: [OrbitSenseState; PLANES],
+    lying: [ContactCheckState; PLANES],
     wait: u16,
     /// Whose turn it is, of the channels.
     turn: u8,
@@ -96,9 +96,9 @@ impl Health {
                 REACH * fall / (rate * sensing.resolution),
                 sensing.full_scale,
             ),
-            pair: Pair::new(tolerance),
-            float: Float::new(threshold, LEAST_ORBIT * sensing.resolution, rate / every),
-            lie: Lie::new(
+            pair: PlaneOffset::new(tolerance),
+            float: OrbitSense::new(threshold, LEAST_ORBIT * sensing.resolution, rate / every),
+            lie: ContactCheck::new(
                 machine.clearance,
                 tolerance,
                 machine.gravity > 0.0 && machine.friction < STEEP,
@@ -222,7 +222,7 @@ impl Health {
                 continue;
             };
             let Some(position) = plane else {
-                *it = Lying::default();
+                *it = ContactCheckState::default();
                 continue;
             };
             let Some(place) = self.lie.take(it, position, phase.is_contact()) else {
@@ -248,7 +248,7 @@ impl Health {
         for (it, plane) in state.planes.floating.iter_mut().zip(planes) {
             match plane {
                 Some(position) => self.float.take(it, position),
-                None => *it = Floating::default(),
+                None => *it = OrbitSenseState::default(),
             }
         }
         let spin = spin.filter(|spin| spin.is_finite()).unwrap_or(self.spin);
@@ -311,7 +311,7 @@ impl HealthState {
 
     /// Which planes have both channels.
     fn spare(&self) -> [bool; PLANES] {
-        let [a, b, c, d] = self.channels.each_ref().map(Watched::is_own);
+        let [a, b, c, d] = self.channels.each_ref().map(ChannelMonitorState::is_own);
         [a && b, c && d]
     }
 

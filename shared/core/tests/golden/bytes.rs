@@ -9,7 +9,7 @@ use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::severity::Severity;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Patrol, Settings, Wiring};
+use touchdown_protocol::config_block::{ConfigScrub, Settings, Wiring};
 use touchdown_protocol::controller::{Busy, Outputs};
 use touchdown_protocol::link::{Chunk, Decoder, Recent, Reply, Request, State, encode};
 use touchdown_protocol::log::block::{Block, Kind, Page};
@@ -256,7 +256,7 @@ fn configuration(text: &mut String) {
     assert_eq!(config_block::decode(&block), Ok((&block[..], settings)));
     put(text, "configuration", &block);
     let passed = |block: &[u8]| {
-        let mut patrol = Patrol::default();
+        let mut patrol = ConfigScrub::default();
         (1..).find_map(|step| patrol.step(block).map(|is_whole| (step, is_whole)))
     };
     let whole = passed(&block).expect("a verdict");

@@ -9,7 +9,7 @@ use touchdown_models::{
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
-    Change, Happening, Kinematics, Precision, Rigid, RigidConfig, Start, Stepper,
+    Change, Kinematics, ModelEvent, Precision, Rigid, RigidConfig, Start, Stepper,
 };
 
 /// Changes of a drop that are told one by one.
@@ -267,7 +267,7 @@ fn run<R: Precision, M: Stepper<R>>(
     steps: u64,
 ) {
     let (mut count, mut told) = (0, String::new());
-    let mut sink = |happening: Happening<R>| {
+    let mut sink = |happening: ModelEvent<R>| {
         count += 1;
         if count <= TOLD {
             writeln!(told, "  {}", line(&happening)).expect("a string");
@@ -280,7 +280,7 @@ fn run<R: Precision, M: Stepper<R>>(
     write!(text, "\n{name}\n{told}  {count} changes\n  end {end}\n").expect("a string");
 }
 
-fn line<R: Real>(happening: &Happening<R>) -> String {
+fn line<R: Real>(happening: &ModelEvent<R>) -> String {
     let change = match &happening.change {
         Change::Impact(normal) => format!("impact {}", number(*normal)),
         Change::Released(pulse) => format!(

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use touchdown_core::event::{Event, EventKind, Notice};
-use touchdown_core::forecast::Lookout;
+use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorState};
 
 use crate::stream::Stream;
@@ -14,17 +14,18 @@ const MARK: u64 = 1_000;
 /// What the monitor says to `stream`: every notice, the severity, and fingerprints of the state.
 pub fn text(stream: &Stream) -> String {
     let monitor = Monitor::try_new(&stream.config).expect("a valid configuration");
-    let mut lookout = Lookout::try_new(&stream.config.detector).expect("a valid configuration");
+    let mut forecast_task =
+        ForecastTask::try_new(&stream.config.detector).expect("a valid configuration");
     let mut state = monitor.start();
     let mut fingerprint = Fingerprint::default();
     let (mut notices, mut marks) = (String::new(), String::new());
     for (number, sample) in (0..).zip(&stream.samples) {
         let said = monitor.update(&mut state, sample);
-        let outlook = monitor.look(&state, &mut lookout);
+        let outlook = monitor.look(&state, &mut forecast_task);
         for notice in said.iter().chain(&outlook) {
             writeln!(notices, "{number:6}  {}", line(notice)).expect("a string");
         }
-        fingerprint.take(&state, &lookout);
+        fingerprint.take(&state, &forecast_task);
         if (number + 1) % MARK == 0 || number + 1 == stream.samples.len() as u64 {
             let hash = fingerprint.clone().summary(&state).state_hash;
             writeln!(marks, "{:6}  {hash:08x}", number + 1).expect("a string");

@@ -4,7 +4,7 @@ use super::state::Touching;
 use super::{Hertz, HertzState, Scheme, Shape, tell};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::contact::{Grip, mode_of};
-use touchdown_rotor::kinematics::{Change, Happening, Pulse};
+use touchdown_rotor::kinematics::{Change, ModelEvent, Pulse};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::start::Start;
 use touchdown_rotor::sum::Sum;
@@ -16,7 +16,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         &self,
         start: &Start<R>,
         spin: R,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) -> HertzState<R> {
         let mut state = HertzState {
             now: Instant::default(),
@@ -36,8 +36,8 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
                 cos,
                 tangential,
             } => {
-                let pressing = tangential * tangential + self.law.gravity * cos;
-                let out = R::ONE + C::depth(pressing.most(R::ZERO) / self.stiffness);
+                let normal_acceleration = tangential * tangential + self.law.gravity * cos;
+                let out = R::ONE + C::depth(normal_acceleration.most(R::ZERO) / self.stiffness);
                 state.position = [out * sin, -(out * cos)].map(Sum::new);
                 state.velocity = [tangential * cos, tangential * sin].map(Sum::new);
                 let wall = WallState {
@@ -50,10 +50,10 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
                 touching.stays = true;
                 touching.rolling = mode_of(&wall, Grip::Open, &self.law) == Mode::Rolling;
                 state.touching = Some(touching);
-                tell(&state, state.now, Change::ContactStarts, sink);
-                if pressing <= R::ZERO {
+                tell(&state, state.now, Change::ContactStarts, on_event);
+                if normal_acceleration <= R::ZERO {
                     state.touching = None;
-                    tell(&state, state.now, Change::LiftsOff, sink);
+                    tell(&state, state.now, Change::LiftsOff, on_event);
                 }
             }
         }
@@ -66,7 +66,11 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
     }
 
     /// After a drift: a contact may have begun in it, or ended.
-    pub(super) fn follow(&self, state: &mut HertzState<R>, sink: &mut impl FnMut(Happening<R>)) {
+    pub(super) fn follow(
+        &self,
+        state: &mut HertzState<R>,
+        on_event: &mut impl FnMut(ModelEvent<R>),
+    ) {
         let [x, y] = state.position.map(Sum::value);
         let square = x * x + y * y;
         if (square > R::ONE) == state.touching.is_some() {
@@ -81,7 +85,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         match state.touching {
             None if outward > R::ZERO => {
                 state.touching = Some(Touching::new(at, self.rate(outward)));
-                tell(state, at, Change::Impact(outward), sink);
+                tell(state, at, Change::Impact(outward), on_event);
             }
             None => {}
             Some(touching) => {
@@ -95,7 +99,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
                         impulse: touching.impulse,
                     })
                 };
-                tell(state, at, change, sink);
+                tell(state, at, change, on_event);
             }
         }
     }

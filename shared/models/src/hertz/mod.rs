@@ -21,7 +21,7 @@ use core::marker::PhantomData;
 
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::kinematics::{Change, Happening, Kinematics};
+use touchdown_rotor::kinematics::{Change, Kinematics, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -106,26 +106,26 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Stepper<R> for Hertz<R, C, S> {
         &self,
         start: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<HertzState<R>, ConfigError> {
         start.check(spin)?;
-        Ok(self.placed(start, spin, &mut sink))
+        Ok(self.placed(start, spin, &mut on_event))
     }
 
-    fn step(&self, state: &mut HertzState<R>, mut sink: impl FnMut(Happening<R>)) {
+    fn step(&self, state: &mut HertzState<R>, mut on_event: impl FnMut(ModelEvent<R>)) {
         let next = Instant::at_tick(state.now.tick + 1);
-        S::advance(self, state, self.step, next, &mut sink);
+        S::advance(self, state, self.step, next, &mut on_event);
     }
 
     fn part_step(
         &self,
         state: &mut HertzState<R>,
         fraction: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
         let tick = state.now.tick;
         let time = self.step * fraction;
-        S::advance(self, state, time, Instant { tick, fraction }, &mut sink);
+        S::advance(self, state, time, Instant { tick, fraction }, &mut on_event);
     }
 
     fn kinematics(&self, state: &HertzState<R>) -> Kinematics<R> {
@@ -137,9 +137,9 @@ fn tell<R: Precision>(
     state: &HertzState<R>,
     at: Instant<R>,
     change: Change<R>,
-    sink: &mut impl FnMut(Happening<R>),
+    on_event: &mut impl FnMut(ModelEvent<R>),
 ) {
-    sink(Happening {
+    on_event(ModelEvent {
         at,
         change,
         after: state.kinematics(),

@@ -2,7 +2,7 @@
 
 use super::state::Touching;
 use super::{Hertz, HertzState, Scheme, Shape, tell};
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::sum::Sum;
 
@@ -17,7 +17,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         &self,
         state: &mut HertzState<R>,
         time: R,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let Some(mut touching) = state.touching else {
             return;
@@ -36,8 +36,8 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         let starts = !touching.stays && {
             // Motion and compression together do not suffice to leave against what presses.
             let stored = force * depth / (C::exponent() + R::ONE);
-            let pressing = along * along + law.gravity * cos;
-            R::HALF * normal * normal + stored < pressing * depth
+            let normal_acceleration = along * along + law.gravity * cos;
+            R::HALF * normal * normal + stored < normal_acceleration * depth
         };
         let impulse = self.impulse(state, &touching, [depth, force], normal + fall * cos, time);
         let tangential = along - fall * sin;
@@ -70,7 +70,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         };
         state.touching = Some(touching);
         if let Some(change) = change {
-            tell(state, state.now, change, sink);
+            tell(state, state.now, change, on_event);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Hertz, HertzState, Shape};
 use touchdown_rotor::clock::Instant;
-use touchdown_rotor::kinematics::Happening;
+use touchdown_rotor::kinematics::ModelEvent;
 use touchdown_rotor::precision::Precision;
 
 mod sealed {
@@ -20,7 +20,7 @@ pub trait Scheme: sealed::Sealed + Copy {
         state: &mut HertzState<R>,
         time: R,
         to: Instant<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     );
 }
 
@@ -38,10 +38,10 @@ impl Scheme for Euler {
         state: &mut HertzState<R>,
         time: R,
         to: Instant<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         if state.touching.is_some() {
-            model.press(state, time, sink);
+            model.press(state, time, on_event);
             state.drift(time);
         } else {
             let half = R::HALF * time;
@@ -50,7 +50,7 @@ impl Scheme for Euler {
             model.fall(state, half);
         }
         state.now = to;
-        model.follow(state, sink);
+        model.follow(state, on_event);
     }
 }
 
@@ -60,19 +60,19 @@ impl Scheme for Verlet {
         state: &mut HertzState<R>,
         time: R,
         to: Instant<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let half = R::HALF * time;
         if state.touching.is_some() {
-            model.press(state, half, sink);
+            model.press(state, half, on_event);
         } else {
             model.fall(state, half);
         }
         state.drift(time);
         state.now = to;
-        model.follow(state, sink);
+        model.follow(state, on_event);
         if state.touching.is_some() {
-            model.press(state, half, sink);
+            model.press(state, half, on_event);
         } else {
             model.fall(state, half);
         }

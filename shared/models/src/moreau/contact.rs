@@ -12,7 +12,7 @@
 use super::flight::from_wall;
 use super::state::{MoreauState, Motion, Wall};
 use super::{Moreau, Stretch};
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::sum::Sum;
@@ -32,7 +32,7 @@ impl<R: Precision> Moreau<R> {
         state: &mut MoreauState<R>,
         mut wall: Wall<R>,
         stretch: Stretch<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let half = R::HALF * stretch.time;
         let turn = half * wall.tangential.value();
@@ -48,7 +48,7 @@ impl<R: Precision> Moreau<R> {
             let speed = if speed < R::ZERO { -left } else { left };
             let away = [speed * cos, speed * sin];
             state.motion = Motion::Flight(from_wall([sin, cos], away, half, &self.law));
-            self.tell(state, stretch.at(R::HALF), Change::LiftsOff, sink);
+            self.tell(state, stretch.at(R::HALF), Change::LiftsOff, on_event);
             return;
         }
         let pull = self.pull(turn, chord, [sin, cos], stretch.time);
@@ -67,7 +67,7 @@ impl<R: Precision> Moreau<R> {
         wall.turn(half * wall.tangential.value());
         state.motion = Motion::Wall(wall);
         if let Some((part, change)) = change {
-            self.tell(state, stretch.at(part), change, sink);
+            self.tell(state, stretch.at(part), change, on_event);
         }
     }
 

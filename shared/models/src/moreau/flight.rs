@@ -7,7 +7,7 @@
 
 use super::state::{Flight, MoreauState, Motion, Wall};
 use super::{Moreau, Stretch};
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::sum::Sum;
@@ -18,7 +18,7 @@ impl<R: Precision> Moreau<R> {
         state: &mut MoreauState<R>,
         mut flight: Flight<R>,
         stretch: Stretch<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let half = R::HALF * stretch.time;
         let [x, y] = flight.position.map(Sum::value);
@@ -30,7 +30,7 @@ impl<R: Precision> Moreau<R> {
             let velocity = [u, v - pull];
             let outward = middle[0] * velocity[0] + middle[1] * velocity[1];
             if outward > R::ZERO {
-                self.hit(state, middle, velocity, square.sqrt(), stretch, sink);
+                self.hit(state, middle, velocity, square.sqrt(), stretch, on_event);
                 return;
             }
         }
@@ -48,7 +48,7 @@ impl<R: Precision> Moreau<R> {
         [u, v]: [R; 2],
         distance: R,
         stretch: Stretch<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let law = &self.law;
         let (sin, cos) = (x / distance, -y / distance);
@@ -66,19 +66,19 @@ impl<R: Precision> Moreau<R> {
         let normal = normal.sqrt();
 
         let hit = law.collide(normal, tangential, &mut state.spin);
-        let pressing = hit.tangential * hit.tangential + law.gravity * cos;
+        let normal_acceleration = hit.tangential * hit.tangential + law.gravity * cos;
         let middle = stretch.at(R::HALF);
         let away = launched([sin, cos], hit.launch_speed, hit.tangential);
         if normal > R::CUTOFF_SPEED {
             state.motion = Motion::Flight(Flight::new([sin, -cos], away));
-            self.tell(state, middle, Change::Impact(normal), sink);
+            self.tell(state, middle, Change::Impact(normal), on_event);
         }
         let rest = [sin, cos];
-        if R::TWO * hit.launch_speed <= pressing * self.step {
+        if R::TWO * hit.launch_speed <= normal_acceleration * self.step {
             let wall = Wall::new(rest, hit.tangential, state.spin, hit.stuck, law);
             state.motion = Motion::Wall(wall);
-            self.tell(state, middle, Change::ContactStarts, sink);
-            self.slide(state, wall, stretch.second_half(), sink);
+            self.tell(state, middle, Change::ContactStarts, on_event);
+            self.slide(state, wall, stretch.second_half(), on_event);
         } else {
             let time = R::HALF * stretch.time;
             state.motion = Motion::Flight(from_wall(rest, away, time, law));

@@ -15,7 +15,7 @@ pub use state::MoreauState;
 use state::Motion;
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::kinematics::{Change, Happening, Kinematics};
+use touchdown_rotor::kinematics::{Change, Kinematics, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -74,15 +74,15 @@ impl<R: Precision> Moreau<R> {
         &self.scales
     }
 
-    fn go(&self, state: &mut MoreauState<R>, part: R, mut sink: impl FnMut(Happening<R>)) {
+    fn go(&self, state: &mut MoreauState<R>, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
         let stretch = Stretch {
             time: self.step * part,
             from: R::ZERO,
             part,
         };
         match state.motion {
-            Motion::Flight(flight) => self.fly(state, flight, stretch, &mut sink),
-            Motion::Wall(wall) => self.slide(state, wall, stretch, &mut sink),
+            Motion::Flight(flight) => self.fly(state, flight, stretch, &mut on_event),
+            Motion::Wall(wall) => self.slide(state, wall, stretch, &mut on_event),
         }
     }
 
@@ -92,9 +92,9 @@ impl<R: Precision> Moreau<R> {
         state: &MoreauState<R>,
         part: R,
         change: Change<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
-        sink(Happening {
+        on_event(ModelEvent {
             at: state.in_step(part),
             change,
             after: self.kinematics(state),
@@ -120,23 +120,28 @@ impl<R: Precision> Stepper<R> for Moreau<R> {
         &self,
         start: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<MoreauState<R>, ConfigError> {
         start.check(spin)?;
         let state = MoreauState::new(start, spin, &self.law);
         if let Motion::Wall(_) = state.motion {
-            self.tell(&state, R::ZERO, Change::ContactStarts, &mut sink);
+            self.tell(&state, R::ZERO, Change::ContactStarts, &mut on_event);
         }
         Ok(state)
     }
 
-    fn step(&self, state: &mut MoreauState<R>, sink: impl FnMut(Happening<R>)) {
-        self.go(state, R::ONE, sink);
+    fn step(&self, state: &mut MoreauState<R>, on_event: impl FnMut(ModelEvent<R>)) {
+        self.go(state, R::ONE, on_event);
         state.tick += 1;
     }
 
-    fn part_step(&self, state: &mut MoreauState<R>, fraction: R, sink: impl FnMut(Happening<R>)) {
-        self.go(state, fraction, sink);
+    fn part_step(
+        &self,
+        state: &mut MoreauState<R>,
+        fraction: R,
+        on_event: impl FnMut(ModelEvent<R>),
+    ) {
+        self.go(state, fraction, on_event);
     }
 
     fn kinematics(&self, state: &MoreauState<R>) -> Kinematics<R> {

@@ -12,7 +12,7 @@ use super::strike::{Arrival, on_wall};
 use super::{Support, SupportState};
 use crate::crossing::crossing;
 use crate::vector::Vector;
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 
 /// Stretches in a step, tried ones included. Chosen, because 20 turns of whirl fit in.
@@ -37,7 +37,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         &self,
         state: &mut SupportState<R, M::State, B::State>,
         part: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
         let whole = self.step * part;
         let (mut left, mut longest, mut impacts, mut crossings) = (whole, whole, 0, 0);
@@ -60,12 +60,12 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
                 None => {
                     left -= time;
                     (longest, crossings) = (R::TWO * time, 0);
-                    self.accept(state, &passage, (whole - left) / self.step, &mut sink);
+                    self.accept(state, &passage, (whole - left) / self.step, &mut on_event);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
-                    self.meet(state, beyond.who, stays, now, &mut sink);
+                    self.meet(state, beyond.who, stays, now, &mut on_event);
                     impacts += 1;
                     (longest, crossings) = (whole, 0);
                 }
@@ -132,7 +132,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         state: &mut SupportState<R, M::State, B::State>,
         passage: &Passage<R>,
         part: R,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let time = passage.time;
         let place = state.place.value();
@@ -161,7 +161,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         self.race.advance(&mut state.race, time, turned, rub, heat);
         let Some(press) = &passage.press else {
             if state.held.take().is_some() {
-                self.tell(state, part, Change::LiftsOff, sink);
+                self.tell(state, part, Change::LiftsOff, on_event);
             }
             return;
         };
@@ -178,8 +178,8 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         held.turns.add(place.cross(end).atan2(place.dot(end)));
         let rolled = core::mem::replace(&mut held.rolling, stuck);
         match (rolled, stuck) {
-            (false, true) => self.tell(state, part, Change::RollingStarts, sink),
-            (true, false) => self.tell(state, part, Change::SlidingStarts, sink),
+            (false, true) => self.tell(state, part, Change::RollingStarts, on_event),
+            (true, false) => self.tell(state, part, Change::SlidingStarts, on_event),
             _ => {}
         }
     }
@@ -211,9 +211,9 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         state: &SupportState<R, M::State, B::State>,
         part: R,
         change: Change<R>,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
-        sink(Happening {
+        on_event(ModelEvent {
             at: state.in_step(part),
             change,
             after: Self::seen(state),

@@ -30,7 +30,7 @@ pub use state::{Load, RingMotion, SupportState};
 use config::Units;
 use strike::Arrival;
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::kinematics::{Change, Happening, Kinematics};
+use touchdown_rotor::kinematics::{Change, Kinematics, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -138,30 +138,30 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Stepper<R> for Support<R, M, B> {
         &self,
         start: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError> {
         start.check(spin)?;
         let mut state = SupportState::new(start, spin);
         match start {
-            Start::Wall { .. } => self.tell(&state, R::ZERO, Change::ContactStarts, &mut sink),
+            Start::Wall { .. } => self.tell(&state, R::ZERO, Change::ContactStarts, &mut on_event),
             Start::Free { .. } => {
                 let place = state.place.value();
                 let outward = place.dot(state.velocity.value()) >= R::ZERO;
                 if outward && place.square() >= R::ONE - strike::on_wall() {
-                    self.meet(&mut state, Arrival::Rotor, false, R::ZERO, &mut sink);
+                    self.meet(&mut state, Arrival::Rotor, false, R::ZERO, &mut on_event);
                 }
             }
         }
         Ok(state)
     }
 
-    fn step(&self, state: &mut Self::State, sink: impl FnMut(Happening<R>)) {
-        self.go(state, R::ONE, sink);
+    fn step(&self, state: &mut Self::State, on_event: impl FnMut(ModelEvent<R>)) {
+        self.go(state, R::ONE, on_event);
         state.tick += 1;
     }
 
-    fn part_step(&self, state: &mut Self::State, fraction: R, sink: impl FnMut(Happening<R>)) {
-        self.go(state, fraction, sink);
+    fn part_step(&self, state: &mut Self::State, fraction: R, on_event: impl FnMut(ModelEvent<R>)) {
+        self.go(state, fraction, on_event);
     }
 
     fn kinematics(&self, state: &Self::State) -> Kinematics<R> {

@@ -10,7 +10,7 @@ use super::state::Held;
 use super::{Support, SupportState};
 use crate::impulse::{Impulse, Mobility};
 use crate::vector::Vector;
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
@@ -35,7 +35,7 @@ pub(super) enum Arrival {
 
 /// What an impact finds.
 #[derive(Clone, Copy, Debug)]
-struct Meeting<R> {
+struct ActiveContact<R> {
     /// Outward, of the ring's wall; none where the rotor is away from it.
     wall: Option<Vector<R>>,
     /// Outward, of the stop; none where the ring is away from it.
@@ -45,7 +45,7 @@ struct Meeting<R> {
 }
 
 /// Rotor, ring and stop in an impact.
-struct Clash<R> {
+struct ImpactSystem<R> {
     normal: Vector<R>,
     mobility: Mobility<R>,
     /// Velocity of the rotor in the ring, and of the ring.
@@ -61,7 +61,7 @@ struct Clash<R> {
 
 /// The impulses.
 #[derive(Clone, Copy, Debug, Default)]
-struct Blow<R> {
+struct ImpulsePair<R> {
     impulse: Impulse<R>,
     /// On the rotor.
     push: Vector<R>,
@@ -69,11 +69,11 @@ struct Blow<R> {
     by_stop: Vector<R>,
 }
 
-impl<R: Real> Clash<R> {
+impl<R: Real> ImpactSystem<R> {
     /// Rotor and stop in turn, and whether they came to an end.
-    fn solve(&self, meeting: &Meeting<R>, friction: R) -> (Blow<R>, bool) {
+    fn solve(&self, meeting: &ActiveContact<R>, friction: R) -> (ImpulsePair<R>, bool) {
         let mut settling = Settling::default();
-        let mut blow = Blow::default();
+        let mut blow = ImpulsePair::default();
         for _ in 0..PASSES {
             if meeting.wall.is_some() {
                 let met = self.relative - blow.by_stop.times(self.yielding);
@@ -100,7 +100,7 @@ impl<R: Real> Clash<R> {
     }
 
     /// Whether the impulses take energy: what each does is impulse times mean velocity.
-    fn is_lossy(&self, blow: &Blow<R>) -> bool {
+    fn is_lossy(&self, blow: &ImpulsePair<R>) -> bool {
         let rub = blow.impulse.tangential;
         let turning = self.mobility.tangential - self.mobility.normal;
         let ring = (blow.by_stop - blow.push).times(R::HALF * self.yielding);
@@ -125,7 +125,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         arrived: Arrival,
         stays: bool,
         part: R,
-        sink: &mut impl FnMut(Happening<R>),
+        on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
         let meeting = self.meeting(state, arrived);
         let new = meeting.wall.is_some() && state.held.is_none();
@@ -148,7 +148,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         }
         if new && meeting.outward > R::CUTOFF_SPEED {
             state.struck = true;
-            self.tell(state, part, Change::Impact(meeting.outward), sink);
+            self.tell(state, part, Change::Impact(meeting.outward), on_event);
         }
         if returns {
             let place = state.place.value();
@@ -159,11 +159,15 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
                 rolling: impulse.stuck,
                 ..Held::default()
             });
-            self.tell(state, part, Change::ContactStarts, sink);
+            self.tell(state, part, Change::ContactStarts, on_event);
         }
     }
 
-    fn meeting(&self, state: &SupportState<R, M::State, B::State>, arrived: Arrival) -> Meeting<R> {
+    fn meeting(
+        &self,
+        state: &SupportState<R, M::State, B::State>,
+        arrived: Arrival,
+    ) -> ActiveContact<R> {
         let near = R::ONE - on_wall();
         let place = state.place.value();
         let wall = place.times(R::ONE / place.length());
@@ -178,7 +182,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
                 .mount
                 .travel()
                 .is_some_and(|travel| ring.square() >= near * travel * travel);
-        Meeting {
+        ActiveContact {
             wall: takes_part.then_some(wall),
             stop: stops.then(|| ring.times(R::ONE / ring.length())),
             outward,
@@ -188,7 +192,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     fn strike(
         &self,
         state: &mut SupportState<R, M::State, B::State>,
-        meeting: &Meeting<R>,
+        meeting: &ActiveContact<R>,
         restitution: R,
     ) -> Impulse<R> {
         self.mount.brace(&mut state.ring);
@@ -201,7 +205,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             normal: R::ONE + yielding,
             tangential: R::ONE + yielding + R::ONE / self.law.inertia_ratio + self.race.mobility(),
         };
-        let clash = Clash {
+        let clash = ImpactSystem {
             normal,
             mobility,
             relative,
@@ -226,9 +230,9 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         &self,
         state: &mut SupportState<R, M::State, B::State>,
         normal: Vector<R>,
-        blow: &Blow<R>,
+        blow: &ImpulsePair<R>,
     ) {
-        let Blow {
+        let ImpulsePair {
             impulse,
             push,
             by_stop,
@@ -252,7 +256,11 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
     }
 
     /// Whether the next bounce would be no longer than a step: by a step without contact.
-    fn returns(&self, state: &SupportState<R, M::State, B::State>, meeting: &Meeting<R>) -> bool {
+    fn returns(
+        &self,
+        state: &SupportState<R, M::State, B::State>,
+        meeting: &ActiveContact<R>,
+    ) -> bool {
         let Some(normal) = meeting.wall else {
             return false;
         };
@@ -263,8 +271,8 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         let velocity = Self::relative(state);
         let bent = passage.moved - velocity.times(time);
         let round = normal.cross(passage.moved);
-        let pressing = R::TWO * normal.dot(bent) + round * round;
+        let normal_acceleration = R::TWO * normal.dot(bent) + round * round;
         let launch = -normal.dot(velocity);
-        pressing > R::ZERO && R::TWO * launch * time <= pressing
+        normal_acceleration > R::ZERO && R::TWO * launch * time <= normal_acceleration
     }
 }

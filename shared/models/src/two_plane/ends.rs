@@ -2,7 +2,7 @@
 
 use super::{Placement, TwoPlane, TwoPlaneState};
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::kinematics::{Happening, Kinematics, Touch};
+use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::start::Start;
 use touchdown_rotor::stepper::Stepper;
@@ -29,17 +29,17 @@ impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
         &self,
         _: &Start<R>,
         spin: R,
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError> {
-        self.model.start(&self.start, spin, |_, h| sink(h))
+        self.model.start(&self.start, spin, |_, h| on_event(h))
     }
 
-    fn step(&self, state: &mut Self::State, mut sink: impl FnMut(Happening<R>)) {
-        self.model.step(state, |_, h| sink(h));
+    fn step(&self, state: &mut Self::State, mut on_event: impl FnMut(ModelEvent<R>)) {
+        self.model.step(state, |_, h| on_event(h));
     }
 
-    fn part_step(&self, state: &mut Self::State, part: R, mut sink: impl FnMut(Happening<R>)) {
-        self.model.part_step(state, part, |_, h| sink(h));
+    fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
+        self.model.part_step(state, part, |_, h| on_event(h));
     }
 
     /// Of the centre of mass; turns are those of the ring that has most.

@@ -9,7 +9,7 @@ use super::TwoPlane;
 use super::passage::Passage;
 use super::state::TwoPlaneState;
 use crate::crossing::crossing;
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 
 /// Stretches in a step, tried ones included. Chosen, because 20 turns of whirl fit in.
@@ -21,8 +21,12 @@ const REACH: f64 = 0.25;
 
 impl<R: Precision, const N: usize> TwoPlane<R, N> {
     /// One step. Bounded; cannot fail. Changes of motion go to `sink` with the index of their ring.
-    pub fn step(&self, state: &mut TwoPlaneState<R, N>, sink: impl FnMut(usize, Happening<R>)) {
-        self.go(state, R::ONE, sink);
+    pub fn step(
+        &self,
+        state: &mut TwoPlaneState<R, N>,
+        on_event: impl FnMut(usize, ModelEvent<R>),
+    ) {
+        self.go(state, R::ONE, on_event);
         state.tick += 1;
     }
 
@@ -31,16 +35,16 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         &self,
         state: &mut TwoPlaneState<R, N>,
         fraction: R,
-        sink: impl FnMut(usize, Happening<R>),
+        on_event: impl FnMut(usize, ModelEvent<R>),
     ) {
-        self.go(state, fraction, sink);
+        self.go(state, fraction, on_event);
     }
 
     fn go(
         &self,
         state: &mut TwoPlaneState<R, N>,
         part: R,
-        mut sink: impl FnMut(usize, Happening<R>),
+        mut on_event: impl FnMut(usize, ModelEvent<R>),
     ) {
         let whole = self.step * part;
         let (mut left, mut longest, mut impacts) = (whole, whole, 0);
@@ -55,7 +59,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             };
             let Some((ring, share)) = self.arrival(state, &passage) else {
                 left -= time;
-                self.accept(state, &passage, (whole - left) / self.step, &mut sink);
+                self.accept(state, &passage, (whole - left) / self.step, &mut on_event);
                 continue;
             };
             let until = share * time;
@@ -65,10 +69,16 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                     continue;
                 };
                 left -= until;
-                self.accept(state, &passage, (whole - left) / self.step, &mut sink);
+                self.accept(state, &passage, (whole - left) / self.step, &mut on_event);
             }
             let now = (whole - left) / self.step;
-            self.meet(state, Some(ring), impacts >= MOST_IMPACTS, now, &mut sink);
+            self.meet(
+                state,
+                Some(ring),
+                impacts >= MOST_IMPACTS,
+                now,
+                &mut on_event,
+            );
             impacts += 1;
         }
         state.shortened = state.shortened.saturating_add(1);
@@ -115,7 +125,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         state: &mut TwoPlaneState<R, N>,
         passage: &Passage<R, N>,
         part: R,
-        sink: &mut impl FnMut(usize, Happening<R>),
+        on_event: &mut impl FnMut(usize, ModelEvent<R>),
     ) {
         let before = *state;
         for k in 0..2 {
@@ -142,7 +152,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             };
             let Some(press) = press else {
                 *slot = None;
-                self.tell(state, i, part, Change::LiftsOff, sink);
+                self.tell(state, i, part, Change::LiftsOff, on_event);
                 continue;
             };
             let moved = passage.moved_at(ring.zeta);
@@ -153,8 +163,8 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             state.ledger.heat.add(press.heat);
             state.ledger.lost.add(press.lost);
             match (rolled, press.stuck) {
-                (false, true) => self.tell(state, i, part, Change::RollingStarts, sink),
-                (true, false) => self.tell(state, i, part, Change::SlidingStarts, sink),
+                (false, true) => self.tell(state, i, part, Change::RollingStarts, on_event),
+                (true, false) => self.tell(state, i, part, Change::SlidingStarts, on_event),
                 _ => {}
             }
         }
@@ -171,13 +181,13 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         ring: usize,
         part: R,
         change: Change<R>,
-        sink: &mut impl FnMut(usize, Happening<R>),
+        on_event: &mut impl FnMut(usize, ModelEvent<R>),
     ) {
-        let happening = Happening {
+        let happening = ModelEvent {
             at: state.in_step(part),
             change,
             after: self.kinematics_at(state, ring),
         };
-        sink(ring, happening);
+        on_event(ring, happening);
     }
 }

@@ -4,7 +4,7 @@
 
 use super::passage::Passage;
 use super::state::TwoPlaneState;
-use super::strike::Meeting;
+use super::strike::ActiveContact;
 use super::{Ring, TwoPlane};
 use crate::impulse::{Impulse, Mobility};
 use crate::vector::Vector;
@@ -18,7 +18,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     pub(super) fn strike_in_turn(
         &self,
         state: &mut TwoPlaneState<R, N>,
-        meetings: &mut [Option<Meeting<R>>; N],
+        meetings: &mut [Option<ActiveContact<R>>; N],
     ) {
         for meeting in meetings.iter_mut().flatten() {
             meeting.impulse = Impulse::default();

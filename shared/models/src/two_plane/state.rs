@@ -4,7 +4,7 @@ use super::{Ring, TwoPlane};
 use crate::vector::{Sums, Vector};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::kinematics::{Happening, Kinematics, Touch};
+use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::sum::Sum;
@@ -132,7 +132,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         &self,
         start: &Placement<R>,
         spin: R,
-        mut sink: impl FnMut(usize, Happening<R>),
+        mut on_event: impl FnMut(usize, ModelEvent<R>),
     ) -> Result<TwoPlaneState<R, N>, ConfigError> {
         if !spin.is_finite() {
             return Err(ConfigError::NotFinite("spin"));
@@ -158,7 +158,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 return Err(ConfigError::OutOfRange("start", rule));
             }
         }
-        self.meet(&mut state, None, false, R::ZERO, &mut sink);
+        self.meet(&mut state, None, false, R::ZERO, &mut on_event);
         Ok(state)
     }
 

@@ -9,13 +9,13 @@ use super::state::{Held, TwoPlaneState};
 use super::{Ring, TwoPlane};
 use crate::impulse::Impulse;
 use crate::vector::Vector;
-use touchdown_rotor::kinematics::{Change, Happening};
+use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
 /// A ring that takes part.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting<R> {
+pub(super) struct ActiveContact<R> {
     pub(super) normal: Vector<R>,
     /// Speed into the wall before.
     outward: R,
@@ -26,7 +26,7 @@ pub(super) struct Meeting<R> {
     pub(super) impulse: Impulse<R>,
 }
 
-impl<R: Real> Meeting<R> {
+impl<R: Real> ActiveContact<R> {
     /// Velocity that the impulse gives a unit mass.
     fn push(&self) -> Vector<R> {
         let parts = Vector::new([-self.impulse.normal, self.impulse.tangential]);
@@ -55,7 +55,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         arrived: Option<usize>,
         stays: bool,
         part: R,
-        sink: &mut impl FnMut(usize, Happening<R>),
+        on_event: &mut impl FnMut(usize, ModelEvent<R>),
     ) {
         // As near to its wall as the ring that arrived is by the step's error.
         let mut near = R::ONE;
@@ -71,7 +71,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
                 *meeting = Some(self.meeting(state, ring, held, arrived == Some(i)));
             }
         }
-        if !meetings.iter().flatten().any(Meeting::is_new) {
+        if !meetings.iter().flatten().any(ActiveContact::is_new) {
             return;
         }
         let mut after = *state;
@@ -91,10 +91,10 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
         *state = after;
         for (i, meeting) in meetings.iter().enumerate() {
-            if let Some(meeting) = meeting.filter(Meeting::is_new)
+            if let Some(meeting) = meeting.filter(ActiveContact::is_new)
                 && meeting.outward > R::CUTOFF_SPEED
             {
-                self.tell(state, i, part, Change::Impact(meeting.outward), sink);
+                self.tell(state, i, part, Change::Impact(meeting.outward), on_event);
             }
         }
         for (i, (meeting, returns)) in meetings.iter().zip(&mut returns).enumerate() {
@@ -109,7 +109,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
         self.seat(state);
         for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
-            self.tell(state, i, part, Change::ContactStarts, sink);
+            self.tell(state, i, part, Change::ContactStarts, on_event);
         }
     }
 
@@ -119,11 +119,11 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         ring: &Ring<R>,
         held: bool,
         arrived: bool,
-    ) -> Meeting<R> {
+    ) -> ActiveContact<R> {
         let (place, velocity) = state.at(ring.zeta);
         let normal = place.times(R::ONE / place.length());
         let outward = normal.dot(velocity);
-        Meeting {
+        ActiveContact {
             normal,
             outward: if arrived {
                 outward.most(R::ZERO)
@@ -137,7 +137,11 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
     }
 
-    fn strike(&self, state: &mut TwoPlaneState<R, N>, meetings: &mut [Option<Meeting<R>>; N]) {
+    fn strike(
+        &self,
+        state: &mut TwoPlaneState<R, N>,
+        meetings: &mut [Option<ActiveContact<R>>; N],
+    ) {
         let before = *state;
         self.solve_impulses(meetings);
         self.take(state, meetings);
@@ -151,7 +155,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
         }
     }
 
-    fn solve_impulses(&self, meetings: &mut [Option<Meeting<R>>; N]) {
+    fn solve_impulses(&self, meetings: &mut [Option<ActiveContact<R>>; N]) {
         let mut settling = Settling::new();
         for pass in 1..=PASSES {
             let mut settled = true;
@@ -200,7 +204,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     }
 
     /// Gives the impulses to the rotor, and books their work: impulse times mean velocity.
-    fn take(&self, state: &mut TwoPlaneState<R, N>, meetings: &[Option<Meeting<R>>; N]) {
+    fn take(&self, state: &mut TwoPlaneState<R, N>, meetings: &[Option<ActiveContact<R>>; N]) {
         let before = *state;
         for (ring, meeting) in self.rings.iter().zip(meetings) {
             let Some(meeting) = meeting else {
@@ -231,7 +235,7 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
     fn find_returns(
         &self,
         state: &TwoPlaneState<R, N>,
-        meetings: &[Option<Meeting<R>>; N],
+        meetings: &[Option<ActiveContact<R>>; N],
         returns: &mut [bool; N],
     ) {
         let time = self.step.least(self.reach(state));
@@ -239,18 +243,19 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             return;
         };
         for (i, (ring, meeting)) in self.rings.iter().zip(meetings).enumerate() {
-            let Some(meeting) = meeting.filter(Meeting::is_new) else {
+            let Some(meeting) = meeting.filter(ActiveContact::is_new) else {
                 continue;
             };
             let velocity = state.at(ring.zeta).1;
             let moved = passage.moved_at(ring.zeta);
             let bent = moved - velocity.times(time);
             let round = meeting.normal.cross(moved);
-            let pressing = R::TWO * meeting.normal.dot(bent) + round * round / ring.limit;
+            let normal_acceleration =
+                R::TWO * meeting.normal.dot(bent) + round * round / ring.limit;
             let launch = -meeting.normal.dot(velocity);
             if let Some(returns) = returns.get_mut(i) {
-                *returns =
-                    pressing > R::ZERO && R::TWO * launch * time * time <= pressing * self.step;
+                *returns = normal_acceleration > R::ZERO
+                    && R::TWO * launch * time * time <= normal_acceleration * self.step;
             }
         }
     }

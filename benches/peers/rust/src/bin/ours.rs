@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use serde_json::{Value, json};
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Change, Happening, Kinematics, Precision, Stepper};
+use touchdown_rotor::{Change, ModelEvent, Kinematics, Precision, Stepper};
 use touchdown_peers::{Sample, answer, contact, median_time, write_samples};
 use touchdown_base::history;
 use touchdown_run::model::{Subject, Use, with_model};
@@ -37,12 +37,12 @@ fn exact(variant: &str, duration: f64) -> Value {
     let mut impacts: Vec<Impact> = Vec::new();
     let mut contact_starts = Vec::new();
     reference.advance(duration, &mut |happening| match happening {
-        history::Happening::Impact(impact) => {
+        history::ModelEvent::Impact(impact) => {
             let s = impact.state;
             let ([x, y], [u, v]) = (s.position, s.velocity);
             impacts.push([s.time, x, y, u, v, impact.normal_speed]);
         }
-        history::Happening::ContactStart { time, .. } => contact_starts.push(time),
+        history::ModelEvent::ContactStart { time, .. } => contact_starts.push(time),
         _ => {}
     });
     json!({ "impacts": impacts, "contact_starts": contact_starts })
@@ -64,16 +64,16 @@ impl Run<'_> {
         }: &Subject<R, M>,
         steps: u64,
         mut seen: impl FnMut(u64, &Kinematics<R>),
-        mut sink: impl FnMut(Happening<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
-        let mut state = model.start(start, *spin, &mut sink).expect("valid start");
+        let mut state = model.start(start, *spin, &mut on_event).expect("valid start");
         if self.by_steps {
             for step in 1..=steps {
-                model.step(&mut state, &mut sink);
+                model.step(&mut state, &mut on_event);
                 seen(step, &model.kinematics(&state));
             }
         } else {
-            model.run(&mut state, steps, R::ZERO, &mut sink);
+            model.run(&mut state, steps, R::ZERO, &mut on_event);
             seen(steps, &model.kinematics(&state));
         }
     }

@@ -86,7 +86,7 @@ struct Lines<'a> {
     number: u64,
 }
 
-type Flaw = (u64, String);
+type Diagnostic = (u64, String);
 
 /// As much of a text as belongs into a message.
 fn shown(text: &str) -> &str {
@@ -96,7 +96,7 @@ fn shown(text: &str) -> &str {
 }
 
 impl<'a> Lines<'a> {
-    fn next(&mut self, what: &str) -> Result<&'a str, Flaw> {
+    fn next(&mut self, what: &str) -> Result<&'a str, Diagnostic> {
         self.number += 1;
         let line = self.lines.next();
         line.ok_or_else(|| {
@@ -107,21 +107,21 @@ impl<'a> Lines<'a> {
         })
     }
 
-    fn fields(&mut self, what: &str) -> Result<Vec<&'a str>, Flaw> {
+    fn fields(&mut self, what: &str) -> Result<Vec<&'a str>, Diagnostic> {
         Ok(self.next(what)?.split(',').map(str::trim).collect())
     }
 
-    fn fail<T>(&self, rule: String) -> Result<T, Flaw> {
+    fn fail<T>(&self, rule: String) -> Result<T, Diagnostic> {
         Err((self.number, rule))
     }
 
-    fn number<T: FromStr>(&self, fields: &[&str], at: usize, what: &str) -> Result<T, Flaw> {
+    fn number<T: FromStr>(&self, fields: &[&str], at: usize, what: &str) -> Result<T, Diagnostic> {
         let text = fields.get(at).copied().unwrap_or("");
         let number = text.parse();
         number.or_else(|_| self.fail(format!("{what} must be a number, is {:?}", shown(text))))
     }
 
-    fn finite(&self, fields: &[&str], at: usize, what: &str) -> Result<f64, Flaw> {
+    fn finite(&self, fields: &[&str], at: usize, what: &str) -> Result<f64, Diagnostic> {
         let number: f64 = self.number(fields, at, what)?;
         if number.is_finite() {
             return Ok(number);
@@ -132,7 +132,7 @@ impl<'a> Lines<'a> {
 
 impl Cfg {
     /// Reads the text; else the line and the rule.
-    pub fn parse(text: &str) -> Result<Self, Flaw> {
+    pub fn parse(text: &str) -> Result<Self, Diagnostic> {
         let mut lines = Lines {
             lines: text.lines(),
             number: 0,
@@ -150,10 +150,10 @@ impl Cfg {
             let fields = lines.fields("a digital channel")?;
             Ok(fields.get(1).copied().unwrap_or("").to_owned())
         });
-        let digital = digital.collect::<Result<_, Flaw>>()?;
+        let digital = digital.collect::<Result<_, Diagnostic>>()?;
         lines.next("the line frequency")?;
         let (rates, samples) = rates(&mut lines)?;
-        let mut instant = |what| -> Result<Instant, Flaw> {
+        let mut instant = |what| -> Result<Instant, Diagnostic> {
             let fields = lines.fields(what)?;
             Ok(Instant::of(&fields, year))
         };
@@ -225,7 +225,7 @@ impl Cfg {
 }
 
 /// Numbers of analog and of digital channels.
-fn counts(lines: &mut Lines) -> Result<(usize, usize), Flaw> {
+fn counts(lines: &mut Lines) -> Result<(usize, usize), Diagnostic> {
     let fields = lines.fields("the numbers of channels")?;
     let count = |at: usize, letter: char| -> Option<usize> {
         let text = fields.get(at)?.to_ascii_uppercase();
@@ -247,7 +247,7 @@ fn counts(lines: &mut Lines) -> Result<(usize, usize), Flaw> {
     Ok((analogs, digitals))
 }
 
-fn analog(lines: &mut Lines) -> Result<Analog, Flaw> {
+fn analog(lines: &mut Lines) -> Result<Analog, Diagnostic> {
     let fields = lines.fields("an analog channel")?;
     let or_zero = |at: usize, what: &str| match fields.get(at).copied().unwrap_or("") {
         "" => Ok(0.0),
@@ -264,7 +264,7 @@ fn analog(lines: &mut Lines) -> Result<Analog, Flaw> {
 }
 
 /// Rates with their last samples, and samples in all.
-fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Flaw> {
+fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Diagnostic> {
     let fields = lines.fields("the number of rates")?;
     let count: usize = lines.number(&fields, 0, "the number of rates")?;
     if count > MOST_RATES {

@@ -5,7 +5,7 @@ use super::mode::Mode;
 use super::motion::{CUTOFF, Moment, Motion};
 use super::system::{Hold, Law, Link, SIZE, System};
 use crate::reference::scale::Scale;
-use touchdown_base::history::Happening;
+use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::{Machine, Start};
 
 /// What the retainer ring stands on.
@@ -225,8 +225,12 @@ impl SupportReference {
 
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
     /// happening on the way in order.
-    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(usize, Happening)) -> SupportState {
-        let moment = self.motion.advance(time, sink);
+    pub fn advance(
+        &mut self,
+        time: f64,
+        on_event: &mut impl FnMut(usize, ModelEvent),
+    ) -> SupportState {
+        let moment = self.motion.advance(time, on_event);
         let ([x, y, u, v, _, race_angle], [vx, vy, du, dv, spin, race_spin]) =
             (moment.place, moment.speed);
         let stop = self.motion.walls() > 1;

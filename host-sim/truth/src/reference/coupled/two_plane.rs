@@ -8,7 +8,7 @@ use super::jet::Jet;
 use super::mode::Mode;
 use super::motion::{CUTOFF, Moment, Motion};
 use super::system::{Hold, Law, Link, SIZE, System};
-use touchdown_base::history::Happening;
+use touchdown_base::history::ModelEvent;
 
 /// A ring that does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,8 +272,12 @@ impl TwoPlaneReference {
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
     /// happening on the way in order: the number of the ring, and what happened, told with the
     /// axis' displacement there.
-    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(usize, Happening)) -> TwoPlaneState {
-        let moment = self.motion.advance(time, sink);
+    pub fn advance(
+        &mut self,
+        time: f64,
+        on_event: &mut impl FnMut(usize, ModelEvent),
+    ) -> TwoPlaneState {
+        let moment = self.motion.advance(time, on_event);
         let ([x, y, a, b, spin_angle, _], [vx, vy, da, db, spin, _]) = (moment.place, moment.speed);
         TwoPlaneState {
             time,

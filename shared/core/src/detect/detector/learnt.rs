@@ -2,11 +2,11 @@
 
 use super::DetectorState;
 use crate::detect::ends::Together;
-use crate::detect::flight::Listener;
-use crate::detect::ladder::Rungs;
+use crate::detect::flight::NoiseFloor;
 use crate::detect::levitation::Levitation;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::Followed;
+use crate::detect::phase_machine::PhaseState;
 use crate::detect::release::ReleaseBank;
 use crate::phase::Phase;
 
@@ -61,10 +61,10 @@ impl From<&Afloat> for DetectorState {
             levitation: it.place.levitation,
             orbit: it.orbit.into(),
             release: it.release,
-            listener: Listener::of_level(it.place.level),
-            rotor: Rungs {
+            listener: NoiseFloor::of_level(it.place.level),
+            rotor: PhaseState {
                 phase: Phase::Levitated,
-                ..Rungs::default()
+                ..PhaseState::default()
             },
             ends: it.place.ends.into(),
             ..Self::default()

@@ -1,8 +1,8 @@
 //! How loud the impact test is, once that is learnt.
 
-use super::Listener;
+use super::NoiseFloor;
 
-impl Listener {
+impl NoiseFloor {
     pub(crate) fn level(&self) -> f32 {
         self.level
     }

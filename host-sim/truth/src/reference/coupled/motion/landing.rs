@@ -4,7 +4,7 @@ use super::super::impact::{self, Touching};
 use super::super::step::Mode;
 use super::super::system::{Hold, Law, shared};
 use super::{Motion, ON_WALL};
-use touchdown_base::history::{Happening, Impact, RotorState};
+use touchdown_base::history::{Impact, ModelEvent, RotorState};
 
 /// Launch speed below which a bounce series ends in contact, in units of speed.
 pub const CUTOFF: f64 = 1e-10;
@@ -28,7 +28,7 @@ impl<L: Law> Motion<L> {
     pub(super) fn collide(
         &mut self,
         landing: Option<usize>,
-        sink: &mut impl FnMut(usize, Happening),
+        on_event: &mut impl FnMut(usize, ModelEvent),
     ) {
         let touches = |link: &usize| match self.system.links[*link].clearance() {
             None => false,
@@ -53,7 +53,7 @@ impl<L: Law> Motion<L> {
                 _ => self.closed(link),
             };
             if flew && touch.closing > cutoff && touch.impulse > 0.0 {
-                sink(link, Happening::Impact(self.impact(touch)));
+                on_event(link, ModelEvent::Impact(self.impact(touch)));
             }
         }
         self.release_brakes();

@@ -10,7 +10,7 @@ use super::step::{Ending, Step};
 use super::system::{Hold, Law, Link, SIZE, System};
 use crate::reference::scale::Sum;
 use std::f64::consts::TAU;
-use touchdown_base::history::Happening;
+use touchdown_base::history::ModelEvent;
 
 /// A displacement within this of the wall is on it, in parts of the clearance.
 const ON_WALL: f64 = 64.0 * f64::EPSILON;
@@ -94,7 +94,7 @@ impl<L: Law> Motion<L> {
 
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
     /// happening on the way in order, with the number of its wall.
-    pub fn advance(&mut self, time: f64, sink: &mut impl FnMut(usize, Happening)) -> Moment {
+    pub fn advance(&mut self, time: f64, on_event: &mut impl FnMut(usize, ModelEvent)) -> Moment {
         loop {
             let elapsed = self.since.up_to(time).max(0.0);
             let duration = self.step.end * self.step.span;
@@ -102,7 +102,7 @@ impl<L: Law> Motion<L> {
                 return self.moment(time, elapsed / self.step.span);
             }
             self.since.add(duration);
-            self.pass(sink);
+            self.pass(on_event);
         }
     }
 
@@ -141,7 +141,7 @@ impl<L: Law> Motion<L> {
         (a * y - b * x).atan2(a * x + b * y) / TAU
     }
 
-    fn pass(&mut self, sink: &mut impl FnMut(usize, Happening)) {
+    fn pass(&mut self, on_event: &mut impl FnMut(usize, ModelEvent)) {
         let before = self.modes.clone();
         let place = self.step.place(self.step.end);
         for link in 0..self.modes.len() {
@@ -155,10 +155,10 @@ impl<L: Law> Motion<L> {
         match self.step.ending {
             _ if !self.started => {
                 self.take_inside();
-                self.collide(None, sink);
+                self.collide(None, on_event);
             }
             Ending::Step => {}
-            Ending::Touch(link) => self.collide(Some(link), sink),
+            Ending::Touch(link) => self.collide(Some(link), on_event),
             change => self.change(change),
         }
         self.started = true;
@@ -168,20 +168,20 @@ impl<L: Law> Motion<L> {
             let wall = self.system.links[link].clearance().is_some();
             let happening = match (was, *is) {
                 _ if !wall => continue,
-                (Mode::Flight, Mode::Slide(_)) => Happening::ContactStart {
+                (Mode::Flight, Mode::Slide(_)) => ModelEvent::ContactStart {
                     time,
                     rolling: false,
                 },
-                (Mode::Flight, Mode::Stick) => Happening::ContactStart {
+                (Mode::Flight, Mode::Stick) => ModelEvent::ContactStart {
                     time,
                     rolling: true,
                 },
-                (Mode::Slide(_) | Mode::Stick, Mode::Flight) => Happening::LiftOff(time),
-                (Mode::Slide(_), Mode::Stick) => Happening::RollingStart(time),
-                (Mode::Stick, Mode::Slide(_)) => Happening::SlidingStart(time),
+                (Mode::Slide(_) | Mode::Stick, Mode::Flight) => ModelEvent::LiftOff(time),
+                (Mode::Slide(_), Mode::Stick) => ModelEvent::RollingStart(time),
+                (Mode::Stick, Mode::Slide(_)) => ModelEvent::SlidingStart(time),
                 _ => continue,
             };
-            sink(link, happening);
+            on_event(link, happening);
         }
     }
 }

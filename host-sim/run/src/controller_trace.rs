@@ -16,7 +16,7 @@ const LISTED: usize = 12;
 
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Conduct {
+pub struct ControllerTrace {
     /// Each change of the outputs, which are safe before the first.
     pub outputs: Vec<Switching>,
     /// Flash of the drop log after the run: docs/formats/log.md.
@@ -63,7 +63,7 @@ struct Link {
     damaged_frames: u32,
 }
 
-impl Conduct {
+impl ControllerTrace {
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();

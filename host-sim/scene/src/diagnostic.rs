@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A key that breaks a rule.
 #[derive(Debug)]
-pub struct Flaw {
+pub struct Diagnostic {
     /// Its table.
     pub table: &'static str,
     /// The key.
@@ -17,7 +17,7 @@ pub struct Flaw {
     row: usize,
 }
 
-impl Flaw {
+impl Diagnostic {
     /// In a table that stands once.
     pub fn new(table: &'static str, key: &'static str, rule: impl Into<String>) -> Self {
         Self {

@@ -4,7 +4,7 @@ use crate::event::Moment;
 
 /// A position as the sensors give it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fix {
+pub(crate) struct Measurement {
     /// When.
     pub(crate) now: Moment,
     /// m.

@@ -6,7 +6,7 @@ const TIME: f32 = 1e-3;
 
 /// Counts blind samples.
 #[derive(Clone, Copy, Debug)]
-pub struct Blind {
+pub struct BlindTimer {
     limit: u32,
     /// In a row without a position.
     dark: u32,
@@ -16,7 +16,7 @@ pub struct Blind {
     missed: u32,
 }
 
-impl Blind {
+impl BlindTimer {
     /// For `sample_rate` (Hz).
     pub fn new(sample_rate: f32) -> Self {
         Self {

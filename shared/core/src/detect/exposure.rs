@@ -2,7 +2,7 @@
 
 /// The rotor after a tick.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Strain {
+pub(crate) struct Exposure {
     /// In flight or in contact.
     pub(crate) is_released: bool,
     /// Speed of the centre and the error of each component, m/s.
@@ -18,7 +18,7 @@ pub(crate) struct Strain {
     pub(crate) ahead: f32,
 }
 
-impl Strain {
+impl Exposure {
     /// The greater of each, of two ends.
     pub(crate) fn worse(&self, other: &Self) -> Self {
         let faster = if self.speed >= other.speed {

@@ -14,7 +14,7 @@ const ASIDE: f32 = 0.9;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lie {
+pub(crate) struct ContactCheck {
     clearance: f32,
     /// Distance that shows a wall where it should be, at most, m.
     within: f32,
@@ -28,7 +28,7 @@ pub(crate) struct Lie {
 /// What has been seen of it.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Lying {
+pub(crate) struct ContactCheckState {
     looks: u16,
     /// All the time.
     touches: bool,
@@ -50,7 +50,7 @@ pub(crate) enum Place {
     Beyond(u8),
 }
 
-impl Lie {
+impl ContactCheck {
     /// Judges after so many looks; lengths in m.
     pub(crate) fn new(clearance: f32, tolerance: f32, falls: bool, looks: u16) -> Self {
         Self {
@@ -63,7 +63,12 @@ impl Lie {
     }
 
     /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot.
-    pub(crate) fn take(&self, it: &mut Lying, position: [f32; 2], touches: bool) -> Option<Place> {
+    pub(crate) fn take(
+        &self,
+        it: &mut ContactCheckState,
+        position: [f32; 2],
+        touches: bool,
+    ) -> Option<Place> {
         if it.looks == 0 {
             it.first = position;
             it.place = position;
@@ -87,7 +92,7 @@ impl Lie {
         let [x, y] = it.sum.map(|sum| sum / count);
         let mean = [x + it.first[0], y + it.first[1]];
         let (touches, far) = (it.touches, it.far);
-        *it = Lying::default();
+        *it = ContactCheckState::default();
         self.judge(mean, far, touches)
     }
 

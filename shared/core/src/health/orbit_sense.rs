@@ -11,7 +11,7 @@ const PLACE_TIME: f32 = 0.5;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Float {
+pub(crate) struct OrbitSense {
     threshold: f32,
     /// Square of the least radius that counts, m^2.
     least: f32,
@@ -21,7 +21,7 @@ pub(crate) struct Float {
 /// What is known of a plane.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Floating {
+pub(crate) struct OrbitSenseState {
     place: [f32; 2],
     home: Option<[f32; 2]>,
     seen: u16,
@@ -33,7 +33,7 @@ pub(crate) struct Floating {
     pub(crate) sense: i8,
 }
 
-impl Float {
+impl OrbitSense {
     /// Looks `rate` times a second; orbits smaller than `least` (m) do not count.
     pub(crate) fn new(threshold: f32, least: f32, rate: f32) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Float {
     }
 
     /// Takes a position, m.
-    pub(crate) fn take(&self, it: &mut Floating, [x, y]: [f32; 2]) {
+    pub(crate) fn take(&self, it: &mut OrbitSenseState, [x, y]: [f32; 2]) {
         it.seen = it.seen.saturating_add(1).min(self.memory);
         let gain = 1.0 / f32::from(it.seen);
         it.place[0] += gain * (x - it.place[0]);
@@ -77,7 +77,7 @@ impl Float {
     }
 }
 
-impl Floating {
+impl OrbitSenseState {
     /// Way from where it floated first, m.
     pub(crate) fn drift(&self) -> [f32; 2] {
         self.home.map_or([0.0; 2], |home| {

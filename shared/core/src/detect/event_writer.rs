@@ -26,7 +26,7 @@ impl Pending {
 }
 
 /// One tick's notices and what they need.
-pub(crate) struct Teller<'a> {
+pub(crate) struct EventWriter<'a> {
     pub(crate) sample: u64,
     pub(crate) plane: Plane,
     pub(crate) motion: Motion,
@@ -34,9 +34,9 @@ pub(crate) struct Teller<'a> {
     pub(crate) notices: &'a mut Notices,
 }
 
-impl Teller<'_> {
+impl EventWriter<'_> {
     /// Declares an event whose onset was `age` samples ago; its number.
-    pub(crate) fn tell(&mut self, kind: EventKind, age: f32, normal_speed: f32) -> u16 {
+    pub(crate) fn declare(&mut self, kind: EventKind, age: f32, normal_speed: f32) -> u16 {
         let number = *self.next_number;
         *self.next_number = number.wrapping_add(1);
         // A full list loses the notice, not the tick; NOTICES_PER_TICK is above what one can find.
@@ -54,14 +54,14 @@ impl Teller<'_> {
     }
 
     /// Declares an event of now at those ends that have it; its number.
-    pub(crate) fn tell_of(&mut self, ends: [bool; PLANES], kind: EventKind) -> u16 {
+    pub(crate) fn declare_at(&mut self, ends: [bool; PLANES], kind: EventKind) -> u16 {
         let whole = self.plane;
         self.plane = match ends {
             [true, false] => Plane::A,
             [false, true] => Plane::B,
             _ => Plane::Both,
         };
-        let number = self.tell(kind, 0.0, 0.0);
+        let number = self.declare(kind, 0.0, 0.0);
         self.plane = whole;
         number
     }
@@ -87,7 +87,7 @@ impl Teller<'_> {
     }
 
     /// Confirms or withdraws the pending fall, if there is one.
-    pub(crate) fn close(&mut self, pending: &mut Option<Pending>, confirmed: bool) {
+    pub(crate) fn resolve(&mut self, pending: &mut Option<Pending>, confirmed: bool) {
         if let Some(Pending { number, .. }) = pending.take() {
             let sample = self.sample;
             let _ = self.notices.push(if confirmed {

@@ -22,7 +22,7 @@ enum Lies {
 
 /// Judges the swing.
 #[derive(Clone, Copy, Debug)]
-pub struct Permit {
+pub struct LiftInterlock {
     samples: u32,
     /// Ends that are seen.
     seen: [bool; PLANES],
@@ -30,7 +30,7 @@ pub struct Permit {
     within: u32,
 }
 
-impl Permit {
+impl LiftInterlock {
     /// For `sample_rate` (Hz) and the fitted channels (one bit each).
     pub fn new(sample_rate: f32, fitted: u8) -> Self {
         Self {

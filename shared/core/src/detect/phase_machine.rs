@@ -5,21 +5,21 @@
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::contact::{ContactTest, Finding, Regime, Touching};
 use crate::detect::estimate::{Estimate, Place};
-use crate::detect::fix::Fix;
+use crate::detect::event_writer::{EventWriter, Pending};
+use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
 use crate::detect::levitation::Levitation;
+use crate::detect::measurement::Measurement;
 use crate::detect::signals::Signals;
 use crate::detect::slip::Kind;
 use crate::detect::still::Still;
-use crate::detect::strain::Strain;
-use crate::detect::teller::{Pending, Teller};
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
 use crate::vector::{direction, square};
 use touchdown_rotor::real::sqrt;
 
 /// Standard deviations within which a caught rotor has come back.
-const CAUGHT: f32 = 4.0;
+const RECOVERY_GATE_SIGMA: f32 = 4.0;
 /// Part of gravity's way that is less than any fall goes, whatever forces are left.
 const FALLS: f32 = 0.5;
 /// Faster than a controller puts a rotor down, m/s.
@@ -27,7 +27,7 @@ const LANDING_SPEED: f32 = 0.01;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ladder {
+pub(crate) struct PhaseMachine {
     machine: MachineConfig,
     /// Radius from which on the rotor may be at the wall, m.
     pub(crate) near: f32,
@@ -43,7 +43,7 @@ pub(crate) struct Ladder {
 
 /// Where on the ladder it is.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rungs {
+pub(crate) struct PhaseState {
     pub(crate) phase: Phase,
     pub(crate) flight: Airborne,
     pub(crate) contact: Touching,
@@ -71,7 +71,7 @@ pub(crate) enum Lifting {
     Unclear,
 }
 
-impl Rungs {
+impl PhaseState {
     /// What the next tick goes on from.
     pub(crate) fn words(&self) -> [f32; 10] {
         let (flight, wall) = (&self.flight.track, &self.contact.track);
@@ -90,7 +90,7 @@ impl Rungs {
     }
 }
 
-impl Ladder {
+impl PhaseMachine {
     /// `config` must be valid.
     pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
         let (machine, tuning) = (config.machine, &config.tuning);
@@ -108,58 +108,70 @@ impl Ladder {
     }
 
     /// Into flight, from lying on a wall at the radius `wall` (m) where it lifted off.
-    pub(crate) fn fly(&self, rungs: &mut Rungs, fix: &Fix, wall: Option<f32>, loudness: f32) {
-        self.flight.start(&mut rungs.flight, fix, wall, loudness);
-        rungs.phase = Phase::FreeFall;
-        rungs.still = Still::default();
+    pub(crate) fn fly(
+        &self,
+        phase_state: &mut PhaseState,
+        measurement: &Measurement,
+        wall: Option<f32>,
+        threshold_scale: f32,
+    ) {
+        self.flight
+            .start(&mut phase_state.flight, measurement, wall, threshold_scale);
+        phase_state.phase = Phase::FreeFall;
+        phase_state.still = Still::default();
     }
 
     /// One end, `fix`, goes on from the rotor as a whole; where that lies on the wall, the end does so `wall` (m)
     /// farther out.
     pub(crate) fn part(
         &self,
-        rungs: &mut Rungs,
-        rotor: &Rungs,
-        fix: &Fix,
+        phase_state: &mut PhaseState,
+        rotor: &PhaseState,
+        measurement: &Measurement,
         wall: f32,
-        loudness: f32,
+        threshold_scale: f32,
     ) {
-        rungs.phase = rotor.phase;
+        phase_state.phase = rotor.phase;
         if rotor.phase.is_contact() {
-            rungs.flight.follow(&rotor.flight);
-            rungs.contact = rotor.contact.at_one_end(wall);
-            rungs.still = rotor.still;
+            phase_state.flight.follow(&rotor.flight);
+            phase_state.contact = rotor.contact.at_one_end(wall);
+            phase_state.still = rotor.still;
         } else {
-            (self.flight).part(&mut rungs.flight, &rotor.flight, fix, loudness);
-            rungs.contact = rotor.contact;
-            rungs.still = Still::default();
+            (self.flight).part(
+                &mut phase_state.flight,
+                &rotor.flight,
+                measurement,
+                threshold_scale,
+            );
+            phase_state.contact = rotor.contact;
+            phase_state.still = Still::default();
         }
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
     pub(crate) fn estimate(
         &self,
-        rungs: &Rungs,
+        phase_state: &PhaseState,
         at: Moment,
         spin: Option<f32>,
     ) -> Option<Estimate> {
         let machine = &self.machine;
-        let series = &rungs.flight.series;
+        let series = &phase_state.flight.series;
         let mut estimate = Estimate {
             at,
             place: Place::Air {
-                position: rungs.flight.track.position,
-                velocity: rungs.flight.track.velocity,
+                position: phase_state.flight.track.position,
+                velocity: phase_state.flight.track.velocity,
             },
-            speed_error: rungs.flight.track.speed_error(),
+            speed_error: phase_state.flight.track.speed_error(),
             spin: spin.unwrap_or(machine.spin),
             restitution: series.restitution(machine),
             clear_impacts: series.weight(),
         };
-        match rungs.phase {
+        match phase_state.phase {
             Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
             Phase::Sliding | Phase::Rolling => {
-                let contact = &rungs.contact;
+                let contact = &phase_state.contact;
                 let speed = contact.swing().rate * machine.clearance;
                 let radius = machine.rotor_radius;
                 // Against a ring that turns, or where it rolls, the slip is known and not the spin.
@@ -177,19 +189,19 @@ impl Ladder {
     }
 
     /// What the rotor goes through, for its severity.
-    pub(crate) fn strain(&self, rungs: &Rungs) -> Strain {
-        let (track, contact) = (&rungs.flight.track, &rungs.contact);
+    pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
+        let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
         let clearance = self.machine.clearance;
         let [u, v] = track.velocity;
-        let mut strain = Strain {
-            is_released: rungs.phase >= Phase::FreeFall,
+        let mut strain = Exposure {
+            is_released: phase_state.phase >= Phase::FreeFall,
             speed: sqrt(u * u + v * v),
             speed_error: track.speed_error(),
-            restitution: rungs.flight.series.restitution(&self.machine),
-            ahead: rungs.flight.series.yet_to_come(&self.machine),
-            ..Strain::default()
+            restitution: phase_state.flight.series.restitution(&self.machine),
+            ahead: phase_state.flight.series.yet_to_come(&self.machine),
+            ..Exposure::default()
         };
-        if rungs.phase.is_contact() {
+        if phase_state.phase.is_contact() {
             let rate = contact.swing().rate;
             strain.speed = clearance * rate.abs();
             strain.speed_error = clearance * contact.track.rate_spread();
@@ -200,42 +212,42 @@ impl Ladder {
     }
 
     /// Whether it may be at the wall.
-    pub(crate) fn is_near(&self, fix: &Fix) -> bool {
-        direction(fix.position).1 >= self.near
+    pub(crate) fn is_near(&self, measurement: &Measurement) -> bool {
+        direction(measurement.position).1 >= self.near
     }
 
     /// Without a usable sample.
-    pub(crate) fn skip(&self, rungs: &mut Rungs) {
-        self.flight.skip(&mut rungs.flight);
+    pub(crate) fn skip(&self, phase_state: &mut PhaseState) {
+        self.flight.skip(&mut phase_state.flight);
     }
 
     /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
     /// there from its place `home`, m.
     pub(crate) fn land(
         &self,
-        rungs: &mut Rungs,
-        fix: &Fix,
-        home: [f32; 2],
+        phase_state: &mut PhaseState,
+        measurement: &Measurement,
+        centre: [f32; 2],
         signals: &Signals,
         pending: &mut Option<Pending>,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) {
-        let landing = self.flight.take(&mut rungs.flight, fix);
+        let landing = self.flight.take(&mut phase_state.flight, measurement);
         if signals.levitated == Some(false) {
-            teller.close(pending, true);
+            writer.resolve(pending, true);
         }
         if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
-            let fell =
-                landing.speed() > LANDING_SPEED || self.fell(open, fix.now, fix.position, home);
-            teller.close(pending, fell);
+            let fell = landing.speed() > LANDING_SPEED
+                || self.fell(open, measurement.now, measurement.position, centre);
+            writer.resolve(pending, fell);
         }
         match landing {
             Some(Landing::Impact { age, normal_speed }) => {
-                rungs.phase = Phase::Impact;
-                rungs.still = Still::default();
-                teller.tell(EventKind::Impact, age, normal_speed);
+                phase_state.phase = Phase::Impact;
+                phase_state.still = Still::default();
+                writer.declare(EventKind::Impact, age, normal_speed);
             }
-            Some(Landing::Contact { age }) => self.touch(rungs, fix, 0.05, age),
+            Some(Landing::Contact { age }) => self.touch(phase_state, measurement, 0.05, age),
             None => {}
         }
     }
@@ -243,26 +255,35 @@ impl Ladder {
     /// Whether a fall goes too far to be a caught disturbance, or has come back.
     pub(crate) fn fall(
         &self,
-        rungs: &Rungs,
-        fix: &Fix,
+        phase_state: &PhaseState,
+        measurement: &Measurement,
         levitation: &Levitation,
         pending: &mut Pending,
     ) -> Fall {
-        let home = levitation.mean;
-        let at = rungs.flight.track.position;
-        if self.is_far(at, home) && self.fell(pending, fix.now, at, home) {
+        let centre = levitation.mean;
+        let at = phase_state.flight.track.position;
+        if self.is_far(at, centre) && self.fell(pending, measurement.now, at, centre) {
             return Fall::Certain;
         }
         let variance = levitation.variance;
-        if self.is_caught(pending, is_home(fix, home, variance), variance) {
+        if self.is_caught(
+            pending,
+            within_gate(measurement, centre, variance),
+            variance,
+        ) {
             return Fall::Caught;
         }
         Fall::Open
     }
 
     /// Takes whether the rotor is where it floated, with this variance (m^2); whether it has been for long enough.
-    pub(crate) fn is_caught(&self, pending: &mut Pending, is_home: bool, variance: f32) -> bool {
-        pending.back = if is_home { pending.back + 1 } else { 0 };
+    pub(crate) fn is_caught(
+        &self,
+        pending: &mut Pending,
+        within_gate: bool,
+        variance: f32,
+    ) -> bool {
+        pending.back = if within_gate { pending.back + 1 } else { 0 };
         pending.back >= self.catch_samples && !self.may_fall_for(pending.back, variance)
     }
 
@@ -271,12 +292,12 @@ impl Ladder {
     fn may_fall_for(&self, samples: u32, variance: f32) -> bool {
         let time = samples as f32 * self.period;
         let way = self.machine.gravity * time * time / 16.0;
-        way * way < CAUGHT * CAUGHT * variance && way > 0.0
+        way * way < RECOVERY_GATE_SIGMA * RECOVERY_GATE_SIGMA * variance && way > 0.0
     }
 
     /// Whether no caught disturbance goes from `home` to `position`, m.
-    pub(crate) fn is_far(&self, position: [f32; 2], home: [f32; 2]) -> bool {
-        square(position, home) > self.travel * self.travel
+    pub(crate) fn is_far(&self, position: [f32; 2], centre: [f32; 2]) -> bool {
+        square(position, centre) > self.travel * self.travel
     }
 
     /// Whether a rotor that went from `home` to `at` (m) since the fall was declared went as fast as one
@@ -286,16 +307,18 @@ impl Ladder {
         pending: &Pending,
         now: Moment,
         at: [f32; 2],
-        home: [f32; 2],
+        centre: [f32; 2],
     ) -> bool {
         let time = now.since(pending.since) * self.period;
         let least = FALLS * 0.5 * self.machine.gravity * time * time;
-        square(at, home) >= least * least
+        square(at, centre) >= least * least
     }
 
     /// In flight: whether it floats again, clear of the wall and quiet.
-    pub(crate) fn floats(&self, rungs: &mut Rungs, fix: &Fix) -> bool {
-        let block = rungs.still.take(fix.position, self.still_samples);
+    pub(crate) fn floats(&self, phase_state: &mut PhaseState, measurement: &Measurement) -> bool {
+        let block = phase_state
+            .still
+            .take(measurement.position, self.still_samples);
         let clearance = self.machine.clearance;
         let quiet = block.filter(|block| {
             let (_, radius) = direction(block.mean);
@@ -307,48 +330,58 @@ impl Ladder {
     }
 
     /// Tells that it floats again.
-    pub(crate) fn tell_levitated(&self, teller: &mut Teller) {
-        teller.tell(EventKind::Levitated, 2.0 * self.still_samples as f32, 0.0);
+    pub(crate) fn tell_levitated(&self, writer: &mut EventWriter) {
+        writer.declare(EventKind::Levitated, 2.0 * self.still_samples as f32, 0.0);
     }
 
     /// Into permanent contact, `age` samples old, from an unknown motion.
-    pub(crate) fn lie(&self, rungs: &mut Rungs, fix: &Fix, age: f32) {
-        self.touch(rungs, fix, UNKNOWN_SPEED, age);
+    pub(crate) fn lie(&self, phase_state: &mut PhaseState, measurement: &Measurement, age: f32) {
+        self.touch(phase_state, measurement, UNKNOWN_SPEED, age);
     }
 
-    fn touch(&self, rungs: &mut Rungs, fix: &Fix, spread: f32, age: f32) {
+    fn touch(
+        &self,
+        phase_state: &mut PhaseState,
+        measurement: &Measurement,
+        spread: f32,
+        age: f32,
+    ) {
         let machine = &self.machine;
         let nominal = machine.rotor_radius * machine.spin;
-        let slip_left = rungs.flight.series.slip_left(nominal, machine);
-        let velocity = rungs.flight.track.velocity;
-        rungs.contact = self.contact.start(fix, velocity, spread, age, slip_left);
-        rungs.phase = Phase::Sliding;
+        let slip_left = phase_state.flight.series.slip_left(nominal, machine);
+        let velocity = phase_state.flight.track.velocity;
+        phase_state.contact = self
+            .contact
+            .start(measurement, velocity, spread, age, slip_left);
+        phase_state.phase = Phase::Sliding;
     }
 
     /// In contact; `whose` says whose lift-off it would be. False where it is that of one end: nothing is
     /// told then.
     pub(crate) fn touching(
         &self,
-        rungs: &mut Rungs,
-        fix: Option<&Fix>,
+        phase_state: &mut PhaseState,
+        measurement: Option<&Measurement>,
         signals: &Signals,
-        loudness: f32,
+        threshold_scale: f32,
         whose: impl FnOnce(&Touching) -> Lifting,
-        teller: &mut Teller,
+        writer: &mut EventWriter,
     ) -> bool {
-        let findings = self.contact.take(&mut rungs.contact, fix, signals);
-        let lifting = whose(&rungs.contact);
+        let findings = self
+            .contact
+            .take(&mut phase_state.contact, measurement, signals);
+        let lifting = whose(&phase_state.contact);
         if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;
         }
         for finding in findings.into_iter().flatten() {
             let (kind, age) = match finding {
                 Finding::Kind(Kind::Sliding, age) => {
-                    rungs.phase = Phase::Sliding;
+                    phase_state.phase = Phase::Sliding;
                     (EventKind::Sliding, age)
                 }
                 Finding::Kind(Kind::Rolling, age) => {
-                    rungs.phase = Phase::Rolling;
+                    phase_state.phase = Phase::Rolling;
                     (EventKind::Rolling, age)
                 }
                 Finding::Regime(regime, age) => match regime {
@@ -359,20 +392,21 @@ impl Ladder {
                     Regime::BackwardWhirl => (EventKind::BackwardWhirl, age),
                 },
                 Finding::LiftOff(age) => {
-                    let wall = rungs.contact.wall();
-                    if let Some(fix) = fix {
-                        self.fly(rungs, fix, Some(wall), loudness);
+                    let wall = phase_state.contact.wall();
+                    if let Some(measurement) = measurement {
+                        self.fly(phase_state, measurement, Some(wall), threshold_scale);
                     }
                     (EventKind::LiftOff, age)
                 }
             };
-            teller.tell(kind, age, 0.0);
+            writer.declare(kind, age, 0.0);
         }
         true
     }
 }
 
 /// Whether `fix` is within noise of `home` (m), around which the rotor floats with this variance (m^2).
-pub(crate) fn is_home(fix: &Fix, home: [f32; 2], variance: f32) -> bool {
-    square(fix.position, home) <= CAUGHT * CAUGHT * variance.max(fix.variance)
+pub(crate) fn within_gate(measurement: &Measurement, centre: [f32; 2], variance: f32) -> bool {
+    square(measurement.position, centre)
+        <= RECOVERY_GATE_SIGMA * RECOVERY_GATE_SIGMA * variance.max(measurement.variance)
 }

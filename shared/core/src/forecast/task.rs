@@ -9,7 +9,7 @@ use touchdown_rotor::error::ConfigError;
 
 /// What the tick hands over.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct ForecastInput {
     /// The last sample.
     pub sample: u64,
     /// In flight or in contact.
@@ -20,12 +20,12 @@ pub struct Sight {
 
 /// The forecast. It shares nothing with the tick, which may interrupt it at any point.
 #[derive(Clone, Debug)]
-pub struct Lookout {
+pub struct ForecastTask {
     forecast: Forecast,
     state: ForecastState,
 }
 
-impl Lookout {
+impl ForecastTask {
     /// Checks `config` and prepares the model.
     pub fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
         Ok(Self {
@@ -35,25 +35,25 @@ impl Lookout {
     }
 
     /// Whether it waits for an estimate to start from.
-    pub fn asks(&self) -> bool {
+    pub fn wants_input(&self) -> bool {
         !self.state.is_busy()
     }
 
     /// A slice of the work: once after each tick, or as often as there is time. Bounded; cannot fail. What lies
     /// ahead, where that is news.
-    pub fn work(&mut self, sight: &Sight) -> Option<Notice> {
+    pub fn work(&mut self, forecast_input: &ForecastInput) -> Option<Notice> {
         let state = &mut self.state;
-        if !sight.is_released {
+        if !forecast_input.is_released {
             *state = ForecastState::default();
             return None;
         }
         if !state.is_busy()
-            && let Some(estimate) = &sight.estimate
+            && let Some(estimate) = &forecast_input.estimate
             && self.forecast.is_known(estimate.speed_error)
         {
             self.forecast.start(state, estimate);
         }
-        self.forecast.work(state, sight.sample)?;
+        self.forecast.work(state, forecast_input.sample)?;
         state.news().map(Notice::Outlook)
     }
 

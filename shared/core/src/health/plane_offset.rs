@@ -8,7 +8,7 @@ const MEMORY: f32 = 128.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct PlaneOffset {
     /// Half difference, m, beyond which the ends of a rotor that does not float are apart.
     tolerance: f32,
 }
@@ -16,13 +16,13 @@ pub(crate) struct Pair {
 /// What is known of the two.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Pairing {
+pub(crate) struct PlaneOffsetState {
     /// Half the difference, a - b, m.
     half: [f32; 2],
     seen: [bool; PLANES],
 }
 
-impl Pair {
+impl PlaneOffset {
     pub(crate) fn new(tolerance: f32) -> Self {
         Self { tolerance }
     }
@@ -31,7 +31,7 @@ impl Pair {
     /// has moved because others are seen than before, m. Ends that are apart each go their own way: no move.
     pub(crate) fn take(
         &self,
-        pairing: &mut Pairing,
+        pairing: &mut PlaneOffsetState,
         planes: &[Option<[f32; 2]>; PLANES],
         own: bool,
         floats: bool,
@@ -68,7 +68,7 @@ fn side(seen: [bool; PLANES]) -> f32 {
     f32::from(u8::from(seen[0])) - f32::from(u8::from(seen[1]))
 }
 
-impl Pairing {
+impl PlaneOffsetState {
     /// Along which the planes are farther apart, 0 or 1.
     pub(crate) fn axis(&self) -> usize {
         let [x, y] = self.half;
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_mean_moves_by_what_it_is_told() {
-        let (pair, mut pairing) = (Pair::new(20e-6), Pairing::default());
+        let (pair, mut pairing) = (PlaneOffset::new(20e-6), PlaneOffsetState::default());
         let mut mean = None;
         for planes in [
             [Some(A), Some(B)],
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn ends_that_are_apart_do_not_move_each_other() {
-        let (pair, mut pairing) = (Pair::new(5e-6), Pairing::default());
+        let (pair, mut pairing) = (PlaneOffset::new(5e-6), PlaneOffsetState::default());
         pair.take(&mut pairing, &[Some(A), Some(B)], true, false);
         let moved = pair.take(&mut pairing, &[Some(A), None], true, false);
         assert_eq!(moved, [0.0; 2]);
