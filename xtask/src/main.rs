@@ -44,8 +44,12 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
-    /// Measure size, structure and names of the crates; fails above the limits of house.toml
-    House,
+    /// Measure size, layers, structure and names of the crates; fails above the limits of house.toml
+    House {
+        /// Also measure how long a build takes after one changed line; minutes the first time
+        #[arg(long)]
+        rebuild: bool,
+    },
     /// Check that the image fits the chip, then program and start it by probe-rs
     Flash {
         /// Image, in place of the one for silicon that `cargo xtask firmware` builds
@@ -90,7 +94,7 @@ fn main() -> ExitCode {
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
         Task::Budget { json } => budget::run(json.as_deref()),
-        Task::House => house::run(),
+        Task::House { rebuild } => house::run(rebuild),
         Task::Flash {
             image,
             chip,

@@ -15,7 +15,7 @@ use self::list::Fault;
 pub use self::list::{Choice, Slice};
 use self::report::{Report, Trial};
 use self::test::Test;
-use self::tree::Tree;
+pub use self::tree::Tree;
 use crate::workspace;
 
 /// Held streams and values of the core.
@@ -34,10 +34,7 @@ pub fn sample() -> Choice {
 /// Plants the chosen faults one after the other and runs what should find them. Fails if one stays unseen without a
 /// reason. The report also goes to `json`.
 pub fn run(choice: &Choice, json: Option<&Path>) -> anyhow::Result<()> {
-    let faults = list::read(&workspace().join("xtask/faults"))?;
-    for fault in &faults {
-        fault.check(workspace())?;
-    }
+    let faults = faults()?;
     let faults = choice.of(faults);
     ensure!(!faults.is_empty(), "no fault of the list is chosen");
     println!("Planted faults: {}", faults.len());
@@ -56,6 +53,15 @@ pub fn run(choice: &Choice, json: Option<&Path>) -> anyhow::Result<()> {
     let wrong = report.wrong();
     ensure!(wrong.is_empty(), "{}", wrong.join("\n  "));
     Ok(())
+}
+
+/// All of the list, each of which can be planted.
+pub fn faults() -> anyhow::Result<Vec<Fault>> {
+    let faults = list::read(&workspace().join("xtask/faults"))?;
+    for fault in &faults {
+        fault.check(workspace())?;
+    }
+    Ok(faults)
 }
 
 /// The copy of the sources, and what is built from it.
