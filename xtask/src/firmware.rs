@@ -92,7 +92,8 @@ pub enum Extra {
 
 /// Builds one image, for chip or emulator.
 pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
-    let known = IMAGES.iter().find(|image| image.name == name);
+    let mut all = IMAGES.iter().chain([&NEVER_RUN]);
+    let known = all.find(|image| image.name == name);
     let package = known
         .with_context(|| format!("{name} is no image"))?
         .package;

@@ -2,6 +2,7 @@
 
 mod budget;
 mod faults;
+mod figures;
 mod firmware;
 mod flash;
 mod golden;
@@ -38,11 +39,25 @@ enum Task {
     Firmware,
     /// Build the images, count the model's instructions in the emulator, write the tables
     Instructions,
-    /// Measure what the firmware takes of the chip; fails above the limits of firmware/budget.toml
+    /// Measure what the firmware takes of the chip; fails above the limits of firmware/budget.toml, and where
+    /// firmware/measured.json is not what it measures
     Budget {
         /// Write the figures to this file
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
+        /// Keep the figures in firmware/measured.json, which the documents follow (`cargo xtask figures`)
+        #[arg(long)]
+        keep: bool,
+    },
+    /// Write the measured tables of README.md and docs/ from what was measured
+    #[command(after_help = figures::HELP)]
+    Figures {
+        /// Write nothing; fail where a table is not what was measured, or says not where its figures come from
+        #[arg(long)]
+        check: bool,
+        /// The program whose output is taken, in place of the one in target/ that was built last
+        #[arg(long, value_name = "FILE")]
+        program: Option<PathBuf>,
     },
     /// Measure size, layers, structure and names of the crates; fails above the limits of house.toml
     House {
@@ -93,7 +108,8 @@ fn main() -> ExitCode {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
-        Task::Budget { json } => budget::run(json.as_deref()),
+        Task::Budget { json, keep } => budget::run(json.as_deref(), keep),
+        Task::Figures { check, program } => figures::run(check, program),
         Task::House { rebuild } => house::run(rebuild),
         Task::Flash {
             image,

@@ -140,6 +140,8 @@ mod tests {
             stack_bytes: 8_000,
             panic_free: true,
             soft_float_symbols: 0,
+            flash_by_module: vec![],
+            compiler: String::new(),
         };
         (budget, toml::from_str(LIMITS).unwrap())
     }
@@ -200,7 +202,7 @@ mod tests {
                 .to_owned()
                 + r#""tick":{"instructions_typical":1500,"instructions_worst":4000},"#
                 + r#""flash_bytes":100000,"ram_bytes":90000,"stack_bytes":8000,"#
-                + r#""panic_free":true,"soft_float_symbols":0}"#
+                + r#""panic_free":true,"soft_float_symbols":0,"flash_by_module":[],"compiler":""}"#
         );
     }
 }

@@ -3,21 +3,22 @@
 mod calls;
 mod image;
 mod judge;
+mod kept;
 mod modules;
 #[cfg(test)]
 mod planted;
 mod ticks;
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
 use crate::firmware::{self, Extra};
 use crate::workspace;
 
 use self::judge::Limits;
+pub use self::kept::FILE as MEASURED;
 
 /// Measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,17 @@ pub struct Budget {
     panic_free: bool,
     /// Functions for f64 that can be reached from the tick.
     soft_float_symbols: u64,
+    /// Code of the image for silicon, the largest module first.
+    flash_by_module: Vec<Module>,
+    /// That built the images.
+    compiler: String,
+}
+
+/// Code by where it was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Module {
+    pub module: String,
+    pub bytes: u64,
 }
 
 /// Of a tick.
@@ -55,8 +67,9 @@ pub struct Part {
     instructions: Instructions,
 }
 
-/// Builds, counts and looks; writes `json` if given. Fails above a limit.
-pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
+/// Builds, counts and looks; writes `json` if given. Fails above a limit. The figures kept for the documents are
+/// written anew if `keep`, else they have to be these.
+pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     println!("Budget: building");
     let images = firmware::images();
     firmware::build_one("touchdown-count-tick", Extra::None)?;
@@ -72,9 +85,9 @@ pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
     let silicon = images.join("touchdown-firmware");
     let (flash_bytes, ram_bytes) = firmware::size(&silicon)?;
     let modules = modules::modules(&silicon)?;
-    let known: u64 = modules.iter().map(|(_, bytes)| bytes).sum();
+    let known: u64 = modules.iter().map(|it| it.bytes).sum();
     println!("  flash by module:");
-    for (module, bytes) in &modules {
+    for Module { module, bytes } in &modules {
         println!("    {bytes:7}  {module}");
     }
     let rest = flash_bytes.saturating_sub(known);
@@ -90,10 +103,14 @@ pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
         stack_bytes: stack.bytes(),
         panic_free: tick.panics.is_empty(),
         soft_float_symbols: tick.soft_float.len() as u64,
+        flash_by_module: modules,
+        compiler: table.compiler,
     };
     if let Some(file) = json {
-        let text = serde_json::to_string_pretty(&budget)? + "\n";
-        fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+        kept::save(&budget, file)?;
+    }
+    if keep {
+        kept::write(&budget)?;
     }
     let limits = Limits::read(&workspace().join("firmware/budget.toml"))?;
     print!("{}", judge::table(&budget, &limits));
@@ -103,5 +120,5 @@ pub fn run(json: Option<&Path>) -> anyhow::Result<()> {
         "over budget:\n  {}",
         breaches.join("\n  ")
     );
-    Ok(())
+    kept::require(&kept::differences(&kept::read()?, &budget)?)
 }

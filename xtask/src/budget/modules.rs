@@ -8,13 +8,15 @@ use anyhow::Context;
 use gimli::{Dwarf, EndianSlice, LittleEndian, SectionId};
 use object::{Object, ObjectSection};
 
+use super::Module;
+
 type Slice<'a> = EndianSlice<'a, LittleEndian>;
 
 /// Program flash: below lies the code that the linker left out, above is RAM.
 const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0810_0000;
 
 /// Bytes of code by module, the largest first.
-pub fn modules(image: &Path) -> anyhow::Result<Vec<(String, u64)>> {
+pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
     let file = object::File::parse(&*bytes)?;
     let section = |id: SectionId| {
@@ -28,9 +30,12 @@ pub fn modules(image: &Path) -> anyhow::Result<Vec<(String, u64)>> {
     while let Some(header) = units.next()? {
         add(&dwarf, &dwarf.unit(header)?, &mut sums)?;
     }
-    let mut sums: Vec<_> = sums.into_iter().collect();
-    sums.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
-    Ok(sums)
+    let modules = sums.into_iter();
+    let mut modules: Vec<_> = modules
+        .map(|(module, bytes)| Module { module, bytes })
+        .collect();
+    modules.sort_by_key(|it| std::cmp::Reverse(it.bytes));
+    Ok(modules)
 }
 
 /// Adds what one unit has: from each row of its line table to the next.
@@ -120,9 +125,9 @@ mod tests {
         let image = crate::firmware::images().join("touchdown-firmware");
         let modules = modules(&image).expect("`cargo xtask firmware` builds it");
         let (flash, _) = crate::firmware::size(&image).expect("an image");
-        let known: u64 = modules.iter().map(|(_, bytes)| bytes).sum();
+        let known: u64 = modules.iter().map(|it| it.bytes).sum();
         assert!(known <= flash, "{known} of {flash}");
         assert!(known > flash * 9 / 10, "{known} of {flash}");
-        assert!(modules.iter().any(|(name, _)| name == "core: detect"));
+        assert!(modules.iter().any(|it| it.module == "core: detect"));
     }
 }

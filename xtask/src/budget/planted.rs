@@ -29,6 +29,8 @@ fn a_planted_panic_f64_and_slow_path_break_the_budget() {
         stack_bytes: 0,
         panic_free: reached.panics.is_empty(),
         soft_float_symbols: reached.soft_float.len() as u64,
+        flash_by_module: vec![],
+        compiler: table.compiler,
     };
     let found = breaches(&budget, &limits);
     println!("{found:?}");

@@ -29,6 +29,8 @@ struct Row {
 /// What the image counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table {
+    /// That built the image.
+    pub compiler: String,
     rows: Vec<Row>,
     /// Notices that each stream gave.
     notices: Vec<(String, u32)>,
@@ -61,7 +63,9 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
 
 impl Table {
     fn parse(text: &str) -> anyhow::Result<Self> {
+        let compiler = text.lines().next().and_then(|it| it.split_once(','));
         let mut table = Self {
+            compiler: compiler.map(|(_, it)| it.to_owned()).unwrap_or_default(),
             rows: vec![],
             notices: vec![],
         };

@@ -11,8 +11,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 
-use self::list::Fault;
-pub use self::list::{Choice, Slice};
+pub use self::list::{Choice, Fault, Slice};
 use self::report::{Report, Trial};
 use self::test::Test;
 pub use self::tree::Tree;
