@@ -1,6 +1,6 @@
 #![no_std]
 #![forbid(unsafe_code)]
-//! Touchdown of a rotor on active magnetic bearings: the impact model and the phase detector that
+//! Touchdown of a rotor on active magnetic bearings: the phase detector and its monitor, which
 //! run on the microcontroller and, with the same bits, on the desktop.
 //!
 //! Everything that runs per sample comes as three types: `XConfig` (SI units, public, validated),

@@ -4,7 +4,7 @@
 mod learnt;
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::jump::{Approach, JumpBank, JumpTest};
+use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
 use crate::detect::series::{Bounce, Known, Series};

@@ -1,4 +1,4 @@
-//! The phase detector: motion estimate, hypotheses, phase ladder.
+//! The phase detector: motion estimate, hypotheses, phase machine.
 //!
 //! | file | says |
 //! |---|---|
@@ -7,17 +7,17 @@
 //! | `orbit` | in what orbit, and what of its motion is none |
 //! | `release` | whether it still floats |
 //! | `track` | position and velocity in flight |
-//! | `jump` | whether the velocity jumped |
+//! | `impact_test` | whether the velocity jumped: an impact |
 //! | `series` | when the bounces will have died out |
 //! | `wall` | angle on the wall; sliding or rolling |
 //! | `lift_off` | whether it has left the wall |
 //! | `still` | whether it moves at all |
-//! | `slip` | likewise, against an inner ring that turns |
-//! | `ladder` | which phase all this makes |
+//! | `slip` | whether it moves against an inner ring that turns |
+//! | `phase_machine` | which phase all this makes |
 //! | `ends` | whether the two ends move as one, and what each does |
 //! | `detector` | what is learnt, the release, and who follows from there |
 //! | `signals` | what it is told besides the position |
-//! | `teller` | the notices of a tick |
+//! | `event_writer` | the notices of a tick |
 
 mod contact;
 mod detector;
@@ -26,7 +26,7 @@ mod estimate;
 mod event_writer;
 mod exposure;
 mod flight;
-mod jump;
+mod impact_test;
 mod levitation;
 mod lift_off;
 mod measurement;

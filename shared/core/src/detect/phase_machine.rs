@@ -121,7 +121,7 @@ impl PhaseMachine {
         phase_state.still = Still::default();
     }
 
-    /// One end, `fix`, goes on from the rotor as a whole; where that lies on the wall, the end does so `wall` (m)
+    /// One end, `measurement`, goes on from the rotor as a whole; where that lies on the wall, the end does so `wall` (m)
     /// farther out.
     pub(crate) fn part(
         &self,
@@ -405,7 +405,7 @@ impl PhaseMachine {
     }
 }
 
-/// Whether `fix` is within noise of `home` (m), around which the rotor floats with this variance (m^2).
+/// Whether `measurement` is within noise of `centre` (m), around which the rotor floats with this variance (m^2).
 pub(crate) fn within_gate(measurement: &Measurement, centre: [f32; 2], variance: f32) -> bool {
     square(measurement.position, centre)
         <= RECOVERY_GATE_SIGMA * RECOVERY_GATE_SIGMA * variance.max(measurement.variance)

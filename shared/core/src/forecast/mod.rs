@@ -6,7 +6,7 @@
 //!
 //! | file | says |
 //! |---|---|
-//! | `lookout` | what the tick hands over, and when a forecast starts |
+//! | `task` | what the tick hands over, and when a forecast starts |
 //! | `points` | from where the runs start |
 //! | `run` | what becomes of one of them |
 //! | `threshold` | whether a rotor on the wall whirls, in closed form |

@@ -3,9 +3,9 @@
 //! | file | says |
 //! |---|---|
 //! | `channel` | one channel against its own past: gone, stuck, a spike, a shift |
-//! | `pair` | how one plane goes on without the other |
-//! | `floating` | a plane of a floating rotor: drift, and the way round of its orbit |
-//! | `lying` | a plane of a rotor on the wall: whether it lies where it can |
+//! | `plane_offset` | how one plane goes on without the other |
+//! | `orbit_sense` | a plane of a floating rotor: drift, and the sense of its orbit |
+//! | `contact_check` | a plane of a rotor on the wall: whether it rests where it can |
 
 mod channel;
 mod contact_check;
