@@ -9,12 +9,9 @@ use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::{Block, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::header::Header;
-use touchdown_protocol::log::learnt;
-use touchdown_protocol::log::reader;
-use touchdown_protocol::log::severity;
 use touchdown_protocol::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
-use touchdown_protocol::wire;
-use touchdown_protocol::wire::{NOTICE_BYTES, Record};
+use touchdown_protocol::log::{learnt, reader, severity};
+use touchdown_protocol::wire::{self, NOTICE_BYTES, Record};
 
 use super::pulses::{Pulses, Ring};
 use super::{CAPACITY, Plan};

@@ -20,8 +20,7 @@ use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::ending::Closing;
 use touchdown_protocol::log::pulses::PULSE_BYTES;
-use touchdown_protocol::log::waveform;
-use touchdown_protocol::log::waveform::Counts;
+use touchdown_protocol::log::waveform::{self, Counts};
 use touchdown_rotor::real;
 
 use self::capture::Capture;

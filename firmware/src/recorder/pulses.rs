@@ -2,8 +2,7 @@
 
 use touchdown_core::sample::Sample;
 use touchdown_protocol::log::block::Block;
-use touchdown_protocol::log::pulses;
-use touchdown_protocol::log::pulses::{PULSE_BYTES, PULSES_PER_BLOCK, Pulse, Shown};
+use touchdown_protocol::log::pulses::{self, PULSE_BYTES, PULSES_PER_BLOCK, Pulse, Shown};
 
 /// Pulses that wait for the store, of a buffer.
 pub(super) const ROOM: usize = 128;

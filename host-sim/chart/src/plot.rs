@@ -242,6 +242,20 @@ impl Chart<'_> {
         Pen::new(self.x, self.y, self.height)
     }
 
+    /// A curve through these points, styled by its class.
+    pub fn curve(&self, class: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Markup {
+        let mut pen = self.pen();
+        for (x, y) in points {
+            pen.line_to(x, y);
+        }
+        pen.finish(class)
+    }
+
+    /// Draws it with nothing but curves.
+    pub fn plain(&self, curves: &Markup) -> Markup {
+        self.draw(&html! {}, curves, &html! {})
+    }
+
     /// Draws it: `behind` under the grid and `front` over the curves, both with x as percentages.
     pub fn draw(&self, behind: &Markup, curves: &Markup, front: &Markup) -> Markup {
         html! {
@@ -295,6 +309,13 @@ impl Chart<'_> {
                 text.tick x="-6" y=(y) dy="4" text-anchor="end" { (text) }
             }
         }
+    }
+}
+
+/// What a curve of this class is, as an entry of a legend.
+pub fn key(class: &str, name: &str) -> Markup {
+    html! {
+        li { svg width="34" height="12" aria-hidden="true" { path class={ "curve " (class) } d="M1 6H33" {} } (name) }
     }
 }
 

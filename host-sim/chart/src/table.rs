@@ -1,6 +1,6 @@
 //! A table of a page.
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
 /// Rows that are shown unfolded.
 pub const OPEN: usize = 10;
@@ -8,28 +8,105 @@ pub const OPEN: usize = 10;
 /// Rows beyond this are left to the JSON output.
 const MOST: usize = 500;
 
-/// A table whose container scrolls; rows after the first few are folded away.
-pub fn table(name: &str, head: &Markup, rows: impl ExactSizeIterator<Item = Markup>) -> Markup {
-    let left_out = rows.len().saturating_sub(MOST);
-    let rows: Vec<Markup> = rows.take(MOST).collect();
-    let part = |rows: &[Markup]| {
+/// A table: its rows, and its columns.
+pub struct Table<'a, R> {
+    name: &'a str,
+    rows: &'a [R],
+    columns: Vec<Column<'a, R>>,
+}
+
+struct Column<'a, R> {
+    head: &'a str,
+    is_number: bool,
+    cell: Box<dyn Fn(&R) -> Markup + 'a>,
+}
+
+/// A table of these rows, still without a column. The name is for screen readers.
+pub fn table<'a, R>(name: &'a str, rows: &'a [R]) -> Table<'a, R> {
+    Table {
+        name,
+        rows,
+        columns: Vec::new(),
+    }
+}
+
+impl<'a, R> Table<'a, R> {
+    /// With a column of words. The heading may have several lines.
+    pub fn words<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
+        self.column(head, false, move |row| html! { td { (cell(row)) } })
+    }
+
+    /// With a column of words, each with its style class.
+    pub fn marked<V: Render>(
+        self,
+        head: &'a str,
+        cell: impl Fn(&R) -> (&'static str, V) + 'a,
+    ) -> Self {
+        self.column(head, false, move |row| {
+            let (class, words) = cell(row);
+            html! { td class=(class) { (words) } }
+        })
+    }
+
+    /// With a column that names the rows.
+    pub fn names<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
+        self.column(head, false, move |row| html! { th { (cell(row)) } })
+    }
+
+    /// With a column of numbers.
+    pub fn number<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
+        self.column(head, true, move |row| html! { td.number { (cell(row)) } })
+    }
+
+    fn column(mut self, head: &'a str, is_number: bool, cell: impl Fn(&R) -> Markup + 'a) -> Self {
+        let cell = Box::new(cell);
+        self.columns.push(Column {
+            head,
+            is_number,
+            cell,
+        });
+        self
+    }
+
+    /// Draws it in a container that scrolls. Rows after the first few are folded away.
+    pub fn draw(&self) -> Markup {
+        let shown = &self.rows[..self.rows.len().min(MOST)];
+        let open = if shown.len() > OPEN + 2 {
+            OPEN
+        } else {
+            shown.len()
+        };
+        let (open, folded) = shown.split_at(open);
+        let left_out = self.rows.len() - shown.len();
         html! {
-            div.scroll tabindex="0" role="region" aria-label=(name) {
-                table { thead { tr { (head) } } tbody { @for row in rows { tr { (row) } } } }
+            (self.part(open))
+            @if !folded.is_empty() {
+                details { summary { (folded.len()) " more rows" } (self.part(folded)) }
+            }
+            @if left_out > 0 { p.note { (left_out) " further rows are in the JSON output only." } }
+        }
+    }
+
+    fn part(&self, rows: &[R]) -> Markup {
+        html! {
+            div.scroll tabindex="0" role="region" aria-label=(self.name) {
+                table {
+                    thead { tr { @for column in &self.columns { (column.heading()) } } }
+                    tbody { @for row in rows { tr { @for it in &self.columns { ((it.cell)(row)) } } } }
+                }
             }
         }
-    };
-    let open = if rows.len() > OPEN + 2 {
-        OPEN
-    } else {
-        rows.len()
-    };
-    let folded = &rows[open..];
-    html! {
-        (part(&rows[..open]))
-        @if !folded.is_empty() {
-            details { summary { (folded.len()) " more rows" } (part(folded)) }
+    }
+}
+
+impl<R> Column<'_, R> {
+    fn heading(&self) -> Markup {
+        let mut lines = self.head.split('\n');
+        html! {
+            th class=[self.is_number.then_some("number")] {
+                (lines.next().unwrap_or_default())
+                @for line in lines { br; (line) }
+            }
         }
-        @if left_out > 0 { p.note { (left_out) " further rows are in the JSON output only." } }
     }
 }

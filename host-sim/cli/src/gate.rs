@@ -5,12 +5,9 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use touchdown_base::failure::STDOUT;
-use touchdown_base::failure::{Failure, STANDARD_OUTPUT};
-use touchdown_base::interrupt;
-use touchdown_base::interrupt::Registered;
-use touchdown_base::output;
-use touchdown_base::output::Output;
+use touchdown_base::failure::{Failure, STANDARD_OUTPUT, STDOUT};
+use touchdown_base::interrupt::{self, Registered};
+use touchdown_base::output::{self, Output};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
 

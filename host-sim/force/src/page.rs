@@ -6,7 +6,7 @@ use super::Measurement;
 use super::pulse::{Contact, Pulse};
 use super::recording::{Axis as Along, Recording};
 use super::spectrum::Transform;
-use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{ms, ms_or_dash, si, significant};
@@ -62,24 +62,14 @@ pub fn page(recording: &Recording, measurement: &Measurement) -> String {
 }
 
 fn rows(measurement: &Measurement) -> Markup {
-    let head = html! {
-        th.number { "Time" br; "ms" }
-        th.number { "Peak" br; "N" }
-        th.number { "Contact" br; "ms" }
-        th.number { "Impulse" br; "N s" }
-        th.number { "Direction" br; "degree" }
-    };
-    let row = |pulse: &Pulse| {
-        html! {
-            td.number { (ms(pulse.time_s)) }
-            td.number { (significant(pulse.peak_force_n, 4)) }
-            td.number { (ms_or_dash(pulse.contact_time_s)) }
-            td.number { (significant(pulse.impulse_n_s, 4)) }
-            td.number { (significant(pulse.direction_deg, 4)) }
-        }
-    };
-    let rows: Vec<Markup> = measurement.pulses().map(row).collect();
-    table("Contacts", &head, rows.into_iter())
+    let pulses: Vec<&Pulse> = measurement.pulses().collect();
+    table("Contacts", &pulses)
+        .number("Time\nms", |it| ms(it.time_s))
+        .number("Peak\nN", |it| significant(it.peak_force_n, 4))
+        .number("Contact\nms", |it| ms_or_dash(it.contact_time_s))
+        .number("Impulse\nN s", |it| significant(it.impulse_n_s, 4))
+        .number("Direction\ndegree", |it| significant(it.direction_deg, 4))
+        .draw()
 }
 
 /// Both axes over the whole recording.
@@ -101,12 +91,12 @@ fn whole(recording: &Recording, measurement: &Measurement) -> Markup {
     let drawn = html! {
         @for (axis, (class, _)) in axes.iter().zip(classes) {
             @let points = axis.iter().enumerate().map(|(k, force)| (time(k), 1e-3 * force));
-            (curve(&chart, class, points))
+            (chart.curve(class, points))
         }
     };
     html! {
         (legend(&classes[..axes.len()]))
-        (chart.draw(&html! {}, &drawn, &html! {}))
+        (chart.plain(&drawn))
     }
 }
 
@@ -129,10 +119,10 @@ fn one(contact: &Contact) -> Markup {
         points.iter().map(|it| (1e3 * it.0, 1e-3 * it.1)).collect()
     };
     let curves = html! {
-        (curve(&chart, "pulse", scaled(&contact.recovered)))
-        (curve(&chart, "pulse run", scaled(&contact.fitted)))
+        (chart.curve("pulse", scaled(&contact.recovered)))
+        (chart.curve("pulse run", scaled(&contact.fitted)))
     };
-    chart.draw(&html! {}, &curves, &html! {})
+    chart.plain(&curves)
 }
 
 /// Size of H over frequency, and the band.
@@ -170,7 +160,7 @@ fn device(measurement: &Measurement) -> Markup {
     let behind = html! {
         rect class="band free-fall" x=(x.percent(low)) width=(format!("{width:.2}%")) y="0" height=(HEIGHT) {}
     };
-    let drawn = html! { @for (class, points) in curves { (curve(&chart, class, points)) } };
+    let drawn = html! { @for (class, points) in curves { (chart.curve(class, points)) } };
     chart.draw(&behind, &drawn, &html! {})
 }
 
@@ -185,28 +175,18 @@ fn force_axis(low: f64, high: f64) -> Axis {
     )
 }
 
-fn curve(chart: &Chart<'_>, class: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Markup {
-    let mut pen = chart.pen();
-    for (x, y) in points {
-        pen.line_to(x, y);
-    }
-    pen.finish(class)
-}
-
 fn legend(entries: &[(&str, &str)]) -> Markup {
     html! {
         ul.legend {
             @for (class, name) in entries {
-                li {
-                    svg width="34" height="12" aria-hidden="true" {
-                        @if *class == "free-fall" {
+                @if *class == "free-fall" {
+                    li {
+                        svg width="34" height="12" aria-hidden="true" {
                             rect class="band free-fall" x="1" y="1" width="32" height="10" {}
-                        } @else {
-                            path class={ "curve " (class) } d="M1 6H33" {}
                         }
+                        (name)
                     }
-                    (name)
-                }
+                } @else { (key(class, name)) }
             }
         }
     }

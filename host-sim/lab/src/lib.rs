@@ -7,6 +7,3 @@ pub mod limits;
 pub mod paper;
 
 pub mod trade;
-
-pub mod forecast_score;
-pub mod severity_score;

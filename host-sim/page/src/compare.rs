@@ -6,8 +6,8 @@ use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
 use touchdown_chart::text::significant;
 use touchdown_chart::waveform::{Line, Waveform, waveform};
+use touchdown_run::compare::Comparison;
 use touchdown_run::compare::table::verdict;
-use touchdown_run::compare::{Comparison, Pair};
 use touchdown_run::replay::Excerpt;
 use touchdown_scene::Scene;
 use touchdown_scene::names::event_name;
@@ -68,38 +68,24 @@ fn panel(
 }
 
 fn events(comparison: &Comparison) -> Markup {
-    let head = html! {
-        th { "Event" }
-        th.number { "First" br; "s" }
-        th.number { "Second" br; "s" }
-        th.number { "Difference" br; "ms" }
-        th.number { "First" br; "mm/s" }
-        th.number { "Second" br; "mm/s" }
-        th.number { "Difference" br; "%" }
-        th { "Within" }
-    };
-    let number = |value: Option<f64>, scale: f64, digits: i32| {
+    let text = |value: Option<f64>, scale: f64, digits: i32| {
         value.map_or("\u{2013}".to_owned(), |it| significant(it * scale, digits))
-    };
-    let row = |pair: &Pair| {
-        let (class, word) = match pair.within {
-            Some(true) => ("", "yes"),
-            Some(false) => ("missed", "no"),
-            None => ("", "not judged"),
-        };
-        html! {
-            td { (event_name(pair.event)) }
-            td.number { (number(pair.a_s, 1.0, 7)) }
-            td.number { (number(pair.b_s, 1.0, 7)) }
-            td.number { (number(pair.difference_s, 1e3, 4)) }
-            td.number { (number(pair.a_speed_m_s, 1e3, 4)) }
-            td.number { (number(pair.b_speed_m_s, 1e3, 4)) }
-            td.number { (number(pair.speed_difference, 100.0, 3)) }
-            td class=(class) { (word) }
-        }
     };
     if comparison.events.is_empty() {
         return html! { p { "None." } };
     }
-    table("Events", &head, comparison.events.iter().map(row))
+    table("Events", &comparison.events)
+        .words("Event", |it| event_name(it.event))
+        .number("First\ns", |it| text(it.a_s, 1.0, 7))
+        .number("Second\ns", |it| text(it.b_s, 1.0, 7))
+        .number("Difference\nms", |it| text(it.difference_s, 1e3, 4))
+        .number("First\nmm/s", |it| text(it.a_speed_m_s, 1e3, 4))
+        .number("Second\nmm/s", |it| text(it.b_speed_m_s, 1e3, 4))
+        .number("Difference\n%", |it| text(it.speed_difference, 100.0, 3))
+        .marked("Within", |it| match it.within {
+            Some(true) => ("", "yes"),
+            Some(false) => ("missed", "no"),
+            None => ("", "not judged"),
+        })
+        .draw()
 }

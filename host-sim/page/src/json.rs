@@ -4,7 +4,7 @@ use serde::Serialize;
 use touchdown_core::health::Condition;
 use touchdown_core::sample::CHANNELS;
 
-use touchdown_base::history::{Impact, Phase, Regime};
+use touchdown_base::history::{History, Impact, Phase, Regime, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_run::controller_trace::Controller;
 use touchdown_run::model::RingEnd;
@@ -18,12 +18,8 @@ use touchdown_truth::reference::energy;
 #[derive(Serialize)]
 struct DropJson<'a> {
     model: ModelJson,
-    impacts: Vec<ImpactJson>,
-    phases: &'a [Phase],
-    contact_starts_s: &'a [f64],
-    lift_offs_s: &'a [f64],
-    rolling_starts_s: &'a [f64],
-    regime: Regime,
+    #[serde(flatten)]
+    history: HistoryJson<'a>,
     #[serde(rename = "final")]
     end: EndJson,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -50,12 +46,8 @@ struct ModelJson {
 #[derive(Serialize)]
 struct ImpactJson {
     index: usize,
-    time_s: f64,
-    x_m: f64,
-    y_m: f64,
-    vx_m_s: f64,
-    vy_m_s: f64,
-    spin_rad_s: f64,
+    #[serde(flatten)]
+    state: StateJson,
     normal_speed_m_s: f64,
     normal_impulse_n_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,13 +58,19 @@ struct ImpactJson {
 
 #[derive(Serialize)]
 struct EndJson {
+    #[serde(flatten)]
+    state: StateJson,
+    energy_j: f64,
+}
+
+#[derive(Serialize)]
+struct StateJson {
     time_s: f64,
     x_m: f64,
     y_m: f64,
     vx_m_s: f64,
     vy_m_s: f64,
     spin_rad_s: f64,
-    energy_j: f64,
 }
 
 /// A ring of a rotor that tilts; its impacts with the state there.
@@ -80,6 +78,12 @@ struct EndJson {
 struct RingJson<'a> {
     name: &'a str,
     z_m: f64,
+    #[serde(flatten)]
+    history: HistoryJson<'a>,
+}
+
+#[derive(Serialize)]
+struct HistoryJson<'a> {
     impacts: Vec<ImpactJson>,
     phases: &'a [Phase],
     contact_starts_s: &'a [f64],
@@ -141,12 +145,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             precision: scene.model.precision,
             step_s: scene.model.step,
         },
-        impacts: model.impacts.iter().enumerate().map(impact).collect(),
-        phases: &model.phases,
-        contact_starts_s: &model.contact_starts,
-        lift_offs_s: &model.lift_offs,
-        rolling_starts_s: &model.rolling_starts,
-        regime: model.regime,
+        history: history(model),
         end: end(scene, outcome),
         rings: rings(scene, outcome),
         ring: outcome.ring.as_ref().map(ring_end),
@@ -187,16 +186,33 @@ pub fn text(value: &impl Serialize) -> serde_json::Result<String> {
     serde_json::to_string_pretty(value).map(|json| json + "\n")
 }
 
+fn history(history: &History) -> HistoryJson<'_> {
+    HistoryJson {
+        impacts: history.impacts.iter().enumerate().map(impact).collect(),
+        phases: &history.phases,
+        contact_starts_s: &history.contact_starts,
+        lift_offs_s: &history.lift_offs,
+        rolling_starts_s: &history.rolling_starts,
+        regime: history.regime,
+    }
+}
+
+fn state(state: &RotorState) -> StateJson {
+    let ([x_m, y_m], [vx_m_s, vy_m_s]) = (state.position, state.velocity);
+    StateJson {
+        time_s: state.time,
+        x_m,
+        y_m,
+        vx_m_s,
+        vy_m_s,
+        spin_rad_s: state.spin,
+    }
+}
+
 fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
-    let state = &impact.state;
     ImpactJson {
         index,
-        time_s: state.time,
-        x_m: state.position[0],
-        y_m: state.position[1],
-        vx_m_s: state.velocity[0],
-        vy_m_s: state.velocity[1],
-        spin_rad_s: state.spin,
+        state: state(&impact.state),
         normal_speed_m_s: impact.normal_speed,
         normal_impulse_n_s: impact.normal_impulse,
         peak_force_n: impact.pulse.map(|pulse| pulse.peak_force),
@@ -211,12 +227,7 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
         .map(|(ring, [model, _])| RingJson {
             name: &ring.name,
             z_m: ring.place,
-            impacts: model.impacts.iter().enumerate().map(impact).collect(),
-            phases: &model.phases,
-            contact_starts_s: &model.contact_starts,
-            lift_offs_s: &model.lift_offs,
-            rolling_starts_s: &model.rolling_starts,
-            regime: model.regime,
+            history: history(model),
         })
         .collect()
 }
@@ -239,15 +250,10 @@ fn ring_end(ring: &RingEnd) -> RingEndJson {
 }
 
 fn end(scene: &Scene, outcome: &Outcome) -> EndJson {
-    let state = &outcome.model.end;
+    let last = &outcome.model.end;
     let stored = outcome.ledger.as_ref().map(Ledger::stored_j);
     EndJson {
-        time_s: state.time,
-        x_m: state.position[0],
-        y_m: state.position[1],
-        vx_m_s: state.velocity[0],
-        vy_m_s: state.velocity[1],
-        spin_rad_s: state.spin,
-        energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), state)),
+        state: state(last),
+        energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), last)),
     }
 }

@@ -6,9 +6,8 @@ use touchdown_core::event::EventKind;
 use crate::report::spectrum::{Spectra, spectra};
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
-use touchdown_chart::text::{ms_or_dash, si, significant};
+use touchdown_chart::text::{ms, si, significant};
 use touchdown_chart::waveform::{Line, Waveform, waveform};
-use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::replay::{Excerpt, Replay};
 use touchdown_scene::Scene;
 use touchdown_scene::names::event_name;
@@ -143,38 +142,32 @@ fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
 }
 
 fn events(replay: &Replay) -> Markup {
-    let head = html! {
-        th { "Event" }
-        th.number { "Onset" br; "s" }
-        th.number { "Declared" br; "s" }
-        th.number { "Latency" br; "ms" }
-        th { "Plane" }
-        th.number { "Speed" br; "mm/s" }
-        th { "Fate" }
-    };
-    let row = |event: &DetectedEvent| {
-        let speed = event.normal_speed_m_s.map(|it| significant(it * 1e3, 4));
-        let fault = event
-            .fault
-            .map(|it| format!(" of {}: {}", it.channel, it.kind.name()));
-        let fate = match (event.confirmed_s, event.withdrawn_s) {
-            (Some(time), _) => format!("confirmed at {time:.6} s"),
-            (_, Some(time)) => format!("withdrawn at {time:.6} s"),
-            _ => String::new(),
-        };
-        html! {
-            td { (event_name(event.event)) (fault.unwrap_or_default()) }
-            td.number { (format!("{:.6}", event.onset_s)) }
-            td.number { (format!("{:.6}", event.declared_s)) }
-            td.number { (ms_or_dash(Some(event.declared_s - event.onset_s))) }
-            td { (event.plane) }
-            td.number { (speed.unwrap_or_default()) }
-            td { (fate) }
-        }
-    };
     let events = &replay.detection.events;
     if events.is_empty() {
         return html! { p { "None." } };
     }
-    table("Events", &head, events.iter().map(row))
+    table("Events", events)
+        .words("Event", |it| match it.fault {
+            Some(fault) => format!(
+                "{} of {}: {}",
+                event_name(it.event),
+                fault.channel,
+                fault.kind.name()
+            ),
+            None => event_name(it.event).to_owned(),
+        })
+        .number("Onset\ns", |it| format!("{:.6}", it.onset_s))
+        .number("Declared\ns", |it| format!("{:.6}", it.declared_s))
+        .number("Latency\nms", |it| ms(it.declared_s - it.onset_s))
+        .words("Plane", |it| it.plane)
+        .number("Speed\nmm/s", |it| {
+            let speed = it.normal_speed_m_s.map(|it| significant(it * 1e3, 4));
+            speed.unwrap_or_default()
+        })
+        .words("Fate", |it| match (it.confirmed_s, it.withdrawn_s) {
+            (Some(time), _) => format!("confirmed at {time:.6} s"),
+            (_, Some(time)) => format!("withdrawn at {time:.6} s"),
+            _ => String::new(),
+        })
+        .draw()
 }

@@ -9,8 +9,7 @@ use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::store::bytes_of;
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Outputs};
 use touchdown_protocol::link::{
     Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,

@@ -7,8 +7,7 @@ use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
 use crate::detection::detection;
-use crate::model;
-use crate::model::ModelRun;
+use crate::model::{self, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
 use crate::target::Target;
 use crate::timebase::Timebase;

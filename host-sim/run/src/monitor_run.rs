@@ -3,8 +3,7 @@
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::learnt::Learnt;
-use touchdown_core::monitor::Summary;
-use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
+use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState, Summary};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
 use touchdown_rotor::error::ConfigError;

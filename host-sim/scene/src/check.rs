@@ -7,12 +7,11 @@ use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
 use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
-use super::limits;
 use super::machine::{retainer, rotor, start};
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
 use super::support::{BallBearingTable, SupportTable};
 use super::{
-    Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start, TwoPlane,
+    Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start, TwoPlane, limits,
 };
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;

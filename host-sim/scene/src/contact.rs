@@ -4,9 +4,8 @@ use touchdown_models::Materials as Elastic;
 
 use super::diagnostic::Diagnostic;
 use super::file::MaterialsTable;
-use super::limits;
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate};
-use super::{Contact, Materials, Scene};
+use super::{Contact, Materials, Scene, limits};
 use crate::scales::compliance;
 use touchdown_base::plain::Number;
 

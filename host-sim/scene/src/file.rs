@@ -11,15 +11,20 @@ use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
 use touchdown_base::input_error::InputError;
 
-/// The tables of `text`, with finite numbers; errors name it `name`.
-pub fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
-    let file = toml::from_str(text).map_err(|error| {
+/// The tables of `text`; errors name it `name`.
+pub fn tables<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
+    toml::from_str(text).map_err(|error| {
         let rule = error
             .message()
             .replacen("missing field", "missing required key", 1)
             .replacen("unknown field", "unknown key", 1);
         InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
-    })?;
+    })
+}
+
+/// The same with finite numbers.
+pub fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
+    let file = tables(name, text)?;
     match diagnostic::not_finite(text) {
         Some((key, span)) => {
             let rule = format!("{key} must be a finite number");

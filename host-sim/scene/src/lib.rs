@@ -227,17 +227,6 @@ impl Scene {
         }
     }
 
-    /// Takes rotor and retainer bearing of `machine`; the spin stays.
-    pub fn set_machine(&mut self, machine: &Machine) {
-        self.rotor.mass = machine.mass;
-        self.rotor.radius = machine.radius;
-        self.rotor.polar_inertia = machine.polar_inertia;
-        self.retainer.clearance = machine.clearance;
-        self.retainer.friction = machine.friction;
-        self.retainer.restitution = machine.restitution;
-        self.run.gravity = machine.gravity;
-    }
-
     /// Time of the first sample, s since the release.
     pub fn first_sample_time(&self) -> f64 {
         -(self.levitated_samples() as f64) / self.run.sample_rate

@@ -2,9 +2,8 @@
 
 use super::diagnostic::Diagnostic;
 use super::file::{RetainerTable, RotorTable, StartTable};
-use super::limits;
 use super::rule::{MILLI, ON_THE_WALL, RPM, above_zero, between, zero_or_more};
-use super::{Retainer, Rotor, Start};
+use super::{Retainer, Rotor, Start, limits};
 use touchdown_base::plain::Number;
 
 /// Checks `[rotor]`.

@@ -19,14 +19,7 @@ pub(super) fn above_zero(
     key: &'static str,
     value: f64,
 ) -> Result<f64, Diagnostic> {
-    if value > 0.0 {
-        return Ok(value);
-    }
-    Err(Diagnostic::new(
-        table,
-        key,
-        format!("{key} must be above 0, is {}", Number(value)),
-    ))
+    holds(table, key, value, value > 0.0, "above 0")
 }
 
 pub(crate) fn zero_or_more(
@@ -34,14 +27,19 @@ pub(crate) fn zero_or_more(
     key: &'static str,
     value: f64,
 ) -> Result<f64, Diagnostic> {
-    if value >= 0.0 {
-        return Ok(value);
-    }
-    Err(Diagnostic::new(
-        table,
-        key,
-        format!("{key} must be 0 or more, is {}", Number(value)),
-    ))
+    holds(table, key, value, value >= 0.0, "0 or more")
+}
+
+fn holds(
+    table: &'static str,
+    key: &'static str,
+    value: f64,
+    is_right: bool,
+    rule: &str,
+) -> Result<f64, Diagnostic> {
+    let broken = || format!("{key} must be {rule}, is {}", Number(value));
+    let value = is_right.then_some(value);
+    value.ok_or_else(|| Diagnostic::new(table, key, broken()))
 }
 
 pub(crate) fn between(
@@ -50,13 +48,9 @@ pub(crate) fn between(
     value: f64,
     range: std::ops::RangeInclusive<f64>,
 ) -> Result<f64, Diagnostic> {
-    if range.contains(&value) {
-        return Ok(value);
-    }
-    let (low, high) = range.into_inner();
-    let [low, high, value] = [low, high, value].map(Number);
-    let rule = format!("{key} must be {low} to {high}, is {value}");
-    Err(Diagnostic::new(table, key, rule))
+    let [low, high] = [*range.start(), *range.end()].map(Number);
+    let rule = format!("{low} to {high}");
+    holds(table, key, value, range.contains(&value), &rule)
 }
 
 /// The one of `all` that has this name.

@@ -3,11 +3,8 @@
 use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
-use super::limits;
-use super::list;
-use super::rule::ON_THE_WALL;
-use super::rule::{MILLI, above_zero, between};
-use super::{Retainer, Rotor, Start};
+use super::rule::{MILLI, ON_THE_WALL, above_zero, between};
+use super::{Retainer, Rotor, Start, limits, list};
 use touchdown_base::plain::Number;
 
 /// Most rings, and most magnets.

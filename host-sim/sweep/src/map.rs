@@ -77,14 +77,10 @@ fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let curves = html! {
         @for (which, class) in ["limit", "limit", "impact"].into_iter().enumerate() {
-            @let mut pen = chart.pen();
-            @for (place, point) in &order {
-                ({ pen.line_to(*place, 100.0 * values(point)[which]); "" })
-            }
-            (pen.finish(class))
+            (chart.curve(class, order.iter().map(|it| (it.0, 100.0 * values(it.1)[which]))))
         }
     };
-    chart.draw(&html! {}, &curves, &html! {})
+    chart.plain(&curves)
 }
 
 /// A table whose cells are the deeper in colour the more probable whirl is.

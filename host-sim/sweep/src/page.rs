@@ -15,33 +15,30 @@ const SHOWN: usize = 1_000;
 
 /// Writes the page.
 pub(super) fn page(plan: &Plan, points: &[Point]) -> String {
-    let head = html! {
-        @for (key, _) in &plan.listed { th.number { (key) } }
-        th.number { "Drops" }
-        th.number { "Whirl, %" }
-        th.number { "95 % interval" }
-        th.number { "Backward, %" }
-        th.number { "Starts after, ms" }
-        th.number { "Impact, mm/s" }
-        th.number { "Load at the end, N" }
-    };
-    let thousand = |value: Option<f64>| {
-        value.map_or("\u{2013}".to_owned(), |value| format!("{:.1}", 1e3 * value))
-    };
-    let cells = |point: &Point| {
-        html! {
-            @for value in plan.values(point.point) { td.number { (short(&text(value))) } }
-            td.number { (point.drops) }
-            td.number { (format!("{:.2}", 100.0 * point.whirl_probability)) }
-            td.number {
-                (format!("{:.2} to {:.2}", 100.0 * point.whirl_low, 100.0 * point.whirl_high))
-            }
-            td.number { (format!("{:.2}", 100.0 * point.backward_probability)) }
-            td.number { (thousand(point.whirl_start_median_s)) }
-            td.number { (thousand(point.impact_speed_max_m_s)) }
-            td.number { (point.end_load_max_n.map_or("\u{2013}".to_owned(), |it| format!("{it:.1}"))) }
-        }
-    };
+    let tenth = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1}"));
+    let thousand = |value: Option<f64>| tenth(value.map(|it| 1e3 * it));
+    let mut table = table("Points of the grid", &points[..points.len().min(SHOWN)]);
+    for (index, (key, _)) in plan.listed.iter().enumerate() {
+        table = table.number(key, move |it| short(&text(plan.values(it.point)[index])));
+    }
+    let table = table
+        .number("Drops", |it| it.drops)
+        .number("Whirl, %", |it| {
+            format!("{:.2}", 100.0 * it.whirl_probability)
+        })
+        .number("95 % interval", |it| {
+            format!(
+                "{:.2} to {:.2}",
+                100.0 * it.whirl_low,
+                100.0 * it.whirl_high
+            )
+        })
+        .number("Backward, %", |it| {
+            format!("{:.2}", 100.0 * it.backward_probability)
+        })
+        .number("Starts after, ms", |it| thousand(it.whirl_start_median_s))
+        .number("Impact, mm/s", |it| thousand(it.impact_speed_max_m_s))
+        .number("Load at the end, N", |it| tenth(it.end_load_max_n));
     let start = match plan.start {
         Some(start) => format!(
             "Starts anywhere within {} of the clearance, with up to {} mm/s in any direction.",
@@ -68,7 +65,7 @@ pub(super) fn page(plan: &Plan, points: &[Point]) -> String {
         }
         section {
             h2 { "Points" }
-            (table("Points of the grid", &head, points.iter().take(SHOWN).map(cells)))
+            (table.draw())
             @if points.len() > SHOWN { p.note { "The others are in points.csv." } }
         }
     };

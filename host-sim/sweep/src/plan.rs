@@ -8,6 +8,7 @@ use toml::{Spanned, Table, Value};
 use super::parameter::{Distribution, ParameterTable, Values};
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::Scene;
+use touchdown_scene::file::tables;
 
 /// Most drops of a sweep.
 const MOST_DROPS: u64 = 1_000_000_000;
@@ -76,7 +77,7 @@ impl Plan {
     /// Reads the plan at `path`. Its scene is a file beside it, or a built-in one.
     pub fn load(path: &str) -> Result<Self, InputError> {
         let text = InputError::read(Path::new(path), LARGEST_TOML)?;
-        let file = parsed(path, &text)?;
+        let file: PlanFile = tables(path, &text)?;
         let scene = file.scene.get_ref();
         let beside = Path::new(path).with_file_name(scene);
         let name = if beside.exists() {
@@ -95,7 +96,7 @@ impl Plan {
 
     /// The plan `text` over the scene `scene_text`; errors name it `name`.
     pub fn of_texts(name: &str, text: &str, scene_text: &str) -> Result<Self, InputError> {
-        let file = parsed(name, text)?;
+        let file: PlanFile = tables(name, text)?;
         let fail = |span, rule: String| InputError::at_span(name, text, span, rule);
         let scene_name = file.scene.get_ref();
         let scene = Scene::parse(scene_name, scene_text).map_err(InputError::of_named_file)?;
@@ -224,16 +225,6 @@ impl Plan {
     pub(super) fn texts(&self) -> [&str; 2] {
         [&self.text, &self.scene_text]
     }
-}
-
-fn parsed(name: &str, text: &str) -> Result<PlanFile, InputError> {
-    toml::from_str(text).map_err(|error| {
-        let rule = error
-            .message()
-            .replacen("missing field", "missing required key", 1)
-            .replacen("unknown field", "unknown key", 1);
-        InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
-    })
 }
 
 /// Gives `key`, as in `retainer.friction` or `ring.0.clearance_mm`, a value.

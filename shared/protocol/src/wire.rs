@@ -6,8 +6,7 @@
 //! [`Severity`], and last the one of [`Summary`].
 
 use crate::controller::Outputs;
-use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
-use touchdown_core::event::{Onset, Outlook};
+use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Onset, Outlook, Plane};
 use touchdown_core::fault::{Condition, Fault, FaultKind};
 pub use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};

@@ -2,8 +2,9 @@
 
 use std::io::Sink;
 
+use rayon::prelude::*;
 use touchdown_core::event::EventKind;
-use touchdown_lab::forecast_score::{Plan, Score, campaign, score};
+use touchdown_lab::score::forecast_drop::{Score, scenes, score, watch};
 use touchdown_run::drop;
 use touchdown_run::outcome::{Detection, Forecast};
 use touchdown_run::target::Target;
@@ -13,12 +14,11 @@ use touchdown_scene::{Scene, Start};
 const SEED: u64 = 1;
 
 fn scored(drops: u64, seed: u64, misled: f64) -> Score {
-    let plan = Plan {
-        drops,
-        seed,
-        misled,
+    let drop = |index| {
+        let [scene, told] = scenes(seed + index, misled).expect("valid scenes");
+        watch(&scene, &told).expect("valid scenes")
     };
-    let score = score(&campaign(&plan).expect("valid scenes"));
+    let score = score(&(0..drops).into_par_iter().map(drop).collect::<Vec<_>>());
     println!("told wrong by up to {misled}: {score:#?}");
     score
 }

@@ -1,13 +1,12 @@
 //! How hard a drop was, from position and speed alone, against the reference.
 
 use touchdown_base::statistics::quantile;
-use touchdown_lab::forecast_score::scenes;
-use touchdown_lab::severity_score;
-use touchdown_lab::severity_score::Strained;
+use touchdown_lab::score::forecast_drop::scenes;
+use touchdown_lab::score::severity_drop::{self, Strained};
 use touchdown_scene::Scene;
 
 fn watch(scene: &Scene, told: &Scene) -> Strained {
-    severity_score::watch(scene, told).expect("a valid scene")
+    severity_drop::watch(scene, told).expect("a valid scene")
 }
 
 fn of_scene(name: &str) -> Strained {

@@ -81,7 +81,14 @@ struct Valid {
 impl Valid {
     fn scene(&self, precision: Precision) -> Scene {
         let mut scene = Scene::load("rig").expect("built-in scene");
-        scene.set_machine(&self.machine);
+        let machine = &self.machine;
+        scene.rotor.mass = machine.mass;
+        scene.rotor.radius = machine.radius;
+        scene.rotor.polar_inertia = machine.polar_inertia;
+        scene.retainer.clearance = machine.clearance;
+        scene.retainer.friction = machine.friction;
+        scene.retainer.restitution = machine.restitution;
+        scene.run.gravity = machine.gravity;
         scene.rotor.spin = self.spin;
         scene.start = self.start;
         scene.model.step = self.step;

@@ -10,8 +10,7 @@ use core::hint::black_box;
 use core::mem::MaybeUninit;
 
 use touchdown_core::event::{Notice, Notices};
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Outputs};
 
 use self::scenes::{SCENES, Scene};

@@ -2,8 +2,7 @@
 //! ever being erased here; an erase would stall the core for 2 s. The last block counts.
 
 use stm32f4::stm32f405::FLASH;
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{BLOCK_BYTES, BlockError, Settings};
+use touchdown_protocol::config_block::{self, BLOCK_BYTES, BlockError, Settings};
 use touchdown_protocol::link::Refusal;
 
 /// Sector 11: RM0090, flash module organization. memory.x leaves it out.

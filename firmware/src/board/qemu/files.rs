@@ -5,8 +5,7 @@ use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire;
-use touchdown_protocol::wire::Record;
+use touchdown_protocol::wire::{self, Record};
 
 use super::Failure;
 use super::name::Name;

@@ -11,8 +11,7 @@ mod settings;
 use defmt::{Debug2Format, Display2Format, error, info};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, BlockError, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block, BlockError, Settings, Wiring};
 use touchdown_protocol::controller::{Fault, Faults, Outputs};
 use touchdown_protocol::wire::{Record, Switching};
 

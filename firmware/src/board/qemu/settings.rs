@@ -2,8 +2,7 @@
 
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{BLOCK_BYTES, Block, BlockError, Settings};
+use touchdown_protocol::config_block::{self, BLOCK_BYTES, Block, BlockError, Settings};
 use touchdown_protocol::link::Refusal;
 
 use super::name::Name;

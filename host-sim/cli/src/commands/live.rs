@@ -14,8 +14,7 @@ use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 use super::args::LiveArgs;
 use crate::gate::Gate;
 use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, record};
-use touchdown_base::failure::Failure;
-use touchdown_base::failure::STDOUT;
+use touchdown_base::failure::{Failure, STDOUT};
 use touchdown_base::paint::Paint;
 use touchdown_files::link::Port;
 

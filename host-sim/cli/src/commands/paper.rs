@@ -4,6 +4,7 @@ use super::args::PaperArgs;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_lab::paper;
+use touchdown_page::json::text;
 
 /// Works out, says and writes the numbers; fails where one of ours is not right.
 pub(super) fn check(args: &PaperArgs) -> Result<(), Failure> {
@@ -12,10 +13,10 @@ pub(super) fn check(args: &PaperArgs) -> Result<(), Failure> {
         .writes("--report", [&args.report])
         .open()?;
     let paper = paper::run(args.drops)?;
-    out.json("--json", || paper::json(&paper))?;
+    out.json("--json", || text(&paper))?;
     out.put("--report", || paper::page(&paper))?;
-    let text = paper::table(&paper, out.paint());
-    out.finish(&text)?;
+    let table = paper::table(&paper, out.paint());
+    out.finish(&table)?;
     if paper.agrees() {
         Ok(())
     } else {

@@ -12,11 +12,10 @@ use super::decimal::shortest;
 use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
-use touchdown_scene::list;
 use touchdown_scene::machine::{retainer, rotor};
-use touchdown_scene::machine_config;
 use touchdown_scene::names::channel_name;
 use touchdown_scene::rule::{MICRO, MILLI, RPM};
+use touchdown_scene::{list, machine_config};
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 

@@ -4,8 +4,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use touchdown_core::event::Notice;
-use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::config_block::{self, Settings};
 use touchdown_protocol::link::{
     Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode,
 };

@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::unit::{Displacement, Sensitivity, Speed, Time};
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
+use touchdown_scene::file::tables;
 
 /// Names of the displacements in the mapping.
 pub const POSITIONS: [&str; 4] = ["ax", "ay", "bx", "by"];
@@ -213,13 +214,7 @@ impl Mapping {
 
     /// Reads the mapping `text`; errors name it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
-        let mapping: Self = toml::from_str(text).map_err(|error| {
-            let rule = error
-                .message()
-                .replacen("missing field", "missing required key", 1)
-                .replacen("unknown field", "unknown key", 1);
-            InputError::at_span(name, text, error.span().unwrap_or(0..0), rule)
-        })?;
+        let mapping: Self = tables(name, text)?;
         mapping
             .check()
             .map_err(|(span, rule)| InputError::at_span(name, text, span, rule))?;

@@ -14,8 +14,7 @@ mod survey;
 mod write;
 
 pub use bounded::{Bounded, LONGEST, Meter};
-pub use clock::LOOK_AHEAD;
-pub use clock::{Clock, Stamp};
+pub use clock::{Clock, LOOK_AHEAD, Stamp};
 pub use even::{Even, is_rate};
 pub(crate) use learnt::LEARNT;
 pub use learnt::{of_field, to_field};

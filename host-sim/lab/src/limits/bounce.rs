@@ -3,8 +3,8 @@
 
 use touchdown_rotor::error::ConfigError;
 
-use crate::limits::PRECISIONS;
 use crate::limits::row::Row;
+use crate::limits::{PRECISIONS, refused};
 use touchdown_base::failure::Failure;
 use touchdown_base::machine::Start;
 use touchdown_run::model::simulate;
@@ -33,8 +33,7 @@ pub fn rows() -> Result<Vec<Row>, Failure> {
     let mut rows = Vec::new();
     for (asked, given, words) in ASKED {
         for precision in PRECISIONS {
-            let worst = worst(&rig, asked, given, precision)
-                .map_err(|error| Failure::Usage(format!("limits: {error}")))?;
+            let worst = worst(&rig, asked, given, precision).map_err(refused)?;
             let name = format!("hertz: straight impact, restitution {words}: restitution");
             rows.push(Row::new(name, precision, worst, LIMIT, "relative"));
         }

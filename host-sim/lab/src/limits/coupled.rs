@@ -6,6 +6,7 @@ use touchdown_rotor::error::ConfigError;
 use super::extreme::STEPS;
 use super::glance::Glance;
 use super::row::{Row, Worst};
+use super::{epsilon, refused};
 use crate::{limits::support, limits::two_plane};
 use touchdown_base::failure::Failure;
 use touchdown_run::model::ModelRun;
@@ -23,7 +24,6 @@ const LATE: f64 = 4.0;
 
 /// All measures of all extremes of both rungs.
 pub fn rows() -> Result<Vec<Row>, Failure> {
-    let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
     let scenes = support::scenes()?.into_iter().chain(two_plane::scenes()?);
     let mut rows = Vec::new();
     for (name, scene) in scenes {
@@ -93,13 +93,6 @@ fn first_impact(scene: &Scene, about: f64) -> f64 {
     scene.run.duration = about + AFTER;
     let first = simulate(&scene).impacts.first().map(|it| it.state.time);
     first.unwrap_or(f64::INFINITY)
-}
-
-fn epsilon(precision: Precision) -> f64 {
-    match precision {
-        Precision::F64 => f64::EPSILON,
-        Precision::F32 => f64::from(f32::EPSILON),
-    }
 }
 
 /// Watches one run; the time of its first impact, s.

@@ -22,8 +22,9 @@ mod truth;
 mod two_plane;
 mod watch;
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
-use serde::Serialize;
 use touchdown_rotor::error::ConfigError;
 
 pub use row::{Row, all_hold};
@@ -33,6 +34,7 @@ use closed_form::ClosedForm;
 use extreme::Extreme;
 use touchdown_base::failure::Failure;
 use touchdown_base::progress::Progress;
+use touchdown_page::json::text;
 use touchdown_run::model::simulate;
 use touchdown_scene::Precision;
 use truth::Truth;
@@ -42,7 +44,6 @@ const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
 
 /// Runs every extreme in both precisions.
 pub fn run() -> Result<Vec<Row>, Failure> {
-    let refused = |error: ConfigError| Failure::Usage(format!("limits: {error}"));
     let extremes = extreme::extremes()?;
     let closed_forms = closed_form::closed_forms()?;
     let jobs = (2 * extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
@@ -67,6 +68,11 @@ pub fn run() -> Result<Vec<Row>, Failure> {
     rows.extend(refusal::rows().map_err(refused)?);
     rows.extend(coupled::rows()?);
     Ok(rows)
+}
+
+/// For `map_err`.
+fn refused(error: ConfigError) -> Failure {
+    Failure::Usage(format!("limits: {error}"))
 }
 
 /// The rungs that integrate, whose path is their own: what holds whatever the scene.
@@ -98,6 +104,14 @@ fn rounding(precision: Precision) -> f64 {
     }
 }
 
+/// Of the last digit of 1.
+fn epsilon(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f64::from(f32::EPSILON),
+    }
+}
+
 fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, ConfigError> {
     let mut worst = 0.0_f64;
     for &step in known.steps {
@@ -111,12 +125,7 @@ fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, C
     Ok(Row::new(known.name, precision, worst, limit, known.unit))
 }
 
-#[derive(Serialize)]
-struct Json<'a> {
-    rows: &'a [Row],
-}
-
 /// `limits --json`.
 pub fn json(rows: &[Row]) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(&Json { rows }).map(|json| json + "\n")
+    text(&BTreeMap::from([("rows", rows)]))
 }

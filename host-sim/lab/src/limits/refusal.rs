@@ -21,7 +21,9 @@ fn in_numbers<R: Number>(precision: Precision, bad: [R; 3]) -> Result<Vec<Row>, 
     let model = Rigid::try_new(&good)?;
     let (mut configs, mut starts) = (0, 0);
     for value in bad {
-        for config in bad_configs(&good, value) {
+        for set in numbers() {
+            let mut config = good;
+            set(&mut config, value);
             configs += u32::from(Rigid::try_new(&config).is_ok());
         }
         for start in bad_starts(value) {
@@ -61,47 +63,19 @@ fn good<R: Number>() -> RigidConfig<R> {
     }
 }
 
-fn bad_configs<R: Number>(good: &RigidConfig<R>, value: R) -> [RigidConfig<R>; 9] {
-    let good = *good;
+/// Sets each number of the machine in turn.
+fn numbers<R: Number>() -> [fn(&mut RigidConfig<R>, R); 9] {
     [
-        RigidConfig {
-            mass: value,
-            ..good
-        },
-        RigidConfig {
-            radius: value,
-            ..good
-        },
-        RigidConfig {
-            polar_inertia: value,
-            ..good
-        },
-        RigidConfig {
-            clearance: value,
-            ..good
-        },
-        RigidConfig {
-            friction: value,
-            ..good
-        },
-        RigidConfig {
-            restitution: value,
-            ..good
-        },
-        RigidConfig {
-            gravity: value,
-            ..good
-        },
-        RigidConfig {
-            step: value,
-            ..good
-        },
+        |it, value| it.mass = value,
+        |it, value| it.radius = value,
+        |it, value| it.polar_inertia = value,
+        |it, value| it.clearance = value,
+        |it, value| it.friction = value,
+        |it, value| it.restitution = value,
+        |it, value| it.gravity = value,
+        |it, value| it.step = value,
         // Used where there is no gravity only.
-        RigidConfig {
-            speed: value,
-            gravity: R::ZERO,
-            ..good
-        },
+        |it, value| (it.speed, it.gravity) = (value, R::ZERO),
     ]
 }
 

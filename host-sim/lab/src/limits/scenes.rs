@@ -2,6 +2,7 @@
 
 use touchdown_rotor::error::ConfigError;
 
+use super::epsilon;
 use crate::limits::extreme::Extreme;
 use crate::limits::row::{Row, Worst};
 use crate::limits::truth::Truth;
@@ -44,10 +45,6 @@ pub fn rows(
             contact.take(error, limit);
         }
     }
-    let epsilon = match precision {
-        Precision::F64 => f64::EPSILON,
-        Precision::F32 => f32::EPSILON.into(),
-    };
     let row = |measure: &str, measured, limit, unit| {
         Row::new(
             format!("{}: {measure}", extreme.name),
@@ -83,7 +80,7 @@ pub fn rows(
     rows.push(row(
         "farthest beyond the wall",
         watched.outside.max(0.0),
-        ROUNDED * epsilon,
+        ROUNDED * epsilon(precision),
         "rho0",
     ));
     rows.push(row(

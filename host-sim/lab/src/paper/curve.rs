@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use maud::Markup;
-use touchdown_chart::plot::Pen;
+use touchdown_chart::plot::Chart;
 
 /// A curve, in the units that it names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,14 +25,9 @@ pub struct Curve {
 
 impl Curve {
     /// Draws it in other units: both coordinates times a factor.
-    pub fn draw(&self, mut pen: Pen<'_>, [x, y]: [f64; 2]) -> Markup {
-        for point in &self.points {
-            match point {
-                Some(point) => pen.line_to(point[0] * x, point[1] * y),
-                None => pen.lift(),
-            }
-        }
-        pen.finish(self.class)
+    pub fn draw(&self, chart: &Chart<'_>, [x, y]: [f64; 2]) -> Markup {
+        let points = self.points.iter().map(|it| it.unwrap_or([f64::NAN; 2]));
+        chart.curve(self.class, points.map(|it| (it[0] * x, it[1] * y)))
     }
 
     /// The greatest second coordinate, 0 or more.

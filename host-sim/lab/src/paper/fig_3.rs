@@ -106,7 +106,7 @@ pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
     let drawn = html! {
         (areas(view, &chart))
         @for curve in curves.iter().filter(|it| it.figure == FIGURE) {
-            (curve.draw(chart.pen(), [1.0, 1.0]))
+            (curve.draw(&chart, [1.0, 1.0]))
         }
     };
     let names = [

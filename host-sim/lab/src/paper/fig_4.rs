@@ -87,6 +87,6 @@ pub fn drawing(drawn: &Drawn, curve: &Curve) -> Markup {
     };
     html! {
         (orbit(drawn.scene.retainer.clearance, drawn.scene.rotor.spin, &drawn.outcome))
-        (chart.draw(&html! {}, &curve.draw(chart.pen(), [1e3, 1.0]), &html! {}))
+        (chart.plain(&curve.draw(&chart, [1e3, 1.0])))
     }
 }

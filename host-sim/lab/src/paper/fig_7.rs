@@ -7,7 +7,7 @@ use super::curve::Curve;
 use super::hertz::Contact;
 use super::straight;
 use touchdown_base::failure::Failure;
-use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_scene::Scene;
 
 const FIGURE: &str = "7";
@@ -71,16 +71,9 @@ pub fn drawing(curves: &[Curve]) -> Markup {
         y: &y,
         height: HEIGHT,
     };
-    let drawn = html! { @for curve in shown() { (curve.draw(chart.pen(), [1e3, 1e-3])) } };
+    let drawn = html! { @for curve in shown() { (curve.draw(&chart, [1e3, 1e-3])) } };
     html! {
-        (chart.draw(&html! {}, &drawn, &html! {}))
-        ul.legend {
-            @for curve in shown() {
-                li {
-                    svg width="34" height="12" aria-hidden="true" { path class={ "curve " (curve.class) } d="M1 6H33" {} }
-                    (curve.name)
-                }
-            }
-        }
+        (chart.plain(&drawn))
+        ul.legend { @for curve in shown() { (key(curve.class, &curve.name)) } }
     }
 }

@@ -85,8 +85,3 @@ pub fn run(drops: u32) -> Result<Paper, Failure> {
         base,
     })
 }
-
-/// What `--json` writes.
-pub fn json(paper: &Paper) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(paper).map(|text| text + "\n")
-}

@@ -1,9 +1,8 @@
 //! The same drops on the host and on another target: what they say must be the same bits.
 
-use super::campaign;
 use super::row::Row;
 use super::watch::Drop;
-use super::{Findings, Group, Plan};
+use super::{Findings, Group, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_run::target::Target;
 

@@ -5,11 +5,10 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::Plan;
-use super::campaign;
 use super::figure::{Curve, Figure};
 use super::impact::dropped;
 use super::listening::{Case, listen};
+use super::{Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::median;
 use touchdown_scene::Scene;

@@ -6,12 +6,11 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 
-use super::campaign;
 use super::figure::Figure;
 use super::impact::{JUMP, dropped, thrown};
 use super::row::Row;
 use super::watch::{Drop, Watched};
-use super::{Findings, Plan};
+use super::{Findings, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile, share};

@@ -3,13 +3,12 @@
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-use super::campaign;
 use super::figure::{Curve, Figure};
+use super::forecast_drop::{self, Quantiles, Score, scenes, score};
 use super::levitated::Levitated;
 use super::row::Row;
 use super::watch::{Drop, refused};
-use super::{Findings, Named, Plan};
-use crate::forecast_score::{self, Quantiles, Score, scenes, score};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_scene::{Scene, Start};
 
@@ -68,7 +67,7 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = campaign::map(plan, "forecast", &CASES, |case, mut random| {
         let [scene, told] = drawn(plan, case.0, &mut random)?;
-        forecast_score::watch(&scene, &told).map_err(refused)
+        forecast_drop::watch(&scene, &told).map_err(refused)
     })?;
     let mut rows = Vec::new();
     let mut curves = Vec::new();

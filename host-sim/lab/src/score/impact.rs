@@ -7,13 +7,11 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::bound;
-use super::campaign;
 use super::figure::{Curve, Figure, histogram};
 use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::Drop;
-use super::{Findings, Plan};
+use super::{Findings, Plan, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact};

@@ -12,6 +12,7 @@ mod disturbance;
 mod fall;
 mod figure;
 mod forecast;
+pub mod forecast_drop;
 mod impact;
 mod levitated;
 mod listening;
@@ -21,6 +22,7 @@ mod regime;
 mod row;
 mod sensors;
 mod severity;
+pub mod severity_drop;
 mod table;
 mod watch;
 mod whirl;
@@ -37,6 +39,7 @@ pub use row::{Row, none_fails};
 pub use table::table;
 
 use touchdown_base::failure::Failure;
+use touchdown_page::json::text;
 use touchdown_run::target::Target;
 use watch::Drop;
 
@@ -204,5 +207,5 @@ pub fn json(score: &Score) -> serde_json::Result<String> {
             .map(|(group, found)| (group.name, &found.figures[..]))
             .collect(),
     };
-    serde_json::to_string_pretty(&json).map(|json| json + "\n")
+    text(&json)
 }

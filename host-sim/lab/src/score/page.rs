@@ -11,7 +11,7 @@ use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 
 const HEIGHT: f64 = 320.0;
-/// Style classes of measured curves, in turn; a limit has that of the curve before it.
+/// Style classes of measured curves, in turn.
 const CLASSES: [&str; 5] = ["free-fall", "rolling", "impact", "sliding", "motion"];
 
 /// Writes the page.
@@ -43,25 +43,22 @@ pub fn page(score: &Score) -> String {
 }
 
 fn rows_of(name: &str, rows: &[Row]) -> Markup {
-    let head = html! {
-        th { "Case" }
-        th { "Quantity" }
-        th.number { "Measured" }
-        th.number { "Target" }
-        th { "Verdict" }
-        th { "More" }
-    };
-    let cells = |row: &Row| {
-        html! {
-            td { (row.case) }
-            td { (row.quantity) }
-            td.number { (row.measured().map_or("\u{2013}".to_owned(), short)) }
-            td.number { (if row.at_least { "\u{2265} " } else { "\u{2264} " }) (short(row.target)) }
-            td { (if row.holds { "holds" } else if row.undecided { "undecided" } else { "does not hold" }) }
-            td { (row.note) }
-        }
-    };
-    table(name, &head, rows.iter().map(cells))
+    table(name, rows)
+        .words("Case", |it| it.case.clone())
+        .words("Quantity", |it| it.quantity)
+        .number("Measured", |it| {
+            it.measured().map_or("\u{2013}".to_owned(), short)
+        })
+        .number("Target", |it| {
+            format!("{} {}", it.sense(), short(it.target))
+        })
+        .words("Verdict", |it| match (it.holds, it.undecided) {
+            (true, _) => "holds",
+            (_, true) => "undecided",
+            _ => "does not hold",
+        })
+        .words("More", |it| it.note.clone())
+        .draw()
 }
 
 fn drawn(figure: &Figure) -> Markup {
@@ -84,7 +81,7 @@ fn drawn(figure: &Figure) -> Markup {
             html! {
                 h3 { (title) }
                 (legend(curves))
-                (chart.draw(&html! {}, &lines(&chart, curves), &html! {}))
+                (chart.plain(&lines(&chart, curves)))
             }
         }
         Figure::Confusion {
@@ -116,16 +113,16 @@ fn axis(curves: &[Curve], part: usize, label: &str, decades: bool) -> Axis {
 }
 
 fn class(curves: &[Curve], index: usize) -> &'static str {
-    let before = curves[..=index].iter().filter(|it| !it.limit).count();
-    CLASSES[before.saturating_sub(1) % CLASSES.len()]
+    if curves[index].limit {
+        return "limit";
+    }
+    CLASSES[curves[..index].iter().filter(|it| !it.limit).count() % CLASSES.len()]
 }
 
 fn lines(chart: &Chart<'_>, curves: &[Curve]) -> Markup {
     html! {
         @for (index, curve) in curves.iter().enumerate() {
-            @let mut pen = chart.pen();
-            @for [x, y] in &curve.points { ({ pen.line_to(*x, *y); "" }) }
-            (pen.finish(if curve.limit { "limit" } else { class(curves, index) }))
+            (chart.curve(class(curves, index), curve.points.iter().map(|it| (it[0], it[1]))))
         }
     }
 }
@@ -134,10 +131,9 @@ fn legend(curves: &[Curve]) -> Markup {
     html! {
         ul.legend {
             @for (index, curve) in curves.iter().enumerate() {
-                @let style = if curve.limit { "limit" } else { class(curves, index) };
                 li {
                     svg width="24" height="12" aria-hidden="true" {
-                        path class={ "curve " (style) } d="M1 6H23" {}
+                        path class={ "curve " (class(curves, index)) } d="M1 6H23" {}
                     }
                     " " (curve.name)
                 }
@@ -146,26 +142,15 @@ fn legend(curves: &[Curve]) -> Markup {
     }
 }
 
-fn confusion(name: &str, truth: &[&str], told: &[&str], counts: &[Vec<u64>]) -> Markup {
-    let head = html! {
-        th { "" }
-        @for name in told { th.number { (name) } }
-        th.number { "all" }
-    };
+fn confusion(name: &str, truth: &[&'static str], told: &[&str], counts: &[Vec<u64>]) -> Markup {
     let rows: Vec<_> = truth.iter().zip(counts).collect();
-    let cells = |(name, counts): &(&&str, &Vec<u64>)| {
-        let all: u64 = counts.iter().sum();
-        html! {
-            th { (name) }
-            @for count in *counts {
-                td.number {
-                    (if *count == 0 { "\u{2013}".to_owned() } else {
-                        format!("{:.2}", 100.0 * *count as f64 / all as f64)
-                    })
-                }
-            }
-            td.number { (all) }
-        }
-    };
-    table(name, &head, rows.iter().map(cells))
+    let all = |counts: &[u64]| counts.iter().sum::<u64>();
+    let mut table = table(name, &rows).names("", |it| *it.0);
+    for (index, name) in told.iter().enumerate() {
+        table = table.number(name, move |it| match it.1[index] {
+            0 => "\u{2013}".to_owned(),
+            count => format!("{:.2}", 100.0 * count as f64 / all(it.1) as f64),
+        });
+    }
+    table.number("all", |it| all(it.1)).draw()
 }

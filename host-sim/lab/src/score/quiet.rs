@@ -6,13 +6,11 @@ use std::f64::consts::TAU;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-use super::campaign;
-use super::confirmation;
 use super::levitated::{Levitated, ORBIT};
 use super::listening::{Case, Heard, RUNOUT, listen};
 use super::row::Row;
 use super::watch::Drop;
-use super::{Findings, Plan};
+use super::{Findings, Plan, campaign, confirmation};
 use touchdown_base::failure::Failure;
 use touchdown_scene::Scene;
 

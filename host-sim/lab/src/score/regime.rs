@@ -4,14 +4,13 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::campaign;
 use super::figure::Figure;
 use super::impact::dropped;
 use super::levitated::Levitated;
 use super::row::Row;
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
-use super::{Findings, Plan};
+use super::{Findings, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};

@@ -125,6 +125,15 @@ impl Row {
         self
     }
 
+    /// How the measured value stands to the target, for people.
+    pub fn sense(&self) -> char {
+        if self.at_least {
+            '\u{2265}'
+        } else {
+            '\u{2264}'
+        }
+    }
+
     /// Whether the target is missed beyond doubt.
     pub fn fails(&self) -> bool {
         !self.holds && !self.undecided

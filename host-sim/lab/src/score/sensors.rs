@@ -6,11 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 use touchdown_core::health::FaultKind;
 
-use super::campaign;
 use super::impact::{self, dropped};
 use super::row::Row;
 use super::watch::{Drop, Watched};
-use super::{Findings, Named, Plan};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile, share};
 use touchdown_run::matching::match_events;

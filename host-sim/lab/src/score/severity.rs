@@ -2,12 +2,11 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::campaign;
 use super::impact::JUMP;
 use super::row::Row;
+use super::severity_drop::{Strained, watch};
 use super::watch::refused;
-use super::{Findings, Named, Plan, forecast};
-use crate::severity_score::{Strained, watch};
+use super::{Findings, Named, Plan, campaign, forecast};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile};
 use touchdown_scene::Scene;

@@ -28,12 +28,12 @@ fn line(row: &Row, paint: Paint) -> String {
     } else {
         paint.bad("BROKEN   ")
     };
-    let sense = if row.at_least { '\u{2265}' } else { '\u{2264}' };
     format!(
-        "  {verdict} {:<CASE$} {:<24} {:>9} {sense} {:<7} {}\n",
+        "  {verdict} {:<CASE$} {:<24} {:>9} {} {:<7} {}\n",
         row.case,
         row.quantity,
         row.measured().map_or("-".to_owned(), short),
+        row.sense(),
         short(row.target),
         row.note
     )

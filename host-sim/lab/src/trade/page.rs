@@ -52,37 +52,21 @@ pub fn page(trade: &Trade) -> String {
 }
 
 fn rows(name: &str, rows: &[&Row]) -> Markup {
-    let head = html! {
-        th { "Combination" }
-        th.number { "Step" }
-        th.number { "Impact 1" }
-        th.number { "Impact 3" }
-        th.number { "Impact 10" }
-        th.number { "Contact, T" }
-        th { "Regime" }
-        th.number { "Energy" }
-        th.number { "ns a step" }
-        th.number { "s/s" }
-        th.number { "Instr. a step" }
-    };
-    table(name, &head, rows.iter().map(|row| cells(row)))
-}
-
-fn cells(row: &Row) -> Markup {
     let error = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1e}"));
-    html! {
-        td { (row.name()) }
-        td.number { (si(row.step_s, "s")) }
-        td.number { (error(row.error_impact_1)) }
-        td.number { (error(row.error_impact_3)) }
-        td.number { (error(row.error_impact_10)) }
-        td.number { (error(row.contact_error)) }
-        td { (if row.regime_ok { "right" } else { "wrong" }) }
-        td.number { (format!("{:.1e}", row.energy_drift)) }
-        td.number { (format!("{:.1}", row.ns_per_step)) }
-        td.number { (format!("{:.1e}", row.seconds_per_simulated_second)) }
-        td.number {
-            (row.mcu_instructions_per_step.map_or("\u{2013}".to_owned(), |it| format!("{it:.0}")))
-        }
-    }
+    table(name, rows)
+        .words("Combination", |it| it.name())
+        .number("Step", |it| si(it.step_s, "s"))
+        .number("Impact 1", |it| error(it.error_impact_1))
+        .number("Impact 3", |it| error(it.error_impact_3))
+        .number("Impact 10", |it| error(it.error_impact_10))
+        .number("Contact, T", |it| error(it.contact_error))
+        .words("Regime", |it| if it.regime_ok { "right" } else { "wrong" })
+        .number("Energy", |it| error(Some(it.energy_drift)))
+        .number("ns a step", |it| format!("{:.1}", it.ns_per_step))
+        .number("s/s", |it| error(Some(it.seconds_per_simulated_second)))
+        .number("Instr. a step", |it| {
+            let count = it.mcu_instructions_per_step;
+            count.map_or("\u{2013}".to_owned(), |it| format!("{it:.0}"))
+        })
+        .draw()
 }

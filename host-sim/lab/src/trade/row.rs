@@ -1,5 +1,7 @@
 //! A row of the table.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::accuracy::Accuracy;
@@ -46,11 +48,6 @@ pub struct Row {
     pub worst_error: f64,
 }
 
-#[derive(Serialize)]
-struct Json<'a> {
-    rows: &'a [Row],
-}
-
 impl Row {
     pub(super) fn new(model: Model, accuracy: &Accuracy, pace: &Pace) -> Self {
         let [error_impact_1, error_impact_3, error_impact_10] = accuracy.impacts;
@@ -88,5 +85,5 @@ impl Row {
 
 /// The table as JSON.
 pub fn json(rows: &[Row]) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(&Json { rows })
+    serde_json::to_string_pretty(&BTreeMap::from([("rows", rows)]))
 }

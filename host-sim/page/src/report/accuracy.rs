@@ -8,15 +8,12 @@ use touchdown_chart::text::{error, ms, si, significant};
 use touchdown_run::outcome::Outcome;
 use touchdown_scene::names::regime_name;
 
+/// Quantity, model, reference, difference.
+type Row = [String; 4];
+
 /// Draws times and end state side by side, with differences.
 pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
-    let head = html! {
-        th { "Quantity" }
-        th.number { "Model" }
-        th.number { "Reference" }
-        th.number { "Difference" }
-    };
     let mut rows = vec![
         count_row("Impacts", model.impacts.len(), truth.impacts.len()),
         time_row("First impact, ms", first_impact(model), first_impact(truth)),
@@ -41,23 +38,33 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
             ));
         }
     }
-    rows.push(html! {
-        td { "Regime" }
-        td.number { (regime_name(model.regime)) }
-        td.number { (regime_name(truth.regime)) }
-        td.number { (if model.regime == truth.regime { "same" } else { "differs" }) }
-    });
-    rows.push(html! {
-        td { "Position at the end, part of the clearance" }
-        td.number {} td.number {}
-        td.number { (error(apart(model, truth) / subject.machine.clearance)) }
-    });
+    let same = if model.regime == truth.regime {
+        "same"
+    } else {
+        "differs"
+    };
+    rows.push(
+        [
+            "Regime",
+            regime_name(model.regime),
+            regime_name(truth.regime),
+            same,
+        ]
+        .map(str::to_owned),
+    );
+    let apart = error(apart(model, truth) / subject.machine.clearance);
+    rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
+    let table = table("Model against reference", &rows)
+        .words("Quantity", |it| it[0].clone())
+        .number("Model", |it| it[1].clone())
+        .number("Reference", |it| it[2].clone())
+        .number("Difference", |it| it[3].clone());
     html! {
         p {
             "The model ran in " (subject.precision) " with an output interval of "
             (si(subject.step, "s")) ". The reference is an independent solver in f64."
         }
-        (table("Model against reference", &head, rows.into_iter()))
+        (table.draw())
     }
 }
 
@@ -75,20 +82,16 @@ fn apart(model: &History, truth: &History) -> f64 {
     f64::hypot(x - u, y - v)
 }
 
-fn count_row(name: &str, model: usize, truth: usize) -> Markup {
-    html! {
-        td { (name) }
-        td.number { (model) }
-        td.number { (truth) }
-        td.number { (model.abs_diff(truth)) }
-    }
+fn count_row(name: &str, model: usize, truth: usize) -> Row {
+    let [a, b, apart] = [model, truth, model.abs_diff(truth)].map(|it| it.to_string());
+    [name.to_owned(), a, b, apart]
 }
 
-fn time_row(name: &str, model: Option<f64>, truth: Option<f64>) -> Markup {
+fn time_row(name: &str, model: Option<f64>, truth: Option<f64>) -> Row {
     row(name, model, truth, "s", ms)
 }
 
-fn speed_row(model: Option<f64>, truth: Option<f64>) -> Markup {
+fn speed_row(model: Option<f64>, truth: Option<f64>) -> Row {
     let speed = |value: f64| significant(value * 1e3, 5);
     row("Peak impact speed, mm/s", model, truth, "m/s", speed)
 }
@@ -99,15 +102,11 @@ fn row(
     truth: Option<f64>,
     unit: &str,
     show: fn(f64) -> String,
-) -> Markup {
+) -> Row {
     let cell = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), show);
-    html! {
-        td { (name) }
-        td.number { (cell(model)) }
-        td.number { (cell(truth)) }
-        td.number {
-            @if let (Some(model), Some(truth)) = (model, truth) { (error(model - truth)) "\u{a0}" (unit) }
-            @else { "\u{2013}" }
-        }
-    }
+    let apart = match (model, truth) {
+        (Some(model), Some(truth)) => format!("{}\u{a0}{unit}", error(model - truth)),
+        _ => "\u{2013}".to_owned(),
+    };
+    [name.to_owned(), cell(model), cell(truth), apart]
 }

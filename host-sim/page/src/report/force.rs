@@ -107,12 +107,9 @@ fn pulse(first: &Impact, meeting: &Meeting) -> Markup {
         y: &y,
         height: HEIGHT,
     };
-    let mut curve = chart.pen();
-    for (time, force) in &history {
-        curve.line_to(time * 1e6, *force);
-    }
+    let curve = chart.curve("motion", history.iter().map(|it| (it.0 * 1e6, it.1)));
     html! {
-        (chart.draw(&html! {}, &curve.finish("motion"), &html! {}))
+        (chart.plain(&curve))
         p.note {
             "The first impact, at " (ms(first.state.time)) "\u{a0}ms: " (si(first.normal_impulse, "N s")) " in "
             (si(duration, "s")) ", at most " (si(peak, "N"))

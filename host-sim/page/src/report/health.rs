@@ -10,33 +10,24 @@ use touchdown_scene::names::channel_name;
 /// Condition of each channel at the end, and every fault told.
 pub fn health(outcome: &Outcome) -> Markup {
     let detection = &outcome.detection;
-    let faults = detection.events.iter().filter_map(|event| {
-        let fault = event.fault?;
-        Some(html! {
-            td { (fault.channel) }
-            td { (fault.kind.name()) }
-            td.number { (ms(event.onset_s)) }
-            td.number { (ms(event.declared_s)) }
-        })
-    });
-    let faults: Vec<_> = faults.collect();
+    let faults = detection.events.iter();
+    let faults: Vec<_> = faults.filter_map(|it| Some((it, it.fault?))).collect();
+    let table = table("Sensor faults", &faults)
+        .words("Channel", |it| it.1.channel)
+        .words("Fault", |it| it.1.kind.name())
+        .number("since, ms", |it| ms(it.0.onset_s))
+        .number("told, ms", |it| ms(it.0.declared_s));
     let bad: Vec<String> = (0..)
         .zip(detection.conditions)
         .filter(|(_, condition)| *condition != Condition::Ok)
         .map(|(channel, condition)| format!("{} is {}", channel_name(channel), condition.name()))
         .collect();
-    let head = html! {
-        th { "Channel" }
-        th { "Fault" }
-        th.number { "since, ms" }
-        th.number { "told, ms" }
-    };
     html! {
         p {
             (detection.samples) " samples, " (detection.faults) " values unusable or not used. "
             @if bad.is_empty() { "At the end every channel is sound." }
             @else { span.alarm { "At the end " (bad.join(", ")) "." } }
         }
-        @if !faults.is_empty() { (table("Sensor faults", &head, faults.into_iter())) }
+        @if !faults.is_empty() { (table.draw()) }
     }
 }

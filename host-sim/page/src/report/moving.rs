@@ -6,7 +6,7 @@ use super::{RingSubject, Subject};
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 use touchdown_base::history::{History, PhaseKind};
-use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_run::outcome::{Outcome, TracePoint};
 use touchdown_truth::Moving;
 
@@ -165,22 +165,12 @@ fn lines<const N: usize>(
         y: &y,
         height: HEIGHT,
     };
-    let curve = |index: usize, class: &str| {
-        let mut pen = chart.pen();
-        for (time, values) in &values {
-            pen.line_to(time * factor, values[index]);
-        }
-        pen.finish(class)
-    };
+    let points = |index: usize| values.iter().map(move |it| (it.0 * factor, it.1[index]));
     let curves = html! {
-        @for (index, (_, class)) in names.iter().enumerate() { (curve(index, class)) }
+        @for (index, (_, class)) in names.iter().enumerate() { (chart.curve(class, points(index))) }
     };
     html! {
-        (chart.draw(&html! {}, &curves, &html! {}))
-        ul.legend {
-            @for (name, class) in names {
-                li { svg width="34" height="12" aria-hidden="true" { path class={ "curve " (class) } d="M1 6H33" {} } (name) }
-            }
-        }
+        (chart.plain(&curves))
+        ul.legend { @for (name, class) in names { (key(class, name)) } }
     }
 }

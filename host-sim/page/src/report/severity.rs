@@ -9,7 +9,7 @@ use touchdown_run::outcome::Outcome;
 /// Draws the figures side by side.
 pub fn severity(outcome: &Outcome) -> Markup {
     let (seen, truth) = (&outcome.detection.severity, &outcome.truth);
-    let number = |value: f64| significant(value, 4);
+    let text = |value: f64| significant(value, 4);
     let speeds = truth.impacts.iter().map(|it| it.normal_speed);
     let impulses = || truth.impacts.iter().map(|it| it.normal_impulse);
     let mut rows = vec![
@@ -20,18 +20,18 @@ pub fn severity(outcome: &Outcome) -> Markup {
         ),
         (
             "Greatest speed into the wall, mm/s",
-            number(seen.impact_speed_m_s * 1e3),
-            number(speeds.fold(0.0, f64::max) * 1e3),
+            text(seen.impact_speed_m_s * 1e3),
+            text(speeds.fold(0.0, f64::max) * 1e3),
         ),
         (
             "Greatest impulse, N\u{a0}s",
-            number(seen.impulse_n_s),
-            number(impulses().fold(0.0, f64::max)),
+            text(seen.impulse_n_s),
+            text(impulses().fold(0.0, f64::max)),
         ),
         (
             "Sum of the impulses, N\u{a0}s",
-            number(seen.total_impulse_n_s),
-            number(impulses().sum()),
+            text(seen.total_impulse_n_s),
+            text(impulses().sum()),
         ),
         (
             "Time in permanent contact, ms",
@@ -40,25 +40,21 @@ pub fn severity(outcome: &Outcome) -> Markup {
         ),
         (
             "Velocity index",
-            number(seen.velocity_index),
+            text(seen.velocity_index),
             "\u{2013}".to_owned(),
         ),
     ];
     if seen.whirl_load_n > 0.0 {
         let dash = "\u{2013}".to_owned();
-        rows.push(("Whirl, Hz", number(seen.whirl_frequency_hz), dash.clone()));
-        rows.push(("Load of whirl, N", number(seen.whirl_load_n), dash));
+        rows.push(("Whirl, Hz", text(seen.whirl_frequency_hz), dash.clone()));
+        rows.push(("Load of whirl, N", text(seen.whirl_load_n), dash));
     }
-    let head = html! {
-        th { "Quantity" }
-        th.number { "Detector" }
-        th.number { "Truth" }
-    };
-    let row = |(name, seen, truth): &(&str, String, String)| {
-        html! { td { (name) } td.number { (seen) } td.number { (truth) } }
-    };
+    let table = table("Severity", &rows)
+        .words("Quantity", |it| it.0)
+        .number("Detector", |it| it.1.clone())
+        .number("Truth", |it| it.2.clone());
     html! {
-        (table("Severity", &head, rows.iter().map(row)))
+        (table.draw())
         p.note {
             "From position and speed alone. The detector sees no impact below its faintest; the truth counts down to the "
             "reference's cut-off. Velocity index: greatest speed of the centre over sqrt(gravity \u{d7} clearance). Load of "

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use touchdown_base::spectrogram::Spectrogram;
-use touchdown_chart::plot::{Axis, Chart, Pen};
+use touchdown_chart::plot::{Axis, Chart, Pen, key};
 
 const HEIGHT: f64 = 220.0;
 /// Turns of the rotor, and Hz, up to which is shown at least.
@@ -57,10 +57,13 @@ fn full(shown: &Spectra<'_>) -> Markup {
         height: HEIGHT,
     };
     let floor = 10f64.powf(y.lo);
+    let points = |amplitudes: &[f64]| -> Vec<(f64, f64)> {
+        let all = amplitudes.iter().enumerate();
+        let all = all.map(|(index, it)| (found.frequency(index), (MICRO * it).max(floor)));
+        all.filter(|it| it.0.abs() <= reach).collect()
+    };
     let drawn = html! {
-        @for (class, _, amplitudes) in &curves {
-            (line(chart.pen(), found, amplitudes, reach, floor).finish(class))
-        }
+        @for (class, _, amplitudes) in &curves { (chart.curve(class, points(amplitudes))) }
     };
     let spin = shown.spin / std::f64::consts::TAU;
     let front = html! {
@@ -71,28 +74,10 @@ fn full(shown: &Spectra<'_>) -> Markup {
     html! {
         (chart.draw(&html! {}, &drawn, &front))
         ul.legend {
-            @for (class, name, _) in curves.iter().rev() {
-                li { svg width="34" height="12" aria-hidden="true" { path class={ "curve " (class) } d="M1 6H33" {} } (name) }
-            }
+            @for (class, name, _) in curves.iter().rev() { (key(class, name)) }
             li { svg width="34" height="12" aria-hidden="true" { line.mark x1="17" x2="17" y1="0" y2="12" {} } "speed of the rotor, and against it" }
         }
     }
-}
-
-fn line<'a>(
-    mut pen: Pen<'a>,
-    found: &Spectrogram,
-    amplitudes: &[f64],
-    reach: f64,
-    floor: f64,
-) -> Pen<'a> {
-    for (index, amplitude) in amplitudes.iter().enumerate() {
-        let frequency = found.frequency(index);
-        if frequency.abs() <= reach {
-            pen.line_to(frequency, (MICRO * amplitude).max(floor));
-        }
-    }
-    pen
 }
 
 fn reach(shown: &Spectra<'_>) -> f64 {
@@ -155,5 +140,5 @@ fn waterfall(spectra: &Spectra<'_>) -> Markup {
             g opacity=(format!("{:.2}", 1.0 - number as f64 / SHADES as f64)) { (pen.finish("shade")) }
         }
     };
-    chart.draw(&html! {}, &drawn, &html! {})
+    chart.plain(&drawn)
 }

@@ -2,8 +2,8 @@
 
 use super::Subject;
 use maud::{Markup, html};
-use touchdown_base::history::{Impact, Pulse};
-pub use touchdown_chart::table::{OPEN, table};
+use touchdown_base::history::Impact;
+use touchdown_chart::table::{OPEN, table};
 use touchdown_chart::text::{column, error, ms, ms_or_dash, si};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches};
@@ -21,20 +21,6 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
         .iter()
         .filter(|it| it.detected.is_none() && it.kind != EventKind::Impact);
     let missed: Vec<&Match> = missed.collect();
-    let head = html! {
-        th { "Event" }
-        th.number { "Onset" br; "ms" }
-        th.number { "Declared" br; "ms" }
-        th.number { "Confirmed" br; "ms" }
-        th.number { "Latency" br; "ms" }
-        th.number { "Onset error" br; "ms" }
-        th { "Plane" }
-        th { "Against the truth" }
-    };
-    let row = |&(index, event): &(usize, &DetectedEvent)| {
-        let is_false = matches.false_events.contains(&index);
-        event_row(event, matches.of_detected(index), is_false)
-    };
     let all = detection.events.iter().enumerate();
     let (hits, changes): (Vec<_>, Vec<_>) = all.partition(|it| it.1.event == EventKind::Impact);
     html! {
@@ -42,11 +28,11 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
             (detection.events.len()) " events in " (detection.samples) " samples, "
             (matches.false_events.len()) " false, " (detection.faults) " unusable channel values."
         }
-        @if !changes.is_empty() { (table("Events of the detector", &head, changes.iter().map(row))) }
+        @if !changes.is_empty() { (listed("Events of the detector", &changes, matches)) }
         @if !hits.is_empty() {
             details {
                 summary { "Detected impacts: " (hits.len()) }
-                (table("Detected impacts", &head, hits.iter().map(row)))
+                (listed("Detected impacts", &hits, matches))
             }
         }
         @for missed in missed.iter().take(OPEN) {
@@ -60,28 +46,36 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
     }
 }
 
-fn event_row(event: &DetectedEvent, truth: Option<&Match>, is_false: bool) -> Markup {
-    let judgement = match truth {
-        Some(_) => "true",
-        None if is_false => "false",
-        None => "not judged",
-    };
-    html! {
-        td {
-            (event_name(event.event))
-            @if let Some(speed) = event.normal_speed_m_s { ", " (si(speed, "m/s")) }
-        }
-        td.number { (ms(event.onset_s)) }
-        td.number { (ms(event.declared_s)) }
-        td.number { (ms_or_dash(event.confirmed_s)) }
-        td.number { (ms_or_dash(truth.and_then(|it| it.latency_s))) }
-        td.number { (ms_or_dash(truth.and_then(|it| it.onset_error_s))) }
-        td { (event.plane) }
-        td class=(if is_false { "missed" } else { "" }) {
-            (judgement)
-            @if let Some(time) = event.withdrawn_s { ", withdrawn at " (ms(time)) "\u{a0}ms" }
-        }
-    }
+/// Of events with their numbers.
+fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> Markup {
+    let truth = |index: usize| matches.of_detected(index);
+    table(name, events)
+        .words("Event", |(_, it)| match it.normal_speed_m_s {
+            Some(speed) => format!("{}, {}", event_name(it.event), si(speed, "m/s")),
+            None => event_name(it.event).to_owned(),
+        })
+        .number("Onset\nms", |it| ms(it.1.onset_s))
+        .number("Declared\nms", |it| ms(it.1.declared_s))
+        .number("Confirmed\nms", |it| ms_or_dash(it.1.confirmed_s))
+        .number("Latency\nms", |it| {
+            ms_or_dash(truth(it.0).and_then(|it| it.latency_s))
+        })
+        .number("Onset error\nms", |it| {
+            ms_or_dash(truth(it.0).and_then(|it| it.onset_error_s))
+        })
+        .words("Plane", |it| it.1.plane)
+        .marked("Against the truth", |(index, it)| {
+            let (class, judgement) = match truth(*index) {
+                _ if matches.false_events.contains(index) => ("missed", "false"),
+                Some(_) => ("", "true"),
+                None => ("", "not judged"),
+            };
+            let withdrawn = it
+                .withdrawn_s
+                .map(|time| format!(", withdrawn at {}\u{a0}ms", ms(time)));
+            (class, judgement.to_owned() + &withdrawn.unwrap_or_default())
+        })
+        .draw()
 }
 
 /// The true impacts, whether they were detected, and the model's error at each.
@@ -99,37 +93,16 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
         .zip(&hard)
         .filter(|(it, hard)| **hard && it.detected.is_some());
     let forces = outcome.model.has_forces();
-    let head = html! {
-        th.number { "Index" }
-        th.number { "Time" br; "ms" }
-        th.number { "Normal speed" br; "mm/s" }
-        th.number { "Impulse" br; "mN\u{a0}s" }
-        th { "Detected" }
-        th.number { "Latency" br; "ms" }
-        th.number { "Onset error" br; "ms" }
-        th.number { "Model: time error" br; "s" }
-        th.number { "Model: speed error" br; "relative" }
-        @if forces {
-            th.number { "Peak force" br; "N" }
-            th.number { "Contact" br; "ms" }
-        }
-    };
-    let model = &outcome.model.impacts;
-    let row = |((index, impact), found): ((usize, &Impact), &&Match)| {
-        let model = model.get(index);
-        html! {
-            (impact_row(index, impact, model, found))
-            @if forces { (force_cells(model.and_then(|it| it.pulse))) }
-        }
-    };
-    let rows = truth.iter().enumerate().zip(&found).map(row);
+    let rows: Vec<Row<'_>> = (truth.iter().enumerate().zip(&found))
+        .map(|((index, truth), found)| (index, truth, outcome.model.impacts.get(index), *found))
+        .collect();
     html! {
         p {
             (truth.len()) " impacts, " (detected) " detected. Of the " (hard.iter().filter(|it| **it).count())
             " whose velocity jump reaches " (si(DESIGN_JUMP, "m/s"))
             ", from which detection is the design target, " (hard_found.count()) " were detected."
         }
-        (table("Impacts", &head, rows))
+        (impact_table(&rows, forces))
         p.note {
             "Normal speed: into the wall just before. The series ends where the bounce speed is below the reference's "
             "cut-off; its last impacts are far below any sensor's noise. Model and reference are compared by index."
@@ -138,26 +111,41 @@ pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Marku
     }
 }
 
-fn impact_row(index: usize, truth: &Impact, model: Option<&Impact>, found: &Match) -> Markup {
-    let time_error = model.map(|model| model.state.time - truth.state.time);
-    let speed_error = model.map(|model| model.normal_speed / truth.normal_speed - 1.0);
-    html! {
-        td.number { (index) }
-        td.number { (ms(truth.state.time)) }
-        td.number { (column(truth.normal_speed * 1e3)) }
-        td.number { (column(truth.normal_impulse * 1e3)) }
-        td { (if found.detected.is_some() { "yes" } else { "no" }) }
-        td.number { (ms_or_dash(found.latency_s)) }
-        td.number { (ms_or_dash(found.onset_error_s)) }
-        td.number { (time_error.map_or("\u{2013}".to_owned(), error)) }
-        td.number { (speed_error.map_or("\u{2013}".to_owned(), error)) }
-    }
-}
+/// Index, by the reference, by the model, as detected.
+type Row<'a> = (usize, &'a Impact, Option<&'a Impact>, &'a Match);
 
-fn force_cells(pulse: Option<Pulse>) -> Markup {
-    let number = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), column);
-    html! {
-        td.number { (number(pulse.map(|it| it.peak_force))) }
-        td.number { (number(pulse.map(|it| it.duration * 1e3))) }
+fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
+    let text =
+        |value: Option<f64>, show: fn(f64) -> String| value.map_or("\u{2013}".to_owned(), show);
+    let pulse = |it: &Row| it.2.and_then(|it| it.pulse);
+    let table = table("Impacts", rows)
+        .number("Index", |it| it.0)
+        .number("Time\nms", |it| ms(it.1.state.time))
+        .number("Normal speed\nmm/s", |it| column(it.1.normal_speed * 1e3))
+        .number("Impulse\nmN\u{a0}s", |it| column(it.1.normal_impulse * 1e3))
+        .words("Detected", |it| {
+            if it.3.detected.is_some() { "yes" } else { "no" }
+        })
+        .number("Latency\nms", |it| ms_or_dash(it.3.latency_s))
+        .number("Onset error\nms", |it| ms_or_dash(it.3.onset_error_s))
+        .number("Model: time error\ns", |(_, truth, model, _)| {
+            text(model.map(|it| it.state.time - truth.state.time), error)
+        })
+        .number("Model: speed error\nrelative", |(_, truth, model, _)| {
+            text(
+                model.map(|it| it.normal_speed / truth.normal_speed - 1.0),
+                error,
+            )
+        });
+    if !forces {
+        return table.draw();
     }
+    table
+        .number("Peak force\nN", |it| {
+            text(pulse(it).map(|it| it.peak_force), column)
+        })
+        .number("Contact\nms", |it| {
+            text(pulse(it).map(|it| it.duration * 1e3), column)
+        })
+        .draw()
 }

@@ -6,8 +6,7 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire;
-use touchdown_protocol::wire::{Record, Switching};
+use touchdown_protocol::wire::{self, Record, Switching};
 
 use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
 

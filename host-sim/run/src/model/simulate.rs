@@ -13,8 +13,8 @@ use touchdown_scene::{Fidelity, Scene};
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
-        Fidelity::Support => support::run(scene),
-        Fidelity::TwoPlane => two_plane::run(scene),
+        Fidelity::Support => support::watch(scene, &mut |_| ()),
+        Fidelity::TwoPlane => two_plane::watch(scene, &mut |_| ()),
         _ => Ok(ModelRun {
             histories: Histories {
                 whole: with_model(scene, Simulate(scene))?,

@@ -134,12 +134,7 @@ pub struct ForecastInput {
     pub total: f64,
 }
 
-/// Runs the scene's model with what happens in each ring.
-pub(super) fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
-    in_numbers(scene, Run(scene, &mut |_| ()))
-}
-
-/// The same, watched after each step.
+/// Runs the scene's model with what happens in each ring, watched after each step.
 pub fn watch(scene: &Scene, each: &mut dyn FnMut(ForecastInput)) -> Result<ModelRun, ConfigError> {
     in_numbers(scene, Run(scene, each))
 }

@@ -126,11 +126,6 @@ impl Reference {
         }
     }
 
-    /// Launch speed below which a bounce series is ended by its limit, m/s.
-    pub fn cutoff_speed(&self) -> f64 {
-        impact::CUTOFF * self.scale.speed
-    }
-
     /// Speed below which a rotor in contact is still, m/s.
     pub fn still_speed(&self) -> f64 {
         STILL * self.scale.speed

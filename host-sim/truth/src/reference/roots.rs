@@ -87,30 +87,34 @@ pub fn polish(coefficients: &[f64], mut low: f64, mut high: f64) -> f64 {
     x
 }
 
-/// Where a function that is not negative at 0 first falls below zero in `[0, 1]`.
-///
-/// Leading coefficients within `tolerance` are taken as zero, so a function that starts on zero is
-/// judged by the way it leaves it; 0 if it falls at once, `None` if it never does.
-pub fn first_fall(coefficients: &[f64], tolerance: f64) -> Option<f64> {
-    let first = coefficients.iter().position(|c| c.abs() > tolerance)?;
-    let rest = &coefficients[first..];
-    if rest[0] < 0.0 {
-        return Some(0.0);
+/// Where a function falls below zero, in `[0, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fall {
+    /// Not there.
+    Never,
+    /// Here.
+    At(f64),
+    /// Not up to here; the rest was not looked at.
+    After(f64),
+}
+
+/// Where a function whose first coefficient is not 0 first falls below zero. A bound of the curvature gives steps that
+/// can't pass a root.
+pub fn fall(coefficients: &[f64]) -> Fall {
+    if coefficients[0] < 0.0 {
+        return Fall::At(0.0);
     }
-    if rest[0] > rest[1..].iter().map(|c| c.abs()).sum() {
-        return None;
+    if coefficients[0] > coefficients[1..].iter().map(|c| c.abs()).sum() {
+        return Fall::Never;
     }
-    // A bound of the curvature gives a step that can't pass the first root.
-    let curvature: f64 = rest
-        .iter()
-        .enumerate()
-        .map(|(k, c)| (k * k.saturating_sub(1)) as f64 * c.abs())
-        .sum();
+    let bends = coefficients.iter().enumerate();
+    let bends = bends.map(|(k, c)| (k * k.saturating_sub(1)) as f64 * c.abs());
+    let curvature: f64 = bends.sum();
     let mut x = 0.0;
     for _ in 0..MAX_ITERATIONS {
-        let (value, slope) = value_and_slope(rest, x);
+        let (value, slope) = value_and_slope(coefficients, x);
         if value <= 0.0 {
-            return Some(x);
+            return Fall::At(x);
         }
         let root = (slope * slope + 2.0 * curvature * value).sqrt();
         let step = if slope > 0.0 {
@@ -119,12 +123,26 @@ pub fn first_fall(coefficients: &[f64], tolerance: f64) -> Option<f64> {
             2.0 * value / (root - slope)
         };
         if x + step > 1.0 {
-            return None;
+            return Fall::Never;
         }
         if step <= f64::EPSILON * x {
-            return Some(x);
+            return Fall::At(x);
         }
         x += step;
     }
-    (value(rest, x) <= tolerance).then_some(x)
+    Fall::After(x)
+}
+
+/// Where a function that is not negative at 0 first falls below zero in `[0, 1]`.
+///
+/// Leading coefficients within `tolerance` are taken as zero, so a function that starts on zero is
+/// judged by the way it leaves it; 0 if it falls at once, `None` if it never does.
+pub fn first_fall(coefficients: &[f64], tolerance: f64) -> Option<f64> {
+    let first = coefficients.iter().position(|c| c.abs() > tolerance)?;
+    let rest = &coefficients[first..];
+    match fall(rest) {
+        Fall::Never => None,
+        Fall::At(x) => Some(x),
+        Fall::After(x) => (value(rest, x) <= tolerance).then_some(x),
+    }
 }

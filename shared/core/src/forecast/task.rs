@@ -2,8 +2,7 @@
 
 use crate::config::DetectorConfig;
 use crate::detect::Estimate;
-use crate::event::Notice;
-use crate::event::Outlook;
+use crate::event::{Notice, Outlook};
 use crate::forecast::{Forecast, ForecastState};
 use touchdown_rotor::error::ConfigError;
 

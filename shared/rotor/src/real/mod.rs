@@ -21,8 +21,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 pub use micromath::Micro32;
-pub use polynomial::{Poly32, Poly64};
-pub use polynomial::{atan2, ln, sin_cos};
+pub use polynomial::{Poly32, Poly64, atan2, ln, sin_cos};
 pub use root::root;
 pub use touchdown_fpu::sqrt;
 

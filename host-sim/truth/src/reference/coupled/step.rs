@@ -1,10 +1,11 @@
 //! A step of smooth motion: its Taylor series, and where it ends.
 
-use super::fall::{Fall, first_fall};
+use super::fall::first_fall;
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, dot};
 pub use super::mode::Mode;
 use super::system::{Hold, Law, SIZE, System};
+use crate::reference::roots::Fall;
 
 /// Rounding of what a contact's forces and slips are made of, relative.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;

@@ -2,7 +2,7 @@
 
 use super::jet::Jet;
 use super::mode::Mode;
-use super::motion::{CUTOFF, Moment, Motion};
+use super::motion::{Moment, Motion};
 use super::system::{Hold, Law, Link, SIZE, System};
 use crate::reference::scale::Scale;
 use touchdown_base::history::ModelEvent;
@@ -119,7 +119,6 @@ impl SupportState {
 #[derive(Clone, Debug)]
 pub struct SupportReference {
     motion: Motion<Support>,
-    speed_unit: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -217,10 +216,7 @@ impl SupportReference {
             (scale.time, scale.speed),
             coordinates(machine, start),
         );
-        Self {
-            motion,
-            speed_unit: scale.speed,
-        }
+        Self { motion }
     }
 
     /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
@@ -261,11 +257,6 @@ impl SupportReference {
     /// Size of the last terms of the series (1e-18 of the clearance if not set).
     pub fn set_accuracy(&mut self, accuracy: f64) {
         self.motion.set_accuracy(accuracy);
-    }
-
-    /// Launch speed below which a bounce series ends in contact, m/s.
-    pub fn cutoff_speed(&self) -> f64 {
-        CUTOFF * self.speed_unit
     }
 }
 

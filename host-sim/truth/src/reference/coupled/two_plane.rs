@@ -6,7 +6,7 @@
 
 use super::jet::Jet;
 use super::mode::Mode;
-use super::motion::{CUTOFF, Moment, Motion};
+use super::motion::{Moment, Motion};
 use super::system::{Hold, Law, Link, SIZE, System};
 use touchdown_base::history::ModelEvent;
 
@@ -145,7 +145,6 @@ impl TwoPlaneState {
 #[derive(Clone, Debug)]
 pub struct TwoPlaneReference {
     motion: Motion<TwoPlane>,
-    speed_unit: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -265,7 +264,6 @@ impl TwoPlaneReference {
         let units = (length / speed_unit, speed_unit);
         Self {
             motion: Motion::new(system, law, units, (place, speed)),
-            speed_unit,
         }
     }
 
@@ -302,10 +300,5 @@ impl TwoPlaneReference {
     /// Size of the last terms of the series (1e-18 of the clearance if not set).
     pub fn set_accuracy(&mut self, accuracy: f64) {
         self.motion.set_accuracy(accuracy);
-    }
-
-    /// Launch speed below which a bounce series ends in contact, m/s.
-    pub fn cutoff_speed(&self) -> f64 {
-        CUTOFF * self.speed_unit
     }
 }

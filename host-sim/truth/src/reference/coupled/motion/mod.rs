@@ -3,8 +3,6 @@
 mod landing;
 mod modes;
 
-pub use landing::CUTOFF;
-
 use super::mode::Mode;
 use super::step::{Ending, Step};
 use super::system::{Hold, Law, Link, SIZE, System};

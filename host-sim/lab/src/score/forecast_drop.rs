@@ -11,13 +11,13 @@ use std::f64::consts::TAU;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rayon::prelude::*;
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::forecast::{ForecastTask, Outlook};
 use touchdown_core::monitor::Monitor;
 use touchdown_rotor::error::ConfigError;
 
+use touchdown_base::failure::Failure;
 use touchdown_base::statistics::quantile;
 use touchdown_scene::sensors::{Motion, Sensors};
 use touchdown_scene::{Scene, Start};
@@ -29,17 +29,6 @@ pub const LONGEST: f64 = 60.0;
 pub const FORETOLD: f64 = 0.5;
 /// Fastest start, in sqrt(g rho0).
 const FASTEST: f64 = 1.5;
-
-/// Which drops.
-#[derive(Clone, Copy, Debug)]
-pub struct Plan {
-    /// How many.
-    pub drops: u64,
-    /// Of the first; the next ones follow.
-    pub seed: u64,
-    /// Largest part by which the friction and the restitution that the monitor is told are wrong.
-    pub misled: f64,
-}
 
 /// A whirl of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +70,7 @@ pub struct Case {
 }
 
 /// The scene of a seed, and the one that the monitor is told of.
-pub fn scenes(seed: u64, misled: f64) -> Result<[Scene; 2], touchdown_base::failure::Failure> {
+pub fn scenes(seed: u64, misled: f64) -> Result<[Scene; 2], Failure> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut scene = Scene::load("rig")?;
     scene.run.seed = seed;
@@ -225,18 +214,6 @@ impl Case {
         let last = self.all.last();
         last.is_some_and(|it| it[1].max(it[2]) >= FORETOLD)
     }
-}
-
-/// The drops of a plan, in the order of their seeds.
-pub fn campaign(plan: &Plan) -> Result<Vec<Case>, touchdown_base::failure::Failure> {
-    let seeds = (0..plan.drops).into_par_iter();
-    seeds
-        .map(|index| {
-            let [scene, told] = scenes(plan.seed + index, plan.misled)?;
-            watch(&scene, &told)
-                .map_err(|error| touchdown_base::failure::Failure::Usage(error.to_string()))
-        })
-        .collect()
 }
 
 /// Quantiles of 5, 25, 50, 75 and 95 %.
