@@ -13,7 +13,7 @@ const LEARNT: u16 = 128;
 /// sensor's error do, below what a flight soon reaches.
 const SHIFT: f32 = 4.0;
 /// Most that one sample can say, in standard deviations: a spike alone is no lift-off.
-const MAX_LLR_PER_SAMPLE: f32 = SHIFT;
+const MAX_INWARD_SIGMA: f32 = SHIFT;
 
 /// Part of the way from lift-off to detection at which the crossing is placed at the latest: nearer to
 /// detection the samples since say nothing of when it began.
@@ -60,7 +60,7 @@ impl LiftOff {
         let sigma = sqrt(variance);
         self.gap = self.wall - radius;
         let inward = self.gap / sigma;
-        self.sum = (self.sum + SHIFT * (inward.min(MAX_LLR_PER_SAMPLE) - 0.5 * SHIFT)).max(0.0);
+        self.sum = (self.sum + SHIFT * (inward.min(MAX_INWARD_SIGMA) - 0.5 * SHIFT)).max(0.0);
         if self.count < WARM_UP {
             self.sum = 0.0;
         }

@@ -14,7 +14,7 @@ use touchdown_rotor::real::sqrt;
 const WHITE_LEVEL: f32 = 1.8;
 /// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
 /// before it is that far in a sample.
-const MAX_LLR_PER_SAMPLE: f32 = 6.0;
+const MAX_RESIDUAL_SIGMA: f32 = 6.0;
 /// Parts of the threshold that an instant needs which is no samples old, and for each that it is: below them, what a
 /// reading that jumps by a count in each plane at once adds to noise may be. With a shift of s standard deviations (of
 /// the mean of two planes of 1 um and 12 bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 over 25.3, between
@@ -141,7 +141,7 @@ impl Release {
         }
         bank.wait -= 1;
         let threshold_scale = (bank.level / WHITE_LEVEL).max(1.0);
-        let most = MAX_LLR_PER_SAMPLE * sqrt(variance * threshold_scale);
+        let most = MAX_RESIDUAL_SIGMA * sqrt(variance * threshold_scale);
         let (x, y) = (x.min(most).max(-most), y.min(most).max(-most));
         let scale = 0.5 / variance;
         let mut best = (0.0, 0.0);
