@@ -3,10 +3,11 @@
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::forecast::ForecastInput;
+use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::ConfigScrub;
-use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Shown};
 use touchdown_protocol::link::{Counters, State};
 use touchdown_rotor::error::ConfigError;
 
@@ -14,6 +15,7 @@ use crate::blind_timer::BlindTimer;
 use crate::board::Board;
 use crate::lift_interlock::LiftInterlock;
 use crate::outputs::{self, Condition};
+use crate::safety::{Findings, Safety};
 
 /// The monitor, what is latched, and the outputs.
 #[derive(Clone)]
@@ -23,7 +25,10 @@ pub struct App {
     patrol: ConfigScrub,
     blind: BlindTimer,
     permit: LiftInterlock,
-    condition: Condition,
+    safety: Safety,
+    faults: Faults,
+    /// Whether the rotor lies still enough on the retainer to be lifted.
+    lies_still: bool,
     tested: Tested,
     lost: u32,
 }
@@ -41,6 +46,17 @@ impl App {
         Ok(Self::new(Monitor::try_new(config)?, config, found))
     }
 
+    /// As if the rotor had been lifted before the first sample.
+    pub fn assume_lift(&mut self) {
+        self.state.guard_mut().assume_lift();
+    }
+
+    /// As if the monitor had `learnt` that of a rotor that had been lifted.
+    pub fn resume(&mut self, learnt: &Learnt) {
+        self.state = learnt.into();
+        self.assume_lift();
+    }
+
     /// With the monitor of `config`. Nothing here can fail, so that it is made in its place.
     pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
@@ -50,15 +66,9 @@ impl App {
             patrol: ConfigScrub::default(),
             blind: BlindTimer::new(sample_rate),
             permit: LiftInterlock::new(sample_rate, config.fitted),
-            condition: Condition {
-                mode: if found.trip() {
-                    Mode::Faulted
-                } else {
-                    Mode::SelfTest
-                },
-                faults: found,
-                lies_still: false,
-            },
+            safety: Safety::default(),
+            faults: found,
+            lies_still: false,
             tested: Tested::default(),
             lost: 0,
         }
@@ -85,36 +95,41 @@ impl App {
 
     /// What follows from the notices of a tick, outputs included.
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
-        let mut dropped = false;
+        let mut told = None;
         for notice in notices {
-            dropped |= self.is_drop(notice);
+            // Contact weighs least: it trips nothing that has not been proven to float.
+            if told.is_none_or(|it| it == Cause::Contact) {
+                told = trip_of(notice).or(told);
+            }
             self.permit.hear(notice);
             board.report(notice);
         }
         let position = self.state.position();
-        self.condition.lies_still = self.permit.take(position, self.state.phases());
+        self.lies_still = self.permit.take(position, self.state.phases());
         self.watch_itself(board.config(), position.is_some(), lost);
-        self.condition.mode = self.next_mode(dropped);
-        board.drive(self.outputs());
+        self.step(told);
+        board.drive(self.shown());
+    }
+
+    /// Mode, cause and proof.
+    fn step(&mut self, told: Option<Cause>) {
+        let was_latched = self.safety.is_latched();
+        self.safety.step(&Findings {
+            guard: self.state.guard().verdict(),
+            told,
+            faulted: self.faults.trip(),
+            tested: self.tested.config && self.tested.sensors,
+            armed: self.state.phase() == Phase::Levitated && self.state.is_armed(),
+        });
+        if self.safety.is_latched() && !was_latched {
+            self.state.guard_mut().lose_proof();
+        }
     }
 
     /// The monitor and its state, for who counts the parts of a tick.
     #[cfg(target_os = "none")]
     pub fn monitor(&mut self) -> (&Monitor, &mut MonitorState) {
         (&self.monitor, &mut self.state)
-    }
-
-    /// Whether a notice trips: a confirmed fall, whirl, or permanent contact of what floated.
-    fn is_drop(&self, notice: &Notice) -> bool {
-        match notice {
-            Notice::Confirmed { .. } => true,
-            Notice::Declared(event) => match event.kind {
-                EventKind::ForwardWhirl | EventKind::BackwardWhirl => true,
-                EventKind::Sliding | EventKind::Rolling => self.condition.mode == Mode::Watching,
-                _ => false,
-            },
-            Notice::Withdrawn { .. } | Notice::Outlook(_) => false,
-        }
     }
 
     fn watch_itself(&mut self, block: &[u8], sees: bool, lost: u32) {
@@ -125,7 +140,9 @@ impl App {
         if self.blind.miss(lost) {
             self.latch(Fault::Overload);
         }
-        if self.blind.look(sees) {
+        // Before the rotor has been proven to float, sensors may come late.
+        let is_blind = self.blind.look(sees) || self.state.guard().verdict().lost;
+        if is_blind && (self.safety.is_proven() || self.safety.is_latched()) {
             self.latch(Fault::SensorsLost);
         }
         self.tested.sensors |= self.blind.has_seen();
@@ -137,18 +154,7 @@ impl App {
     }
 
     fn latch(&mut self, fault: Fault) {
-        self.condition.faults = self.condition.faults.with(fault);
-    }
-
-    fn next_mode(&self, dropped: bool) -> Mode {
-        let floats = self.state.phase() == Phase::Levitated && self.state.is_armed();
-        match self.condition.mode {
-            _ if self.condition.faults.trip() => Mode::Faulted,
-            _ if dropped => Mode::Dropped,
-            Mode::SelfTest if self.tested.config && self.tested.sensors => Mode::Arming,
-            Mode::Arming if floats => Mode::Watching,
-            mode => mode,
-        }
+        self.faults = self.faults.with(fault);
     }
 
     /// Clears what is latched. Refused while the rotor is neither floating nor lying still, and
@@ -160,11 +166,12 @@ impl App {
         if self.drop_runs() {
             return Err(Busy::DropRuns);
         }
-        let had = core::mem::replace(&mut self.condition.faults, Faults::NONE);
-        if self.condition.mode == Mode::Watching && !had.trip() {
+        let had = core::mem::replace(&mut self.faults, Faults::NONE);
+        if self.safety.mode() == Mode::Watching && !had.trip() {
             return Ok(());
         }
-        self.condition.mode = Mode::SelfTest;
+        self.safety.clear();
+        self.state.guard_mut().restart_proof();
         self.tested = Tested::default();
         self.blind.forget();
         Ok(())
@@ -172,7 +179,7 @@ impl App {
 
     /// Whether the controller may be reset to take another configuration.
     pub fn may_restart(&self) -> Result<(), Busy> {
-        match self.condition.mode {
+        match self.safety.mode() {
             _ if self.drop_runs() => Err(Busy::DropRuns),
             Mode::Watching => Err(Busy::Watching),
             Mode::Dropped => Err(Busy::Latched),
@@ -183,7 +190,7 @@ impl App {
     /// Whether the rotor falls, bounces, slides or whirls.
     pub fn drop_runs(&self) -> bool {
         let floats = matches!(self.state.phase(), Phase::Starting | Phase::Levitated);
-        !floats && !self.condition.lies_still
+        !floats && !self.lies_still
     }
 
     /// What goes on, for the link; the last tick was `age_us` ago.
@@ -192,9 +199,11 @@ impl App {
             sample: self.state.samples().wrapping_sub(1),
             age_us,
             phase: self.state.phase(),
-            mode: self.condition.mode,
-            outputs: self.outputs(),
-            faults: self.condition.faults,
+            mode: self.safety.mode(),
+            cause: self.safety.cause(),
+            touches: self.state.guard().touches(),
+            outputs: self.shown().outputs,
+            faults: self.faults,
             counters: Counters {
                 lost_samples: self.lost,
                 unusable_values: self.state.faults(),
@@ -209,18 +218,40 @@ impl App {
         &self.state
     }
 
-    /// What the outputs depend on, after the last tick.
-    pub fn condition(&self) -> &Condition {
-        &self.condition
+    /// What is latched, after the last tick.
+    pub fn faults(&self) -> Faults {
+        self.faults
     }
 
-    /// The outputs after the last tick.
-    pub fn outputs(&self) -> Outputs {
-        outputs::outputs(&self.condition)
+    /// Outputs, mode and cause after the last tick.
+    pub fn shown(&self) -> Shown {
+        let mode = self.safety.mode();
+        Shown {
+            outputs: outputs::outputs(&Condition {
+                mode,
+                faults: self.faults,
+                lies_still: self.lies_still,
+            }),
+            mode,
+            cause: self.safety.cause(),
+        }
     }
 
     /// Samples lost since power-on.
     pub fn lost(&self) -> u32 {
         self.lost
+    }
+}
+
+/// What of a notice trips: a confirmed fall, whirl, or contact of what has been proven to float.
+fn trip_of(notice: &Notice) -> Option<Cause> {
+    match notice {
+        Notice::Confirmed { .. } => Some(Cause::Fall),
+        Notice::Declared(event) => match event.kind {
+            EventKind::ForwardWhirl | EventKind::BackwardWhirl => Some(Cause::Whirl),
+            EventKind::Impact | EventKind::Sliding | EventKind::Rolling => Some(Cause::Contact),
+            _ => None,
+        },
+        _ => None,
     }
 }

@@ -5,6 +5,7 @@ use touchdown_protocol::link::{CHUNK_BYTES, Chunk, Log, Refusal};
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::counters::Counters;
 
+use crate::recorder::Counted;
 use crate::store::{EPISODE_BYTES, MountError, Store};
 
 /// A store of `SLOTS` episodes in its flash.
@@ -30,10 +31,11 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
         self.store.counters().boots
     }
 
-    /// Writes or erases once at most; `lost` is the recorder's count. Whether there may be more to do: an
-    /// error is tried again.
-    pub fn work(&mut self, lost: u32, fetch: impl FnOnce() -> Option<Block>) -> bool {
-        self.store.count_lost(lost);
+    /// Writes or erases once at most; `counted` is the recorder's. Whether there may be more to do: an error is tried
+    /// again.
+    pub fn work(&mut self, counted: Counted, fetch: impl FnOnce() -> Option<Block>) -> bool {
+        self.store.count_lost(counted.lost);
+        self.store.count_touches(counted.touches);
         self.store.work(&mut self.flash, fetch).unwrap_or(false)
     }
 }

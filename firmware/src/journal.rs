@@ -3,7 +3,7 @@
 use defmt::{Str, info, intern, warn};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::controller::{Faults, Outputs, Shown};
 
 /// The configuration in force.
 pub fn config(config: &MonitorConfig) {
@@ -32,6 +32,17 @@ pub fn notice(notice: &Notice) {
         Notice::Withdrawn { number, sample } => {
             info!("event {=u16}: withdrawn at sample {=u64}", number, sample);
         }
+        Notice::Alarm(alarm) => warn!(
+            "alarm: level {=u8}, plane {=u8}, at {=f32} of the clearance, sample {=u64}",
+            alarm.level as u8, alarm.plane as u8, alarm.fraction, alarm.sample
+        ),
+        Notice::Touch(touch) => info!(
+            "touch {=u16}: ended {=bool}, onset at sample {=u64}, peak {=f32}",
+            touch.number,
+            touch.end.is_some(),
+            touch.onset,
+            touch.peak
+        ),
         Notice::Outlook(outlook) => info!(
             "whirl: forward {=f32}, backward {=f32}, as of sample {=u64}",
             outlook.probability_forward, outlook.probability_backward, outlook.made_at
@@ -39,17 +50,22 @@ pub fn notice(notice: &Notice) {
     }
 }
 
-/// The outputs, where they changed.
-pub fn outputs(outputs: Outputs) {
+/// Outputs, mode and cause, where they changed.
+pub fn shown(shown: Shown) {
     let Outputs {
         run,
         no_brake,
         permit,
         ready,
-    } = outputs;
+    } = shown.outputs;
     info!(
-        "outputs: run {=bool}, no brake {=bool}, permit {=bool}, ready {=bool}",
-        run, no_brake, permit, ready
+        "outputs: run {=bool}, no brake {=bool}, permit {=bool}, ready {=bool}; mode {=u8}, cause {=u8}",
+        run,
+        no_brake,
+        permit,
+        ready,
+        shown.mode as u8,
+        shown.cause.map_or(0, |it| 1 + it as u8)
     );
 }
 

@@ -19,6 +19,7 @@ pub mod outgoing;
 pub mod outputs;
 pub mod overrun;
 pub mod recorder;
+pub mod safety;
 pub mod speed;
 pub mod store;
 pub mod w25q;

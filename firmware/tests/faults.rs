@@ -6,7 +6,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, ConfigScrub};
-use touchdown_protocol::controller::{Busy, Fault, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Shown};
 
 /// Ticks from power-on until watching: self-test and `arming_time`, and what rounding adds.
 const ARMED: u32 = 3_000;
@@ -28,7 +28,7 @@ struct Memory {
     block: Block,
     notices: Vec<Notice>,
     /// What was called in the present tick.
-    driven: Vec<Outputs>,
+    driven: Vec<Shown>,
     fed: u32,
 }
 
@@ -37,9 +37,9 @@ impl Board for Memory {
         self.notices.push(*notice);
     }
 
-    fn drive(&mut self, outputs: Outputs) {
+    fn drive(&mut self, shown: Shown) {
         assert_eq!(self.fed, 0, "fed before the end of the tick");
-        self.driven.push(outputs);
+        self.driven.push(shown);
     }
 
     fn config(&self) -> &[u8] {
@@ -69,11 +69,32 @@ impl Bench {
     /// Watching, the rotor at the centre.
     fn watching() -> Self {
         let mut bench = Self::new(Faults::NONE);
+        bench.app.assume_lift();
         for _ in 0..ARMED {
             bench.float();
         }
         assert_eq!(bench.outputs(), WATCHING);
         bench
+    }
+
+    /// Lies for a second, is cleared and lifted in 0.1 s; then watching within half a second.
+    fn lie_clear_and_lift(&mut self) {
+        for _ in 0..SAMPLE_RATE_HZ {
+            assert_eq!(self.place([0.0, -CLEARANCE]) & 0b0001, 0);
+        }
+        assert_eq!(self.app.clear(), Ok(()));
+        let lift = SAMPLE_RATE_HZ / 10;
+        for tick in 0..lift {
+            let part = f64::from(tick) / f64::from(lift);
+            let smooth = part * part * (3.0 - 2.0 * part);
+            let outputs = self.place([0.0, CLEARANCE * (smooth - 1.0)]);
+            assert_eq!(outputs & 0b0001, 0, "runs while it is lifted");
+        }
+        ticks_until(SAMPLE_RATE_HZ / 2, || self.float() == WATCHING);
+    }
+
+    fn cause(&self) -> Option<Cause> {
+        self.app.shown().cause
     }
 
     fn take(&mut self, sample: &Sample, lost: u32) -> u8 {
@@ -84,7 +105,7 @@ impl Bench {
         self.tick += 1;
         assert_eq!(
             self.board.driven,
-            [self.app.outputs()],
+            [self.app.shown()],
             "driven once a tick"
         );
         assert_eq!(self.board.fed, 1, "fed once a tick");
@@ -131,15 +152,15 @@ impl Bench {
     }
 
     fn outputs(&self) -> u8 {
-        self.app.outputs().bits()
+        self.app.shown().outputs.bits()
     }
 
     fn mode(&self) -> Mode {
-        self.app.condition().mode
+        self.app.shown().mode
     }
 
     fn has(&self, fault: Fault) -> bool {
-        self.app.condition().faults.contains(fault)
+        self.app.faults().contains(fault)
     }
 
     fn told(&self, kind: EventKind) -> bool {
@@ -178,6 +199,7 @@ fn nothing_has_current_before_the_self_test_is_over() {
     let pass = config_block::encode(&default_settings()).len() - 4;
     assert_eq!(tested as usize, pass.div_ceil(config_block::SLICE_BYTES));
     assert_eq!((bench.mode(), bench.outputs()), (Mode::Arming, 0b0010));
+    bench.app.assume_lift();
     let armed = ticks_until(ARMED, || bench.float() == WATCHING);
     println!("self-test {tested} ticks, then arming {armed} ticks");
 }
@@ -206,25 +228,48 @@ fn confirmed_fall_trips_within_its_tick_and_for_good() {
         bench.float();
         assert_eq!(bench.outputs() & 0b0011, 0);
     }
+    assert_eq!(bench.cause(), Some(Cause::Fall));
     assert_eq!(bench.app.clear(), Ok(()));
-    ticks_until(ARMED, || bench.float() == WATCHING);
+    assert_eq!((bench.mode(), bench.cause()), (Mode::SelfTest, Some(Cause::Order)));
+    // It has not been seen where it is lifted from.
+    for _ in 0..2 * ARMED {
+        assert_eq!(bench.float() & 0b0001, 0);
+    }
+    assert_eq!((bench.mode(), bench.cause()), (Mode::Arming, Some(Cause::NoProof)));
+    bench.lie_clear_and_lift();
 }
 
 /// Put down so slowly that nothing falls.
 #[test]
-fn permanent_contact_while_watching_trips_in_the_tick_that_tells_it() {
+fn what_is_put_down_while_watching_trips_within_a_millisecond_of_the_danger_limit() {
     let mut bench = Bench::watching();
-    let stays = |bench: &Bench| bench.told(EventKind::Sliding) || bench.told(EventKind::Rolling);
-    let mut ticks = 0;
-    while !stays(&bench) {
-        assert!(ticks < 20_000, "no contact was told");
-        assert_eq!(bench.outputs() & 0b0011, 0b0011, "tick {ticks}");
-        bench.place([0.0, -(3e-3 * seconds(ticks)).min(CLEARANCE)]);
-        ticks += 1;
-    }
+    let distance = |ticks: u32| (3e-3 * seconds(ticks)).min(CLEARANCE);
+    let ticks = ticks_until(20_000, || {
+        let way = distance(bench.tick - ARMED);
+        bench.place([0.0, -way]);
+        bench.outputs() & 0b0011 != 0b0011
+    });
+    let late = seconds(ticks) - 0.67 * CLEARANCE / 3e-3;
+    // Noise of 1 um is as long as 0.3 ms of this way.
+    assert!((-0.5e-3..1.5e-3).contains(&late), "{late}");
+    assert_eq!(bench.cause(), Some(Cause::Danger));
     let is_confirmed = |it: &Notice| matches!(it, Notice::Confirmed { .. });
     assert!(!bench.board.notices.iter().any(is_confirmed));
     assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0));
+}
+
+/// The same with a signal that tells that levitation goes off.
+#[test]
+fn levitation_off_trips_after_three_samples() {
+    let mut bench = Bench::watching();
+    let ticks = ticks_until(BLIND, || {
+        let sample = Sample {
+            levitated: Some(false),
+            ..bench.at([0.0; 2])
+        };
+        bench.take(&sample, 0) == 0
+    });
+    assert_eq!((ticks, bench.cause()), (3, Some(Cause::LevitationOff)));
 }
 
 #[test]
@@ -281,11 +326,11 @@ fn sensors_lost_trip_after_1_ms() {
     assert_eq!(ticks_until(BLIND, || bench.blind() == 0), BLIND);
     assert!(bench.has(Fault::SensorsLost));
     assert_eq!(bench.app.clear(), Err(Busy::Blind));
+    assert_eq!(bench.cause(), Some(Cause::PositionsLost));
     for _ in 0..ARMED {
         assert_eq!(bench.float(), 0, "latched");
     }
-    assert_eq!(bench.app.clear(), Ok(()));
-    ticks_until(ARMED, || bench.float() == WATCHING);
+    bench.lie_clear_and_lift();
 }
 
 #[test]
@@ -393,8 +438,8 @@ fn what_was_wrong_at_power_on_keeps_the_outputs_safe_until_cleared() {
             assert_eq!(bench.float(), 0, "{fault:?}");
         }
         assert_eq!(bench.mode(), Mode::Faulted);
-        assert_eq!(bench.app.clear(), Ok(()));
-        ticks_until(ARMED, || bench.float() == WATCHING);
+        assert_eq!(bench.cause(), Some(Cause::Fault));
+        bench.lie_clear_and_lift();
     }
 }
 
@@ -403,6 +448,19 @@ fn a_fault_while_dropped_takes_the_permit_away() {
     let mut bench = Bench::new(Faults::NONE);
     ticks_until(20_000, || bench.place([0.0, -CLEARANCE]) & 0b0100 != 0);
     assert_eq!(bench.mode(), Mode::Arming);
+    // Before anything has been proven, a loss is no fault.
     assert_eq!(ticks_until(BLIND, || bench.blind() & 0b0100 == 0), 1);
+    for _ in 0..BLIND {
+        bench.blind();
+    }
+    assert!(!bench.has(Fault::SensorsLost));
+    let mut bench = Bench::watching();
+    for tick in 1..=20_000 {
+        let time = seconds(tick);
+        bench.place([0.0, -(0.5 * GRAVITY * time * time).min(CLEARANCE)]);
+    }
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0b0100));
     ticks_until(BLIND, || bench.blind() == 0);
+    ticks_until(BLIND, || bench.has(Fault::SensorsLost) || bench.blind() != 0);
+    assert!(bench.has(Fault::SensorsLost));
 }

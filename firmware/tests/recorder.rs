@@ -129,7 +129,7 @@ fn the_second_of_two_drops_waits_and_the_third_is_counted() {
     for _ in 0..3 {
         (0..500).for_each(|tick| rig.drop_tick(tick, 450));
     }
-    assert_eq!(rig.recorder.lost(), 1);
+    assert_eq!(rig.recorder.counted().lost, 1);
     for trigger in [200, 700] {
         let read = read(&fetch(&mut rig));
         assert!(read.is_whole(&rig.fed));
@@ -139,7 +139,7 @@ fn the_second_of_two_drops_waits_and_the_third_is_counted() {
     // Both buffers are free again.
     (0..600).for_each(|tick| rig.drop_tick(tick, 450));
     assert!(read(&fetch(&mut rig)).is_whole(&rig.fed));
-    assert_eq!(rig.recorder.lost(), 1);
+    assert_eq!(rig.recorder.counted().lost, 1);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn endless_contact_is_split_and_counted_once() {
     assert_eq!((first.notices, first.notices_lost), (64, 37));
     let second = ending(&fetch(&mut rig));
     assert_eq!((second.closing, second.landing), (Closing::Quiet, false));
-    assert_eq!(rig.recorder.lost(), 0);
+    assert_eq!(rig.recorder.counted().lost, 0);
 }
 
 #[test]

@@ -53,6 +53,8 @@ pub fn settings() -> Settings {
                 },
                 tuning: Tuning::default(),
             },
+            guard: touchdown_core::guard::GuardConfig::default(),
+            commissioned: false,
         },
         wiring: Wiring::default(),
     }

@@ -87,6 +87,7 @@ pub const COUNTERS: Counters = Counters {
     episodes: 2,
     landings: 5,
     unweighed: 1,
+    touches: 5,
     lost: 3,
     weight: 4_321,
 };

@@ -12,7 +12,7 @@ mod image {
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
     use touchdown_firmware::recorder::Recorder;
-    use touchdown_protocol::controller::Outputs;
+    use touchdown_protocol::controller::Shown;
 
     /// Registers that notices and outputs go to.
     struct Bare(&'static [u8]);
@@ -29,7 +29,8 @@ mod image {
             write(matches!(notice, Notice::Declared(_)) as u8);
         }
 
-        fn drive(&mut self, outputs: Outputs) {
+        fn drive(&mut self, shown: Shown) {
+            let outputs = shown.outputs;
             #[cfg(feature = "plants")]
             plant(self.0, outputs.bits());
             write(outputs.bits());

@@ -9,18 +9,19 @@ mod serial;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
+use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::{Settings, Wiring};
-use touchdown_protocol::controller::Outputs;
+use touchdown_protocol::controller::Shown;
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
     /// Passes a notice on.
     fn report(&mut self, notice: &Notice);
 
-    /// Drives the outputs; called every tick.
-    fn drive(&mut self, outputs: Outputs);
+    /// Drives the outputs, and may tell why; called every tick.
+    fn drive(&mut self, shown: Shown);
 
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];
@@ -79,5 +80,7 @@ pub fn default_config() -> MonitorConfig {
             },
             tuning: Tuning::default(),
         },
+        guard: GuardConfig::default(),
+        commissioned: false,
     }
 }

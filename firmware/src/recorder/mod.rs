@@ -190,7 +190,16 @@ pub struct Recorder<'m> {
     last_notice: u64,
     /// It has floated since reset, and since it last touched the retainer: only then it lands.
     floated: bool,
-    lost: u32,
+    counted: Counted,
+}
+
+/// What was counted since reset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counted {
+    /// Drops of which nothing was recorded, as both buffers were in use.
+    pub lost: u32,
+    /// Times that the rotor came to the wall.
+    pub touches: u32,
 }
 
 impl<'m> Recorder<'m> {
@@ -210,7 +219,7 @@ impl<'m> Recorder<'m> {
             drop: Drop::None,
             last_notice: 0,
             floated: false,
-            lost: 0,
+            counted: Counted::default(),
         }
     }
 
@@ -297,9 +306,9 @@ impl<'m> Recorder<'m> {
         })
     }
 
-    /// Drops since reset of which nothing was recorded, as both buffers were in use.
-    pub fn lost(&self) -> u32 {
-        self.lost
+    /// What was counted since reset.
+    pub fn counted(&self) -> Counted {
+        self.counted
     }
 
     fn is_idle(&self, at: usize) -> bool {
@@ -327,6 +336,23 @@ impl<'m> Recorder<'m> {
     }
 
     fn note(&mut self, notice: &Notice) {
+        match notice {
+            // The waveform shows them: the episode has no room for those of every bounce.
+            Notice::Touch(touch) => {
+                let touches = &mut self.counted.touches;
+                *touches = touches.saturating_add(u32::from(touch.end.is_none()));
+                return;
+            }
+            Notice::Alarm(_) => {
+                if let Drop::Recorded(at) = self.drop
+                    && let Some(capture) = self.captures.get_mut(at)
+                {
+                    capture.note_alarm(notice);
+                }
+                return;
+            }
+            _ => {}
+        }
         if self.drop == Drop::None
             && let Some(kind) = trigger(notice)
         {
@@ -359,7 +385,8 @@ impl<'m> Recorder<'m> {
             capture.begin(kind, self.tick, self.floated, &self.plan);
             self.drop = Drop::Recorded(at);
         } else if self.floated {
-            self.lost = self.lost.saturating_add(1);
+            let lost = &mut self.counted.lost;
+            *lost = lost.saturating_add(1);
         }
     }
 

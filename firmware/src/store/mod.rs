@@ -74,8 +74,9 @@ pub struct Store<const SLOTS: usize> {
     slots: Slots<SLOTS>,
     state: State,
     clearing: bool,
-    /// Lost drops since reset that are counted in.
+    /// Lost drops and touches since reset that are counted in.
     lost: u32,
+    touches: u32,
 }
 
 impl<const SLOTS: usize> Store<SLOTS> {
@@ -102,6 +103,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
             state: State::Unprepared,
             clearing: false,
             lost: 0,
+            touches: 0,
         })
     }
 
@@ -143,6 +145,17 @@ impl<const SLOTS: usize> Store<SLOTS> {
             self.lost = since_reset;
             self.ledger
                 .update(|counters| counters.lost = counters.lost.saturating_add(more));
+        }
+    }
+
+    /// Counts touches, given their number since reset. A rub touches once a turn: they are written when they are an
+    /// eighth more than the flash has.
+    pub fn count_touches(&mut self, since_reset: u32) {
+        let more = since_reset.saturating_sub(self.touches);
+        if more > self.ledger.counters().touches / 8 {
+            self.touches = since_reset;
+            self.ledger
+                .update(|counters| counters.touches = counters.touches.saturating_add(more));
         }
     }
 

@@ -13,7 +13,7 @@ use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, Settings, Wiring};
-use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{Chunk, Log};
 use touchdown_protocol::log::block::BLOCK_BYTES;
 use touchdown_protocol::log::reader::{Item, Reader};
@@ -34,7 +34,7 @@ struct Desk(Block);
 impl Board for Desk {
     fn report(&mut self, _: &Notice) {}
 
-    fn drive(&mut self, _: Outputs) {}
+    fn drive(&mut self, _: Shown) {}
 
     fn config(&self) -> &[u8] {
         &self.0
@@ -46,7 +46,7 @@ impl Board for Desk {
 /// Every change of the outputs and what is in the log; then, switched on again with its first episode erased, once more.
 pub fn text(stream: &Stream) -> String {
     let (mut log, bus) = mount(Chip::new(CAPACITY));
-    let mut text = String::from("Sample, mode, outputs, faults\n");
+    let mut text = String::from("Sample, mode, cause, outputs, faults\n");
     run(stream, &mut log, &mut text);
     tell(&mut log, &mut text);
     let chip = bus.0.borrow().clone();
@@ -78,6 +78,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     let mut memory = Box::new(Memory::EMPTY);
     let mut recorder = Recorder::new(&mut memory, config, Identity::new(&desk.0, log.boot()));
     let mut app = App::try_new(config, Faults::NONE).expect("a valid configuration");
+    app.assume_lift();
     let mut forecast_task = ForecastTask::try_new(&config.detector).expect("a valid configuration");
     let mut notices = Notices::new();
     let mut last = None;
@@ -91,16 +92,17 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
             recorder.hear(&outlook);
         }
         let now = (
-            app.condition().mode,
-            app.outputs().bits(),
-            app.condition().faults,
+            app.shown(),
+            app.faults(),
         );
         if last.replace(now) != Some(now) {
-            let (mode, outputs, Faults(faults)) = now;
-            writeln!(text, "{number:6}  {mode:?} {outputs:04b} {faults:07b}").expect("a string");
+            let (shown, Faults(faults)) = now;
+            let (mode, outputs) = (shown.mode, shown.outputs.bits());
+            let why = shown.cause.map_or(String::new(), |it| format!(" {it:?}"));
+            writeln!(text, "{number:6}  {mode:?}{why} {outputs:04b} {faults:07b}").expect("a string");
         }
         if number % BLOCK_SAMPLES == 0 {
-            while log.work(recorder.lost(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), || recorder.fetch()) {}
         }
     }
     writeln!(text, "Clear at the end: {:?}", app.clear()).expect("a string");
@@ -108,7 +110,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     for sample in stream.samples.last().into_iter().cycle().take(quiet) {
         recorder.take(sample, &[]);
     }
-    while log.work(recorder.lost(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), || recorder.fetch()) {}
 }
 
 fn tell(log: &mut Episodes, text: &mut String) {

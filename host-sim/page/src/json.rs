@@ -8,7 +8,10 @@ use touchdown_base::history::{History, Impact, Phase, Regime, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_run::controller_trace::Controller;
 use touchdown_run::model::RingEnd;
-use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity};
+use touchdown_run::outcome::{
+    DetectedEvent, Detection, Forecast, Outcome, Severity, TouchEvent,
+};
+use touchdown_run::replay::Replay;
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::elastic::Validity;
 use touchdown_scene::scales::validity;
@@ -120,13 +123,13 @@ struct EnergyJson<'a> {
 
 #[derive(Serialize)]
 struct EventsJson<'a> {
-    events: &'a [DetectedEvent],
+    events: Vec<EventJson<'a>>,
     health: [Condition; CHANNELS],
 }
 
 #[derive(Serialize)]
 struct ReplayJson<'a> {
-    events: &'a [DetectedEvent],
+    events: Vec<EventJson<'a>>,
     forecasts: &'a [Forecast],
     #[serde(skip_serializing_if = "is_none")]
     left_out: u64,
@@ -134,6 +137,24 @@ struct ReplayJson<'a> {
     samples: u64,
     faults: u64,
     health: [Condition; CHANNELS],
+    controller: Controller,
+}
+
+/// What the detector or the guard told.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum EventJson<'a> {
+    Detected(&'a DetectedEvent),
+    Touch(&'a TouchEvent),
+}
+
+/// In the order of declaration.
+fn events(detection: &Detection) -> Vec<EventJson<'_>> {
+    let detected = detection.events.iter().map(|it| (it.sample, EventJson::Detected(it)));
+    let touches = detection.touches.iter().map(|it| (it.sample, EventJson::Touch(it)));
+    let mut all: Vec<_> = touches.chain(detected).collect();
+    all.sort_by_key(|(sample, _)| *sample);
+    all.into_iter().map(|(_, event)| event).collect()
 }
 
 /// `drop --json`.
@@ -155,7 +176,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         }),
         validity: validity(scene),
         detector: EventsJson {
-            events: &outcome.detection.events,
+            events: events(&outcome.detection),
             health: outcome.detection.conditions,
         },
         forecasts: &outcome.detection.forecasts,
@@ -165,15 +186,17 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
 }
 
 /// `replay --json`.
-pub fn replay(detection: &Detection) -> serde_json::Result<String> {
+pub fn replay(replay: &Replay) -> serde_json::Result<String> {
+    let detection = &replay.detection;
     text(&ReplayJson {
-        events: &detection.events,
+        events: events(detection),
         forecasts: &detection.forecasts,
         left_out: detection.left_out,
         severity: detection.severity,
         samples: detection.samples,
         faults: detection.faults,
         health: detection.conditions,
+        controller: replay.conduct.told(replay.timebase),
     })
 }
 

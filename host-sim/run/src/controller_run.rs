@@ -10,15 +10,16 @@ use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::store::bytes_of;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
-use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{
     Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
 };
-use touchdown_protocol::wire::Switching;
+use touchdown_protocol::wire::{Cleared, Switching};
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
 use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
+use crate::procedure::Procedure;
 use touchdown_files::ram_nor::RamNor;
 
 type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
@@ -26,6 +27,7 @@ type RamLog = DropLog<RamNor, EMULATED_SLOTS>;
 /// Runs the controller over `samples`, from an erased log on.
 pub fn run(
     config: &MonitorConfig,
+    procedure: &Procedure,
     samples: impl Iterator<Item = Sample>,
 ) -> Result<(MonitorOutput, ControllerTrace), ConfigError> {
     let mut log =
@@ -35,10 +37,21 @@ pub fn run(
     let identity = Identity::new(&desk.block, log.boot());
     let mut recorder = Recorder::new(&mut memory, config, identity);
     let mut app = App::try_new(config, Faults::NONE)?;
+    match &procedure.learnt {
+        Some(learnt) => app.resume(learnt),
+        None if procedure.power_on => {}
+        None => app.assume_lift(),
+    }
     let mut forecast_task = ForecastTask::try_new(&config.detector)?;
     let mut notices = Notices::new();
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
+        if procedure.clears(desk.ticks) {
+            desk.cleared.push(Cleared {
+                sample: desk.ticks,
+                refused: app.clear().err(),
+            });
+        }
         app.tick(&mut desk, &sample, 0, &mut notices);
         recorder.set_severity(app.state().severity());
         recorder.set_phase(app.state().phase());
@@ -51,10 +64,10 @@ pub fn run(
         }
         fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
-            while log.work(recorder.lost(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), || recorder.fetch()) {}
         }
     }
-    while log.work(recorder.lost(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), || recorder.fetch()) {}
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,
@@ -75,10 +88,8 @@ pub fn run(
         unreachable!("each request has its own answer");
     };
     let conduct = ControllerTrace {
-        outputs: desk.switchings,
-        hello,
-        state,
         flash: log.flash().0.clone(),
+        ..ControllerTrace::new(&answer.notices, desk.switchings, desk.cleared, hello, state)
     };
     Ok((answer, conduct))
 }
@@ -99,8 +110,9 @@ struct Desk {
     block: Block,
     notices: Vec<Notice>,
     left_out: u64,
-    outputs: Outputs,
+    shown: Option<Shown>,
     switchings: Vec<Switching>,
+    cleared: Vec<Cleared>,
     ticks: u64,
 }
 
@@ -113,8 +125,9 @@ impl Desk {
             }),
             notices: Vec::new(),
             left_out: 0,
-            outputs: Outputs::SAFE,
+            shown: None,
             switchings: Vec::new(),
+            cleared: Vec::new(),
             ticks: 0,
         }
     }
@@ -129,11 +142,11 @@ impl Board for Desk {
         }
     }
 
-    fn drive(&mut self, outputs: Outputs) {
-        if outputs != self.outputs {
-            self.outputs = outputs;
+    fn drive(&mut self, shown: Shown) {
+        if self.shown != Some(shown) {
+            self.shown = Some(shown);
             let sample = self.ticks;
-            self.switchings.push(Switching { sample, outputs });
+            self.switchings.push(Switching { sample, shown });
         }
         self.ticks += 1;
     }

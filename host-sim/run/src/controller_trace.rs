@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
-use touchdown_protocol::controller::{Fault, Mode, Outputs};
+use touchdown_core::event::{Alarm, Level, Notice};
+use touchdown_protocol::controller::{Cause, Fault, Mode, Outputs};
 use touchdown_protocol::link::{Hello, State};
-use touchdown_protocol::wire::Switching;
+use touchdown_protocol::wire::{Cleared, Switching};
 
 use crate::timebase::Timebase;
 use touchdown_base::paint::Paint;
 use touchdown_files::drop_log::{Completeness, Dump, Episode};
-use touchdown_scene::names::event_name;
+use touchdown_scene::names::{busy_name, cause_name, event_name, mode_name, plane_name};
 
 /// Changes of the outputs that the terminal shows.
 const LISTED: usize = 12;
@@ -17,8 +18,14 @@ const LISTED: usize = 12;
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControllerTrace {
-    /// Each change of the outputs, which are safe before the first.
+    /// What it showed at the first sample, and each change.
     pub outputs: Vec<Switching>,
+    /// Of the guard.
+    pub alarms: Vec<Alarm>,
+    /// What came of the orders to clear.
+    pub orders: Vec<Cleared>,
+    /// Samples in the zones A to D.
+    pub zones: [u64; 4],
     /// Flash of the drop log after the run: docs/formats/log.md.
     pub flash: Vec<u8>,
     /// What the link answered to Hello.
@@ -31,6 +38,10 @@ pub struct ControllerTrace {
 #[derive(Debug, Serialize)]
 pub struct Controller {
     outputs: Vec<OutputsFrom>,
+    touches: u32,
+    alarms: Vec<AlarmAt>,
+    orders: Vec<OrderAt>,
+    zones: Zones,
     log: Log,
     link: Link,
 }
@@ -40,6 +51,34 @@ struct OutputsFrom {
     time_s: f64,
     #[serde(flatten)]
     outputs: Outputs,
+    mode: Mode,
+    cause: Option<Cause>,
+}
+
+/// A plane rose through a limit of the guard.
+#[derive(Debug, Serialize)]
+pub struct AlarmAt {
+    time_s: f64,
+    plane: &'static str,
+    level: Level,
+    fraction: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct OrderAt {
+    time_s: f64,
+    order: &'static str,
+    done: bool,
+    why: Option<&'static str>,
+}
+
+/// Part of the samples in each zone.
+#[derive(Debug, Serialize)]
+struct Zones {
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,6 +103,29 @@ struct Link {
 }
 
 impl ControllerTrace {
+    /// Without log and zones; the alarms are among the `notices`.
+    pub(crate) fn new(
+        notices: &[Notice],
+        outputs: Vec<Switching>,
+        orders: Vec<Cleared>,
+        hello: Hello,
+        state: State,
+    ) -> Self {
+        let alarm = |notice: &Notice| match notice {
+            Notice::Alarm(alarm) => Some(*alarm),
+            _ => None,
+        };
+        Self {
+            outputs,
+            alarms: notices.iter().filter_map(alarm).collect(),
+            orders,
+            zones: [0; 4],
+            flash: Vec::new(),
+            hello,
+            state,
+        }
+    }
+
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();
@@ -73,9 +135,15 @@ impl ControllerTrace {
             outputs: switchings
                 .map(|it| OutputsFrom {
                     time_s: timebase.time(it.sample as f64),
-                    outputs: it.outputs,
+                    outputs: it.shown.outputs,
+                    mode: it.shown.mode,
+                    cause: it.shown.cause,
                 })
                 .collect(),
+            touches: state.touches,
+            alarms: self.alarms.iter().map(|it| alarm(it, timebase)).collect(),
+            orders: self.orders.iter().map(|it| order(it, timebase)).collect(),
+            zones: zones(self.zones),
             log: Log {
                 checksum: CRC.checksum(&self.flash),
                 dump: Dump::of(&self.flash),
@@ -94,27 +162,71 @@ impl ControllerTrace {
     }
 }
 
+/// An alarm with its time.
+pub fn alarm(alarm: &Alarm, timebase: Timebase) -> AlarmAt {
+    AlarmAt {
+        time_s: timebase.time(alarm.sample as f64),
+        plane: plane_name(alarm.plane),
+        level: alarm.level,
+        fraction: f64::from(alarm.fraction),
+    }
+}
+
+fn order(order: &Cleared, timebase: Timebase) -> OrderAt {
+    OrderAt {
+        time_s: timebase.time(order.sample as f64),
+        order: "clear",
+        done: order.refused.is_none(),
+        why: order.refused.map(busy_name),
+    }
+}
+
+fn zones(samples: [u64; 4]) -> Zones {
+    let all = samples.iter().sum::<u64>().max(1) as f64;
+    let [a, b, c, d] = samples.map(|it| it as f64 / all);
+    Zones { a, b, c, d }
+}
+
 impl Controller {
     /// For the terminal, in 80 columns.
     pub fn text(&self, paint: Paint) -> String {
         let head = format!(
-            "\n{:<12}{:>12}{:>12}{:>12}{:>12}",
-            "outputs at ms", "run", "no brake", "permit", "ready"
+            "\n{:<12}{:>6}{:>10}{:>8}{:>7}  {:<10} {}",
+            "outputs at ms", "run", "no brake", "permit", "ready", "mode", "cause"
         );
         let mut text = paint.bold(&head) + "\n";
         let level = |on| if on { "on" } else { "off" };
-        for OutputsFrom { time_s, outputs } in self.outputs.iter().take(LISTED) {
-            text += &format!(
-                "{:>13.4}{:>11}{:>12}{:>12}{:>12}\n",
-                time_s * 1e3,
+        for it in self.outputs.iter().take(LISTED) {
+            let outputs = it.outputs;
+            let line = format!(
+                "{:>13.4}{:>6}{:>10}{:>8}{:>7}  {:<10} {}",
+                it.time_s * 1e3,
                 level(outputs.run),
                 level(outputs.no_brake),
                 level(outputs.permit),
                 level(outputs.ready),
+                mode_name(it.mode),
+                it.cause.map_or("", cause_name),
             );
+            text += &format!("{}\n", line.trim_end());
         }
         if self.outputs.len() > LISTED {
             text += &format!("... {} more changes\n", self.outputs.len() - LISTED);
+        }
+        let dangers = self.alarms.iter().filter(|it| it.level == Level::Danger);
+        text += &format!(
+            "guard: {} touches, {} alarms, {} of them danger\n",
+            self.touches,
+            self.alarms.len(),
+            dangers.count()
+        );
+        for it in &self.orders {
+            text += &format!(
+                "{} at {:.4} ms: {}\n",
+                it.order,
+                it.time_s * 1e3,
+                it.why.unwrap_or("done")
+            );
         }
         for episode in &self.log.dump.episodes {
             text += &logged(episode);

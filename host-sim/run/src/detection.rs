@@ -1,12 +1,12 @@
 //! From the monitor's notices, on the sample clock, to events in seconds.
 
-use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
+use touchdown_core::event::{Event, EventKind, Motion, Notice, Touch};
 use touchdown_core::forecast::Outlook;
 
 use crate::monitor_run::MonitorOutput;
-use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast};
+use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast, TouchEvent};
 use crate::timebase::Timebase;
-use touchdown_scene::names::channel_name;
+use touchdown_scene::names::{channel_name, plane_name};
 
 /// An event, as far as its declaration tells.
 pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
@@ -17,11 +17,7 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
         confirmed_s: None,
         withdrawn_s: None,
         sample: event.declared,
-        plane: match event.plane {
-            Plane::A => "a",
-            Plane::B => "b",
-            Plane::Both => "both",
-        },
+        plane: plane_name(event.plane),
         normal_speed_m_s: (event.kind == EventKind::Impact)
             .then_some(f64::from(event.normal_speed)),
         motion: match event.motion {
@@ -35,11 +31,41 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
     }
 }
 
+/// A touch, as far as it is told; how fast it came the detector may say.
+pub fn touch(touch: &Touch, timebase: Timebase) -> TouchEvent {
+    TouchEvent {
+        event: "touch",
+        onset_s: timebase.time(touch.onset as f64),
+        declared_s: timebase.time(touch.declared as f64),
+        end_s: touch.end.map(|end| timebase.time(end as f64)),
+        sample: touch.declared,
+        plane: plane_name(touch.plane),
+        peak_fraction: f64::from(touch.peak),
+        normal_speed_m_s: None,
+    }
+}
+
+/// Longest time from a touch to the detector's impact that it is, s.
+const SAME_IMPACT: f64 = 4e-3;
+
+/// Speed of the first impact that the detector found in each touch.
+fn add_speeds(touches: &mut [TouchEvent], events: &[DetectedEvent]) {
+    for touch in touches {
+        let end = touch.end_s.unwrap_or(f64::INFINITY);
+        let span = touch.onset_s - SAME_IMPACT..=end.min(touch.onset_s + SAME_IMPACT);
+        let impact = events
+            .iter()
+            .find(|it| it.event == EventKind::Impact && span.contains(&it.onset_s));
+        touch.normal_speed_m_s = impact.and_then(|it| it.normal_speed_m_s);
+    }
+}
+
 /// The events of `answer`; a free fall has its confirmation or withdrawal with it.
 pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
     let mut events: Vec<DetectedEvent> = Vec::new();
     let mut forecasts = Vec::new();
     let mut numbers = Vec::new();
+    let mut touches: Vec<TouchEvent> = Vec::new();
     for notice in &answer.notices {
         match *notice {
             Notice::Declared(event) => {
@@ -47,6 +73,16 @@ pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
                 events.push(declared(&event, timebase));
             }
             Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
+            // One that has ended is told a second time; none begins before.
+            Notice::Touch(it) if it.end.is_none() => touches.push(touch(&it, timebase)),
+            Notice::Touch(it) => {
+                if let Some(last) = touches.last_mut() {
+                    let begun = (last.sample, last.declared_s);
+                    *last = touch(&it, timebase);
+                    (last.sample, last.declared_s) = begun;
+                }
+            }
+            Notice::Alarm(_) => {}
             Notice::Confirmed { number, sample } => {
                 // From the end: numbers wrap round in a long run.
                 if let Some(index) = numbers.iter().rposition(|n| *n == number) {
@@ -60,8 +96,10 @@ pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
             }
         }
     }
+    add_speeds(&mut touches, &events);
     Detection {
         events,
+        touches,
         forecasts,
         left_out: answer.left_out,
         severity: answer.severity.into(),
@@ -90,7 +128,7 @@ pub fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_core::event::{Event, Moment};
+    use touchdown_core::event::{Event, Moment, Plane};
     use touchdown_core::monitor::Summary;
     use touchdown_core::severity::Severity;
 

@@ -9,6 +9,7 @@ use touchdown_rotor::error::ConfigError;
 use crate::detection::detection;
 use crate::model::{self, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
+use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
 use crate::trace::Trace;
@@ -35,7 +36,11 @@ pub fn run<W: Write>(
         ring,
     } = model::run(scene).map_err(refused)?;
     let mut feed = SampleSource::new(scene, stream).map_err(refused)?;
-    let (answer, conduct) = target.control(&scene.monitor_config(), &mut feed)?;
+    let procedure = Procedure {
+        zones: scene.zones,
+        ..Procedure::default()
+    };
+    let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, &mut feed)?;
     let timebase = Timebase::of(scene);
     let (truth, trace, spectrogram, stream) = feed.finish();
     let rings = histories.rings.into_iter().zip(truth.rings);

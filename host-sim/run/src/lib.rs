@@ -13,6 +13,7 @@ pub mod timebase;
 
 pub mod detection;
 pub mod outcome;
+pub mod procedure;
 pub mod trace;
 
 pub mod matching;

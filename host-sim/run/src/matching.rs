@@ -244,6 +244,7 @@ mod tests {
     fn judge(truth: &History, events: Vec<DetectedEvent>) -> Matches {
         let detection = Detection {
             events,
+            touches: Vec::new(),
             forecasts: Vec::new(),
             left_out: 0,
             severity: crate::outcome::Severity::default(),

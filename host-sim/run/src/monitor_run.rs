@@ -2,7 +2,6 @@
 
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
-use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState, Summary};
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
@@ -31,24 +30,8 @@ pub fn run(
     config: &MonitorConfig,
     samples: impl Iterator<Item = Sample>,
 ) -> Result<MonitorOutput, ConfigError> {
-    go_on(config, MonitorState::default(), samples)
-}
-
-/// The same from what it had `learnt` before them on.
-pub fn resume(
-    config: &MonitorConfig,
-    learnt: &Learnt,
-    samples: impl Iterator<Item = Sample>,
-) -> Result<MonitorOutput, ConfigError> {
-    go_on(config, learnt.into(), samples)
-}
-
-fn go_on(
-    config: &MonitorConfig,
-    mut state: MonitorState,
-    samples: impl Iterator<Item = Sample>,
-) -> Result<MonitorOutput, ConfigError> {
     let monitor = Monitor::try_new(config)?;
+    let mut state = MonitorState::default();
     let mut forecast_task = ForecastTask::try_new(&config.detector)?;
     let mut fingerprint = Fingerprint::default();
     let (mut notices, mut left_out) = (Vec::new(), 0);

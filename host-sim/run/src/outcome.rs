@@ -38,6 +38,27 @@ pub struct DetectedEvent {
     pub fault: Option<ChannelFault>,
 }
 
+/// The rotor was at the wall, as the guard told.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TouchEvent {
+    /// `touch`.
+    pub event: &'static str,
+    /// First sample at the wall, s.
+    pub onset_s: f64,
+    /// Time stamp of the sample whose tick told it, s.
+    pub declared_s: f64,
+    /// Last sample at the wall, s; `None` where it stayed there.
+    pub end_s: Option<f64>,
+    /// Index of the telling sample.
+    pub sample: u64,
+    /// `a`, `b` or `both`.
+    pub plane: &'static str,
+    /// Greatest distance from the told centre, as a part of the told clearance.
+    pub peak_fraction: f64,
+    /// Speed into the wall, m/s, where the detector found the impact.
+    pub normal_speed_m_s: Option<f64>,
+}
+
 /// What is wrong with which channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ChannelFault {
@@ -109,6 +130,8 @@ impl From<touchdown_core::severity::Severity> for Severity {
 pub struct Detection {
     /// In the order of declaration.
     pub events: Vec<DetectedEvent>,
+    /// Of the guard, in the order of time.
+    pub touches: Vec<TouchEvent>,
     /// In the order of time.
     pub forecasts: Vec<Forecast>,
     /// Events and forecasts that came when there were too many to keep, with their confirmations.

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 
@@ -10,7 +9,9 @@ use crate::controller_run;
 use crate::controller_trace::ControllerTrace;
 use crate::emulator::{Emulator, EmulatorError};
 use crate::monitor_run::{self, MonitorOutput};
+use crate::procedure::{Procedure, Zoned};
 use touchdown_base::failure::Failure;
+use touchdown_rotor::error::ConfigError;
 
 /// Where the detector runs.
 #[derive(Clone, Debug)]
@@ -43,35 +44,29 @@ impl Target {
         }
     }
 
-    /// The same from what the monitor had `learnt` before them on, which the image cannot be handed.
-    pub fn resume(
-        &self,
-        config: &MonitorConfig,
-        learnt: &Learnt,
-        samples: impl Iterator<Item = Sample>,
-    ) -> Result<MonitorOutput, Failure> {
-        match self {
-            Self::Host => monitor_run::resume(config, learnt, samples)
-                .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
-            Self::Qemu(_) => Err(Failure::Usage(
-                "the stream says what the detector had learnt (its column learnt), which the emulator's image \
-                 cannot be handed; leave out --on qemu, or the column"
-                    .to_owned(),
-            )),
-        }
-    }
-
-    /// Runs the whole controller over `samples`.
+    /// Runs the whole controller over `samples`, which the image cannot be handed what was learnt before.
     pub fn control(
         &self,
         config: &MonitorConfig,
+        procedure: &Procedure,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(MonitorOutput, ControllerTrace), Failure> {
-        match self {
-            Self::Host => controller_run::run(config, samples)
-                .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
-            Self::Qemu(emulator) => Ok(emulator.control(config, samples)?),
-        }
+        let refused = |error: ConfigError| Failure::Usage(format!("monitor: {error}"));
+        let mut zones = [0; 4];
+        let samples =
+            Zoned::new(samples, config, procedure.zones, &mut zones).map_err(refused)?;
+        let (answer, trace) = match self {
+            Self::Host => controller_run::run(config, procedure, samples).map_err(refused)?,
+            Self::Qemu(_) if procedure.learnt.is_some() => {
+                return Err(Failure::Usage(
+                    "the stream says what the detector had learnt (its column learnt), which the emulator's image \
+                     cannot be handed; leave out --on qemu, or the column"
+                        .to_owned(),
+                ));
+            }
+            Self::Qemu(emulator) => emulator.control(config, procedure, samples)?,
+        };
+        Ok((answer, ControllerTrace { zones, ..trace }))
     }
 }
 

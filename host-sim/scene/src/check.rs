@@ -1,5 +1,6 @@
 //! From the file's units and names to a valid scene.
 
+use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
 
 use super::auto::auto;
@@ -54,12 +55,27 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         sensors,
         faults,
         tuning: file.detector,
+        guard: GuardConfig {
+            alert: file.guard.alert,
+            danger: file.guard.danger,
+        },
+        zones: zones(file.guard.zones)?,
     };
     if scene.model.rung == Fidelity::Hertz {
         scene.model.step = step_in_contact(&scene, file.model.step_us.is_some())?;
     }
     monitor(&scene)?;
     Ok(scene)
+}
+
+/// Upper ends of the zones A, B and C.
+fn zones(zones: [f64; 3]) -> Result<[f64; 3], Diagnostic> {
+    let [a, b, c] = zones;
+    if 0.0 < a && a < b && b < c && c <= 1.0 {
+        return Ok(zones);
+    }
+    let rule = "zones must be three parts of the clearance, each above the one before, to 1";
+    Err(Diagnostic::new("guard", "zones", rule))
 }
 
 fn run(table: &RunTable) -> Result<Run, Diagnostic> {

@@ -3,6 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use touchdown_core::detect::Tuning;
+use touchdown_core::guard::GuardConfig;
 
 use super::diagnostic;
 use super::faults::FaultTable;
@@ -63,6 +64,29 @@ pub(super) struct SceneFile {
     pub fault: Vec<FaultTable>,
     #[serde(default)]
     pub detector: Tuning,
+    #[serde(default)]
+    pub guard: GuardTable,
+}
+
+/// Table `[guard]`; parts of the clearance.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct GuardTable {
+    pub alert: f32,
+    pub danger: f32,
+    #[serde(deserialize_with = "list::exactly")]
+    pub zones: [f64; 3],
+}
+
+impl Default for GuardTable {
+    fn default() -> Self {
+        let GuardConfig { alert, danger } = GuardConfig::default();
+        Self {
+            alert,
+            danger,
+            zones: [0.3, 0.4, 0.5],
+        }
+    }
 }
 
 /// Table `[rotor]`, as it is written.

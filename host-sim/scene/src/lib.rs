@@ -33,6 +33,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 
 use crate::scales::compliance;
@@ -76,6 +77,11 @@ pub struct Scene {
     pub faults: Vec<SensorFault>,
     /// The detector's thresholds and times.
     pub tuning: Tuning,
+    /// The guard's limits.
+    pub guard: GuardConfig,
+    /// Distance, as a part of the clearance, up to which the zones A, B and C reach; D is beyond. Not checked against
+    /// ISO 14839-2.
+    pub zones: [f64; 3],
 }
 
 /// The rotor.
@@ -203,6 +209,9 @@ impl Scene {
                 machine: machine_config(&self.rotor, &self.retainer, self.run.gravity),
                 tuning: self.tuning,
             },
+            guard: self.guard,
+            // A scene is its own record.
+            commissioned: true,
         }
     }
 

@@ -1,9 +1,9 @@
 //! What phases, events and regimes are called in text.
 
 use touchdown_core::detect::Phase;
-use touchdown_core::event::EventKind;
+use touchdown_core::event::{EventKind, Plane};
 use touchdown_core::sample::CHANNELS;
-use touchdown_protocol::controller::{Fault, Mode};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Mode};
 
 use touchdown_base::history::{PhaseKind, Regime};
 
@@ -55,6 +55,40 @@ pub fn mode_name(mode: Mode) -> &'static str {
         Mode::Watching => "watching",
         Mode::Dropped => "dropped",
         Mode::Faulted => "faulted",
+    }
+}
+
+/// Name of the cause of what the outputs are.
+pub fn cause_name(cause: Cause) -> &'static str {
+    match cause {
+        Cause::NoProof => "no proof of levitation",
+        Cause::Danger => "beyond the danger limit",
+        Cause::LevitationOff => "levitation off",
+        Cause::PositionsLost => "positions lost",
+        Cause::Fall => "fall",
+        Cause::Whirl => "whirl",
+        Cause::Contact => "contact",
+        Cause::Fault => "fault",
+        Cause::Order => "order to clear",
+    }
+}
+
+/// Why an order is refused.
+pub fn busy_name(busy: Busy) -> &'static str {
+    match busy {
+        Busy::DropRuns => "a drop runs",
+        Busy::Blind => "no plane gives a position",
+        Busy::Watching => "it watches, so the machine may run",
+        Busy::Latched => "a drop is latched",
+    }
+}
+
+/// Name of a sensor plane.
+pub fn plane_name(plane: Plane) -> &'static str {
+    match plane {
+        Plane::A => "a",
+        Plane::B => "b",
+        Plane::Both => "both",
     }
 }
 

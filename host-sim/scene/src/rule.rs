@@ -103,6 +103,7 @@ pub fn translate(error: &ConfigError) -> Diagnostic {
         "nonlinearity" => ("sensors", "nonlinearity_percent"),
         "runout" => ("sensors", "runout_um"),
         "runout_harmonic" => ("sensors", "runout_harmonic"),
+        "alert" | "danger" => ("guard", parameter),
         tuning => ("detector", tuning),
     };
     let rule = error.to_string().replacen(parameter, key, 1);

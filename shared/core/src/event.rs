@@ -150,6 +150,10 @@ pub enum Notice {
     },
     /// What lies ahead, where that is news.
     Outlook(Outlook),
+    /// A plane rose through a limit of the guard.
+    Alarm(Alarm),
+    /// The rotor came to the wall, or left it.
+    Touch(Touch),
 }
 
 /// When a whirl begins, and how it grows; s.
@@ -178,8 +182,55 @@ pub struct Outlook {
     pub onset: Option<Onset>,
 }
 
-/// Most notices that one tick can give.
-pub const NOTICES_PER_TICK: usize = 10;
+/// Which limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Level {
+    /// The lower one, which is told.
+    Alert = 0,
+    /// The higher one, which trips.
+    Danger = 1,
+}
+
+impl Level {
+    /// In the order of their codes.
+    pub const ALL: [Self; 2] = [Self::Alert, Self::Danger];
+}
+
+/// A plane rose through a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alarm {
+    /// A or B.
+    pub plane: Plane,
+    /// Which limit.
+    pub level: Level,
+    /// Distance from the told centre in this sample, as a part of the told clearance.
+    pub fraction: f32,
+    /// The sample whose tick told it.
+    pub sample: u64,
+}
+
+/// The rotor is at the wall; told when it comes, and again when it has left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Counts up from 0.
+    pub number: u16,
+    /// Where.
+    pub plane: Plane,
+    /// First sample at the wall.
+    pub onset: u64,
+    /// The sample whose tick told it.
+    pub declared: u64,
+    /// Last sample at the wall, once it has left.
+    pub end: Option<u64>,
+    /// Greatest distance from the told centre so far, as a part of the told clearance.
+    pub peak: f32,
+}
+
+/// Most notices that one tick can give: five of the guard, ten of the detector.
+pub const NOTICES_PER_TICK: usize = 15;
 
 /// The notices of one tick.
 pub type Notices = heapless::Vec<Notice, NOTICES_PER_TICK>;

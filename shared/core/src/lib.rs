@@ -13,6 +13,7 @@ pub mod detect;
 pub mod event;
 pub mod fault;
 pub mod forecast;
+pub mod guard;
 pub mod health;
 #[cfg(feature = "serde")]
 pub mod learnt;

@@ -1,4 +1,4 @@
-//! The whole tick: sensing, the sensors' health, then the detector.
+//! The whole tick: the guard, sensing, the sensors' health, then the detector.
 
 use crc::Digest;
 
@@ -8,6 +8,7 @@ use crate::detect::{
 };
 use crate::event::{Motion, Notice, Notices};
 use crate::forecast::{ForecastInput, ForecastTask};
+use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
@@ -27,11 +28,18 @@ pub struct MonitorConfig {
     pub tachometers: Option<TachometersConfig>,
     /// Displacement to events.
     pub detector: DetectorConfig,
+    /// Displacement to alarms, touches and proof of levitation.
+    pub guard: GuardConfig,
+    /// Whether a commissioning check is on record. A machine without weight across its axis is not proven to float
+    /// without one.
+    pub commissioned: bool,
 }
 
 /// Coefficients of the tick.
 #[derive(Clone, Debug)]
 pub struct Monitor {
+    fitted: u8,
+    guard: Guard,
     sensing: Sensing,
     health: Health,
     tachometers: Option<Tachometers>,
@@ -51,6 +59,7 @@ pub struct Seen {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
+    guard: GuardState,
     pub(crate) health: HealthState,
     pub(crate) tachometers: TachometersState,
     position: Option<[f32; 2]>,
@@ -87,6 +96,13 @@ impl Monitor {
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
             severeness: SeverityModel::try_new(&config.detector)?,
+            guard: Guard::try_new(
+                &config.guard,
+                &config.detector,
+                config.fitted,
+                config.commissioned,
+            )?,
+            fitted: config.fitted,
         })
     }
 
@@ -105,12 +121,22 @@ impl Monitor {
     /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
     #[inline]
     pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
+        self.guard(state, sample, notices);
         let seen = self.sense(state, sample);
         self.detect(state, &seen, notices);
         self.update_severity(state, notices);
     }
 
-    /// First part of a tick: what the sensors say, and whether they can be believed.
+    /// First part of a tick: the guard, on what the sensors say, believed or not. What was in `notices` goes.
+    #[inline]
+    pub fn guard(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
+        notices.clear();
+        let planes = self.sensing.convert(sample, self.fitted).planes;
+        let state = &mut state.guard;
+        self.guard.update(state, planes, sample.levitated, notices);
+    }
+
+    /// Second part: what the sensors say, and whether they can be believed.
     #[inline]
     pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
         let phases = state.detector.phases();
@@ -139,10 +165,9 @@ impl Monitor {
         Seen { reading, signals }
     }
 
-    /// Second part: the detector. What was in `notices` goes.
+    /// Third part: the detector.
     #[inline]
     pub fn detect(&self, state: &mut MonitorState, seen: &Seen, notices: &mut Notices) {
-        notices.clear();
         let detector = &mut state.detector;
         self.detector
             .update(detector, &seen.reading, &seen.signals, notices);
@@ -210,6 +235,16 @@ impl MonitorState {
     /// What can be had of each channel.
     pub fn conditions(&self) -> [Condition; CHANNELS] {
         self.health.conditions()
+    }
+
+    /// The guard's state.
+    pub fn guard(&self) -> &GuardState {
+        &self.guard
+    }
+
+    /// Likewise, for who keeps the proof of levitation.
+    pub fn guard_mut(&mut self) -> &mut GuardState {
+        &mut self.guard
     }
 
     /// The present phase.

@@ -1,7 +1,7 @@
 //! What the safety controller is doing: its mode, its faults and its outputs.
 
 /// What the controller is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -9,11 +9,11 @@ pub enum Mode {
     /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
     #[default]
     SelfTest = 0,
-    /// Noise and position are being learnt, or the rotor does not float yet.
+    /// Levitation is not proven, or noise and position are being learnt.
     Arming = 1,
-    /// Armed: a fall trips.
+    /// Levitation is proven: what the guard or the detector finds trips.
     Watching = 2,
-    /// The rotor fell, stayed on the retainer or whirled. Latched.
+    /// The guard or the detector tripped. Latched.
     Dropped = 3,
     /// A fault that trips is latched.
     Faulted = 4,
@@ -28,6 +28,58 @@ impl Mode {
         Self::Dropped,
         Self::Faulted,
     ];
+}
+
+/// Why the outputs are as they are; a trip's stays until cleared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Levitation has not been proven.
+    NoProof = 0,
+    /// A plane was beyond the danger limit.
+    Danger = 1,
+    /// The levitation signal was off.
+    LevitationOff = 2,
+    /// No plane delivered a position.
+    PositionsLost = 3,
+    /// The detector confirmed a fall.
+    Fall = 4,
+    /// The detector told whirl.
+    Whirl = 5,
+    /// The detector told an impact or permanent contact.
+    Contact = 6,
+    /// A fault of the controller.
+    Fault = 7,
+    /// An order: cleared.
+    Order = 8,
+}
+
+impl Cause {
+    /// All causes, in the order of their codes.
+    pub const ALL: [Self; 9] = [
+        Self::NoProof,
+        Self::Danger,
+        Self::LevitationOff,
+        Self::PositionsLost,
+        Self::Fall,
+        Self::Whirl,
+        Self::Contact,
+        Self::Fault,
+        Self::Order,
+    ];
+}
+
+/// What the controller shows: it is told at each change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// The outputs.
+    pub outputs: Outputs,
+    /// What it is doing.
+    pub mode: Mode,
+    /// Why; none while it watches.
+    pub cause: Option<Cause>,
 }
 
 /// The outputs, each `true` where its coil or lamp has current. Without current all are safe, so loss
@@ -160,6 +212,11 @@ pub enum Busy {
     Latched,
 }
 
+impl Busy {
+    /// All reasons, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::DropRuns, Self::Blind, Self::Watching, Self::Latched];
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,6 +235,9 @@ mod tests {
             assert_eq!(fault as usize, code);
             assert_eq!(Faults::NONE.with(fault).0, 1 << code);
             assert_eq!(Faults::NONE.with(fault).trip(), fault.trips());
+        }
+        for (code, cause) in Cause::ALL.into_iter().enumerate() {
+            assert_eq!(cause as usize, code);
         }
         for (code, mode) in Mode::ALL.into_iter().enumerate() {
             assert_eq!(mode as usize, code);

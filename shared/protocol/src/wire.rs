@@ -1,21 +1,24 @@
 //! The bytes of samples and notices, little-endian, as they pass between desktop and target.
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
-//! (postcard), then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
-//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices and changes of the outputs, then that of the
+//! (postcard), 1 where the controller is switched on with the first sample and 0 where a lift was seen before it,
+//! then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, changes of what the controller shows and orders, then that of the
 //! [`Severity`], and last the one of [`Summary`].
 
-use crate::controller::Outputs;
-use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Onset, Outlook, Plane};
+use crate::controller::{Busy, Cause, Mode, Outputs, Shown};
+use touchdown_core::event::{
+    Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Outlook, Plane, Touch,
+};
 use touchdown_core::fault::{Condition, Fault, FaultKind};
 pub use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x04";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x05";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x04";
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x05";
 /// Bytes of a sample record.
 pub const SAMPLE_BYTES: usize = 20;
 /// Bytes of a notice record.
@@ -24,6 +27,7 @@ pub const NOTICE_BYTES: usize = 32;
 const SPIN_PRESENT: u8 = 1 << 4;
 const LEVITATED_PRESENT: u8 = 1 << 5;
 const LEVITATED_ON: u8 = 1 << 6;
+const CLEAR: u8 = 1 << 7;
 
 /// Sample to bytes: four u16 counts, flags, which pulse channels are there, their ages, spin (f32),
 /// their counts (u16).
@@ -74,13 +78,33 @@ pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
     }
 }
 
-/// A change of the outputs.
+/// The bytes of a sample before which an order to clear comes.
+pub fn with_clear(mut bytes: [u8; SAMPLE_BYTES]) -> [u8; SAMPLE_BYTES] {
+    bytes[8] |= CLEAR;
+    bytes
+}
+
+/// Whether an order to clear comes before this sample.
+pub fn has_clear(bytes: &[u8; SAMPLE_BYTES]) -> bool {
+    bytes[8] & CLEAR != 0
+}
+
+/// A change of what the controller shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switching {
     /// Number of the sample whose tick made it, from 0.
     pub sample: u64,
     /// From then on.
-    pub outputs: Outputs,
+    pub shown: Shown,
+}
+
+/// An order to clear, and what came of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cleared {
+    /// Number of the sample before which it came, from 0.
+    pub sample: u64,
+    /// Why it was not done; none where it was.
+    pub refused: Option<Busy>,
 }
 
 /// A record of an answer.
@@ -90,6 +114,8 @@ pub enum Record {
     Notice(Notice),
     /// After the notices of its tick.
     Switching(Switching),
+    /// Before the notices of its tick.
+    Cleared(Cleared),
     /// The last record but one: of the last drop.
     Severity(Severity),
     /// The last record.
@@ -103,12 +129,17 @@ const SUMMARY: u8 = 4;
 const OUTLOOK: u8 = 5;
 const SEVERITY: u8 = 6;
 const SWITCHING: u8 = 7;
+const ALARM: u8 = 8;
+const TOUCH: u8 = 9;
+const CLEARED: u8 = 10;
 
 /// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
 /// three 8-byte fields. The summary has the conditions of the channels at 4. Of an
 /// outlook: tag, whether it has an onset, two zero bytes, then numbers of four bytes around the sample. Of
 /// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32). Of a
-/// change of the outputs: tag, their bits, and its sample at 16.
+/// change of what is shown: tag, the outputs' bits, mode, cause (from 1), and its sample at 16. Of an alarm: tag,
+/// level, plane, and at 24 the fraction (f32). Of a touch: tag, whether it has ended, plane, number, onset, the sample
+/// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order: tag, why not (from 1).
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
@@ -148,8 +179,28 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(24, &onset[0].to_le_bytes());
             put(28, &onset[1].to_le_bytes());
         }
-        Record::Switching(Switching { sample, outputs }) => {
-            put(0, &[SWITCHING, outputs.bits()]);
+        Record::Notice(Notice::Alarm(alarm)) => {
+            put(0, &[ALARM, alarm.level as u8, alarm.plane as u8]);
+            put(16, &alarm.sample.to_le_bytes());
+            put(24, &alarm.fraction.to_le_bytes());
+        }
+        Record::Notice(Notice::Touch(touch)) => {
+            let length = touch.end.map_or(0, |end| end.saturating_sub(touch.onset));
+            let length = u32::try_from(length).unwrap_or(u32::MAX);
+            put(0, &[TOUCH, touch.end.is_some() as u8, touch.plane as u8]);
+            put(4, &touch.number.to_le_bytes());
+            put(8, &touch.onset.to_le_bytes());
+            put(16, &touch.declared.to_le_bytes());
+            put(24, &touch.peak.to_le_bytes());
+            put(28, &length.to_le_bytes());
+        }
+        Record::Switching(Switching { sample, shown }) => {
+            let cause = shown.cause.map_or(0, |it| 1 + it as u8);
+            put(0, &[SWITCHING, shown.outputs.bits(), shown.mode as u8, cause]);
+            put(16, &sample.to_le_bytes());
+        }
+        Record::Cleared(Cleared { sample, refused }) => {
+            put(0, &[CLEARED, refused.map_or(0, |it| 1 + it as u8)]);
             put(16, &sample.to_le_bytes());
         }
         Record::Severity(it) => {
@@ -196,7 +247,7 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             kind: *EventKind::ALL.get(usize::from(bytes[1]))?,
             onset: Moment(i64::from_le_bytes(eight(8))),
             declared: sample,
-            plane: *[Plane::A, Plane::B, Plane::Both].get(usize::from(bytes[2]))?,
+            plane: plane(bytes[2])?,
             normal_speed: real(24),
             motion: *[Motion::Cylindrical, Motion::Conical].get(usize::from(bytes[3]))?,
             fault: fault(bytes[6], bytes[7])?,
@@ -213,9 +264,35 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
                 growth_time: real(28),
             }),
         })),
+        ALARM => Record::Notice(Notice::Alarm(Alarm {
+            plane: plane(bytes[2])?,
+            level: *Level::ALL.get(usize::from(bytes[1]))?,
+            fraction: real(24),
+            sample,
+        })),
+        TOUCH => {
+            let onset = u64::from_le_bytes(eight(8));
+            let length = u64::from(u32::from_le_bytes(four(28)));
+            Record::Notice(Notice::Touch(Touch {
+                number,
+                plane: plane(bytes[2])?,
+                onset,
+                declared: sample,
+                end: (bytes[1] != 0).then_some(onset.saturating_add(length)),
+                peak: real(24),
+            }))
+        }
         SWITCHING => Record::Switching(Switching {
             sample,
-            outputs: Outputs::from_bits(bytes[1])?,
+            shown: Shown {
+                outputs: Outputs::from_bits(bytes[1])?,
+                mode: *Mode::ALL.get(usize::from(bytes[2]))?,
+                cause: some_of(&Cause::ALL, bytes[3])?,
+            },
+        }),
+        CLEARED => Record::Cleared(Cleared {
+            sample,
+            refused: some_of(&Busy::ALL, bytes[1])?,
         }),
         SEVERITY => Record::Severity(Severity {
             impacts: u16::from_le_bytes([bytes[2], bytes[3]]),
@@ -235,6 +312,19 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
         }),
         _ => return None,
     })
+}
+
+fn plane(code: u8) -> Option<Plane> {
+    let planes = [Plane::A, Plane::B, Plane::Both];
+    planes.get(usize::from(code)).copied()
+}
+
+/// None for code 0, else the one of that place, from 1; nothing where there is none.
+fn some_of<T: Copy>(all: &[T], code: u8) -> Option<Option<T>> {
+    let Some(place) = code.checked_sub(1) else {
+        return Some(None);
+    };
+    all.get(usize::from(place)).copied().map(Some)
 }
 
 fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {

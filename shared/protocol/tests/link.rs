@@ -21,6 +21,7 @@ const LIFETIME: Lifetime = Lifetime {
     episodes: 9,
     landings: 5,
     unweighed: 1,
+    touches: 9,
     lost: 0,
     weight: 6_250,
 };
@@ -30,6 +31,8 @@ const STATE: State = State {
     age_us: 12,
     phase: Phase::Levitated,
     mode: Mode::Watching,
+    cause: None,
+    touches: 7,
     outputs: Outputs {
         run: true,
         no_brake: true,
@@ -77,6 +80,8 @@ fn settings() -> Settings {
                 },
                 tuning: Tuning::default(),
             },
+            guard: touchdown_core::guard::GuardConfig::default(),
+            commissioned: false,
         },
         wiring: Wiring {
             pulses_per_turn: Some(u16::MAX),

@@ -42,6 +42,8 @@ fn config() -> MonitorConfig {
             },
             tuning: Tuning::default(),
         },
+        guard: touchdown_core::guard::GuardConfig::default(),
+        commissioned: false,
     }
 }
 

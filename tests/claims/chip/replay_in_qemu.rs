@@ -57,7 +57,7 @@ fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
     let fall = &outcome.detection.events[0];
     assert_eq!(fall.event, EventKind::FreeFall);
     let confirmed = fall.confirmed_s.expect("confirmed") + 0.2;
-    let bits = |it: &Switching| (it.sample, it.outputs.bits());
+    let bits = |it: &Switching| (it.sample, it.shown.outputs.bits());
     let [(_, arming), (_, watching), (tripped, safe), ..] =
         outcome.conduct.outputs.iter().map(bits).collect::<Vec<_>>()[..]
     else {

@@ -355,7 +355,7 @@ fn sensors_that_are_lost_in_the_emulator_trip_20_ticks_later() {
     let conduct = &outcome.conduct;
     let safe = conduct.outputs.last().expect("a change");
     let lost = ((start + 0.2) * scene.run.sample_rate).round() as u64;
-    assert_eq!((safe.sample, safe.outputs.bits()), (lost + 19, 0));
+    assert_eq!((safe.sample, safe.shown.outputs.bits()), (lost + 19, 0));
     assert_eq!(conduct.state.mode, Mode::Faulted);
     assert!(conduct.state.faults.contains(Fault::SensorsLost));
 }

@@ -71,7 +71,7 @@ fn watch_in(scene: &Scene, seconds: f64, ends: impl Fn(f64) -> [[f64; 2]; 2]) ->
                 Notice::Declared(event) => watched.events.push(event),
                 Notice::Confirmed { number, .. } => watched.confirmed.push(number),
                 Notice::Withdrawn { number, .. } => watched.withdrawn.push(number),
-                Notice::Outlook(_) => {}
+                _ => {}
             }
         }
         watched.phases.push(state.phases());

@@ -8,7 +8,7 @@ use std::io::Write as _;
 
 use touchdown_files::recording::{Mapping, Reading};
 use touchdown_page::json;
-use touchdown_run::replay;
+use touchdown_run::replay::{self, Orders};
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
 
@@ -49,9 +49,9 @@ fn memory_does_not_grow_with_the_recording() {
     let run = |blocks: u64| {
         let mut file = fs::File::create(&path).unwrap();
         (0..blocks).for_each(|_| file.write_all(block.as_bytes()).unwrap());
-        let replay = replay::recording(&path, &reading, &scene, &Target::Host).unwrap();
+        let replay = replay::recording(&path, &reading, &scene, &Target::Host, &Orders::default()).unwrap();
         assert_eq!(replay.detection.samples, 20_000 * blocks);
-        let json = json::replay(&replay.detection).unwrap();
+        let json = json::replay(&replay).unwrap();
         (peak(), replay.detection.events.len(), json.len())
     };
     let (small, few, _) = run(5);

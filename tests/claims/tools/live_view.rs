@@ -37,6 +37,8 @@ fn greeting() -> Said {
 
 fn dropped() -> State {
     State {
+        cause: None,
+        touches: 0,
         sample: 100_000,
         age_us: 40_000,
         phase: Phase::Sliding,

@@ -11,7 +11,7 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::event::{Notice, Notices};
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
-use touchdown_protocol::controller::{Faults, Outputs};
+use touchdown_protocol::controller::{Faults, Shown};
 
 use self::scenes::{SCENES, Scene};
 use touchdown_firmware::board::qemu::Counter;
@@ -23,7 +23,8 @@ use touchdown_firmware::memory;
 use touchdown_firmware::recorder::{self, Identity, Recorder};
 
 /// All but the forecast, which is below the tick, are parts of it.
-const PARTS: [&str; 6] = [
+const PARTS: [&str; 7] = [
+    "guard",
     "sensing and health",
     "detector",
     "forecast slice",
@@ -108,6 +109,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     scene.play(|sample| {
         let sample = black_box(sample);
         let (monitor, state) = app.monitor();
+        let ((), guard) = counter.count(|| monitor.guard(state, sample, &mut notices));
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
         let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
@@ -123,7 +125,9 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         if let Some(outlook) = outlook {
             recorder.hear(&outlook);
         }
-        let counts = [sensing, detector, forecast, severity, recording, outputs];
+        let counts = [
+            guard, sensing, detector, forecast, severity, recording, outputs,
+        ];
         tallies
             .iter_mut()
             .zip(counts)
@@ -158,10 +162,10 @@ impl Board for Idle {
         black_box(notice);
     }
 
-    fn drive(&mut self, outputs: Outputs) {
+    fn drive(&mut self, shown: Shown) {
         #[cfg(feature = "plants")]
-        plant(outputs);
-        black_box(outputs);
+        plant(shown.outputs);
+        black_box(shown);
     }
 
     fn config(&self) -> &[u8] {

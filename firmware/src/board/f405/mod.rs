@@ -27,7 +27,7 @@ use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::{self, Block, BlockError, Settings};
-use touchdown_protocol::controller::{Fault, Faults, Outputs};
+use touchdown_protocol::controller::{Fault, Faults, Shown};
 use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
 
@@ -105,8 +105,8 @@ impl Board for Silicon {
         self.lost_notices = self.lost_notices.saturating_add(u32::from(is_lost));
     }
 
-    fn drive(&mut self, outputs: Outputs) {
-        self.pins.drive(outputs);
+    fn drive(&mut self, shown: Shown) {
+        self.pins.drive(shown.outputs);
     }
 
     fn config(&self) -> &[u8] {
@@ -150,7 +150,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
         idle()
     };
     let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
-    let mut known = (Outputs::SAFE, Faults::NONE, 0);
+    let mut known = (Shown::default(), Faults::NONE, 0);
     loop {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
@@ -170,13 +170,13 @@ pub fn main(memory: &'static mut Memory) -> ! {
             // An answer without room is asked for again.
             let _ = serial.send(server.take(byte, &mut remote).as_ref());
         }
-        let (outputs, faults, samples) = with_tick(|tick| {
+        let (shown, faults, samples) = with_tick(|tick| {
             let app = &*tick.app;
-            (app.outputs(), app.condition().faults, app.state().samples())
+            (app.shown(), app.faults(), app.state().samples())
         })
         .unwrap_or_default();
-        if outputs != known.0 {
-            journal::outputs(outputs);
+        if shown != known.0 {
+            journal::shown(shown);
         }
         if faults != known.1 {
             journal::faults(faults);
@@ -186,7 +186,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
             // The next one tells more.
             let _ = serial.send(server.state(&mut remote).as_ref());
         }
-        known = (outputs, faults, if is_due { samples } else { known.2 });
+        known = (shown, faults, if is_due { samples } else { known.2 });
         if remote.wants_reset() && serial.is_done() {
             SCB::sys_reset();
         }

@@ -46,8 +46,8 @@ impl Remote {
     pub fn work(&mut self) {
         let Some(log) = &mut self.log else { return };
         if log.flash().is_busy() == Ok(false) {
-            let lost = with_tick(|tick| tick.recorder.lost()).unwrap_or(0);
-            log.work(lost, || with_tick(|tick| tick.recorder.fetch()).flatten());
+            let counted = with_tick(|tick| tick.recorder.counted()).unwrap_or_default();
+            log.work(counted, || with_tick(|tick| tick.recorder.fetch()).flatten());
         }
     }
 

@@ -61,8 +61,9 @@ impl Replay {
         })
     }
 
-    /// The configuration at the start of the file; to be called once, first.
-    pub fn config(&mut self) -> Result<MonitorConfig, Failure> {
+    /// The configuration at the start of the file, and whether the controller is switched on with the first sample;
+    /// to be called once, first.
+    pub fn config(&mut self) -> Result<(MonitorConfig, bool), Failure> {
         let mut head = [0; 8];
         let mut config = [0; CONFIG_BYTES];
         self.file
@@ -76,11 +77,16 @@ impl Replay {
             .get_mut(..u32::from_le_bytes(length) as usize)
             .ok_or(Failure::Replay)?;
         self.file.read_exact(config).map_err(|_| Failure::Replay)?;
-        postcard::from_bytes(config).map_err(|_| Failure::Replay)
+        let config = postcard::from_bytes(config).map_err(|_| Failure::Replay)?;
+        let mut powers_on = [0];
+        self.file
+            .read_exact(&mut powers_on)
+            .map_err(|_| Failure::Replay)?;
+        Ok((config, powers_on != [0]))
     }
 
-    /// The next samples; `None` at the end of the file.
-    pub fn samples(&mut self) -> Result<Option<impl Iterator<Item = Sample>>, Failure> {
+    /// The next samples, each with whether an order to clear comes before it; `None` at the end of the file.
+    pub fn samples(&mut self) -> Result<Option<impl Iterator<Item = (Sample, bool)>>, Failure> {
         let bytes = self.block.as_flattened_mut();
         let mut filled = 0;
         while let Some(space) = bytes.get_mut(filled..).filter(|space| !space.is_empty()) {
@@ -93,7 +99,7 @@ impl Replay {
             return Err(Failure::Replay);
         }
         let records = &self.block[..filled / wire::SAMPLE_BYTES];
-        Ok((!records.is_empty()).then(|| records.iter().map(wire::decode_sample)))
+        Ok((!records.is_empty()).then(|| records.iter().map(|it| (wire::decode_sample(it), wire::has_clear(it)))))
     }
 }
 

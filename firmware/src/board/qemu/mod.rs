@@ -12,8 +12,8 @@ use defmt::{Debug2Format, Display2Format, error, info};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_protocol::config_block::{self, Block, BlockError, Settings, Wiring};
-use touchdown_protocol::controller::{Fault, Faults, Outputs};
-use touchdown_protocol::wire::{Record, Switching};
+use touchdown_protocol::controller::{Busy, Fault, Faults, Shown};
+use touchdown_protocol::wire::{Cleared, Record, Switching};
 
 pub use self::counter::Counter;
 use self::files::{Answer, Files};
@@ -57,7 +57,7 @@ pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
 struct Emulated {
     answer: Answer,
-    outputs: Outputs,
+    shown: Option<Shown>,
     ticks: u64,
     block: Block,
     line: Line,
@@ -71,13 +71,13 @@ impl Board for Emulated {
         self.failed |= self.answer.write(&Record::Notice(*notice)).is_err();
     }
 
-    fn drive(&mut self, outputs: Outputs) {
-        if outputs != self.outputs {
-            journal::outputs(outputs);
-            self.outputs = outputs;
+    fn drive(&mut self, shown: Shown) {
+        if self.shown != Some(shown) {
+            journal::shown(shown);
+            self.shown = Some(shown);
             let switching = Switching {
                 sample: self.ticks,
-                outputs,
+                shown,
             };
             self.failed |= self.answer.write(&Record::Switching(switching)).is_err();
         }
@@ -90,6 +90,17 @@ impl Board for Emulated {
 
     // No watchdog is emulated.
     fn feed(&mut self) {}
+}
+
+impl Emulated {
+    /// An order of the replay file to clear was `refused`, or done.
+    fn cleared(&mut self, refused: Option<Busy>) {
+        let cleared = Cleared {
+            sample: self.ticks,
+            refused,
+        };
+        self.failed |= self.answer.write(&Record::Cleared(cleared)).is_err();
+    }
 }
 
 /// Runs the replay file that the command line names, and exits the emulator.
@@ -120,11 +131,12 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
     let mut log = log
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
-    let (block, config, found) = found_at_power_on(replay.config()?, settings.as_ref());
+    let (config, powers_on) = replay.config()?;
+    let (block, config, found) = found_at_power_on(config, settings.as_ref());
     journal::config(&config);
     let mut board = Emulated {
         answer,
-        outputs: Outputs::SAFE,
+        shown: None,
         ticks: 0,
         block,
         line: Line::new(config.detector.sample_rate, settings),
@@ -137,6 +149,9 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
+    if !powers_on {
+        app.assume_lift();
+    }
     let mut forecast_task = memory::forecast_task(&config).map_err(|_| Failure::Config)?;
     let mut notices = Notices::new();
     // Outside the tick: silicon has neither the time nor the use for it.
@@ -144,7 +159,10 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
     let mut is_over = false;
     loop {
         if let Some(samples) = replay.samples()? {
-            for sample in samples {
+            for (sample, clears) in samples {
+                if clears {
+                    board.cleared(app.clear().err());
+                }
                 app.tick(&mut board, &sample, 0, &mut notices);
                 recorder.set_severity(app.state().severity());
                 recorder.set_phase(app.state().phase());
@@ -214,5 +232,5 @@ fn found_at_power_on(
 
 /// All that is ready.
 fn store(log: &mut FileLog, recorder: &mut Recorder<'_>) {
-    while !log.flash().has_failed() && log.work(recorder.lost(), || recorder.fetch()) {}
+    while !log.flash().has_failed() && log.work(recorder.counted(), || recorder.fetch()) {}
 }

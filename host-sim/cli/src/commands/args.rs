@@ -262,6 +262,12 @@ pub(super) struct ReplayArgs {
     /// Report as one HTML page
     #[arg(long, value_name = "FILE")]
     pub report: Option<String>,
+    /// Switch the controller on with the first sample: nothing is proven. Without it a lift was seen before
+    #[arg(long)]
+    pub power_on: bool,
+    /// Order the controller to clear what is latched at this time of the recording, s; may be given again
+    #[arg(long, value_name = "T", value_parser = time, allow_negative_numbers = true)]
+    pub clear_at: Vec<f64>,
     #[command(flatten)]
     pub reading: ReadingArgs,
     #[command(flatten)]
@@ -339,6 +345,12 @@ fn not_negative(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|it: &f64| it.is_finite() && *it >= 0.0);
     number.ok_or_else(|| "a number, 0 or more".to_owned())
+}
+
+/// A time.
+fn time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "a time in s".to_owned())
 }
 
 /// A sample rate.

@@ -124,10 +124,14 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     let scene = load(&args.scene)?;
     let path = Path::new(&args.stream);
     let reading = args.reading.load()?;
-    let replay = replay::recording(path, &reading, &scene, &target)?;
+    let orders = replay::Orders {
+        power_on: args.power_on,
+        clear_at: args.clear_at.clone(),
+    };
+    let replay = replay::recording(path, &reading, &scene, &target, &orders)?;
     warn(&replay.warnings);
     let detection = &replay.detection;
-    out.json("--json", || json::replay(detection))?;
+    out.json("--json", || json::replay(&replay))?;
     if let Some(page) = out.file("--report") {
         let drop = replay::first_drop(path, &reading, &scene, &replay)?;
         page.put(&touchdown_page::replay::page(
@@ -140,7 +144,8 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     let format = replay.format.map_or(String::new(), |it| {
         format!("{}: {it}, {} Hz\n", shown(&args.stream), replay.rate)
     });
-    out.finish(&(format + &timeline::replay(&args.stream, detection)))
+    let controller = replay.conduct.told(replay.timebase).text(out.paint());
+    out.finish(&(format + &timeline::replay(&args.stream, detection) + &controller))
 }
 
 fn load(name: &str) -> Result<Scene, Failure> {

@@ -7,7 +7,8 @@ use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;
-use touchdown_run::detection::{declared, forecast};
+use touchdown_run::controller_trace::alarm;
+use touchdown_run::detection::{declared, forecast, touch};
 use touchdown_scene::names::{channel_name, event_name, fault_name, mode_name, told_phase_name};
 
 /// The line without its end; `watched` has taken in what came before.
@@ -58,6 +59,7 @@ pub fn line(update: &Update, watched: &Watched) -> String {
                 "landings_cut_off": it.unweighed,
                 "weight": it.weight as f64 / 1e3,
                 "drops_not_recorded": it.lost,
+                "touches": it.touches,
             }),
         ),
         Said::Damaged(count) => ("damaged", json!({ "frames": count })),
@@ -127,5 +129,7 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
         Notice::Confirmed { number, sample } => ("confirmed", fate(number, sample)),
         Notice::Withdrawn { number, sample } => ("withdrawn", fate(number, sample)),
         Notice::Outlook(outlook) => ("outlook", json!(forecast(outlook, timebase))),
+        Notice::Alarm(it) => ("alarm", json!(alarm(it, timebase))),
+        Notice::Touch(it) => ("touch", json!(touch(it, timebase))),
     }
 }

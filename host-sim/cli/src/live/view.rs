@@ -183,8 +183,8 @@ fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
             it.landings
         )),
         Line::raw(format!(
-            "          {} times on, {} drops not recorded",
-            it.boots, it.lost
+            "          {} touches, {} times on, {} drops not recorded",
+            it.touches, it.boots, it.lost
         )),
     ]
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use touchdown_core::detect::{DetectorConfig, Tuning};
+use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{PLANES, SensingConfig};
@@ -31,6 +32,8 @@ pub struct Tables {
     ball_bearing: Option<BallBearingTable>,
     #[serde(default)]
     detector: Tuning,
+    #[serde(default)]
+    guard: GuardConfig,
 }
 
 #[derive(Deserialize, Serialize)]
@@ -107,6 +110,7 @@ impl From<&Settings> for Tables {
             },
             ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
             detector: tuning,
+            guard: monitor.guard,
         }
     }
 }
@@ -147,6 +151,8 @@ impl Tables {
                     machine: machine_config(&rotor, &retainer, gravity),
                     tuning: self.detector,
                 },
+                guard: self.guard,
+                commissioned: false,
             },
             wiring: Wiring {
                 pulses_per_turn: sensors.pulses_per_turn,

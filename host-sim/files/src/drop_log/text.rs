@@ -21,12 +21,13 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
     match &dump.counters {
         Some(it) => {
             text += &format!(
-                "switched on {} times; {} landings, {} of them cut off, weight {:.3}; {} drops not recorded\n",
+                "switched on {} times; {} landings, {} of them cut off, weight {:.3}; {} drops not recorded; {} touches\n",
                 it.boots,
                 it.landings,
                 it.unweighed,
                 it.weight as f64 / 1e3,
-                it.lost
+                it.lost,
+                it.touches
             );
         }
         None => text += "no counters\n",

@@ -3,11 +3,11 @@
 use std::io::{self, ErrorKind};
 
 use touchdown_protocol::config_block::BlockError;
-use touchdown_protocol::controller::Busy;
 use touchdown_protocol::link::{Refusal, VERSION};
 
 use touchdown_base::input_error::reason;
 use touchdown_base::plain::shown;
+use touchdown_scene::names::busy_name;
 
 /// Why a request has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -44,10 +44,7 @@ fn of_line(error: &io::Error) -> String {
 
 fn why(refusal: &Refusal) -> String {
     let text = match refusal {
-        Refusal::Busy(Busy::DropRuns) => "a drop runs",
-        Refusal::Busy(Busy::Blind) => "no plane gives a position",
-        Refusal::Busy(Busy::Watching) => "it watches, so the machine may run",
-        Refusal::Busy(Busy::Latched) => "a drop is latched",
+        Refusal::Busy(busy) => busy_name(*busy),
         Refusal::Block => "that is no configuration of its version",
         Refusal::Parameter(name) => return format!("{} breaks its rule", shown(name)),
         Refusal::NoStore => "this board cannot keep it",

@@ -236,7 +236,7 @@ pub fn listen(
                     heard.declared += u32::from(counts);
                 }
                 Notice::Confirmed { .. } => heard.confirmed += 1,
-                Notice::Withdrawn { .. } | Notice::Outlook(_) => {}
+                _ => {}
             }
         }
         if heard.armed.is_none() && state.is_armed() {

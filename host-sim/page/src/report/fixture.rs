@@ -110,6 +110,9 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
 pub fn conduct() -> ControllerTrace {
     ControllerTrace {
         outputs: Vec::new(),
+        alarms: Vec::new(),
+        orders: Vec::new(),
+        zones: [0; 4],
         flash: Vec::new(),
         hello: Hello {
             firmware: Text::new(),
@@ -163,6 +166,7 @@ fn detection(truth: &History) -> Detection {
     events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
+        touches: Vec::new(),
         forecasts: Vec::new(),
         left_out: 0,
         severity: Severity::default(),

@@ -52,6 +52,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         spectrogram: Default::default(),
         detection: Detection {
             events: Vec::new(),
+            touches: Vec::new(),
             forecasts: Vec::new(),
             left_out: 0,
             severity: Severity::default(),

@@ -87,7 +87,10 @@ pub fn compare(
     tolerance: Tolerance,
 ) -> Result<Comparison, Failure> {
     let replayed =
-        |index: usize| replay::recording(files[index], readings[index], scene, &Target::Host);
+        |index: usize| {
+            let orders = replay::Orders::default();
+            replay::recording(files[index], readings[index], scene, &Target::Host, &orders)
+        };
     let replays = [replayed(0)?, replayed(1)?];
     let excerpt =
         |index: usize| replay::first_drop(files[index], readings[index], scene, &replays[index]);

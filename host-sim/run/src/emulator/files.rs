@@ -6,21 +6,29 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire::{self, Record, Switching};
+use touchdown_protocol::wire::{self, Cleared, Record, Switching};
 
 use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
+use crate::procedure::Procedure;
 
 /// Writes a replay file; how many samples it has.
 pub(super) fn write_replay(
     path: &Path,
     config: &MonitorConfig,
+    procedure: &Procedure,
     samples: impl Iterator<Item = Sample>,
 ) -> io::Result<u64> {
     let mut file = BufWriter::new(File::create(path)?);
-    file.write_all(&replay_head(config)?)?;
+    file.write_all(&replay_head(config, procedure.power_on)?)?;
     let mut count = 0;
     for sample in samples {
-        file.write_all(&wire::encode_sample(&sample))?;
+        let bytes = wire::encode_sample(&sample);
+        let bytes = if procedure.clears(count) {
+            wire::with_clear(bytes)
+        } else {
+            bytes
+        };
+        file.write_all(&bytes)?;
         count += 1;
     }
     file.flush()?;
@@ -28,15 +36,25 @@ pub(super) fn write_replay(
 }
 
 /// What comes before the samples.
-pub fn replay_head(config: &MonitorConfig) -> io::Result<Vec<u8>> {
+pub fn replay_head(config: &MonitorConfig, power_on: bool) -> io::Result<Vec<u8>> {
     let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
     let length = (config.len() as u32).to_le_bytes();
-    Ok([&wire::REPLAY_MAGIC[..], &length, &config].concat())
+    Ok([&wire::REPLAY_MAGIC[..], &length, &config, &[u8::from(power_on)]].concat())
 }
 
-/// A whole answer, its log still empty, and the changes of the outputs; `None` for one that is damaged or
-/// not at its end.
-pub(super) fn decode_answer(bytes: &[u8]) -> Option<(MonitorOutput, Vec<Switching>)> {
+/// What the image answered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Of the monitor, its log still empty.
+    pub output: MonitorOutput,
+    /// Each change of what the controller showed.
+    pub shown: Vec<Switching>,
+    /// What came of the orders.
+    pub orders: Vec<Cleared>,
+}
+
+/// A whole answer; `None` for one that is damaged or not at its end.
+pub(super) fn decode_answer(bytes: &[u8]) -> Option<Answer> {
     let (records, []) = bytes
         .strip_prefix(&wire::ANSWER_MAGIC)?
         .as_chunks::<{ wire::NOTICE_BYTES }>()
@@ -49,23 +67,28 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<(MonitorOutput, Vec<Switchin
     else {
         return None;
     };
-    let (mut notices, mut left_out, mut outputs) = (Vec::new(), 0, Vec::new());
+    let (mut notices, mut left_out) = (Vec::new(), 0);
+    let (mut shown, mut orders) = (Vec::new(), Vec::new());
     for record in records {
         match wire::decode_record(record)? {
             Record::Notice(notice) if notices.len() < MOST_NOTICES => notices.push(notice),
             Record::Notice(_) => left_out += 1,
-            Record::Switching(switching) => outputs.push(switching),
+            Record::Switching(switching) => shown.push(switching),
+            Record::Cleared(cleared) => orders.push(cleared),
             Record::Severity(_) | Record::Summary(_) => return None,
         }
     }
-    let answer = MonitorOutput {
-        notices,
-        left_out,
-        severity,
-        summary,
-        log: Vec::new(),
-    };
-    Some((answer, outputs))
+    Some(Answer {
+        output: MonitorOutput {
+            notices,
+            left_out,
+            severity,
+            summary,
+            log: Vec::new(),
+        },
+        shown,
+        orders,
+    })
 }
 
 #[cfg(test)]
@@ -73,7 +96,7 @@ mod tests {
     use super::*;
     use touchdown_core::event::Notice;
     use touchdown_core::severity::Severity;
-    use touchdown_protocol::controller::Outputs;
+    use touchdown_protocol::controller::Shown;
 
     #[test]
     fn answer_without_a_summary_is_damaged() {
@@ -86,7 +109,7 @@ mod tests {
         bytes.extend(wire::encode_record(&Record::Notice(notice)));
         let switching = Switching {
             sample: 8,
-            outputs: Outputs::SAFE,
+            shown: Shown::default(),
         };
         bytes.extend(wire::encode_record(&Record::Switching(switching)));
         assert_eq!(decode_answer(&bytes), None);
@@ -104,14 +127,19 @@ mod tests {
             state_hash: 5,
         };
         bytes.extend(wire::encode_record(&Record::Summary(summary)));
-        let answer = MonitorOutput {
+        let output = MonitorOutput {
             notices: vec![notice],
             left_out: 0,
             severity,
             summary,
             log: Vec::new(),
         };
-        assert_eq!(decode_answer(&bytes), Some((answer, vec![switching])));
+        let answer = Answer {
+            output,
+            shown: vec![switching],
+            orders: Vec::new(),
+        };
+        assert_eq!(decode_answer(&bytes), Some(answer));
         bytes.pop();
         assert_eq!(decode_answer(&bytes), None);
     }

@@ -13,13 +13,14 @@ use std::time::{Duration, Instant};
 
 use crate::controller_trace::ControllerTrace;
 use crate::monitor_run::MonitorOutput;
+use crate::procedure::Procedure;
 use defmt_decoder::{DecodeError, Table};
 use touchdown_base::interrupt::{Registered, TemporaryFolder, spawn};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_files::link::LinkError;
 
-pub use self::files::replay_head;
+pub use self::files::{Answer, replay_head};
 use self::files::{decode_answer, write_replay};
 pub use self::session::{RESTART, Session};
 
@@ -115,38 +116,46 @@ impl Emulator {
     ) -> Result<MonitorOutput, EmulatorError> {
         let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
         let replay = folder.path().join("replay");
-        let count = write_replay(&replay, config, samples)
+        let count = write_replay(&replay, config, &Procedure::default(), samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
 
         let arguments = ["enable=on,target=native,arg=replay,arg=answer"];
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;
-        let (answer, _) = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
-        Ok(MonitorOutput { log, ..answer })
+        let answer = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
+        Ok(MonitorOutput {
+            log,
+            ..answer.output
+        })
     }
 
     /// Runs the image over `samples` with a new drop log, and talks to it.
     pub fn control(
         &self,
         config: &MonitorConfig,
+        procedure: &Procedure,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(MonitorOutput, ControllerTrace), EmulatorError> {
         let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
-        let count = write_replay(&folder.path().join("replay"), config, samples)
+        let replay = folder.path().join("replay");
+        let count = write_replay(&replay, config, procedure, samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let mut session = self.open(folder.path())?;
-        let (answer, outputs) = session.answer(limit)?;
+        let Answer {
+            output,
+            shown,
+            orders,
+        } = session.answer(limit)?;
         let mut client = session.client()?;
+        let (hello, state) = (client.hello()?, client.state()?);
         let conduct = ControllerTrace {
-            outputs,
-            hello: client.hello()?,
-            state: client.state()?,
             flash: read(&folder.path().join("log"))?,
+            ..ControllerTrace::new(&output.notices, shown, orders, hello, state)
         };
         let log = session.cut()?;
-        Ok((MonitorOutput { log, ..answer }, conduct))
+        Ok((MonitorOutput { log, ..output }, conduct))
     }
 
     /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after

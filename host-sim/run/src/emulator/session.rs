@@ -7,10 +7,7 @@ use std::process::{Child, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use touchdown_protocol::wire::Switching;
-
-use super::{Emulator, EmulatorError, decode_answer, read};
-use crate::monitor_run::MonitorOutput;
+use super::{Answer, Emulator, EmulatorError, decode_answer, read};
 use touchdown_base::interrupt::Registered;
 use touchdown_files::link::Client;
 
@@ -89,10 +86,7 @@ impl Session {
     }
 
     /// Its answer and the changes of the outputs, once all samples of a file are taken.
-    pub fn answer(
-        &mut self,
-        limit: Duration,
-    ) -> Result<(MonitorOutput, Vec<Switching>), EmulatorError> {
+    pub fn answer(&mut self, limit: Duration) -> Result<Answer, EmulatorError> {
         let start = Instant::now();
         loop {
             // Made before the first sample is read, but after QEMU is up.

@@ -11,8 +11,10 @@ use touchdown_core::sample::Sample;
 pub use envelope::{Bucket, Envelope};
 pub use excerpt::{Excerpt, excerpt};
 
+use crate::controller_trace::ControllerTrace;
 use crate::detection::detection;
 use crate::outcome::{DetectedEvent, Detection};
+use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
 use touchdown_base::failure::Failure;
@@ -35,6 +37,10 @@ pub struct Replay {
     pub start: f64,
     /// What the monitor said.
     pub detection: Detection,
+    /// What the controller did.
+    pub conduct: ControllerTrace,
+    /// Times of the samples.
+    pub timebase: Timebase,
     /// All of it, coarse.
     pub envelope: Envelope,
     /// Of the sensors of plane a, a bounded number of spectra.
@@ -53,10 +59,51 @@ impl Replay {
     }
 }
 
+/// What is ordered at times of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct Orders {
+    /// Switched on with the first sample.
+    pub power_on: bool,
+    /// Times of orders to clear, s.
+    pub clear_at: Vec<f64>,
+}
+
+impl Orders {
+    /// The sample at or after each time.
+    fn samples(&self, start: f64, rate: f64) -> Result<Vec<u64>, Failure> {
+        let sample = |time: &f64| {
+            // But for rounding.
+            let sample = ((time - start) * rate - 1e-6).ceil();
+            if sample >= 0.0 {
+                Ok(sample as u64)
+            } else {
+                Err(outside(*time))
+            }
+        };
+        let mut samples: Vec<u64> = self.clear_at.iter().map(sample).collect::<Result<_, _>>()?;
+        samples.sort_unstable();
+        samples.dedup();
+        Ok(samples)
+    }
+
+    /// Whether the recording was long enough for each.
+    fn check(&self, last: f64) -> Result<(), Failure> {
+        match self.clear_at.iter().find(|time| **time > last) {
+            Some(time) => Err(outside(*time)),
+            None => Ok(()),
+        }
+    }
+}
+
+fn outside(time: f64) -> Failure {
+    Failure::Usage(format!("--clear-at {time}: the recording has no sample at that time"))
+}
+
 /// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
 /// The stream says which planes are fitted, how fast it was sampled and whether there is a speed.
 pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Failure> {
-    Ok(recording(path, &Reading::default(), scene, target)?.detection)
+    let orders = Orders::default();
+    Ok(recording(path, &Reading::default(), scene, target, &orders)?.detection)
 }
 
 /// The same of a recording of any kind.
@@ -65,6 +112,7 @@ pub fn recording(
     reading: &Reading,
     scene: &Scene,
     target: &Target,
+    orders: &Orders,
 ) -> Result<Replay, Failure> {
     let mut recording = Recording::open(path, reading, scene)?;
     let columns = recording.columns;
@@ -80,7 +128,13 @@ pub fn recording(
         .tachometers
         .and_then(|tachometers| columns.of_tachometers(tachometers));
     config.detector.sample_rate = rate as f32;
-    let learnt = recording.learnt.take();
+    let procedure = Procedure {
+        learnt: recording.learnt.take(),
+        power_on: orders.power_on,
+        clear_at: orders.samples(recording.start, rate)?,
+        zones: scene.zones,
+    };
+    let is_episode = procedure.learnt.is_some();
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
     let mut analyser = Analyser::new(rate);
@@ -93,14 +147,16 @@ pub fn recording(
         analyser: &mut analyser,
         seen: 0,
     };
-    let answer = match &learnt {
-        Some(learnt) => target.resume(&config, learnt, samples)?,
-        None => target.run(&config, samples)?,
-    };
+    let (answer, conduct) = target.control(&config, &procedure, samples)?;
+    if flaw.is_none() {
+        // Rounding apart.
+        let last = timebase.time(answer.summary.samples as f64 - 1.0);
+        orders.check(last + 1e-6 / rate)?;
+    }
     match flaw {
         Some(flaw) => Err(flaw.into()),
         None => Ok(Replay {
-            format: if learnt.is_some() {
+            format: if is_episode {
                 Some(EPISODE.to_owned())
             } else {
                 recording.format.take()
@@ -108,6 +164,8 @@ pub fn recording(
             rate,
             start: recording.start,
             detection: detection(&answer, timebase),
+            conduct,
+            timebase,
             envelope,
             spectrogram: analyser.finish(),
             warnings: recording.warnings(),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::event::{Alarm, Event, EventKind, Level, Moment, Motion, Notice, Plane, Touch};
 use touchdown_core::forecast::{Onset, Outlook};
 use touchdown_core::health::{Condition, Fault, FaultKind};
 use touchdown_core::monitor::Summary;
@@ -10,7 +10,7 @@ use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::severity::Severity;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{ConfigScrub, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Outputs};
+use touchdown_protocol::controller::{Busy, Cause, Mode, Outputs, Shown};
 use touchdown_protocol::link::{Chunk, Decoder, Recent, Reply, Request, State, encode};
 use touchdown_protocol::log::block::{Block, Kind, Page};
 use touchdown_protocol::log::counters::Counters;
@@ -20,7 +20,7 @@ use touchdown_protocol::log::severity;
 use touchdown_protocol::log::waveform;
 use touchdown_protocol::log::waveform::Waveform;
 use touchdown_protocol::wire;
-use touchdown_protocol::wire::{Record, Switching};
+use touchdown_protocol::wire::{Cleared, Record, Switching};
 
 use crate::stream::Stream;
 
@@ -59,6 +59,20 @@ const OUTLOOK: Outlook = Outlook {
         time_left: -0.01,
         growth_time: 0.02,
     }),
+};
+const ALARM: Alarm = Alarm {
+    plane: Plane::B,
+    level: Level::Danger,
+    fraction: 0.75,
+    sample: 100_021,
+};
+const TOUCH: Touch = Touch {
+    number: 3,
+    plane: Plane::A,
+    onset: 100_022,
+    declared: 100_023,
+    end: Some(100_200),
+    peak: 1.25,
 };
 const SEVERITY: Severity = Severity {
     impacts: 258,
@@ -102,6 +116,7 @@ const COUNTERS: Counters = Counters {
     episodes: 9,
     landings: 5,
     unweighed: 1,
+    touches: 9,
     lost: 2,
     weight: 6_250,
 };
@@ -163,7 +178,23 @@ fn wires(text: &mut String) {
         ("outlook", Record::Notice(Notice::Outlook(OUTLOOK))),
         (
             "switching",
-            Record::Switching(Switching { sample, outputs }),
+            Record::Switching(Switching {
+                sample,
+                shown: Shown {
+                    outputs,
+                    mode: Mode::Dropped,
+                    cause: Some(Cause::Contact),
+                },
+            }),
+        ),
+        ("alarm", Record::Notice(Notice::Alarm(ALARM))),
+        ("touch", Record::Notice(Notice::Touch(TOUCH))),
+        (
+            "cleared",
+            Record::Cleared(Cleared {
+                sample,
+                refused: Some(Busy::Blind),
+            }),
         ),
         ("severity", Record::Severity(SEVERITY)),
         ("summary", Record::Summary(summary)),

@@ -42,6 +42,14 @@ fn line(notice: &Notice) -> String {
         Notice::Declared(event) => format!("declared  {}", declared(event)),
         Notice::Confirmed { number, sample } => format!("confirmed #{number} at {sample}"),
         Notice::Withdrawn { number, sample } => format!("withdrawn #{number} at {sample}"),
+        Notice::Alarm(alarm) => format!(
+            "alarm     {:?} of plane {:?} at {}, fraction {}",
+            alarm.level, alarm.plane, alarm.sample, alarm.fraction
+        ),
+        Notice::Touch(touch) => format!(
+            "touch     #{} of plane {:?} from {}, declared at {}, end {:?}, peak {}",
+            touch.number, touch.plane, touch.onset, touch.declared, touch.end, touch.peak
+        ),
         Notice::Outlook(outlook) => {
             let onset = outlook.onset.map_or(String::new(), |onset| {
                 format!(

@@ -4,7 +4,7 @@ use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
 use crate::config_block::{Block, BlockError};
-use crate::controller::{Busy, Faults, Mode, Outputs};
+use crate::controller::{Busy, Cause, Faults, Mode, Outputs};
 use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
 use crate::wire::NOTICE_BYTES;
@@ -146,6 +146,10 @@ pub struct State {
     pub phase: Phase,
     /// The controller's mode.
     pub mode: Mode,
+    /// Why; none while it watches.
+    pub cause: Option<Cause>,
+    /// Touches since power-on.
+    pub touches: u32,
     /// The outputs.
     pub outputs: Outputs,
     /// The latched faults.
@@ -161,6 +165,8 @@ impl State {
         age_us: 0,
         phase: Phase::Starting,
         mode: Mode::SelfTest,
+        cause: Some(Cause::NoProof),
+        touches: 0,
         outputs: Outputs::SAFE,
         faults: Faults::NONE,
         counters: Counters {

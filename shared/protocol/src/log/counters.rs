@@ -29,6 +29,8 @@ pub struct Counters {
     pub lost: u32,
     /// Sum of the landings' velocity indices, in thousandths.
     pub weight: u64,
+    /// Times that the rotor came to the wall, whatever held it. 0 in records from before there was such a count.
+    pub touches: u32,
 }
 
 impl Counters {
@@ -60,6 +62,7 @@ impl Counters {
             .put(&self.unweighed.to_le_bytes())
             .put(&self.lost.to_le_bytes())
             .put(&self.weight.to_le_bytes())
+            .put(&self.touches.to_le_bytes())
             .bytes();
         let checksum = checksum(&bytes[..COUNTERS_BYTES - 4]);
         bytes[COUNTERS_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
@@ -81,6 +84,7 @@ impl Counters {
             unweighed: fields.u32()?,
             lost: fields.u32()?,
             weight: fields.u64()?,
+            touches: fields.u32()?,
         })
     }
 }

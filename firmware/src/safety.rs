@@ -1,0 +1,113 @@
+//! What the controller does about what the guard and the detector say: mode, cause, proof and latches.
+//!
+//! `tests/safety.rs` explores every state and every input.
+
+use touchdown_core::guard::Verdict;
+use touchdown_protocol::controller::{Cause, Mode};
+
+/// What a tick shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// Of the guard.
+    pub guard: Verdict,
+    /// What the detector tells that trips: a fall, whirl, or contact.
+    pub told: Option<Cause>,
+    /// Whether a fault that trips is latched.
+    pub faulted: bool,
+    /// Whether the self-test has seen all that it waits for.
+    pub tested: bool,
+    /// Whether the detector is armed and takes the rotor for floating.
+    pub armed: bool,
+}
+
+/// Mode, cause and proof.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Safety {
+    mode: Mode,
+    cause: Option<Cause>,
+    proven: bool,
+}
+
+impl Default for Safety {
+    fn default() -> Self {
+        Self {
+            mode: Mode::SelfTest,
+            cause: Some(Cause::NoProof),
+            proven: false,
+        }
+    }
+}
+
+impl Safety {
+    /// One tick.
+    pub fn step(&mut self, findings: &Findings) {
+        let guard = beyond(&findings.guard);
+        if findings.faulted {
+            self.latch(Mode::Faulted, guard.unwrap_or(Cause::Fault));
+            return;
+        }
+        // What has not been proven to float cannot trip by the guard: it may lie there to be lifted.
+        let tripped = guard.filter(|_| self.proven).or(findings.told);
+        // An impact or contact is told of what lies, too.
+        let tripped = tripped.filter(|it| *it != Cause::Contact || self.proven);
+        if let Some(cause) = tripped {
+            self.latch(Mode::Dropped, cause);
+            return;
+        }
+        if self.is_latched() || findings.told.is_some() {
+            return;
+        }
+        self.proven |= findings.guard.floats && guard.is_none();
+        if self.mode == Mode::SelfTest && findings.tested {
+            (self.mode, self.cause) = (Mode::Arming, Some(Cause::NoProof));
+        } else if self.mode == Mode::Arming && self.proven && findings.armed {
+            (self.mode, self.cause) = (Mode::Watching, None);
+        }
+    }
+
+    /// An order to clear: all begins anew, but for a proof that holds.
+    pub fn clear(&mut self) {
+        (self.mode, self.cause) = (Mode::SelfTest, Some(Cause::Order));
+    }
+
+    /// What it is doing.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Why; none while it watches.
+    pub fn cause(&self) -> Option<Cause> {
+        self.cause
+    }
+
+    /// Whether the rotor has been proven to float, and nothing has tripped since.
+    pub fn is_proven(&self) -> bool {
+        self.proven
+    }
+
+    /// Whether a trip waits for an order to clear.
+    pub fn is_latched(&self) -> bool {
+        matches!(self.mode, Mode::Dropped | Mode::Faulted)
+    }
+
+    /// The first cause stays.
+    fn latch(&mut self, mode: Mode, cause: Cause) {
+        if !self.is_latched() {
+            self.cause = Some(cause);
+        }
+        (self.mode, self.proven) = (mode, false);
+    }
+}
+
+/// What the guard finds, if it trips.
+fn beyond(guard: &Verdict) -> Option<Cause> {
+    if guard.danger {
+        Some(Cause::Danger)
+    } else if guard.off {
+        Some(Cause::LevitationOff)
+    } else if guard.lost {
+        Some(Cause::PositionsLost)
+    } else {
+        None
+    }
+}

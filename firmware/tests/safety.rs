@@ -1,0 +1,237 @@
+//! Every state of mode, cause, proof and latches that any input leads to, and what holds in each.
+//!
+//! The guard's filters stand in with the shortest window that they can have, four samples: three beyond danger are
+//! "beyond", four without a position are "lost", three without the signal are "off".
+
+use std::collections::HashMap;
+
+use touchdown_core::guard::Verdict;
+use touchdown_firmware::outputs::{Condition, outputs};
+use touchdown_firmware::safety::{Findings, Safety};
+use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs};
+
+const WINDOW: u8 = 4;
+const OFF: u8 = 3;
+
+/// The state machine, the filters before it, and what is remembered of the past to judge it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct World {
+    safety: Safety,
+    /// Of the last samples that came, the newest in bit 0: beyond danger.
+    beyond: u8,
+    /// In a row, at most as many as count: beyond danger, without position, without signal.
+    in_danger: u8,
+    lost: u8,
+    off: u8,
+    /// Since the last latch, or power-on: levitation was shown while nothing was latched.
+    shown: bool,
+    /// Since the last latch or order: the self-test was over.
+    tested: bool,
+    /// A latch, its cause, and that no order came since.
+    latched: Option<Cause>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reading {
+    Inside,
+    Beyond,
+    Missing,
+}
+
+/// What a tick gets.
+#[derive(Clone, Copy, Debug)]
+struct Input {
+    reading: Reading,
+    signal_off: bool,
+    told: Option<Cause>,
+    shows: bool,
+    armed: bool,
+    tested: bool,
+    faulted: bool,
+    clears: bool,
+}
+
+fn inputs() -> Vec<Input> {
+    let mut all = Vec::new();
+    for reading in [Reading::Inside, Reading::Beyond, Reading::Missing] {
+        for told in [
+            None,
+            Some(Cause::Fall),
+            Some(Cause::Whirl),
+            Some(Cause::Contact),
+        ] {
+            for bits in 0..1 << 6 {
+                let bit = |at: u8| bits >> at & 1 != 0;
+                all.push(Input {
+                    reading,
+                    told,
+                    signal_off: bit(0),
+                    shows: bit(1),
+                    armed: bit(2),
+                    tested: bit(3),
+                    faulted: bit(4),
+                    clears: bit(5),
+                });
+            }
+        }
+    }
+    all
+}
+
+impl World {
+    fn outputs(&self, faulted: bool) -> Outputs {
+        let faults = if faulted {
+            Faults::NONE.with(Fault::Crash)
+        } else {
+            Faults::NONE
+        };
+        outputs(&Condition {
+            mode: self.safety.mode(),
+            faults,
+            lies_still: true,
+        })
+    }
+
+    fn step(mut self, input: &Input) -> Self {
+        if input.clears {
+            self.safety.clear();
+            (self.tested, self.latched) = (false, None);
+        }
+        match input.reading {
+            Reading::Missing => self.lost = (self.lost + 1).min(WINDOW),
+            reading => {
+                let is_beyond = reading == Reading::Beyond;
+                self.beyond = (self.beyond << 1 | u8::from(is_beyond)) & 0b1111;
+                self.in_danger = if is_beyond {
+                    (self.in_danger + 1).min(3)
+                } else {
+                    0
+                };
+                self.lost = 0;
+            }
+        }
+        self.off = if input.signal_off {
+            (self.off + 1).min(OFF)
+        } else {
+            0
+        };
+        let guard = Verdict {
+            danger: self.beyond.count_ones() >= 3,
+            lost: self.lost >= WINDOW,
+            off: self.off >= OFF,
+            // A window with a sample beyond or without one completes no proof.
+            floats: input.shows && self.beyond == 0 && self.lost == 0 && self.off == 0,
+        };
+        let before = self;
+        self.safety.step(&Findings {
+            guard,
+            told: input.told,
+            faulted: input.faulted,
+            tested: input.tested,
+            armed: input.armed,
+        });
+        self.tested |= input.tested;
+        let trips = guard.danger || guard.lost || guard.off;
+        if self.safety.is_latched() {
+            self.shown = false;
+            self.latched = self.latched.or(self.safety.cause());
+        } else if guard.floats && !trips {
+            self.shown = true;
+        }
+        self.check(&before, input, &guard);
+        self
+    }
+
+    /// What holds after each tick.
+    fn check(&self, before: &Self, input: &Input, guard: &Verdict) {
+        let outputs = self.outputs(input.faulted);
+        let because = |why: &str| panic!("{why}: {before:?}, {input:?} -> {self:?}");
+        let run = outputs.run;
+        if run && (self.in_danger >= 3 || guard.danger) {
+            because("runs beyond danger");
+        }
+        if run && self.lost >= WINDOW {
+            because("runs blind");
+        }
+        if run && self.off >= OFF {
+            because("runs with levitation off");
+        }
+        if run && input.told.is_some() {
+            because("runs though the detector tells a fall, whirl or contact");
+        }
+        if input.faulted && outputs != Outputs::SAFE {
+            because("a fault leaves current");
+        }
+        if run && !self.shown {
+            because("runs without proof");
+        }
+        if run && self.latched.is_some() {
+            because("runs after a latch without an order");
+        }
+        if run && !self.tested {
+            because("runs without a self-test");
+        }
+        if run && outputs.permit {
+            because("runs and permits a lift");
+        }
+        if (self.safety.mode() == Mode::Watching) != self.safety.cause().is_none() {
+            because("watching and a cause");
+        }
+        if self.latched.is_some() && self.safety.cause() != self.latched {
+            because("the first cause is gone");
+        }
+        // What was proven to float and does not, has tripped; so has what the detector tells.
+        let trips = guard.danger || guard.lost || guard.off;
+        let told = matches!(input.told, Some(Cause::Fall | Cause::Whirl));
+        let touches = input.told == Some(Cause::Contact);
+        let must = input.faulted || told || before.safety.is_proven() && (trips || touches);
+        if must && !self.safety.is_latched() {
+            because("does not latch");
+        }
+        // What has not been proven may lie where it is, to be lifted.
+        if self.safety.is_latched() && !before.safety.is_latched() && !must {
+            because("latches for nothing");
+        }
+    }
+}
+
+#[test]
+fn every_state_of_the_safety_machine_is_safe_and_none_is_a_trap() {
+    let inputs = inputs();
+    let mut numbers = HashMap::from([(World::default(), 0_usize)]);
+    let mut worlds = vec![World::default()];
+    // Who leads to whom, backwards.
+    let mut from: Vec<Vec<u32>> = vec![Vec::new()];
+    let mut next = 0;
+    while next < worlds.len() {
+        let world = worlds[next];
+        for input in &inputs {
+            let after = world.step(input);
+            let number = *numbers.entry(after).or_insert_with(|| {
+                worlds.push(after);
+                from.push(Vec::new());
+                worlds.len() - 1
+            });
+            if from[number].last() != Some(&(next as u32)) {
+                from[number].push(next as u32);
+            }
+        }
+        next += 1;
+    }
+    println!("{} states, {} steps", worlds.len(), worlds.len() * inputs.len());
+    assert!(worlds.len() > 1_000, "the search found too little");
+    // From every state the machine can be brought to run again.
+    let mut runs: Vec<bool> = worlds.iter().map(|it| it.outputs(false).run).collect();
+    let mut open: Vec<usize> = (0..worlds.len()).filter(|it| runs[*it]).collect();
+    assert!(!open.is_empty(), "it never runs");
+    while let Some(state) = open.pop() {
+        for &before in &from[state] {
+            if !runs[before as usize] {
+                runs[before as usize] = true;
+                open.push(before as usize);
+            }
+        }
+    }
+    let trap = worlds.iter().zip(&runs).find(|(_, runs)| !**runs);
+    assert_eq!(trap, None, "no way back to running");
+}

@@ -1,0 +1,178 @@
+//! Whether the rotor has been seen to float: it stays still above the lowest place that it was seen at.
+//!
+//! Distance alone does not show it: with gap, zero and gain told wrong the wall reads as near as a floating rotor
+//! reads far. A rotor on the wall lies where it is lowest, one that floats has been lifted from there.
+
+use super::GuardConfig;
+use crate::config::DetectorConfig;
+use crate::sensing::PLANES;
+
+/// Time that a floating rotor stays, s.
+const STAY: f32 = 0.1;
+/// Time at or below a height that makes it one where the rotor was, s: longer than a burst of disturbance.
+const HELD: f32 = 0.01;
+/// Part of the clearance that a floating rotor's mean place is above the lowest one.
+const HEIGHT: f32 = 0.25;
+/// Part of the clearance that it stays within, of its mean place.
+const SPREAD: f32 = 0.2;
+
+/// Coefficients; m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Proof {
+    fitted: [bool; PLANES],
+    /// Whether weight shows where the rotor lies.
+    has_weight: bool,
+    commissioned: bool,
+    held_samples: u16,
+    /// Times that, in a stay.
+    helds: u8,
+    /// 1 over the samples of a stay.
+    scale: f32,
+    height: f32,
+    spread_square: f32,
+    alert_square: f32,
+}
+
+/// What was seen of a plane; m.
+#[derive(Clone, Copy, Debug)]
+struct PlaneProof {
+    sum: [f32; 2],
+    least: [f32; 2],
+    most: [f32; 2],
+    /// Of the present part of the stay.
+    highest: f32,
+    /// Lowest since proof was lost.
+    lowest: f32,
+}
+
+/// What was seen of the planes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ProofState {
+    samples: u16,
+    helds: u8,
+    planes: [PlaneProof; PLANES],
+}
+
+impl Default for PlaneProof {
+    fn default() -> Self {
+        Self {
+            sum: [0.0; 2],
+            least: [f32::INFINITY; 2],
+            most: [f32::NEG_INFINITY; 2],
+            highest: f32::NEG_INFINITY,
+            lowest: f32::INFINITY,
+        }
+    }
+}
+
+impl Proof {
+    pub(super) fn new(
+        config: &GuardConfig,
+        detector: &DetectorConfig,
+        fitted: u8,
+        commissioned: bool,
+    ) -> Self {
+        let clearance = detector.machine.clearance;
+        let rate = detector.sample_rate;
+        let held_samples = ((HELD * rate) as u16).max(4);
+        let helds = (STAY / HELD) as u8;
+        let spread = SPREAD * clearance;
+        let alert = config.alert * clearance;
+        Self {
+            fitted: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
+            has_weight: detector.machine.gravity > 0.0,
+            commissioned,
+            held_samples,
+            helds,
+            scale: 1.0 / (f32::from(held_samples) * f32::from(helds)),
+            height: HEIGHT * clearance,
+            spread_square: spread * spread,
+            alert_square: alert * alert,
+        }
+    }
+
+    /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to
+    /// deliver.
+    pub(super) fn take(
+        &self,
+        state: &mut ProofState,
+        planes: [Option<[f32; 2]>; PLANES],
+        levitated: Option<bool>,
+    ) -> bool {
+        let mut delivers = true;
+        for ((it, place), fitted) in state.planes.iter_mut().zip(planes).zip(self.fitted) {
+            match place {
+                Some(place) => it.take(place),
+                None => delivers &= !fitted,
+            }
+        }
+        if !delivers || levitated == Some(false) {
+            state.restart();
+            return false;
+        }
+        state.samples += 1;
+        if state.samples < self.held_samples {
+            return false;
+        }
+        state.samples = 0;
+        state.helds += 1;
+        let is_over = state.helds >= self.helds;
+        let signal = if self.has_weight {
+            true
+        } else {
+            self.commissioned && levitated == Some(true)
+        };
+        let mut floats = is_over && signal;
+        for (it, fitted) in state.planes.iter_mut().zip(self.fitted) {
+            floats &= !fitted || self.floats(it);
+            it.lowest = it.lowest.min(it.highest);
+            it.highest = f32::NEG_INFINITY;
+        }
+        if is_over {
+            state.restart();
+        }
+        floats
+    }
+
+    /// Whether a plane has stayed where only a floating rotor does.
+    fn floats(&self, it: &PlaneProof) -> bool {
+        let [x, y] = it.sum.map(|sum| sum * self.scale);
+        let reach = |mean: f32, least: f32, most: f32| (most - mean).max(mean - least);
+        let dx = reach(x, it.least[0], it.most[0]);
+        let dy = reach(y, it.least[1], it.most[1]);
+        let is_lifted = !self.has_weight || y - it.lowest >= self.height;
+        is_lifted && dx * dx + dy * dy <= self.spread_square && x * x + y * y <= self.alert_square
+    }
+}
+
+impl PlaneProof {
+    fn take(&mut self, place: [f32; 2]) {
+        let axes = self.sum.iter_mut().zip(&mut self.least);
+        for (((sum, least), most), value) in axes.zip(&mut self.most).zip(place) {
+            *sum += value;
+            *least = least.min(value);
+            *most = most.max(value);
+        }
+        self.highest = self.highest.max(place[1]);
+    }
+}
+
+impl ProofState {
+    /// As if the rotor had been seen far below.
+    pub(super) fn assume_lift(&mut self) {
+        for it in &mut self.planes {
+            it.lowest = f32::NEG_INFINITY;
+        }
+    }
+
+    /// Begins a stay, and keeps where the rotor was lowest.
+    pub(super) fn restart(&mut self) {
+        (self.samples, self.helds) = (0, 0);
+        for it in &mut self.planes {
+            *it = PlaneProof {
+                lowest: it.lowest,
+                ..PlaneProof::default()
+            };
+        }
+    }
+}
