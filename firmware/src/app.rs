@@ -97,8 +97,8 @@ impl App {
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
         let mut told = None;
         for notice in notices {
-            // Contact weighs least: it trips nothing that has not been proven to float.
-            if told.is_none_or(|it| it == Cause::Contact) {
+            // Whirl weighs most: it trips what has not been proven to float as well.
+            if told != Some(Cause::Whirl) {
                 told = trip_of(notice).or(told);
             }
             self.permit.hear(notice);
@@ -119,7 +119,7 @@ impl App {
             told,
             faulted: self.faults.trip(),
             tested: self.tested.config && self.tested.sensors,
-            armed: self.state.phase() == Phase::Levitated && self.state.is_armed(),
+            lies: self.state.phase().is_contact(),
         });
         if self.safety.is_latched() && !was_latched {
             self.state.guard_mut().lose_proof();
@@ -231,6 +231,7 @@ impl App {
                 mode,
                 faults: self.faults,
                 lies_still: self.lies_still,
+                armed: self.state.is_armed(),
             }),
             mode,
             cause: self.safety.cause(),
@@ -243,7 +244,7 @@ impl App {
     }
 }
 
-/// What of a notice trips: a confirmed fall, whirl, or contact of what has been proven to float.
+/// What of a notice trips.
 fn trip_of(notice: &Notice) -> Option<Cause> {
     match notice {
         Notice::Confirmed { .. } => Some(Cause::Fall),

@@ -11,6 +11,8 @@ pub struct Condition {
     pub faults: Faults,
     /// Whether the rotor lies still enough on the retainer to be lifted.
     pub lies_still: bool,
+    /// Whether the detector is armed.
+    pub armed: bool,
 }
 
 /// The outputs in a condition. A fault that trips rules, whatever the mode says.
@@ -19,6 +21,7 @@ pub const fn outputs(condition: &Condition) -> Outputs {
         mode,
         faults,
         lies_still,
+        armed,
     } = *condition;
     if faults.trip() {
         return Outputs::SAFE;
@@ -34,7 +37,7 @@ pub const fn outputs(condition: &Condition) -> Outputs {
             run: true,
             no_brake: true,
             permit: false,
-            ready: faults.is_empty(),
+            ready: armed && faults.is_empty(),
         },
         Mode::Dropped => Outputs {
             permit: lies_still,
@@ -83,17 +86,20 @@ mod tests {
             let (_, cells) = row.expect("a row for each mode");
             // The seven bits of the faults: every set of them.
             for faults in (0..1 << 7).map(Faults) {
-                for lies_still in [false, true] {
+                for (lies_still, armed) in
+                    [(false, false), (false, true), (true, false), (true, true)]
+                {
                     let condition = Condition {
                         mode,
                         faults,
                         lies_still,
+                        armed,
                     };
                     let is_on = |cell: &String| match cell.as_str() {
                         "on" => true,
                         "off" => false,
                         "if it lies still" => lies_still,
-                        "if no fault" => faults == Faults::NONE,
+                        "if armed and no fault" => armed && faults == Faults::NONE,
                         other => panic!("{other}"),
                     };
                     let on = cells.iter().enumerate();
@@ -105,6 +111,6 @@ mod tests {
                 }
             }
         }
-        assert_eq!(conditions, 5 * 128 * 2);
+        assert_eq!(conditions, 5 * 128 * 4);
     }
 }

@@ -16,8 +16,8 @@ pub struct Findings {
     pub faulted: bool,
     /// Whether the self-test has seen all that it waits for.
     pub tested: bool,
-    /// Whether the detector is armed and takes the rotor for floating.
-    pub armed: bool,
+    /// Whether the detector takes the rotor for lying on the wall.
+    pub lies: bool,
 }
 
 /// Mode, cause and proof.
@@ -38,6 +38,12 @@ impl Default for Safety {
     }
 }
 
+impl Findings {
+    fn whirl(&self) -> Option<Cause> {
+        self.told.filter(|it| *it == Cause::Whirl)
+    }
+}
+
 impl Safety {
     /// One tick.
     pub fn step(&mut self, findings: &Findings) {
@@ -46,11 +52,10 @@ impl Safety {
             self.latch(Mode::Faulted, guard.unwrap_or(Cause::Fault));
             return;
         }
-        // What has not been proven to float cannot trip by the guard: it may lie there to be lifted.
-        let tripped = guard.filter(|_| self.proven).or(findings.told);
-        // An impact or contact is told of what lies, too.
-        let tripped = tripped.filter(|it| *it != Cause::Contact || self.proven);
-        if let Some(cause) = tripped {
+        // What has not been proven to float may lie there, to be lifted, and a lift may fail: it does not run. Whirl
+        // asks for the brake all the same.
+        let tripped = guard.or(findings.told);
+        if let Some(cause) = tripped.filter(|_| self.proven).or(findings.whirl()) {
             self.latch(Mode::Dropped, cause);
             return;
         }
@@ -60,7 +65,7 @@ impl Safety {
         self.proven |= findings.guard.floats && guard.is_none();
         if self.mode == Mode::SelfTest && findings.tested {
             (self.mode, self.cause) = (Mode::Arming, Some(Cause::NoProof));
-        } else if self.mode == Mode::Arming && self.proven && findings.armed {
+        } else if self.mode == Mode::Arming && self.proven && !findings.lies {
             (self.mode, self.cause) = (Mode::Watching, None);
         }
     }

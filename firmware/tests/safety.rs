@@ -45,7 +45,7 @@ struct Input {
     signal_off: bool,
     told: Option<Cause>,
     shows: bool,
-    armed: bool,
+    lies: bool,
     tested: bool,
     faulted: bool,
     clears: bool,
@@ -67,7 +67,7 @@ fn inputs() -> Vec<Input> {
                     told,
                     signal_off: bit(0),
                     shows: bit(1),
-                    armed: bit(2),
+                    lies: bit(2),
                     tested: bit(3),
                     faulted: bit(4),
                     clears: bit(5),
@@ -89,6 +89,7 @@ impl World {
             mode: self.safety.mode(),
             faults,
             lies_still: true,
+            armed: true,
         })
     }
 
@@ -128,7 +129,7 @@ impl World {
             told: input.told,
             faulted: input.faulted,
             tested: input.tested,
-            armed: input.armed,
+            lies: input.lies,
         });
         self.tested |= input.tested;
         let trips = guard.danger || guard.lost || guard.off;
@@ -182,9 +183,9 @@ impl World {
         }
         // What was proven to float and does not, has tripped; so has what the detector tells.
         let trips = guard.danger || guard.lost || guard.off;
-        let told = matches!(input.told, Some(Cause::Fall | Cause::Whirl));
-        let touches = input.told == Some(Cause::Contact);
-        let must = input.faulted || told || before.safety.is_proven() && (trips || touches);
+        let whirls = input.told == Some(Cause::Whirl);
+        let told = input.told.is_some();
+        let must = input.faulted || whirls || before.safety.is_proven() && (trips || told);
         if must && !self.safety.is_latched() {
             because("does not latch");
         }

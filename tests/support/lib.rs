@@ -10,8 +10,10 @@ pub mod episode;
 #[cfg(unix)]
 pub mod file_options;
 pub mod growth;
+pub mod guard_runs;
 pub mod minimal_scene;
 pub mod moment;
+pub mod plant;
 pub mod ring_scenes;
 pub mod rotors;
 pub mod sweep_runs;

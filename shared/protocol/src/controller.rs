@@ -9,7 +9,7 @@ pub enum Mode {
     /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
     #[default]
     SelfTest = 0,
-    /// Levitation is not proven, or noise and position are being learnt.
+    /// Levitation is not proven.
     Arming = 1,
     /// Levitation is proven: what the guard or the detector finds trips.
     Watching = 2,
@@ -92,7 +92,7 @@ pub struct Outputs {
     pub no_brake: bool,
     /// Permit relay: with current, the magnetic bearings may lift the rotor.
     pub permit: bool,
-    /// Ready lamp: watching, and no fault latched.
+    /// Ready lamp: watching, the detector is armed, and no fault latched.
     pub ready: bool,
 }
 

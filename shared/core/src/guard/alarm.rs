@@ -11,7 +11,6 @@ const FALLEN: f32 = 0.1;
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    window: Window,
     clearance: f32,
     /// Squares, m^2: of each level, and of where it has fallen.
     squares: [[f32; 2]; 2],
@@ -25,15 +24,13 @@ pub(super) struct AlarmState {
     told: [bool; 2],
     /// 0 before the first sample, 1 at it, 2 after it.
     seen: u8,
-    wait: u8,
     square: f32,
 }
 
 impl Limits {
-    pub(super) fn new(config: &GuardConfig, clearance: f32, sample_rate: f32) -> Self {
+    pub(super) fn new(config: &GuardConfig, clearance: f32) -> Self {
         let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
-            window: Window::new(sample_rate),
             clearance,
             squares: [config.alert, config.danger].map(|it| [square(it), square(it - FALLEN)]),
         }
@@ -41,11 +38,6 @@ impl Limits {
 
     /// Takes a plane's place, m.
     pub(super) fn take(&self, state: &mut AlarmState, [x, y]: [f32; 2]) {
-        if state.wait > 0 {
-            state.wait -= 1;
-            return;
-        }
-        state.wait = self.window.stride - 1;
         state.square = x * x + y * y;
         let is_first = state.seen == 0;
         state.seen = (state.seen + 1).min(2);
@@ -63,22 +55,22 @@ impl Limits {
     }
 
     /// Whether the plane is beyond a limit.
-    pub(super) fn is_beyond(&self, state: &AlarmState, level: Level) -> bool {
+    pub(super) fn is_beyond(&self, state: &AlarmState, window: Window, level: Level) -> bool {
         let bits = state.beyond.get(level as usize);
-        bits.is_some_and(|[beyond, _]| self.window.holds(*beyond))
+        bits.is_some_and(|[beyond, _]| window.holds(*beyond))
     }
 
     /// The limits that the plane has just risen through; at the first sample only the higher one.
-    pub(super) fn rises(&self, state: &mut AlarmState) -> [Option<Level>; 2] {
+    pub(super) fn rises(&self, state: &mut AlarmState, window: Window) -> [Option<Level>; 2] {
         let mut risen = [None; 2];
         let levels = state.beyond.iter().zip(&mut state.told).zip(Level::ALL);
         for (([beyond, fallen], told), level) in levels {
-            if self.window.holds(*beyond) && !*told {
+            if window.holds(*beyond) && !*told {
                 *told = true;
                 if let Some(slot) = risen.get_mut(level as usize) {
                     *slot = Some(level);
                 }
-            } else if !self.window.holds(*fallen) {
+            } else if !window.holds(*fallen) {
                 *told = false;
             }
         }

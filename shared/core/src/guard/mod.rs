@@ -16,6 +16,7 @@ mod window;
 use self::alarm::{AlarmState, Limits};
 use self::proof::{Proof, ProofState};
 use self::touch::{TouchState, Touches};
+use self::window::Window;
 use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
 use crate::sensing::PLANES;
@@ -61,6 +62,7 @@ impl GuardConfig {
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
+    window: Window,
     limits: Limits,
     proof: Proof,
     touches: Touches,
@@ -74,6 +76,8 @@ pub struct GuardState {
     alarms: [AlarmState; PLANES],
     proof: ProofState,
     touch: TouchState,
+    /// Samples until one counts for the window.
+    wait: u8,
     /// In a row.
     lost: u16,
     off: u8,
@@ -83,7 +87,7 @@ pub struct GuardState {
 /// What the guard says after a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// A plane is beyond the danger limit.
+    /// A plane is beyond the danger limit, or on its way back to where it was lifted from.
     pub danger: bool,
     /// No plane has delivered a position for a millisecond.
     pub lost: bool,
@@ -105,7 +109,8 @@ impl Guard {
         config.validate()?;
         let rate = detector.sample_rate;
         Ok(Self {
-            limits: Limits::new(config, detector.machine.clearance, rate),
+            window: Window::new(rate),
+            limits: Limits::new(config, detector.machine.clearance),
             proof: Proof::new(config, detector, fitted, commissioned),
             touches: Touches::new(detector.machine.clearance, rate),
             lost_samples: ((LOST_TIME * rate) as u16).max(2),
@@ -123,16 +128,17 @@ impl Guard {
     ) {
         let sample = state.sample;
         state.sample += 1;
-        let mut alert = false;
-        let mut danger = false;
+        let (mut alert, mut danger) = (false, false);
+        let (counts, window) = (state.wait == 0, self.window);
+        state.wait = if counts { window.stride } else { state.wait } - 1;
         let names = [Plane::A, Plane::B];
         for ((it, place), plane) in state.alarms.iter_mut().zip(planes).zip(names) {
-            if let Some(place) = place {
+            if let Some(place) = place.filter(|_| counts) {
                 self.limits.take(it, place);
             }
-            alert |= self.limits.is_beyond(it, Level::Alert);
-            danger |= self.limits.is_beyond(it, Level::Danger);
-            for level in self.limits.rises(it).into_iter().flatten() {
+            alert |= self.limits.is_beyond(it, window, Level::Alert);
+            danger |= self.limits.is_beyond(it, window, Level::Danger);
+            for level in self.limits.rises(it, window).into_iter().flatten() {
                 tell(
                     notices,
                     Notice::Alarm(Alarm {
@@ -151,7 +157,9 @@ impl Guard {
         state.lost = if sees { 0 } else { state.lost.saturating_add(1) };
         let is_off = levitated == Some(false);
         state.off = if is_off { state.off.saturating_add(1) } else { 0 };
-        let floats = self.proof.take(&mut state.proof, planes, levitated);
+        let proof = &mut state.proof;
+        let floats = self.proof.take(proof, planes, levitated, counts);
+        danger |= self.proof.is_below(proof, window);
         state.verdict = Verdict {
             danger,
             lost: state.lost >= self.lost_samples,

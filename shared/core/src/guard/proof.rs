@@ -1,9 +1,11 @@
 //! Whether the rotor has been seen to float: it stays still above the lowest place that it was seen at.
 //!
 //! Distance alone does not show it: with gap, zero and gain told wrong the wall reads as near as a floating rotor
-//! reads far. A rotor on the wall lies where it is lowest, one that floats has been lifted from there.
+//! reads far. A rotor on the wall lies where it is lowest, one that floats has been lifted from there. The two places
+//! give a floor that needs nothing told: below it the rotor is on its way back to where it lay.
 
 use super::GuardConfig;
+use super::window::Window;
 use crate::config::DetectorConfig;
 use crate::sensing::PLANES;
 
@@ -13,6 +15,9 @@ const STAY: f32 = 0.1;
 const HELD: f32 = 0.01;
 /// Part of the clearance that a floating rotor's mean place is above the lowest one.
 const HEIGHT: f32 = 0.25;
+/// Part of the height of a proven rotor above the lowest place, at which the floor is. Told right, from the centre, it
+/// is 0.65 of the clearance below.
+const FLOOR: f32 = 0.35;
 /// Part of the clearance that it stays within, of its mean place.
 const SPREAD: f32 = 0.2;
 
@@ -43,6 +48,10 @@ struct PlaneProof {
     highest: f32,
     /// Lowest since proof was lost.
     lowest: f32,
+    /// Since the first proof after that; where a lift was assumed there is none.
+    floor: Option<f32>,
+    /// Of the last samples, the newest in bit 0: below the floor.
+    below: u32,
 }
 
 /// What was seen of the planes.
@@ -61,6 +70,8 @@ impl Default for PlaneProof {
             most: [f32::NEG_INFINITY; 2],
             highest: f32::NEG_INFINITY,
             lowest: f32::INFINITY,
+            floor: None,
+            below: 0,
         }
     }
 }
@@ -91,18 +102,19 @@ impl Proof {
         }
     }
 
-    /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to
-    /// deliver.
+    /// Takes each plane's place, m, and whether the sample counts for the window; whether it completes a proof. Every
+    /// plane that is fitted has to deliver.
     pub(super) fn take(
         &self,
         state: &mut ProofState,
         planes: [Option<[f32; 2]>; PLANES],
         levitated: Option<bool>,
+        counts: bool,
     ) -> bool {
         let mut delivers = true;
         for ((it, place), fitted) in state.planes.iter_mut().zip(planes).zip(self.fitted) {
             match place {
-                Some(place) => it.take(place),
+                Some(place) => it.take(place, counts),
                 None => delivers &= !fitted,
             }
         }
@@ -128,10 +140,26 @@ impl Proof {
             it.lowest = it.lowest.min(it.highest);
             it.highest = f32::NEG_INFINITY;
         }
+        if floats {
+            state.planes.iter_mut().for_each(|it| self.put_floor(it));
+        }
         if is_over {
             state.restart();
         }
         floats
+    }
+
+    /// Under a rotor that has just been proven to float, where it has none.
+    fn put_floor(&self, it: &mut PlaneProof) {
+        let height = it.sum[1] * self.scale - it.lowest;
+        if self.has_weight && it.floor.is_none() && height.is_finite() {
+            it.floor = Some(it.lowest + FLOOR * height);
+        }
+    }
+
+    /// Whether a plane is below its floor.
+    pub(super) fn is_below(&self, state: &ProofState, window: Window) -> bool {
+        state.planes.iter().any(|it| window.holds(it.below))
     }
 
     /// Whether a plane has stayed where only a floating rotor does.
@@ -146,7 +174,7 @@ impl Proof {
 }
 
 impl PlaneProof {
-    fn take(&mut self, place: [f32; 2]) {
+    fn take(&mut self, place: [f32; 2], counts: bool) {
         let axes = self.sum.iter_mut().zip(&mut self.least);
         for (((sum, least), most), value) in axes.zip(&mut self.most).zip(place) {
             *sum += value;
@@ -154,6 +182,9 @@ impl PlaneProof {
             *most = most.max(value);
         }
         self.highest = self.highest.max(place[1]);
+        if counts && let Some(floor) = self.floor {
+            self.below = self.below << 1 | u32::from(place[1] < floor);
+        }
     }
 }
 
@@ -171,6 +202,8 @@ impl ProofState {
         for it in &mut self.planes {
             *it = PlaneProof {
                 lowest: it.lowest,
+                floor: it.floor,
+                below: it.below,
                 ..PlaneProof::default()
             };
         }
