@@ -27,7 +27,7 @@ use self::capture::Capture;
 use self::pulses::{ROOM, Ring};
 
 /// Samples of a buffer.
-pub const CAPACITY: usize = 4_500;
+pub const CAPACITY: usize = 4_450;
 /// Recorded samples per second at most, Hz: so a buffer lasts for what is recorded.
 const FASTEST: f32 = 20_000.0;
 

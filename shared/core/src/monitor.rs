@@ -38,7 +38,6 @@ pub struct MonitorConfig {
 /// Coefficients of the tick.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    fitted: u8,
     guard: Guard,
     sensing: Sensing,
     health: Health,
@@ -102,7 +101,6 @@ impl Monitor {
                 config.fitted,
                 config.commissioned,
             )?,
-            fitted: config.fitted,
         })
     }
 
@@ -131,7 +129,7 @@ impl Monitor {
     #[inline]
     pub fn guard(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
         notices.clear();
-        let planes = self.sensing.convert(sample, self.fitted).planes;
+        let planes = self.sensing.planes(sample);
         let state = &mut state.guard;
         self.guard.update(state, planes, sample.levitated, notices);
     }

@@ -97,6 +97,21 @@ impl Sensing {
         })
     }
 
+    /// Each plane's position, m, of those channels that are valid and neither at 0 nor at full scale, and of nothing
+    /// else.
+    #[inline]
+    pub fn planes(&self, sample: &Sample) -> [Option<[f32; 2]>; PLANES] {
+        let [ax, ay, bx, by] = sample.counts;
+        let last = self.full_scale - 1;
+        let is_inside = |count: u16| count.wrapping_sub(1) < last;
+        let plane = |rotation, channels: u8, u: u16, v: u16| {
+            let usable = sample.valid & channels == channels && is_inside(u) && is_inside(v);
+            usable.then(|| self.turn(rotation, [u, v].map(f32::from)))
+        };
+        let [a, b] = self.rotation;
+        [plane(a, 0b0011, ax, ay), plane(b, 0b1100, bx, by)]
+    }
+
     /// Converts one sample. Channels of `fitted` (one bit each) that are invalid, at 0 or at full
     /// scale come out as unusable.
     pub fn convert(&self, sample: &Sample, fitted: u8) -> Reading {
@@ -125,7 +140,12 @@ impl Sensing {
         first: Option<f32>,
         second: Option<f32>,
     ) -> Option<[f32; 2]> {
-        let [u, v] = [first?, second?].map(|count| (count - self.zero_count) * self.resolution);
-        Some([cos * u - sin * v, sin * u + cos * v])
+        Some(self.turn([sin, cos], [first?, second?]))
+    }
+
+    /// From a plane's counts to its position, m.
+    fn turn(&self, [sin, cos]: [f32; 2], counts: [f32; 2]) -> [f32; 2] {
+        let [u, v] = counts.map(|count| (count - self.zero_count) * self.resolution);
+        [cos * u - sin * v, sin * u + cos * v]
     }
 }

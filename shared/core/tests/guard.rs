@@ -144,7 +144,11 @@ fn alarms_are_told_at_each_rise_after_a_fall_of_a_tenth() {
 fn first_sample_tells_the_higher_limit_alone_and_no_touch() {
     let mut bench = Bench::rig();
     bench.at([0.0, -1.0]);
-    let told: Vec<_> = bench.alarms.iter().map(|it| (it.level, it.sample)).collect();
+    let told: Vec<_> = bench
+        .alarms
+        .iter()
+        .map(|it| (it.level, it.sample))
+        .collect();
     assert_eq!(told, [(Level::Danger, 0); 2]);
     assert!(bench.state.verdict().danger);
     bench.stay([0.0, -1.0], 5_000);

@@ -142,7 +142,12 @@ const CLEARED: u8 = 10;
 /// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order: tag, why not (from 1).
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
-    let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
+    // Without a path to a panic, which the tick may not have.
+    let mut put = |at: usize, field: &[u8]| {
+        if let Some(place) = bytes.get_mut(at..at + field.len()) {
+            place.copy_from_slice(field);
+        }
+    };
     match *record {
         Record::Notice(Notice::Declared(event)) => {
             let (kind, plane) = (event.kind as u8, event.plane as u8);

@@ -27,7 +27,7 @@ use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::{self, Block, BlockError, Settings};
-use touchdown_protocol::controller::{Fault, Faults, Shown};
+use touchdown_protocol::controller::{Fault, Faults, Outputs, Shown};
 use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
 

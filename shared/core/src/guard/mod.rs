@@ -13,9 +13,9 @@ mod proof;
 mod touch;
 mod window;
 
-use self::alarm::{AlarmState, Limits};
+use self::alarm::{AlarmState, FALLEN, Limits};
 use self::proof::{Proof, ProofState};
-use self::touch::{TouchState, Touches};
+use self::touch::{CLEAR, PlaneTouch, TouchState, Touches};
 use self::window::Window;
 use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
@@ -62,7 +62,9 @@ impl GuardConfig {
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
-    window: Window,
+    stride: u8,
+    /// Square of the distance within which nothing happens, m^2.
+    clear_square: f32,
     limits: Limits,
     proof: Proof,
     touches: Touches,
@@ -73,7 +75,7 @@ pub struct Guard {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardState {
     sample: u64,
-    alarms: [AlarmState; PLANES],
+    planes: [PlaneState; PLANES],
     proof: ProofState,
     touch: TouchState,
     /// Samples until one counts for the window.
@@ -82,6 +84,15 @@ pub struct GuardState {
     lost: u16,
     off: u8,
     verdict: Verdict,
+}
+
+/// Of a plane.
+#[derive(Clone, Copy, Debug, Default)]
+struct PlaneState {
+    alarm: AlarmState,
+    touch: PlaneTouch,
+    /// Nothing of the last millisecond is of interest.
+    is_quiet: bool,
 }
 
 /// What the guard says after a sample.
@@ -108,9 +119,14 @@ impl Guard {
     ) -> Result<Self, ConfigError> {
         config.validate()?;
         let rate = detector.sample_rate;
+        let window = Window::new(rate);
         Ok(Self {
-            window: Window::new(rate),
-            limits: Limits::new(config, detector.machine.clearance),
+            stride: window.stride,
+            clear_square: {
+                let clear = (config.alert - FALLEN).min(CLEAR) * detector.machine.clearance;
+                clear * clear
+            },
+            limits: Limits::new(config, detector.machine.clearance, window),
             proof: Proof::new(config, detector, fitted, commissioned),
             touches: Touches::new(detector.machine.clearance, rate),
             lost_samples: ((LOST_TIME * rate) as u16).max(2),
@@ -128,44 +144,110 @@ impl Guard {
     ) {
         let sample = state.sample;
         state.sample += 1;
-        let (mut alert, mut danger) = (false, false);
-        let (counts, window) = (state.wait == 0, self.window);
-        state.wait = if counts { window.stride } else { state.wait } - 1;
-        let names = [Plane::A, Plane::B];
-        for ((it, place), plane) in state.alarms.iter_mut().zip(planes).zip(names) {
-            if let Some(place) = place.filter(|_| counts) {
-                self.limits.take(it, place);
-            }
-            alert |= self.limits.is_beyond(it, window, Level::Alert);
-            danger |= self.limits.is_beyond(it, window, Level::Danger);
-            for level in self.limits.rises(it, window).into_iter().flatten() {
-                tell(
-                    notices,
-                    Notice::Alarm(Alarm {
-                        plane,
-                        level,
-                        fraction: self.limits.fraction(it),
-                        sample,
-                    }),
-                );
+        let counts = state.wait == 0;
+        state.wait = if counts { self.stride } else { state.wait } - 1;
+        let mut is_quiet = true;
+        for (it, (place, floor)) in state
+            .planes
+            .iter_mut()
+            .zip(planes.into_iter().zip(state.proof.floors()))
+        {
+            let Some([x, y]) = place else {
+                is_quiet &= it.is_quiet;
+                continue;
+            };
+            let square = x * x + y * y;
+            if it.is_quiet && square < self.clear_square && y >= floor {
+                it.touch.stay([x, y]);
+            } else {
+                is_quiet = false;
             }
         }
-        if let Some(touch) = self.touches.take(&mut state.touch, planes, sample) {
-            tell(notices, Notice::Touch(touch));
-        }
+        let (alert, danger) = if is_quiet {
+            (false, false)
+        } else {
+            self.near(state, planes, sample, counts, notices)
+        };
         let sees = planes.iter().any(Option::is_some);
-        state.lost = if sees { 0 } else { state.lost.saturating_add(1) };
+        state.lost = if sees {
+            0
+        } else {
+            state.lost.saturating_add(1)
+        };
         let is_off = levitated == Some(false);
-        state.off = if is_off { state.off.saturating_add(1) } else { 0 };
-        let proof = &mut state.proof;
-        let floats = self.proof.take(proof, planes, levitated, counts);
-        danger |= self.proof.is_below(proof, window);
+        state.off = if is_off {
+            state.off.saturating_add(1)
+        } else {
+            0
+        };
+        let floats = self.proof.take(&mut state.proof, planes, levitated);
         state.verdict = Verdict {
             danger,
             lost: state.lost >= self.lost_samples,
             off: state.off >= OFF_SAMPLES,
             floats: floats && !alert,
         };
+    }
+}
+
+impl Guard {
+    /// Where a plane is near a limit or has been in the last millisecond: whether one is beyond alert, and beyond
+    /// danger or below its floor.
+    #[inline(never)]
+    fn near(
+        &self,
+        state: &mut GuardState,
+        places: [Option<[f32; 2]>; PLANES],
+        sample: u64,
+        counts: bool,
+        notices: &mut Notices,
+    ) -> (bool, bool) {
+        let (mut alert, mut danger) = (false, false);
+        let floors = state.proof.floors();
+        let planes = state.planes.iter_mut().zip(places);
+        for ((it, place), (plane, floor)) in
+            planes.zip([Plane::A, Plane::B].into_iter().zip(floors))
+        {
+            if let Some(place) = place {
+                if counts {
+                    let risen = self.limits.take(&mut it.alarm, place, floor);
+                    if risen != [None; 2] {
+                        self.tell_alarms(risen, plane, place, sample, notices);
+                    }
+                }
+                self.touches.follow(&mut it.touch, place);
+            }
+            alert |= self.limits.is_beyond(&it.alarm, Level::Alert);
+            danger |= self.limits.is_beyond(&it.alarm, Level::Danger);
+            it.is_quiet = it.alarm.is_clear() && it.touch.is_clear();
+        }
+        let [a, b] = &state.planes;
+        let planes = [&a.touch, &b.touch];
+        if let Some(touch) = self.touches.take(&mut state.touch, planes, sample) {
+            tell(notices, Notice::Touch(touch));
+        }
+        (alert, danger)
+    }
+
+    #[cold]
+    fn tell_alarms(
+        &self,
+        risen: [Option<Level>; 2],
+        plane: Plane,
+        place: [f32; 2],
+        sample: u64,
+        notices: &mut Notices,
+    ) {
+        let fraction = self.limits.fraction(place);
+        for level in risen.into_iter().flatten() {
+            let alarm = Alarm {
+                plane,
+                level,
+                fraction,
+                sample,
+            };
+            tell(notices, Notice::Alarm(alarm));
+        }
     }
 }
 
@@ -197,6 +279,8 @@ impl GuardState {
 }
 
 /// There is room for all that a tick can say; without it nothing else may suffer.
+#[cold]
+#[inline(never)]
 fn tell(notices: &mut Notices, notice: Notice) {
     let _ = notices.push(notice);
 }

@@ -5,14 +5,13 @@
 //! give a floor that needs nothing told: below it the rotor is on its way back to where it lay.
 
 use super::GuardConfig;
-use super::window::Window;
 use crate::config::DetectorConfig;
 use crate::sensing::PLANES;
 
-/// Time that a floating rotor stays, s.
-const STAY: f32 = 0.1;
-/// Time at or below a height that makes it one where the rotor was, s: longer than a burst of disturbance.
+/// Time at or below a height that makes it one where the rotor was, s: longer than most bursts of disturbance.
 const HELD: f32 = 0.01;
+/// Times that, which a floating rotor stays: 0.1 s.
+const HELDS: u8 = 10;
 /// Part of the clearance that a floating rotor's mean place is above the lowest one.
 const HEIGHT: f32 = 0.25;
 /// Part of the height of a proven rotor above the lowest place, at which the floor is. Told right, from the centre, it
@@ -28,10 +27,9 @@ pub(super) struct Proof {
     /// Whether weight shows where the rotor lies.
     has_weight: bool,
     commissioned: bool,
+    /// Even: each plane is looked at in every other one.
     held_samples: u16,
-    /// Times that, in a stay.
-    helds: u8,
-    /// 1 over the samples of a stay.
+    /// 1 over a plane's samples of a stay.
     scale: f32,
     height: f32,
     spread_square: f32,
@@ -48,10 +46,8 @@ struct PlaneProof {
     highest: f32,
     /// Lowest since proof was lost.
     lowest: f32,
-    /// Since the first proof after that; where a lift was assumed there is none.
-    floor: Option<f32>,
-    /// Of the last samples, the newest in bit 0: below the floor.
-    below: u32,
+    /// Since the first proof after that; infinitely low before it, and where a lift was assumed.
+    floor: f32,
 }
 
 /// What was seen of the planes.
@@ -70,8 +66,7 @@ impl Default for PlaneProof {
             most: [f32::NEG_INFINITY; 2],
             highest: f32::NEG_INFINITY,
             lowest: f32::INFINITY,
-            floor: None,
-            below: 0,
+            floor: f32::NEG_INFINITY,
         }
     }
 }
@@ -85,36 +80,39 @@ impl Proof {
     ) -> Self {
         let clearance = detector.machine.clearance;
         let rate = detector.sample_rate;
-        let held_samples = ((HELD * rate) as u16).max(4);
-        let helds = (STAY / HELD) as u8;
+        let of_plane = ((0.5 * HELD * rate) as u16).max(4);
         let spread = SPREAD * clearance;
         let alert = config.alert * clearance;
         Self {
             fitted: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             has_weight: detector.machine.gravity > 0.0,
             commissioned,
-            held_samples,
-            helds,
-            scale: 1.0 / (f32::from(held_samples) * f32::from(helds)),
+            held_samples: 2 * of_plane,
+            scale: 1.0 / (f32::from(of_plane) * f32::from(HELDS)),
             height: HEIGHT * clearance,
             spread_square: spread * spread,
             alert_square: alert * alert,
         }
     }
 
-    /// Takes each plane's place, m, and whether the sample counts for the window; whether it completes a proof. Every
-    /// plane that is fitted has to deliver.
+    /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to
+    /// deliver.
     pub(super) fn take(
         &self,
         state: &mut ProofState,
         planes: [Option<[f32; 2]>; PLANES],
         levitated: Option<bool>,
-        counts: bool,
     ) -> bool {
         let mut delivers = true;
-        for ((it, place), fitted) in state.planes.iter_mut().zip(planes).zip(self.fitted) {
+        let turns = [state.samples & 1 == 0, state.samples & 1 != 0];
+        let fitted = self.fitted.into_iter().zip(turns);
+        for ((it, place), (fitted, turn)) in state.planes.iter_mut().zip(planes).zip(fitted) {
             match place {
-                Some(place) => it.take(place, counts),
+                Some(place) => {
+                    if turn {
+                        it.take(place);
+                    }
+                }
                 None => delivers &= !fitted,
             }
         }
@@ -128,7 +126,7 @@ impl Proof {
         }
         state.samples = 0;
         state.helds += 1;
-        let is_over = state.helds >= self.helds;
+        let is_over = state.helds >= HELDS;
         let signal = if self.has_weight {
             true
         } else {
@@ -152,14 +150,9 @@ impl Proof {
     /// Under a rotor that has just been proven to float, where it has none.
     fn put_floor(&self, it: &mut PlaneProof) {
         let height = it.sum[1] * self.scale - it.lowest;
-        if self.has_weight && it.floor.is_none() && height.is_finite() {
-            it.floor = Some(it.lowest + FLOOR * height);
+        if self.has_weight && it.floor == f32::NEG_INFINITY && height.is_finite() {
+            it.floor = it.lowest + FLOOR * height;
         }
-    }
-
-    /// Whether a plane is below its floor.
-    pub(super) fn is_below(&self, state: &ProofState, window: Window) -> bool {
-        state.planes.iter().any(|it| window.holds(it.below))
     }
 
     /// Whether a plane has stayed where only a floating rotor does.
@@ -174,21 +167,33 @@ impl Proof {
 }
 
 impl PlaneProof {
-    fn take(&mut self, place: [f32; 2], counts: bool) {
+    #[inline]
+    fn take(&mut self, place: [f32; 2]) {
         let axes = self.sum.iter_mut().zip(&mut self.least);
         for (((sum, least), most), value) in axes.zip(&mut self.most).zip(place) {
             *sum += value;
-            *least = least.min(value);
-            *most = most.max(value);
+            // `min` and `max` are calls where the core has no instruction for them.
+            if value < *least {
+                *least = value;
+            }
+            if value > *most {
+                *most = value;
+            }
         }
-        self.highest = self.highest.max(place[1]);
-        if counts && let Some(floor) = self.floor {
-            self.below = self.below << 1 | u32::from(place[1] < floor);
+        if place[1] > self.highest {
+            self.highest = place[1];
         }
     }
 }
 
 impl ProofState {
+    /// The floor of each plane, m.
+    #[inline]
+    pub(super) fn floors(&self) -> [f32; PLANES] {
+        let [a, b] = &self.planes;
+        [a.floor, b.floor]
+    }
+
     /// As if the rotor had been seen far below.
     pub(super) fn assume_lift(&mut self) {
         for it in &mut self.planes {
@@ -203,7 +208,6 @@ impl ProofState {
             *it = PlaneProof {
                 lowest: it.lowest,
                 floor: it.floor,
-                below: it.below,
                 ..PlaneProof::default()
             };
         }

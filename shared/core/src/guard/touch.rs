@@ -6,7 +6,7 @@ use touchdown_rotor::real::sqrt;
 
 /// Part of the clearance beyond which a plane is at the wall, and within which it is clear of it.
 const AT_WALL: f32 = 0.8;
-const CLEAR: f32 = 0.7;
+pub(super) const CLEAR: f32 = 0.7;
 /// Time over which the place is smoothed, s: less noise, and a turn at 100 m/s^2 is cut by 0.5 um.
 const SMOOTH: f32 = 0.1e-3;
 /// Samples in a row that are believed.
@@ -29,10 +29,14 @@ pub(super) struct Touches {
 
 /// Of a plane.
 #[derive(Clone, Copy, Debug, Default)]
-struct PlaneTouch {
-    last: Option<[f32; 2]>,
+pub(super) struct PlaneTouch {
+    /// Last place that can be one of the rotor, m.
+    last: [f32; 2],
+    seen: bool,
     /// Smoothed, m.
     place: [f32; 2],
+    /// Square of the last distance, m^2.
+    square: f32,
     /// Samples since then.
     age: u16,
     at_wall: bool,
@@ -43,7 +47,6 @@ struct PlaneTouch {
 /// Of the rotor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TouchState {
-    planes: [PlaneTouch; PLANES],
     /// Whether it has been clear of the wall.
     was_clear: bool,
     open: Option<Open>,
@@ -70,31 +73,26 @@ impl Touches {
         }
     }
 
-    /// Takes each plane's place, m; a touch that began or ended.
+    /// Takes where the planes are; a touch that began or ended.
     pub(super) fn take(
         &self,
         state: &mut TouchState,
-        places: [Option<[f32; 2]>; PLANES],
+        planes: [&PlaneTouch; PLANES],
         sample: u64,
     ) -> Option<Touch> {
-        let mut peak = 0.0_f32;
-        for (it, place) in state.planes.iter_mut().zip(places) {
-            if let Some(square) = self.follow(it, place) {
-                peak = peak.max(square);
-            }
-        }
-        let at_wall = state.planes.map(|it| it.at_wall);
+        let at_wall = planes.map(|it| it.at_wall);
         let is_at_wall = at_wall != [false; PLANES];
         if !state.was_clear {
             // One that lies there at first has not come.
-            state.was_clear = !is_at_wall && state.planes.iter().any(|it| it.last.is_some());
+            state.was_clear = !is_at_wall;
             return None;
         }
-        let previous = sample.saturating_sub(u64::from(IN_A_ROW) - 1);
+        let [a, b] = planes.map(|it| it.square);
+        let peak = if a > b { a } else { b };
         match &mut state.open {
             None if is_at_wall => {
                 let open = Open {
-                    onset: previous,
+                    onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
                     planes: at_wall,
                     peak_square: peak,
                 };
@@ -106,7 +104,9 @@ impl Touches {
                 for (was, is) in open.planes.iter_mut().zip(at_wall) {
                     *was |= is;
                 }
-                open.peak_square = open.peak_square.max(peak);
+                if peak > open.peak_square {
+                    open.peak_square = peak;
+                }
                 if is_at_wall {
                     return None;
                 }
@@ -134,20 +134,20 @@ impl Touches {
         }
     }
 
-    /// Whether the plane is at the wall; the square of its distance (m^2) where its sample can be one of the rotor.
-    fn follow(&self, it: &mut PlaneTouch, place: Option<[f32; 2]>) -> Option<f32> {
+    /// Takes a plane's place, m, where it can be one of the rotor.
+    pub(super) fn follow(&self, it: &mut PlaneTouch, [x, y]: [f32; 2]) {
         it.age = it.age.saturating_add(1);
-        let [x, y] = place?;
-        let is_first = it.last.is_none();
-        let [u, v] = it.last.unwrap_or([x, y]);
         let way = self.noise + self.way * f32::from(it.age);
-        let (dx, dy) = (x - u, y - v);
-        if dx * dx + dy * dy > way * way {
-            return None;
+        let (dx, dy) = (x - it.last[0], y - it.last[1]);
+        if it.seen && dx * dx + dy * dy > way * way {
+            return;
         }
-        (it.last, it.age) = (place, 0);
-        if is_first {
-            it.place = [x, y];
+        (it.last, it.age) = ([x, y], 0);
+        it.square = x * x + y * y;
+        if !it.seen || !it.at_wall && it.square < self.clear_square {
+            (it.place, it.count, it.seen) = ([x, y], 0, true);
+            it.at_wall = it.square >= self.at_wall_square;
+            return;
         }
         let [u, v] = &mut it.place;
         *u += self.gain * (x - *u);
@@ -159,11 +159,23 @@ impl Touches {
             square >= self.at_wall_square
         };
         it.count = if changes { it.count + 1 } else { 0 };
-        if it.count >= IN_A_ROW || is_first && changes {
+        if it.count >= IN_A_ROW {
             it.at_wall = !it.at_wall;
             it.count = 0;
         }
-        Some(x * x + y * y)
+    }
+}
+
+impl PlaneTouch {
+    /// Takes a place that is clear of the wall, m.
+    #[inline]
+    pub(super) fn stay(&mut self, place: [f32; 2]) {
+        (self.last, self.place, self.age) = (place, place, 0);
+    }
+
+    /// Whether it is clear of the wall, and was in the last sample.
+    pub(super) fn is_clear(&self) -> bool {
+        self.seen && !self.at_wall && self.count == 0
     }
 }
 
