@@ -1,6 +1,7 @@
 //! Each fault of docs/build/firmware.md brings the outputs to safety within the ticks stated there.
 
 use touchdown_core::event::{EventKind, Notice, Notices};
+use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
@@ -53,8 +54,12 @@ impl Board for Memory {
 
 impl Bench {
     fn new(found: Faults) -> Self {
+        Self::configured(&default_config(), found)
+    }
+
+    fn configured(config: &MonitorConfig, found: Faults) -> Self {
         Self {
-            app: App::try_new(&default_config(), found).expect("a valid configuration"),
+            app: App::try_new(config, found).expect("a valid configuration"),
             board: Memory {
                 block: config_block::encode(&default_settings()),
                 notices: vec![],
@@ -68,7 +73,11 @@ impl Bench {
 
     /// Watching, the rotor at the centre.
     fn watching() -> Self {
-        let mut bench = Self::new(Faults::NONE);
+        Self::new(Faults::NONE).watches()
+    }
+
+    fn watches(self) -> Self {
+        let mut bench = self;
         bench.app.assume_lift();
         for _ in 0..ARMED {
             bench.float();
@@ -256,6 +265,23 @@ fn what_is_put_down_while_watching_trips_within_a_millisecond_of_the_danger_limi
     let is_confirmed = |it: &Notice| matches!(it, Notice::Confirmed { .. });
     assert!(!bench.board.notices.iter().any(is_confirmed));
     assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0));
+}
+
+/// The same, where the danger limit is so wide that the wall reads within it.
+#[test]
+fn contact_of_what_floated_trips_in_the_tick_that_tells_it() {
+    let mut config = default_config();
+    config.guard.danger = 0.95;
+    let mut bench = Bench::configured(&config, Faults::NONE).watches();
+    let tells = [EventKind::Impact, EventKind::Sliding, EventKind::Rolling];
+    ticks_until(20_000, || {
+        let way = 3e-3 * seconds(bench.tick - ARMED);
+        bench.place([0.0, -way.min(0.94 * CLEARANCE)]);
+        let told = tells.iter().any(|it| bench.told(*it));
+        assert_eq!(told, bench.outputs() == 0);
+        told
+    });
+    assert_eq!(bench.cause(), Some(Cause::Contact));
 }
 
 /// The same with a signal that tells that levitation goes off.

@@ -181,7 +181,8 @@ impl Monitor {
     /// What the forecast below the tick needs of the last one; an estimate only where it `asks` for one.
     pub fn forecast_input(&self, state: &MonitorState, wants_input: bool) -> ForecastInput {
         let is_released = state.detector.phase() >= Phase::FreeFall;
-        let estimate = if wants_input && is_released {
+        let rests = state.detector.rests();
+        let estimate = if wants_input && is_released && !rests {
             self.detector.estimate(&state.detector, state.spin)
         } else {
             None
@@ -189,6 +190,7 @@ impl Monitor {
         ForecastInput {
             sample: state.samples.saturating_sub(1),
             is_released,
+            rests,
             estimate,
         }
     }

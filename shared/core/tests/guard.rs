@@ -193,6 +193,33 @@ fn a_lift_is_a_proof_and_nothing_that_lies_is() {
     assert!(!bench.stay([0.0, -0.43], 40_000));
 }
 
+/// Lies, as it reads with zero and gain told wrong, is lifted and drops: danger is told where 0.67 of what is told is
+/// never reached.
+#[test]
+fn a_fall_back_to_where_it_lay_is_danger_whatever_is_told() {
+    let mut bench = Bench::rig();
+    bench.stay([0.1, -0.6], 5_000);
+    bench.go([0.1, -0.6], [0.0; 2], 2_000);
+    assert!(bench.stay([0.0; 2], 4_100));
+    bench.stay([0.0, -0.36], 100);
+    assert!(!bench.state.verdict().danger);
+    bench.stay([0.0, -0.42], 15);
+    assert!(bench.state.verdict().danger);
+    // A proof that was lost takes its floor along.
+    bench.state.lose_proof();
+    bench.stay([0.0, -0.42], 20);
+    assert!(!bench.state.verdict().danger);
+}
+
+/// A spike down while it lies is not where it lay.
+#[test]
+fn a_spike_is_not_the_lowest_place() {
+    let mut bench = Bench::rig();
+    bench.stay([0.0, -0.45], 1_000);
+    bench.stay([0.0, -0.95], 10);
+    assert!(!bench.stay([0.0, -0.45], 20_000));
+}
+
 #[test]
 fn rocking_bouncing_and_whirling_are_no_proof() {
     let shown = |place: &dyn Fn(f32) -> [f32; 2]| {

@@ -380,7 +380,7 @@ fn what_is_no_block_says_why() {
     let block = config_block::encode(&settings());
     assert_eq!(config_block::decode(&[0xff; 400]), Err(BlockError::Blank));
     assert_eq!(
-        config_block::decode(b"TDC\x03......"),
+        config_block::decode(b"TDC\x02......"),
         Err(BlockError::Version)
     );
     for length in 6..block.len() {

@@ -89,6 +89,8 @@ fn state(state: &State, watched: &Watched) -> Value {
         "age_s": 1e-6 * f64::from(state.age_us),
         "phase": told_phase_name(state.phase),
         "mode": mode_name(state.mode),
+        "cause": state.cause,
+        "touches": state.touches,
         "run": state.outputs.run,
         "no_brake": state.outputs.no_brake,
         "permit": state.outputs.permit,

@@ -12,7 +12,7 @@ use touchdown_protocol::link::State;
 use super::orbit::orbit;
 use super::watched::{Link, Watched};
 use touchdown_run::outcome::DetectedEvent;
-use touchdown_scene::names::{event_name, fault_name, mode_name, told_phase_name};
+use touchdown_scene::names::{cause_name, event_name, fault_name, mode_name, told_phase_name};
 
 const KEYS: &str = " q quit   space hold   p plane   x clear orbit";
 /// Older than this, what is shown is marked, s.
@@ -204,7 +204,8 @@ fn mode(state: &State, pen: Pen) -> Span<'static> {
         Mode::Watching => Color::Green,
         Mode::Dropped | Mode::Faulted => Color::Red,
     };
-    pen.of(colour, mode_name(state.mode).to_owned())
+    let cause = state.cause.map_or(String::new(), |it| format!(": {}", cause_name(it)));
+    pen.of(colour, mode_name(state.mode).to_owned() + &cause)
 }
 
 fn outputs(head: &'static str, outputs: [(&str, bool); 2], pen: Pen) -> Line<'static> {

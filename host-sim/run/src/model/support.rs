@@ -111,7 +111,7 @@ fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
 
 /// Rotor and ring after a step.
 #[derive(Clone, Copy, Debug)]
-pub struct ForecastInput {
+pub struct StepView {
     /// Of the rotor beyond the ring's wall, its clearance; below 0 in flight.
     pub beyond: f64,
     /// Of the ring beyond its hard stop, the clearance; below 0 before it, or without.
@@ -123,11 +123,11 @@ pub struct ForecastInput {
 }
 
 /// Runs the scene's model with account of its energy, watched after each step.
-pub fn watch(scene: &Scene, each: &mut dyn FnMut(ForecastInput)) -> Result<ModelRun, ConfigError> {
+pub fn watch(scene: &Scene, each: &mut dyn FnMut(StepView)) -> Result<ModelRun, ConfigError> {
     in_numbers(scene, Run(scene, each))
 }
 
-struct Run<'a>(&'a Scene, &'a mut dyn FnMut(ForecastInput));
+struct Run<'a>(&'a Scene, &'a mut dyn FnMut(StepView));
 
 impl InNumbers for Run<'_> {
     type Output = ModelRun;
@@ -170,7 +170,7 @@ impl UseSupport for Run<'_> {
             model.step(&mut state, &mut *on_event);
             let size = |[x, y]: [R; 2]| x.to_f64().hypot(y.to_f64());
             let ledger = model.ledger(&state);
-            each(ForecastInput {
+            each(StepView {
                 beyond: size(state.displacement()) - 1.0,
                 stop: size(model.ring(&state).position) - travel,
                 energy: ledger.to_f64(),

@@ -125,7 +125,7 @@ fn placement<const N: usize>(
 
 /// The rotor after a step.
 #[derive(Clone, Copy, Debug)]
-pub struct ForecastInput {
+pub struct StepView {
     /// Farthest beyond the wall of any ring, its clearance; below 0 in flight.
     pub beyond: f64,
     /// What energy there is and was, in m V^2.
@@ -135,11 +135,11 @@ pub struct ForecastInput {
 }
 
 /// Runs the scene's model with what happens in each ring, watched after each step.
-pub fn watch(scene: &Scene, each: &mut dyn FnMut(ForecastInput)) -> Result<ModelRun, ConfigError> {
+pub fn watch(scene: &Scene, each: &mut dyn FnMut(StepView)) -> Result<ModelRun, ConfigError> {
     in_numbers(scene, Run(scene, each))
 }
 
-struct Run<'a>(&'a Scene, &'a mut dyn FnMut(ForecastInput));
+struct Run<'a>(&'a Scene, &'a mut dyn FnMut(StepView));
 
 impl InNumbers for Run<'_> {
     type Output = ModelRun;
@@ -156,7 +156,7 @@ impl InNumbers for Run<'_> {
 
 fn in_rings<R: Precision, const N: usize>(
     scene: &Scene,
-    each: &mut dyn FnMut(ForecastInput),
+    each: &mut dyn FnMut(StepView),
 ) -> Result<ModelRun, ConfigError> {
     let exact = TwoPlane::try_new(&config::<N>(scene)?)?;
     let scales = *exact.scales();
@@ -226,13 +226,13 @@ fn forecast_input<R: Precision, const N: usize>(
     state: &TwoPlaneState<R, N>,
     machine: &touchdown_scene::TwoPlane,
     length: f64,
-) -> ForecastInput {
+) -> StepView {
     let reach = |(index, ring): (usize, &touchdown_scene::Ring)| {
         let [x, y] = model.kinematics_at(state, index).position.map(R::to_f64);
         x.hypot(y) * length / ring.retainer.clearance - 1.0
     };
     let energy = model.energy(state);
-    ForecastInput {
+    StepView {
         beyond: machine
             .rings
             .iter()

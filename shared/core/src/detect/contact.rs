@@ -366,6 +366,11 @@ impl Touching {
         matches!(self.regime, Regime::ForwardWhirl | Regime::BackwardWhirl)
     }
 
+    /// Whether it is known to lie still.
+    pub(crate) fn rests(&self) -> bool {
+        self.regime == Regime::Rest
+    }
+
     /// Distance from the wall, m, while it may be lifting off.
     pub(crate) fn lifting(&self) -> Option<f32> {
         (!self.lift.is_at_wall()).then_some(self.lift.gap)

@@ -467,6 +467,13 @@ impl DetectorState {
         self.ends.motion()
     }
 
+    /// Whether the rotor lies still, as a whole.
+    pub fn rests(&self) -> bool {
+        self.ends.alone().is_empty()
+            && self.rotor.phase.is_contact()
+            && self.rotor.contact.rests()
+    }
+
     /// Slip in contact, where it is measured against an inner ring that turns.
     pub fn slip(&self) -> Option<Slip> {
         let ends = self.ends.alone();

@@ -13,6 +13,8 @@ pub struct ForecastInput {
     pub sample: u64,
     /// In flight or in contact.
     pub is_released: bool,
+    /// It lies still: nothing lies ahead.
+    pub rests: bool,
     /// The rotor, once it has met the wall, where it was asked for.
     pub estimate: Option<Estimate>,
 }
@@ -44,6 +46,10 @@ impl ForecastTask {
         let state = &mut self.state;
         if !forecast_input.is_released {
             *state = ForecastState::default();
+            return None;
+        }
+        if forecast_input.rests {
+            state.estimate = None;
             return None;
         }
         if !state.is_busy()
