@@ -112,11 +112,7 @@ impl Bench {
         self.app
             .tick(&mut self.board, sample, lost, &mut Notices::new());
         self.tick += 1;
-        assert_eq!(
-            self.board.driven,
-            [self.app.shown()],
-            "driven once a tick"
-        );
+        assert_eq!(self.board.driven, [self.app.shown()], "driven once a tick");
         assert_eq!(self.board.fed, 1, "fed once a tick");
         self.outputs()
     }
@@ -239,12 +235,18 @@ fn confirmed_fall_trips_within_its_tick_and_for_good() {
     }
     assert_eq!(bench.cause(), Some(Cause::Fall));
     assert_eq!(bench.app.clear(), Ok(()));
-    assert_eq!((bench.mode(), bench.cause()), (Mode::SelfTest, Some(Cause::Order)));
+    assert_eq!(
+        (bench.mode(), bench.cause()),
+        (Mode::SelfTest, Some(Cause::Order))
+    );
     // It has not been seen where it is lifted from.
     for _ in 0..2 * ARMED {
         assert_eq!(bench.float() & 0b0001, 0);
     }
-    assert_eq!((bench.mode(), bench.cause()), (Mode::Arming, Some(Cause::NoProof)));
+    assert_eq!(
+        (bench.mode(), bench.cause()),
+        (Mode::Arming, Some(Cause::NoProof))
+    );
     bench.lie_clear_and_lift();
 }
 
@@ -487,6 +489,8 @@ fn a_fault_while_dropped_takes_the_permit_away() {
     }
     assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0b0100));
     ticks_until(BLIND, || bench.blind() == 0);
-    ticks_until(BLIND, || bench.has(Fault::SensorsLost) || bench.blind() != 0);
+    ticks_until(BLIND, || {
+        bench.has(Fault::SensorsLost) || bench.blind() != 0
+    });
     assert!(bench.has(Fault::SensorsLost));
 }

@@ -219,7 +219,11 @@ fn every_state_of_the_safety_machine_is_safe_and_none_is_a_trap() {
         }
         next += 1;
     }
-    println!("{} states, {} steps", worlds.len(), worlds.len() * inputs.len());
+    println!(
+        "{} states, {} steps",
+        worlds.len(),
+        worlds.len() * inputs.len()
+    );
     assert!(worlds.len() > 1_000, "the search found too little");
     // From every state the machine can be brought to run again.
     let mut runs: Vec<bool> = worlds.iter().map(|it| it.outputs(false).run).collect();

@@ -24,11 +24,17 @@ fn main() {
     let arguments = Arguments::parse();
     let families = guard_runs::run(&arguments.only, arguments.runs, arguments.first_seed);
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&families).expect("a value"));
+        println!(
+            "{}",
+            serde_json::to_string_pretty(&families).expect("a value")
+        );
     } else {
         println!("| family | runs | failed | rate below, 95 % |\n|---|---:|---:|---:|");
         for it in &families {
-            println!("| {} | {} | {} | {:.2e} |", it.name, it.runs, it.failed, it.rate_below);
+            println!(
+                "| {} | {} | {} | {:.2e} |",
+                it.name, it.runs, it.failed, it.rate_below
+            );
         }
         for failure in families.iter().flat_map(|it| &it.failures) {
             eprintln!("{failure}");

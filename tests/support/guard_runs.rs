@@ -25,8 +25,9 @@ const ANSWER: f64 = 1e-3;
 pub struct Family {
     /// What was run.
     pub name: &'static str,
-    /// Runs in which it could be judged, and in how many it did not hold.
+    /// Runs in which it could be judged.
     pub runs: usize,
+    /// Of them, those in which it did not hold.
     pub failed: usize,
     /// Above this rate at 95 %, if it fails at all.
     pub rate_below: f64,
@@ -39,17 +40,37 @@ type Judged = fn(&mut Rng) -> Option<Result<(), String>>;
 
 /// Cycles in contact above all: a tenth of the runs for each other family.
 const FAMILIES: [(&str, u64, Judged); 5] = [
-    ("cycles, told wrong by up to 30 %: never runs in contact", 1, |rng| {
-        let told = Told::wrong(rng, 0.3);
-        cycle(rng, &told)
-    }),
-    ("cycles, told within 5 %: runs within 0.5 s of being afloat", 10, |rng| {
-        let told = Told::wrong(rng, 0.05);
-        cycle(rng, &told)
-    }),
-    ("drops out of wander, slow roll, drift: off at the limit", 10, wandering_drop),
-    ("orbits, moves, loads, shocks to 0.6, bursts, told within 5 %: no trip by the guard", 10, calm),
-    ("shocks and rubs with the magnets on: each excursion is a touch", 10, touches),
+    (
+        "cycles, told wrong by up to 30 %: never runs in contact",
+        1,
+        |rng| {
+            let told = Told::wrong(rng, 0.3);
+            cycle(rng, &told)
+        },
+    ),
+    (
+        "cycles, told within 5 %: runs within 0.5 s of being afloat",
+        10,
+        |rng| {
+            let told = Told::wrong(rng, 0.05);
+            cycle(rng, &told)
+        },
+    ),
+    (
+        "drops out of wander, slow roll, drift: off at the limit",
+        10,
+        wandering_drop,
+    ),
+    (
+        "orbits, moves, loads, shocks to 0.6, bursts, told within 5 %: no trip by the guard",
+        10,
+        calm,
+    ),
+    (
+        "shocks and rubs with the magnets on: each excursion is a touch",
+        10,
+        touches,
+    ),
 ];
 
 /// The families whose name contains `only`; `runs` cycles, and a tenth of it in each other one.
@@ -61,16 +82,16 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
 }
 
 /// `None` where a run cannot be judged.
-fn family(
-    name: &'static str,
-    runs: u64,
-    first_seed: u64,
-    run: Judged,
-) -> Family {
+fn family(name: &'static str, runs: u64, first_seed: u64, run: Judged) -> Family {
     let seeds = first_seed..first_seed + runs;
     let outcomes: Vec<(u64, Result<(), String>)> = seeds
         .into_par_iter()
-        .filter_map(|seed| Some((seed, run(&mut Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d)))?)))
+        .filter_map(|seed| {
+            Some((
+                seed,
+                run(&mut Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d)))?,
+            ))
+        })
         .collect();
     let failures: Vec<String> = outcomes
         .iter()
@@ -117,7 +138,10 @@ impl Told {
         chain.gain_error = std::array::from_fn(|_| rng.uniform(-gain, gain));
         // In parts of the gap here; see `on`.
         chain.zero = std::array::from_fn(|_| {
-            let (far, angle) = (rng.uniform(0.0, part), rng.uniform(0.0, std::f64::consts::TAU));
+            let (far, angle) = (
+                rng.uniform(0.0, part),
+                rng.uniform(0.0, std::f64::consts::TAU),
+            );
             [far * angle.cos(), far * angle.sin()]
         });
         chain.noise = rng.uniform(0.3, 3.0);
@@ -219,7 +243,8 @@ impl Run {
         let [a, b] = [[counts[0], counts[1]], [counts[2], counts[3]]]
             .map(|[x, y]| place(x).hypot(place(y)) / self.told_gap);
         self.reading = a.max(b);
-        self.app.tick(&mut self.board, &sample, 0, &mut self.notices);
+        self.app
+            .tick(&mut self.board, &sample, 0, &mut self.notices);
         Some((truth, self.app.shown()))
     }
 }
@@ -258,13 +283,22 @@ fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
 fn cycle(rng: &mut Rng, told: &Told) -> Option<Result<(), String>> {
     let machine = machine(rng);
     let rate = [10_000.0, 20_000.0][(rng.next_u64() % 2) as usize];
-    let lift = |rng: &mut Rng| Phase::Lift { time: rng.uniform(0.05, 0.4) };
-    let float = |rng: &mut Rng| Phase::Float { time: rng.uniform(0.8, 1.4), disturbances: Vec::new() };
+    let lift = |rng: &mut Rng| Phase::Lift {
+        time: rng.uniform(0.05, 0.4),
+    };
+    let float = |rng: &mut Rng| Phase::Float {
+        time: rng.uniform(0.8, 1.4),
+        disturbances: Vec::new(),
+    };
     let phases = [
-        Phase::Rest { time: rng.uniform(0.3, 0.8) },
+        Phase::Rest {
+            time: rng.uniform(0.3, 0.8),
+        },
         lift(rng),
         float(rng),
-        Phase::Drop { time: rng.uniform(1.0, 1.6) },
+        Phase::Drop {
+            time: rng.uniform(1.0, 1.6),
+        },
         lift(rng),
         float(rng),
     ];
@@ -282,16 +316,29 @@ fn cycle(rng: &mut Rng, told: &Told) -> Option<Result<(), String>> {
             let [x, y] = truth.place.map(|it| it / machine.gap);
             return Some(Err(format!(
                 "runs in contact at {:.4} s in phase {}, place {x:.2} {y:.2}, reading {:.2}, gap {:.0} um told {:.2}, noise {:.1}",
-                truth.time, truth.phase, run.reading, machine.gap * 1e6, told.gap, run.chain.noise
+                truth.time,
+                truth.phase,
+                run.reading,
+                machine.gap * 1e6,
+                told.gap,
+                run.chain.noise
             )));
         }
         ran[truth.phase] |= shown.outputs.run;
-        afloat = if truth.afloat { afloat + 1.0 / rate } else { 0.0 };
+        afloat = if truth.afloat {
+            afloat + 1.0 / rate
+        } else {
+            0.0
+        };
         let may = truth.phase == 2 || truth.phase == 5 && cleared;
         if is_near && may && afloat > 0.5 && !ran[truth.phase] {
             return Some(Err(format!(
                 "does not run 0.5 s after it floats, at {:.4} s in phase {}: {shown:?}, {:?}, gap {:.0} um, noise {:.1}, rate {rate}",
-                truth.time, truth.phase, run.app.state().phase(), machine.gap * 1e6, run.chain.noise
+                truth.time,
+                truth.phase,
+                run.app.state().phase(),
+                machine.gap * 1e6,
+                run.chain.noise
             )));
         }
         number += 1;
@@ -316,7 +363,10 @@ fn wandering_drop(rng: &mut Rng) -> Option<Result<(), String>> {
             hz: rng.uniform(0.3, 3.0),
             amplitude: [far * angle.cos(), far * angle.sin()],
         }],
-        1 => vec![Disturbance::SlowRoll { hz: rng.uniform(0.5, 8.0), amplitude: far }],
+        1 => vec![Disturbance::SlowRoll {
+            hz: rng.uniform(0.5, 8.0),
+            amplitude: far,
+        }],
         _ => {
             let drift = far * 1e6 / time;
             let of_plane = |_| [drift * angle.cos(), drift * angle.sin()];
@@ -327,7 +377,10 @@ fn wandering_drop(rng: &mut Rng) -> Option<Result<(), String>> {
     let phases = [
         Phase::Rest { time: 0.3 },
         Phase::Lift { time: 0.2 },
-        Phase::Float { time: 0.6, disturbances: Vec::new() },
+        Phase::Float {
+            time: 0.6,
+            disturbances: Vec::new(),
+        },
         Phase::Float { time, disturbances },
         Phase::Drop { time: 0.1 },
     ];
@@ -337,7 +390,10 @@ fn wandering_drop(rng: &mut Rng) -> Option<Result<(), String>> {
         ran |= shown.outputs.run && truth.phase >= 3;
         beyond = if run.reading >= 0.67 { beyond + 1 } else { 0 };
         if shown.outputs.run && f64::from(beyond) > ANSWER * rate {
-            return Some(Err(format!("runs {beyond} samples beyond the limit at {:.4} s", truth.time)));
+            return Some(Err(format!(
+                "runs {beyond} samples beyond the limit at {:.4} s",
+                truth.time
+            )));
         }
         if shown.outputs.run && truth.in_contact {
             return Some(Err(format!("runs in contact at {:.4} s", truth.time)));
@@ -364,7 +420,10 @@ fn calm(rng: &mut Rng) -> Option<Result<(), String>> {
             time: rng.uniform(0.01, 0.3),
             by: way(rng.uniform(0.1, 0.4) * machine.gap),
         }],
-        2 => vec![Disturbance::Step { at: 0.1, acceleration: way(rng.uniform(1.0, 15.0)) }],
+        2 => vec![Disturbance::Step {
+            at: 0.1,
+            acceleration: way(rng.uniform(1.0, 15.0)),
+        }],
         3 => vec![Disturbance::Shock {
             at: 0.1,
             duration: rng.uniform(2e-3, 20e-3),
@@ -381,8 +440,14 @@ fn calm(rng: &mut Rng) -> Option<Result<(), String>> {
     let phases = [
         Phase::Rest { time: 0.3 },
         Phase::Lift { time: 0.2 },
-        Phase::Float { time: 0.6, disturbances: Vec::new() },
-        Phase::Float { time: 0.6, disturbances },
+        Phase::Float {
+            time: 0.6,
+            disturbances: Vec::new(),
+        },
+        Phase::Float {
+            time: 0.6,
+            disturbances,
+        },
     ];
     let mut run = Run::new(&machine, &phases, &told, rate);
     let is_burst = told.chain.burst > 0.0;
@@ -423,9 +488,18 @@ fn touches(rng: &mut Rng) -> Option<Result<(), String>> {
     let phases = [
         Phase::Rest { time: 0.3 },
         Phase::Lift { time: 0.2 },
-        Phase::Float { time: 0.5, disturbances: Vec::new() },
-        Phase::Float { time: 0.8, disturbances },
-        Phase::Float { time: 0.2, disturbances: Vec::new() },
+        Phase::Float {
+            time: 0.5,
+            disturbances: Vec::new(),
+        },
+        Phase::Float {
+            time: 0.8,
+            disturbances,
+        },
+        Phase::Float {
+            time: 0.2,
+            disturbances: Vec::new(),
+        },
     ];
     let mut run = Run::new(&machine, &phases, &told, rate);
     // Samples of each touch, and of each excursion with its peak.
@@ -455,7 +529,10 @@ fn touches(rng: &mut Rng) -> Option<Result<(), String>> {
                 (number, last) = (number + 1, Some(truth));
                 continue;
             }
-            match excursions.last_mut().filter(|_| last.is_some_and(|it| it.beyond)) {
+            match excursions
+                .last_mut()
+                .filter(|_| last.is_some_and(|it| it.beyond))
+            {
                 Some(it) => (it.1, it.2) = (number, it.2.max(far)),
                 None => excursions.push((number, number, far)),
             }
@@ -476,7 +553,9 @@ fn touches(rng: &mut Rng) -> Option<Result<(), String>> {
         )));
     }
     let covers = |(from, to, _): &(u64, u64, f64)| {
-        told_touches.iter().any(|(onset, end)| *onset <= to + 1 && from.saturating_sub(1) <= *end)
+        told_touches
+            .iter()
+            .any(|(onset, end)| *onset <= to + 1 && from.saturating_sub(1) <= *end)
     };
     match excursions.iter().find(|it| !covers(it)) {
         Some((from, to, peak)) => Some(Err(format!(

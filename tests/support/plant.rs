@@ -83,18 +83,54 @@ impl Default for Machine {
 #[derive(Clone, Debug)]
 pub enum Disturbance {
     /// Half-sine pulse of acceleration, peak `acceleration` m/s^2.
-    Shock { at: f64, duration: f64, acceleration: [f64; 2] },
+    Shock {
+        /// From the start of the phase, s.
+        at: f64,
+        /// s.
+        duration: f64,
+        /// m/s^2.
+        acceleration: [f64; 2],
+    },
     /// Constant acceleration from `at` on, m/s^2. The rotor hangs off its setpoint by
     /// acceleration / (2 pi natural_hz)^2 meanwhile.
-    Step { at: f64, acceleration: [f64; 2] },
+    Step {
+        /// From the start of the phase, s.
+        at: f64,
+        /// m/s^2.
+        acceleration: [f64; 2],
+    },
     /// Sinusoidal acceleration from `at` on, peak m/s^2.
-    Shake { at: f64, hz: f64, acceleration: [f64; 2] },
+    Shake {
+        /// From the start of the phase, s.
+        at: f64,
+        /// 1/s.
+        hz: f64,
+        /// m/s^2.
+        acceleration: [f64; 2],
+    },
     /// The setpoint moves smoothly by `by` m within `time` s, and stays there until a lift.
-    Move { at: f64, time: f64, by: [f64; 2] },
+    Move {
+        /// From the start of the phase, s.
+        at: f64,
+        /// s.
+        time: f64,
+        /// m.
+        by: [f64; 2],
+    },
     /// The setpoint swings along the line `amplitude` (m) through the whole phase.
-    Wander { hz: f64, amplitude: [f64; 2] },
+    Wander {
+        /// 1/s.
+        hz: f64,
+        /// m.
+        amplitude: [f64; 2],
+    },
     /// The setpoint runs on a circle of radius `amplitude` m; negative `hz` runs clockwise.
-    SlowRoll { hz: f64, amplitude: f64 },
+    SlowRoll {
+        /// 1/s.
+        hz: f64,
+        /// m.
+        amplitude: f64,
+    },
 }
 
 /// A part of a run; `time` is its length in s. A run that begins with `Rest`, `Lift` or `Shaken`
@@ -102,15 +138,34 @@ pub enum Disturbance {
 #[derive(Clone, Debug)]
 pub enum Phase {
     /// AMB off. Only at the start of a run is the rotor put at the bottom.
-    Rest { time: f64 },
+    Rest {
+        /// Length, s.
+        time: f64,
+    },
     /// AMB on; the setpoint runs smoothly from where the rotor is to the float place.
-    Lift { time: f64 },
+    Lift {
+        /// Length, s.
+        time: f64,
+    },
     /// AMB on. Directly after a phase with the AMB off, the setpoint glides within `GLIDE`.
-    Float { time: f64, disturbances: Vec<Disturbance> },
+    Float {
+        /// Length, s.
+        time: f64,
+        /// What happens in it.
+        disturbances: Vec<Disturbance>,
+    },
     /// AMB off; same as `Rest` except at the start of a run.
-    Drop { time: f64 },
+    Drop {
+        /// Length, s.
+        time: f64,
+    },
     /// AMB off with disturbances (only accelerations matter).
-    Shaken { time: f64, disturbances: Vec<Disturbance> },
+    Shaken {
+        /// Length, s.
+        time: f64,
+        /// What happens in it.
+        disturbances: Vec<Disturbance>,
+    },
 }
 
 impl Phase {
@@ -146,6 +201,7 @@ pub struct Truth {
     pub setpoint: [f64; 2],
     /// Any contact since the last sample.
     pub in_contact: bool,
+    /// Whether the AMB is on.
     pub amb_on: bool,
     /// In a `Float` phase, and for the last `SETTLE` s (the lift before may count) the AMB was on,
     /// there was no contact and |place - setpoint| was below 10 % of the gap plus the orbit.
@@ -219,17 +275,29 @@ fn length(a: [f64; 2]) -> f64 {
 }
 
 impl Plant {
+    /// At the start of the script.
     pub fn new(machine: &Machine, phases: &[Phase]) -> Self {
         let m = machine.clone();
         let (mut low, mut high) = (0.0, 0.999);
         for _ in 0..60 {
             let z = 0.5 * (low + high);
-            if impact(z).0 > m.restitution { low = z } else { high = z }
+            if impact(z).0 > m.restitution {
+                low = z
+            } else {
+                high = z
+            }
         }
         let wall_w = wall_frequency(m.gap);
-        let floating = matches!(phases.first(), Some(Phase::Float { .. } | Phase::Drop { .. }));
+        let floating = matches!(
+            phases.first(),
+            Some(Phase::Float { .. } | Phase::Drop { .. })
+        );
         let on = phases.first().is_some_and(|p| p.amb_on());
-        let x = if floating { m.float_place } else { [0.0, -m.gap - GRAVITY / (wall_w * wall_w)] };
+        let x = if floating {
+            m.float_place
+        } else {
+            [0.0, -m.gap - GRAVITY / (wall_w * wall_w)]
+        };
         let mut plant = Plant {
             step: 5e-6,
             index: 0,
@@ -284,7 +352,11 @@ impl Plant {
             let speed = self.v[0].abs() + self.v[1].abs();
             if self.r + 2.0 * h * speed + 1e-9 > self.m.gap {
                 // A rotor that lies almost still does not need the fine steps of an impact.
-                let fine = if speed < 2e-3 { 4.0 * self.wall_step } else { self.wall_step };
+                let fine = if speed < 2e-3 {
+                    4.0 * self.wall_step
+                } else {
+                    self.wall_step
+                };
                 let parts = (h / fine).ceil().max(1.0);
                 (0..parts as u32).for_each(|_| self.advance(h / parts));
             } else {
@@ -376,20 +448,33 @@ impl Plant {
         let turn = std::f64::consts::TAU;
         for d in self.phases[self.index].disturbances() {
             match d {
-                Disturbance::Shock { at: from, duration, acceleration } => {
+                Disturbance::Shock {
+                    at: from,
+                    duration,
+                    acceleration,
+                } => {
                     let u = (at - from) / duration;
                     if (0.0..1.0).contains(&u) {
                         add(&mut acc, (0.5 * turn * u).sin(), acceleration);
                     }
                 }
-                Disturbance::Step { at: from, acceleration } if at >= *from => add(&mut acc, 1.0, acceleration),
-                Disturbance::Shake { at: from, hz, acceleration } if at >= *from => {
-                    add(&mut acc, (turn * hz * (at - from)).sin(), acceleration)
+                Disturbance::Step {
+                    at: from,
+                    acceleration,
+                } if at >= *from => add(&mut acc, 1.0, acceleration),
+                Disturbance::Shake {
+                    at: from,
+                    hz,
+                    acceleration,
+                } if at >= *from => add(&mut acc, (turn * hz * (at - from)).sin(), acceleration),
+                Disturbance::Move { at: from, time, by } => {
+                    add(&mut set, smooth((at - from) / time.max(1e-9)), by)
                 }
-                Disturbance::Move { at: from, time, by } => add(&mut set, smooth((at - from) / time.max(1e-9)), by),
-                Disturbance::Wander { hz, amplitude } => {
-                    add(&mut set, smooth(at / GLIDE) * (turn * hz * at).sin(), amplitude)
-                }
+                Disturbance::Wander { hz, amplitude } => add(
+                    &mut set,
+                    smooth(at / GLIDE) * (turn * hz * at).sin(),
+                    amplitude,
+                ),
                 Disturbance::SlowRoll { hz, amplitude } => {
                     let (s, c) = (turn * hz * at).sin_cos();
                     add(&mut set, smooth(at / GLIDE) * amplitude, &[c, s]);
@@ -431,7 +516,8 @@ impl Plant {
             let push = (push / (1.0 + 0.5 * h * damper)).max(0.0);
             let slip = along + m.spin * m.rotor_radius;
             // Never more than what stops the slip within the step.
-            let mut rub = -(m.friction * push * slip / slip.abs().max(SLIP)).clamp(-slip.abs() / h, slip.abs() / h);
+            let mut rub = -(m.friction * push * slip / slip.abs().max(SLIP))
+                .clamp(-slip.abs() / h, slip.abs() / h);
             if rub * along > 0.0 {
                 let u = along / (std::f64::consts::TAU * WHIRL_HZ * m.gap);
                 rub *= (1.0 - u * u).max(0.0);
@@ -462,6 +548,7 @@ impl Plant {
 pub struct Rng(pub u64);
 
 impl Rng {
+    /// The next 64 bits.
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -523,7 +610,9 @@ impl Chain {
         let is_hit = is_burst && self.rng.uniform(0.0, 1.0) < self.burst;
         std::array::from_fn(|i| {
             let (plane, axis) = (i / 2, i % 2);
-            let mut um = place[axis] * 1e6 * (1.0 + self.gain_error[plane]) + self.zero[plane][axis] + self.drift[plane][axis] * time;
+            let mut um = place[axis] * 1e6 * (1.0 + self.gain_error[plane])
+                + self.zero[plane][axis]
+                + self.drift[plane][axis] * time;
             if self.noise > 0.0 {
                 um += self.noise * self.rng.normal();
             }

@@ -218,7 +218,9 @@ impl Capture {
     /// An alarm, while half of the room is left for what the detector says.
     pub(super) fn note_alarm(&mut self, notice: &Notice) {
         if self.notices.len() < NOTICES / 2 {
-            let _ = self.notices.push(wire::encode_record(&Record::Notice(*notice)));
+            let _ = self
+                .notices
+                .push(wire::encode_record(&Record::Notice(*notice)));
         }
     }
 

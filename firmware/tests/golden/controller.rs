@@ -91,15 +91,13 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
         {
             recorder.hear(&outlook);
         }
-        let now = (
-            app.shown(),
-            app.faults(),
-        );
+        let now = (app.shown(), app.faults());
         if last.replace(now) != Some(now) {
             let (shown, Faults(faults)) = now;
             let (mode, outputs) = (shown.mode, shown.outputs.bits());
             let why = shown.cause.map_or(String::new(), |it| format!(" {it:?}"));
-            writeln!(text, "{number:6}  {mode:?}{why} {outputs:04b} {faults:07b}").expect("a string");
+            writeln!(text, "{number:6}  {mode:?}{why} {outputs:04b} {faults:07b}")
+                .expect("a string");
         }
         if number % BLOCK_SAMPLES == 0 {
             while log.work(recorder.counted(), || recorder.fetch()) {}

@@ -8,9 +8,7 @@ use touchdown_base::history::{History, Impact, Phase, Regime, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_run::controller_trace::Controller;
 use touchdown_run::model::RingEnd;
-use touchdown_run::outcome::{
-    DetectedEvent, Detection, Forecast, Outcome, Severity, TouchEvent,
-};
+use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity, TouchEvent};
 use touchdown_run::replay::Replay;
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::elastic::Validity;
@@ -150,8 +148,14 @@ enum EventJson<'a> {
 
 /// In the order of declaration.
 fn events(detection: &Detection) -> Vec<EventJson<'_>> {
-    let detected = detection.events.iter().map(|it| (it.sample, EventJson::Detected(it)));
-    let touches = detection.touches.iter().map(|it| (it.sample, EventJson::Touch(it)));
+    let detected = detection
+        .events
+        .iter()
+        .map(|it| (it.sample, EventJson::Detected(it)));
+    let touches = detection
+        .touches
+        .iter()
+        .map(|it| (it.sample, EventJson::Touch(it)));
     let mut all: Vec<_> = touches.chain(detected).collect();
     all.sort_by_key(|(sample, _)| *sample);
     all.into_iter().map(|(_, event)| event).collect()

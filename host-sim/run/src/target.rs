@@ -53,8 +53,7 @@ impl Target {
     ) -> Result<(MonitorOutput, ControllerTrace), Failure> {
         let refused = |error: ConfigError| Failure::Usage(format!("monitor: {error}"));
         let mut zones = [0; 4];
-        let samples =
-            Zoned::new(samples, config, procedure.zones, &mut zones).map_err(refused)?;
+        let samples = Zoned::new(samples, config, procedure.zones, &mut zones).map_err(refused)?;
         let (answer, trace) = match self {
             Self::Host => controller_run::run(config, procedure, samples).map_err(refused)?,
             Self::Qemu(_) if procedure.learnt.is_some() => {

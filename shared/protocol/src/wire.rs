@@ -201,7 +201,10 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
         }
         Record::Switching(Switching { sample, shown }) => {
             let cause = shown.cause.map_or(0, |it| 1 + it as u8);
-            put(0, &[SWITCHING, shown.outputs.bits(), shown.mode as u8, cause]);
+            put(
+                0,
+                &[SWITCHING, shown.outputs.bits(), shown.mode as u8, cause],
+            );
             put(16, &sample.to_le_bytes());
         }
         Record::Cleared(Cleared { sample, refused }) => {

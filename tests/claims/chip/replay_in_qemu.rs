@@ -3,6 +3,8 @@
 
 use std::io::Sink;
 
+use serde_json::Value;
+use tempfile::TempDir;
 use touchdown_core::event::EventKind;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::wire::Switching;
@@ -12,6 +14,7 @@ use touchdown_run::emulator::Emulator;
 use touchdown_run::outcome::Outcome;
 use touchdown_run::target::Target;
 use touchdown_scene::{BUILT_IN, Scene};
+use touchdown_tests::binary::touchdown;
 
 fn outcome(name: &str, target: &Target) -> Outcome {
     let scene = Scene::load(name).expect("built-in scene");
@@ -38,6 +41,7 @@ fn every_built_in_scene_gives_the_same_bits() {
         assert_eq!(*detection, desktop.detection, "{}", scene.name);
         assert!(!detection.events.is_empty(), "{}", scene.name);
         assert_eq!(conduct.outputs, desktop.conduct.outputs, "{}", scene.name);
+        assert_eq!(conduct.alarms, desktop.conduct.alarms, "{}", scene.name);
         assert_eq!(conduct.hello, desktop.conduct.hello, "{}", scene.name);
         assert_eq!(conduct.state, desktop.conduct.state, "{}", scene.name);
         // Not printed: 400 kB.
@@ -58,17 +62,17 @@ fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
     assert_eq!(fall.event, EventKind::FreeFall);
     let confirmed = fall.confirmed_s.expect("confirmed") + 0.2;
     let bits = |it: &Switching| (it.sample, it.shown.outputs.bits());
-    let [(_, arming), (_, watching), (tripped, safe), ..] =
+    let [_, (_, arming), (_, watching), (_, ready), (tripped, safe), ..] =
         outcome.conduct.outputs.iter().map(bits).collect::<Vec<_>>()[..]
     else {
         panic!("{:?}", outcome.conduct.outputs);
     };
-    assert_eq!([arming, watching, safe], [0b0010, 0b1011, 0]);
+    assert_eq!([arming, watching, ready, safe], [0b0010, 0b0011, 0b1011, 0]);
     assert_eq!(tripped as f64, (confirmed * scene.run.sample_rate).round());
     let log = Dump::of(&outcome.conduct.flash);
     let episode = &log.episodes[0];
     assert_eq!(episode.verdict, Verdict::Whole);
-    assert_eq!(episode.samples.iter().flatten().count(), 4_500);
+    assert_eq!(episode.samples.iter().flatten().count(), 4_450);
     assert_eq!(log.counters.expect("counters").landings, 1);
     assert_eq!(outcome.conduct.state.sample + 1, outcome.detection.samples);
 }
@@ -90,4 +94,21 @@ fn the_four_phases_are_declared_on_the_target() {
     ]
     .map(first);
     assert!(order.is_sorted(), "{order:?}");
+}
+
+/// Switched on over a drop, ordered to clear while it falls and again where it lies: the same JSON.
+#[test]
+fn a_replay_from_power_on_with_orders_gives_the_same_bits() {
+    let folder = TempDir::new().expect("a folder");
+    let run = |arguments: &[&str]| {
+        let run = touchdown(folder.path()).args(arguments).assert().success();
+        run.get_output().stdout.clone()
+    };
+    run(&["drop", "rig", "--stream", "s.csv"]);
+    let replay = ["replay", "s.csv", "--scene", "rig", "--power-on", "--clear-at", "0.004", "--clear-at", "0.28", "--json", "-"];
+    let desktop = run(&replay);
+    assert_eq!(run(&[&replay[..], &["--on", "qemu"]].concat()), desktop);
+    let json: Value = serde_json::from_slice(&desktop).expect("JSON");
+    let orders = json["controller"]["orders"].as_array().expect("orders");
+    assert_eq!(orders.len(), 2);
 }

@@ -145,7 +145,7 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     let fetched = fetched(&mut talk, number);
     let episode = Episode::of(&fetched);
     assert_eq!(episode.verdict, Verdict::Whole);
-    assert_eq!(episode.samples.iter().flatten().count(), 4_500);
+    assert_eq!(episode.samples.iter().flatten().count(), 4_450);
     let logged: Vec<_> = episode.events.iter().map(|it| it.event).collect();
     assert_eq!(logged[..], heard[..logged.len()]);
     // The same as the host's reader sees in the flash.

@@ -47,7 +47,9 @@ impl Remote {
         let Some(log) = &mut self.log else { return };
         if log.flash().is_busy() == Ok(false) {
             let counted = with_tick(|tick| tick.recorder.counted()).unwrap_or_default();
-            log.work(counted, || with_tick(|tick| tick.recorder.fetch()).flatten());
+            log.work(counted, || {
+                with_tick(|tick| tick.recorder.fetch()).flatten()
+            });
         }
     }
 

@@ -99,7 +99,11 @@ impl Replay {
             return Err(Failure::Replay);
         }
         let records = &self.block[..filled / wire::SAMPLE_BYTES];
-        Ok((!records.is_empty()).then(|| records.iter().map(|it| (wire::decode_sample(it), wire::has_clear(it)))))
+        Ok((!records.is_empty()).then(|| {
+            records
+                .iter()
+                .map(|it| (wire::decode_sample(it), wire::has_clear(it)))
+        }))
     }
 }
 

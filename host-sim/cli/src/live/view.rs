@@ -204,7 +204,9 @@ fn mode(state: &State, pen: Pen) -> Span<'static> {
         Mode::Watching => Color::Green,
         Mode::Dropped | Mode::Faulted => Color::Red,
     };
-    let cause = state.cause.map_or(String::new(), |it| format!(": {}", cause_name(it)));
+    let cause = state
+        .cause
+        .map_or(String::new(), |it| format!(": {}", cause_name(it)));
     pen.of(colour, mode_name(state.mode).to_owned() + &cause)
 }
 

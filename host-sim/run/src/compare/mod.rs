@@ -86,11 +86,10 @@ pub fn compare(
     scene: &Scene,
     tolerance: Tolerance,
 ) -> Result<Comparison, Failure> {
-    let replayed =
-        |index: usize| {
-            let orders = replay::Orders::default();
-            replay::recording(files[index], readings[index], scene, &Target::Host, &orders)
-        };
+    let replayed = |index: usize| {
+        let orders = replay::Orders::default();
+        replay::recording(files[index], readings[index], scene, &Target::Host, &orders)
+    };
     let replays = [replayed(0)?, replayed(1)?];
     let excerpt =
         |index: usize| replay::first_drop(files[index], readings[index], scene, &replays[index]);

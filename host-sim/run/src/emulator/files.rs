@@ -39,7 +39,13 @@ pub(super) fn write_replay(
 pub fn replay_head(config: &MonitorConfig, power_on: bool) -> io::Result<Vec<u8>> {
     let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
     let length = (config.len() as u32).to_le_bytes();
-    Ok([&wire::REPLAY_MAGIC[..], &length, &config, &[u8::from(power_on)]].concat())
+    Ok([
+        &wire::REPLAY_MAGIC[..],
+        &length,
+        &config,
+        &[u8::from(power_on)],
+    ]
+    .concat())
 }
 
 /// What the image answered.

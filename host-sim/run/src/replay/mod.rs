@@ -96,7 +96,9 @@ impl Orders {
 }
 
 fn outside(time: f64) -> Failure {
-    Failure::Usage(format!("--clear-at {time}: the recording has no sample at that time"))
+    Failure::Usage(format!(
+        "--clear-at {time}: the recording has no sample at that time"
+    ))
 }
 
 /// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.

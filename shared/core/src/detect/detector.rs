@@ -469,9 +469,7 @@ impl DetectorState {
 
     /// Whether the rotor lies still, as a whole.
     pub fn rests(&self) -> bool {
-        self.ends.alone().is_empty()
-            && self.rotor.phase.is_contact()
-            && self.rotor.contact.rests()
+        self.ends.alone().is_empty() && self.rotor.phase.is_contact() && self.rotor.contact.rests()
     }
 
     /// Slip in contact, where it is measured against an inner ring that turns.
