@@ -471,7 +471,7 @@ fn touches(rng: &mut Rng) -> Option<Result<(), String>> {
     told.chain.noise = rng.uniform(0.3, 1.0);
     let angle = rng.uniform(0.0, std::f64::consts::TAU);
     let way = |far: f64| [far * angle.cos(), far * angle.sin()];
-    let disturbances = if rng.next_u64() % 2 == 0 {
+    let disturbances = if rng.next_u64().is_multiple_of(2) {
         (0..3)
             .map(|number| Disturbance::Shock {
                 at: 0.1 + 0.2 * f64::from(number),

@@ -334,7 +334,7 @@ proptest! {
 
     /// Beyond danger for 2 ms at any rate from 4 kHz on is danger, and was told as an alarm.
     #[test]
-    fn never_mute(rate in 4_000.0_f32..200_000.0, angle in 0.0_f32..6.28, before in 0_u32..300) {
+    fn never_mute(rate in 4_000.0_f32..200_000.0, angle in 0.0_f32..core::f32::consts::TAU, before in 0_u32..300) {
         let mut bench = Bench::new(rate, 9.81, false);
         bench.stay([0.1, 0.1], before);
         let samples = (2e-3 * rate) as u32;

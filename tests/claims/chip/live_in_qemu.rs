@@ -88,7 +88,8 @@ fn qemu(folder: &Path) -> (Process, File) {
     let mut samples = File::options().write(true).open(pipe).expect("a pipe");
     let config = postcard::to_stdvec(&settings().monitor).expect("a configuration");
     let length = (config.len() as u32).to_le_bytes();
-    let head = [&REPLAY_MAGIC[..], &length, &config].concat();
+    // A lift was seen before the first sample.
+    let head = [&REPLAY_MAGIC[..], &length, &config, &[0]].concat();
     samples.write_all(&head).expect("a reader");
     (process, samples)
 }

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::Settings;
-use touchdown_protocol::controller::{Busy, Fault, Mode};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Mode};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_protocol::link::{Refusal, Request, State};
 use touchdown_protocol::log::reader::Verdict;
@@ -126,7 +126,7 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     assert_eq!(settings_in_force(&mut talk), settings);
 
     rig.order(Order::Lift);
-    state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
+    state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     let why = refused(&mut talk, &config_block::encode(&before));
     assert_eq!(why, Refusal::Busy(Busy::Watching));
     // Lying is a contact, and so recorded too, after each of the two starts.
@@ -192,7 +192,7 @@ fn brown_out_while_logging_leaves_earlier_episodes_whole_and_the_new_one_whole_o
     let cuts = [1, 3, 10, 40, 90, 140, 154, 166];
     for (number, pages) in (2..).zip(cuts) {
         rig.order(Order::Lift);
-        state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
+        state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
         let (before, _) = pages_of_the_newest(&flash());
         rig.order(Order::Drop);
         until("pages of a new episode", || {
@@ -251,8 +251,7 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
     rig.order(Order::Lift);
-    let watching = |it: &State| it.mode == Mode::Watching;
-    let quiet = state_when(&mut talk, "watching", watching);
+    let quiet = state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     rig.order(Order::Noise(0.02));
     for _ in 0..20 {
         talk.hello().expect("answers in the end");
@@ -293,7 +292,7 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
     rig.order(Order::Lift);
-    state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
+    state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     // One plane is enough to see the rotor.
     rig.order(Order::Spoil(0, Failing::Dropped));
     let told = |talk: &mut Client| {
@@ -313,7 +312,13 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     ));
     rig.order(Order::Repair);
     until("it is cleared", || talk.order(&Request::Clear).is_ok());
-    state_when(&mut talk, "watching again", |it| it.mode == Mode::Watching);
+    // It floats, but has not been seen where it is lifted from since.
+    let state = state_when(&mut talk, "arming", |it| it.mode == Mode::Arming);
+    assert_eq!(state.cause, Some(Cause::NoProof));
+    rig.order(Order::Drop);
+    state_when(&mut talk, "permit", |it| it.outputs.permit);
+    rig.order(Order::Lift);
+    state_when(&mut talk, "watching again", |it| it.outputs.ready);
     rig.stop().expect("no failure");
 }
 
@@ -333,7 +338,7 @@ fn a_stored_configuration_that_is_damaged_never_gives_current_until_cleared() {
     assert_eq!(state.mode, Mode::Faulted);
     assert!(state.faults.contains(Fault::ConfigDamaged));
     until("it is cleared", || talk.order(&Request::Clear).is_ok());
-    state_when(&mut talk, "watching", |it| it.mode == Mode::Watching);
+    state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     rig.stop().expect("no failure");
 }
 
