@@ -47,7 +47,7 @@ fn smooth(t: f64) -> f64 {
 
 #[test]
 fn nothing_in_five_minutes_of_levitation() {
-    for place in [[0.0, 0.0], [20e-6, -60e-6], [0.0, -0.5 * CLEARANCE]] {
+    for place in [[0.0, 0.0], [20e-6, -60e-6], [0.0, -0.48 * CLEARANCE]] {
         let notices = watched(100.0, |_| place);
         assert!(notices.is_empty(), "{place:?}: {notices:?}");
     }
