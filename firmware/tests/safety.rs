@@ -5,10 +5,16 @@
 
 use std::collections::HashMap;
 
+use proptest::prelude::*;
+use touchdown_core::event::{Notice, Notices};
 use touchdown_core::guard::Verdict;
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::{Board, default_config, default_settings};
 use touchdown_firmware::outputs::{Condition, outputs};
 use touchdown_firmware::safety::{Findings, Safety};
-use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs};
+use touchdown_protocol::config_block::{self, Block};
+use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs, Shown};
 
 const WINDOW: u8 = 4;
 const OFF: u8 = 3;
@@ -239,4 +245,109 @@ fn every_state_of_the_safety_machine_is_safe_and_none_is_a_trap() {
     }
     let trap = worlds.iter().zip(&runs).find(|(_, runs)| !**runs);
     assert_eq!(trap, None, "no way back to running");
+}
+
+/// A board that remembers nothing.
+struct Desk(Block);
+
+impl Board for Desk {
+    fn report(&mut self, _: &Notice) {}
+
+    fn drive(&mut self, _: Shown) {}
+
+    fn config(&self) -> &[u8] {
+        &self.0
+    }
+
+    fn feed(&mut self) {}
+}
+
+/// A stretch of readings of the same kind.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    /// Parts of the gap.
+    from: [f64; 2],
+    to: [f64; 2],
+    samples: u32,
+    sees: bool,
+    levitated: Option<bool>,
+    clears: bool,
+}
+
+fn stretch() -> impl Strategy<Value = Stretch> {
+    let place = || {
+        prop_oneof![
+            Just([0.0, -1.0]),
+            Just([0.0, 0.0]),
+            (-1.1..1.1, -1.1..1.1).prop_map(<[f64; 2]>::from)
+        ]
+    };
+    let signal = prop_oneof![6 => Just(None), 3 => Just(Some(true)), 1 => Just(Some(false))];
+    let sees = prop::bool::weighted(0.95);
+    let clears = prop::bool::weighted(0.3);
+    (place(), place(), 1_u32..6_000, sees, signal, clears).prop_map(
+        |(from, to, samples, sees, levitated, clears)| Stretch {
+            from,
+            to,
+            samples,
+            sees,
+            levitated,
+            clears,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The whole application over any history of readings.
+    #[test]
+    fn any_history_of_readings_is_safe(stretches in prop::collection::vec(stretch(), 1..20)) {
+        let config = default_config();
+        let gap = f64::from(config.detector.machine.clearance);
+        let mut board = Desk(config_block::encode(&default_settings()));
+        let mut app = App::try_new(&config, Faults::NONE).expect("a valid configuration");
+        let mut notices = Notices::new();
+        let (mut beyond, mut blind, mut off, mut latched) = (0, 0, 0, false);
+        // Lowest height since the last latch, as a part of the gap.
+        let mut lowest = f64::INFINITY;
+        for it in stretches {
+            if it.clears && app.clear().is_ok() {
+                latched = false;
+            }
+            for number in 0..it.samples {
+                let part = f64::from(number) / f64::from(it.samples);
+                let place = [0, 1].map(|axis| it.from[axis] + part * (it.to[axis] - it.from[axis]));
+                let count = |part: f64| (2_048.0 + part * gap * 4_096.0 / 2_000e-6).round() as u16;
+                let [x, y] = place.map(count);
+                let sample = Sample {
+                    counts: [x, y, x, y],
+                    valid: if it.sees { 0b1111 } else { 0 },
+                    spin: None,
+                    levitated: it.levitated,
+                    edges: [None; TACHOMETERS],
+                };
+                app.tick(&mut board, &sample, 0, &mut notices);
+                let shown = app.shown();
+                // A count is 0.0016 of the gap.
+                let is_beyond = it.sees && place[0].hypot(place[1]) > 0.672;
+                beyond = if is_beyond { beyond + 1 } else if it.sees { 0 } else { beyond };
+                blind = if it.sees { 0 } else { blind + 1 };
+                off = if it.levitated == Some(false) { off + 1 } else { 0 };
+                if it.sees {
+                    lowest = lowest.min(place[1]);
+                }
+                if shown.outputs.run {
+                    prop_assert!(beyond < 20, "runs beyond danger");
+                    prop_assert!(blind < 20, "runs blind");
+                    prop_assert!(off < 3, "runs with levitation off");
+                    prop_assert!(!latched, "runs after a latch without an order");
+                    prop_assert!(lowest < 0.26, "runs without having been lower");
+                }
+                if matches!(shown.mode, Mode::Dropped | Mode::Faulted) && !latched {
+                    (latched, lowest) = (true, f64::INFINITY);
+                }
+            }
+        }
+    }
 }
