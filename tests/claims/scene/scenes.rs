@@ -231,6 +231,7 @@ fn a_stream_replays_to_the_same_events() {
         .unwrap();
     let replay: Value = serde_json::from_slice(&replay.stdout).unwrap();
     let documented = [
+        "controller",
         "events",
         "faults",
         "forecasts",
@@ -242,6 +243,7 @@ fn a_stream_replays_to_the_same_events() {
     assert_eq!(replay["samples"], 4401);
     assert_eq!(replay["faults"], 0);
     assert_eq!(replay["events"], drop["detector"]["events"]);
+    assert_eq!(replay["controller"], drop["controller"]);
 }
 
 #[test]
