@@ -111,7 +111,7 @@ pub const ROWS: &[Row] = &[
             ("columns", "map.toml"),
         ],
         outputs: &[File("--json"), File("--report")],
-        others: &["on", "resample"],
+        others: &["clear_at", "on", "resample"],
         ..NONE
     },
     Row {

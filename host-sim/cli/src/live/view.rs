@@ -183,7 +183,7 @@ fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
             it.landings
         )),
         Line::raw(format!(
-            "          {} touches, {} times on, {} drops not recorded",
+            "          {} touches, {} times on, {} drops lost",
             it.touches, it.boots, it.lost
         )),
     ]
