@@ -54,6 +54,7 @@ pub fn run<W: Write>(
         spectrogram,
         detection: detection(&answer, timebase),
         conduct,
+        timebase,
     };
     Ok((outcome, stream))
 }

@@ -3,6 +3,7 @@
 
 use crate::controller_trace::ControllerTrace;
 use crate::model::RingEnd;
+use crate::timebase::Timebase;
 use serde::Serialize;
 use touchdown_base::history::{History, PhaseKind, RotorState};
 use touchdown_base::ledger::Ledger;
@@ -182,4 +183,6 @@ pub struct Outcome {
     pub detection: Detection,
     /// The controller.
     pub conduct: ControllerTrace,
+    /// Times of the samples.
+    pub timebase: Timebase,
 }

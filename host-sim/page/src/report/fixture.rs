@@ -9,6 +9,7 @@ use touchdown_protocol::link::{Hello, State, Text};
 use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
+use touchdown_run::timebase::Timebase;
 use touchdown_truth::reference::Reference;
 
 const RATE: f64 = 50e3;
@@ -100,6 +101,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         model: truth.clone(),
         detection: detection(&truth),
         conduct: conduct(),
+        timebase: Timebase::new(-LEAD, RATE),
         truth,
         trace,
         spectrogram: analyser.finish(),

@@ -2,6 +2,7 @@
 //! cursor and a zoom to the charts.
 
 mod accuracy;
+mod controller;
 mod displacement;
 mod energy;
 pub mod force;
@@ -149,6 +150,7 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             (spectra(whole, subject, outcome))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
+        section { h2 { "Controller" } (controller::controller(outcome)) }
         section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
         section { h2 { "Severity" } (severity::severity(outcome)) }

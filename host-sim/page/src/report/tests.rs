@@ -62,6 +62,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
             state_hash: 0,
         },
         conduct: fixture::conduct(),
+        timebase: touchdown_run::timebase::Timebase::new(0.0, 1.0),
     }
 }
 

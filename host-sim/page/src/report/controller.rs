@@ -1,0 +1,36 @@
+//! What the controller did: outputs, mode and cause; touches, alarms and zones of the guard.
+
+use maud::{Markup, html};
+use touchdown_chart::table::table;
+use touchdown_chart::text::ms;
+use touchdown_core::event::Level;
+use touchdown_run::outcome::Outcome;
+use touchdown_scene::names::{cause_name, mode_name};
+
+/// Draws them as a table, and the guard in two lines.
+pub fn controller(outcome: &Outcome) -> Markup {
+    let conduct = &outcome.conduct;
+    let level = |on: bool| if on { "on" } else { "off" }.to_owned();
+    let table = table("Outputs of the controller", &conduct.outputs)
+        .number("From\nms", |it| ms(outcome.timebase.time(it.sample as f64)))
+        .words("Run", |it| level(it.shown.outputs.run))
+        .words("No brake", |it| level(it.shown.outputs.no_brake))
+        .words("Permit", |it| level(it.shown.outputs.permit))
+        .words("Ready", |it| level(it.shown.outputs.ready))
+        .words("Mode", |it| mode_name(it.shown.mode).to_owned())
+        .words("Cause", |it| {
+            it.shown.cause.map_or("", cause_name).to_owned()
+        });
+    let dangers = conduct.alarms.iter().filter(|it| it.level == Level::Danger);
+    let all = conduct.zones.iter().sum::<u64>().max(1) as f64;
+    let part = |samples: u64| format!("{:.1}\u{a0}%", 100.0 * samples as f64 / all);
+    let [a, b, c, d] = conduct.zones.map(part);
+    html! {
+        (table.draw())
+        p {
+            (conduct.state.touches) " touches; " (conduct.alarms.len()) " alarms, " (dangers.count()) " of them danger. "
+            "Samples in zone A " (a) ", B " (b) ", C " (c) ", D " (d) "."
+        }
+        p.note { "Zones: distance from the told centre as a part of the told clearance. They were not checked against ISO 14839-2." }
+    }
+}
