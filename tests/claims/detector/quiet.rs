@@ -1,6 +1,6 @@
 //! What a healthy machine does, and must not set the detector off.
 
-use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::event::{EventKind, Level, Notice};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_run::monitor_run;
 use touchdown_scene::Scene;
@@ -47,8 +47,15 @@ fn smooth(t: f64) -> f64 {
 
 #[test]
 fn nothing_in_five_minutes_of_levitation() {
-    for place in [[0.0, 0.0], [20e-6, -60e-6], [0.0, -0.48 * CLEARANCE]] {
-        let notices = watched(100.0, |_| place);
+    let at_alert = [0.0, -0.5 * CLEARANCE];
+    for place in [[0.0, 0.0], [20e-6, -60e-6], at_alert] {
+        let mut notices = watched(100.0, |_| place);
+        if place == at_alert {
+            // It is where the guard's lower limit is: each plane may tell that once, and nothing else.
+            let is_alert = |it: &Notice| matches!(it, Notice::Alarm(it) if it.level == Level::Alert);
+            assert!(notices.iter().filter(|it| is_alert(it)).count() <= 2);
+            notices.retain(|it| !is_alert(it));
+        }
         assert!(notices.is_empty(), "{place:?}: {notices:?}");
     }
 }
