@@ -201,7 +201,7 @@ impl App {
             phase: self.state.phase(),
             mode: self.safety.mode(),
             cause: self.safety.cause(),
-            touches: self.state.guard().touches(),
+            touches: self.state.touches(),
             outputs: self.shown().outputs,
             faults: self.faults,
             counters: Counters {

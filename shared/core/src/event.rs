@@ -229,8 +229,8 @@ pub struct Touch {
     pub peak: f32,
 }
 
-/// Most notices that one tick can give: five of the guard, ten of the detector.
-pub const NOTICES_PER_TICK: usize = 15;
+/// Most notices that one tick can give: an alarm, a touch, ten of the detector.
+pub const NOTICES_PER_TICK: usize = 12;
 
 /// The notices of one tick.
 pub type Notices = heapless::Vec<Notice, NOTICES_PER_TICK>;

@@ -23,4 +23,5 @@ pub mod sample;
 pub mod sensing;
 pub mod severity;
 pub mod tachometer;
+pub mod touch;
 mod vector;

@@ -14,6 +14,7 @@ use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severity, SeverityModel, SeverityState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
+use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
 
 /// All that the monitor is told.
@@ -39,6 +40,7 @@ pub struct MonitorConfig {
 #[derive(Clone, Debug)]
 pub struct Monitor {
     guard: Guard,
+    touches: Touches,
     sensing: Sensing,
     health: Health,
     tachometers: Option<Tachometers>,
@@ -59,6 +61,7 @@ pub struct MonitorState {
     samples: u64,
     faults: u64,
     guard: GuardState,
+    touch: TouchState,
     pub(crate) health: HealthState,
     pub(crate) tachometers: TachometersState,
     position: Option<[f32; 2]>,
@@ -95,6 +98,10 @@ impl Monitor {
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
             severeness: SeverityModel::try_new(&config.detector)?,
+            touches: Touches::new(
+                config.detector.machine.clearance,
+                config.detector.sample_rate,
+            ),
             guard: Guard::try_new(
                 &config.guard,
                 &config.detector,
@@ -119,22 +126,40 @@ impl Monitor {
     /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
     #[inline]
     pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
-        self.guard(state, sample, notices);
+        let places = self.guard(state, sample);
+        self.tell(state, &places, sample.levitated, notices);
         let seen = self.sense(state, sample);
         self.detect(state, &seen, notices);
         self.update_severity(state, notices);
     }
 
-    /// First part of a tick: the guard, on what the sensors say, believed or not. What was in `notices` goes.
+    /// First part of a tick: the guard, on what the sensors say, believed or not; each plane's place, m.
     #[inline]
-    pub fn guard(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
-        notices.clear();
-        let planes = self.sensing.planes(sample);
-        let state = &mut state.guard;
-        self.guard.update(state, planes, sample.levitated, notices);
+    pub fn guard(&self, state: &mut MonitorState, sample: &Sample) -> [Option<[f32; 2]>; PLANES] {
+        let places = self.sensing.planes(sample);
+        let levitated = sample.levitated;
+        self.guard.update(&mut state.guard, places, levitated);
+        places
     }
 
-    /// Second part: what the sensors say, and whether they can be believed.
+    /// Second part: proof, alarms and touches. What was in `notices` goes.
+    #[inline]
+    pub fn tell(
+        &self,
+        state: &mut MonitorState,
+        places: &[Option<[f32; 2]>; PLANES],
+        levitated: Option<bool>,
+        notices: &mut Notices,
+    ) {
+        notices.clear();
+        let sample = state.samples;
+        let guard = &mut state.guard;
+        self.guard.follow(guard, places, levitated, sample, notices);
+        self.touches
+            .update(&mut state.touch, places, sample, notices);
+    }
+
+    /// Third part: what the sensors say, and whether they can be believed.
     #[inline]
     pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
         let phases = state.detector.phases();
@@ -163,7 +188,7 @@ impl Monitor {
         Seen { reading, signals }
     }
 
-    /// Third part: the detector.
+    /// Fourth part: the detector.
     #[inline]
     pub fn detect(&self, state: &mut MonitorState, seen: &Seen, notices: &mut Notices) {
         let detector = &mut state.detector;
@@ -235,6 +260,11 @@ impl MonitorState {
     /// What can be had of each channel.
     pub fn conditions(&self) -> [Condition; CHANNELS] {
         self.health.conditions()
+    }
+
+    /// Times that the rotor came to the wall, whatever held it.
+    pub fn touches(&self) -> u32 {
+        self.touch.count()
     }
 
     /// The guard's state.

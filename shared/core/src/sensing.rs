@@ -106,7 +106,7 @@ impl Sensing {
         let is_inside = |count: u16| count.wrapping_sub(1) < last;
         let plane = |rotation, channels: u8, u: u16, v: u16| {
             let usable = sample.valid & channels == channels && is_inside(u) && is_inside(v);
-            usable.then(|| self.turn(rotation, [u, v].map(f32::from)))
+            usable.then(|| self.turn(rotation, [f32::from(u), f32::from(v)]))
         };
         let [a, b] = self.rotation;
         [plane(a, 0b0011, ax, ay), plane(b, 0b1100, bx, by)]

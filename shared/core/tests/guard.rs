@@ -1,9 +1,10 @@
-//! The guard alone: readings in, verdict, alarms and touches out.
+//! The guard and the touches alone: readings in, verdict, alarms and touches out.
 
 use proptest::prelude::*;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::{Alarm, Level, Notice, Notices, Plane, Touch};
-use touchdown_core::guard::{Guard, GuardConfig, GuardState};
+use touchdown_core::guard::{Guard, GuardConfig, GuardState, Verdict};
+use touchdown_core::touch::{TouchState, Touches};
 
 const GAP: f32 = 0.3e-3;
 const RATE: f32 = 20_000.0;
@@ -11,6 +12,8 @@ const RATE: f32 = 20_000.0;
 struct Bench {
     guard: Guard,
     state: GuardState,
+    counter: Touches,
+    touch: TouchState,
     alarms: Vec<Alarm>,
     touches: Vec<Touch>,
     sample: u64,
@@ -40,6 +43,8 @@ impl Bench {
         Self {
             guard: guard.expect("a valid configuration"),
             state: GuardState::default(),
+            counter: Touches::new(GAP, rate),
+            touch: TouchState::default(),
             alarms: Vec::new(),
             touches: Vec::new(),
             sample: 0,
@@ -52,10 +57,18 @@ impl Bench {
 
     /// Each plane at parts of the gap.
     fn planes(&mut self, planes: [Option<[f32; 2]>; 2], levitated: Option<bool>) {
-        let mut notices = Notices::new();
         let places = planes.map(|it| it.map(|place| place.map(|part| part * GAP)));
-        self.guard
-            .update(&mut self.state, places, levitated, &mut notices);
+        self.guard.update(&mut self.state, places, levitated);
+        let mut notices = Notices::new();
+        self.guard.follow(
+            &mut self.state,
+            &places,
+            levitated,
+            self.sample,
+            &mut notices,
+        );
+        self.counter
+            .update(&mut self.touch, &places, self.sample, &mut notices);
         for notice in notices {
             match notice {
                 Notice::Alarm(alarm) => self.alarms.push(alarm),
@@ -66,6 +79,10 @@ impl Bench {
         self.sample += 1;
     }
 
+    fn verdict(&self) -> Verdict {
+        self.state.verdict()
+    }
+
     fn at(&mut self, place: [f32; 2]) {
         self.planes([Some(place); 2], None);
     }
@@ -74,7 +91,7 @@ impl Bench {
     fn stay(&mut self, place: [f32; 2], samples: u32) -> bool {
         (0..samples).fold(false, |shown, _| {
             self.at(place);
-            shown | self.state.verdict().floats
+            shown | self.verdict().floats
         })
     }
 
@@ -96,12 +113,12 @@ fn danger_is_three_quarters_of_the_last_millisecond() {
     bench.stay([0.0; 2], 100);
     for number in 1..=15 {
         bench.at([0.0, -0.7]);
-        assert_eq!(bench.state.verdict().danger, number == 15, "{number}");
+        assert_eq!(bench.verdict().danger, number == 15, "{number}");
     }
     // Of the last twenty five were inside before.
     for number in 1..=6 {
         bench.at([0.0; 2]);
-        assert_eq!(bench.state.verdict().danger, number <= 5, "{number}");
+        assert_eq!(bench.verdict().danger, number <= 5, "{number}");
     }
 }
 
@@ -116,7 +133,7 @@ fn bursts_of_thirty_percent_are_no_danger_and_no_touch() {
         let angle = (number % 97) as f32;
         let far = [2.5 * angle.cos(), 2.5 * angle.sin()];
         bench.at(if is_hit { far } else { [0.1, 0.05] });
-        assert!(!bench.state.verdict().danger, "{number}");
+        assert!(!bench.verdict().danger, "{number}");
     }
     assert_eq!(bench.touches, []);
 }
@@ -143,14 +160,14 @@ fn alarms_are_told_at_each_rise_after_a_fall_of_a_tenth() {
 #[test]
 fn first_sample_tells_the_higher_limit_alone_and_no_touch() {
     let mut bench = Bench::rig();
-    bench.at([0.0, -1.0]);
+    bench.stay([0.0, -1.0], 2);
     let told: Vec<_> = bench
         .alarms
         .iter()
         .map(|it| (it.level, it.sample))
         .collect();
     assert_eq!(told, [(Level::Danger, 0); 2]);
-    assert!(bench.state.verdict().danger);
+    assert!(bench.verdict().danger);
     bench.stay([0.0, -1.0], 5_000);
     assert_eq!((bench.alarms.len(), bench.touches.len()), (2, 0));
 }
@@ -161,16 +178,16 @@ fn lost_after_a_millisecond_and_off_after_three_samples() {
     bench.stay([0.0; 2], 50);
     for number in 1..=20 {
         bench.planes([None; 2], Some(true));
-        assert_eq!(bench.state.verdict().lost, number == 20);
+        assert_eq!(bench.verdict().lost, number == 20);
     }
     bench.planes([None, Some([0.0; 2])], Some(true));
-    assert!(!bench.state.verdict().lost, "one plane sees");
+    assert!(!bench.verdict().lost, "one plane sees");
     for number in 1..=3 {
         bench.planes([Some([0.0; 2]); 2], Some(false));
-        assert_eq!(bench.state.verdict().off, number == 3);
+        assert_eq!(bench.verdict().off, number == 3);
     }
     bench.planes([Some([0.0; 2]); 2], Some(true));
-    assert!(!bench.state.verdict().off);
+    assert!(!bench.verdict().off);
 }
 
 #[test]
@@ -202,13 +219,13 @@ fn a_fall_back_to_where_it_lay_is_danger_whatever_is_told() {
     bench.go([0.1, -0.6], [0.0; 2], 2_000);
     assert!(bench.stay([0.0; 2], 4_100));
     bench.stay([0.0, -0.36], 100);
-    assert!(!bench.state.verdict().danger);
+    assert!(!bench.verdict().danger);
     bench.stay([0.0, -0.42], 15);
-    assert!(bench.state.verdict().danger);
+    assert!(bench.verdict().danger);
     // A proof that was lost takes its floor along.
     bench.state.lose_proof();
     bench.stay([0.0, -0.42], 20);
-    assert!(!bench.state.verdict().danger);
+    assert!(!bench.verdict().danger);
 }
 
 /// A spike down while it lies is not where it lay.
@@ -228,7 +245,7 @@ fn rocking_bouncing_and_whirling_are_no_proof() {
         bench.stay([0.0, -0.43], 5_000);
         (0..60_000).any(|number| {
             bench.at(place(number as f32 / RATE));
-            bench.state.verdict().floats
+            bench.verdict().floats
         })
     };
     let turn = |time: f32, hz: f32| core::f32::consts::TAU * hz * time;
@@ -259,7 +276,7 @@ fn a_machine_without_weight_needs_the_signal_and_a_commissioning_check() {
         let mut bench = Bench::new(RATE, 0.0, commissioned);
         let proven = (0..10_000).any(|_| {
             bench.planes([Some([0.1, 0.0]); 2], signal);
-            bench.state.verdict().floats
+            bench.verdict().floats
         });
         assert_eq!(proven, shown, "{commissioned} {signal:?}");
     }
@@ -271,7 +288,7 @@ fn a_plane_that_is_fitted_and_does_not_deliver_proves_nothing() {
     bench.state.assume_lift();
     let proven = (0..20_000).any(|_| {
         bench.planes([Some([0.0; 2]), None], None);
-        bench.state.verdict().floats
+        bench.verdict().floats
     });
     assert!(!proven);
 }
@@ -283,7 +300,7 @@ fn each_time_at_the_wall_is_a_touch() {
     for number in 0..5 {
         bench.go([0.0; 2], [0.0, -0.9], 60);
         bench.go([0.0, -0.9], [0.0; 2], 60);
-        assert_eq!(bench.state.touches(), number + 1);
+        assert_eq!(bench.touch.count(), number + 1);
     }
     // One that comes to stay.
     bench.go([0.0; 2], [0.0, -1.0], 60);
@@ -328,7 +345,7 @@ proptest! {
             }
             let last = &seen[seen.len().saturating_sub(20)..];
             let beyond = last.iter().filter(|it| (**it * GAP).powi(2) >= (0.67 * GAP).powi(2)).count();
-            prop_assert_eq!(bench.state.verdict().danger, beyond >= 15);
+            prop_assert_eq!(bench.verdict().danger, beyond >= 15);
         }
     }
 
@@ -339,7 +356,7 @@ proptest! {
         bench.stay([0.1, 0.1], before);
         let samples = (2e-3 * rate) as u32;
         bench.stay([0.7 * angle.cos(), 0.7 * angle.sin()], samples);
-        prop_assert!(bench.state.verdict().danger);
+        prop_assert!(bench.verdict().danger);
         prop_assert!(bench.alarms.iter().any(|it| it.level == Level::Danger));
     }
 }

@@ -23,8 +23,9 @@ use touchdown_firmware::memory;
 use touchdown_firmware::recorder::{self, Identity, Recorder};
 
 /// All but the forecast, which is below the tick, are parts of it.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 8] = [
     "guard",
+    "proof, alarms, touches",
     "sensing and health",
     "detector",
     "forecast slice",
@@ -109,7 +110,10 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     scene.play(|sample| {
         let sample = black_box(sample);
         let (monitor, state) = app.monitor();
-        let ((), guard) = counter.count(|| monitor.guard(state, sample, &mut notices));
+        let (places, guard) = counter.count(|| monitor.guard(state, sample));
+        let places = black_box(&places);
+        let ((), told) =
+            counter.count(|| monitor.tell(state, places, sample.levitated, &mut notices));
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
         let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
@@ -126,7 +130,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
             recorder.hear(&outlook);
         }
         let counts = [
-            guard, sensing, detector, forecast, severity, recording, outputs,
+            guard, told, sensing, detector, forecast, severity, recording, outputs,
         ];
         tallies
             .iter_mut()

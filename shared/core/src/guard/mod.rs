@@ -3,24 +3,19 @@
 //!
 //! | file | says |
 //! |---|---|
-//! | `window` | what three quarters of the samples of the last millisecond say |
-//! | `alarm` | when a plane rises through a limit |
+//! | `limits` | when a plane is beyond a limit |
 //! | `proof` | whether the rotor has been seen to float |
-//! | `touch` | when the rotor reaches the wall, whatever holds it |
 
-mod alarm;
+mod limits;
 mod proof;
-mod touch;
-mod window;
 
-use self::alarm::{AlarmState, FALLEN, Limits};
+use self::limits::{ALERT, BELOW, DANGER, Limits, PlaneLimits};
 use self::proof::{Proof, ProofState};
-use self::touch::{CLEAR, PlaneTouch, TouchState, Touches};
-use self::window::Window;
 use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
 use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::sqrt;
 
 /// Longest time without a position of any plane, s.
 const LOST_TIME: f32 = 1e-3;
@@ -62,37 +57,37 @@ impl GuardConfig {
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
-    stride: u8,
-    /// Square of the distance within which nothing happens, m^2.
+    /// Square of the distance within which a plane is beyond nothing, m^2.
     clear_square: f32,
+    per_clearance: f32,
     limits: Limits,
     proof: Proof,
-    touches: Touches,
     lost_samples: u16,
 }
 
 /// What it carries from sample to sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardState {
-    sample: u64,
     planes: [PlaneState; PLANES],
     proof: ProofState,
-    touch: TouchState,
-    /// Samples until one counts for the window.
+    /// Samples until one counts for the limits.
     wait: u8,
     /// In a row.
     lost: u16,
     off: u8,
+    is_alert: bool,
     verdict: Verdict,
 }
 
 /// Of a plane.
 #[derive(Clone, Copy, Debug, Default)]
 struct PlaneState {
-    alarm: AlarmState,
-    touch: PlaneTouch,
-    /// Nothing of the last millisecond is of interest.
-    is_quiet: bool,
+    limits: PlaneLimits,
+    seen: bool,
+    /// Alarms that are still to be told, samples since then, and the square of the distance then, m^2.
+    alarms: u32,
+    late: u8,
+    square: f32,
 }
 
 /// What the guard says after a sample.
@@ -118,57 +113,37 @@ impl Guard {
         commissioned: bool,
     ) -> Result<Self, ConfigError> {
         config.validate()?;
-        let rate = detector.sample_rate;
-        let window = Window::new(rate);
+        let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
+        let limits = Limits::new(config, clearance, rate);
         Ok(Self {
-            stride: window.stride,
-            clear_square: {
-                let clear = (config.alert - FALLEN).min(CLEAR) * detector.machine.clearance;
-                clear * clear
-            },
-            limits: Limits::new(config, detector.machine.clearance, window),
+            clear_square: limits.least(),
+            per_clearance: 1.0 / clearance,
+            limits,
             proof: Proof::new(config, detector, fitted, commissioned),
-            touches: Touches::new(detector.machine.clearance, rate),
             lost_samples: ((LOST_TIME * rate) as u16).max(2),
         })
     }
 
     /// One tick: each plane's place (m), `None` where it did not deliver, and the levitation signal, where it is
     /// wired. Bounded; cannot fail.
+    #[inline]
     pub fn update(
         &self,
         state: &mut GuardState,
-        planes: [Option<[f32; 2]>; PLANES],
+        places: [Option<[f32; 2]>; PLANES],
         levitated: Option<bool>,
-        notices: &mut Notices,
     ) {
-        let sample = state.sample;
-        state.sample += 1;
         let counts = state.wait == 0;
-        state.wait = if counts { self.stride } else { state.wait } - 1;
-        let mut is_quiet = true;
-        for (it, (place, floor)) in state
-            .planes
-            .iter_mut()
-            .zip(planes.into_iter().zip(state.proof.floors()))
-        {
-            let Some([x, y]) = place else {
-                is_quiet &= it.is_quiet;
-                continue;
-            };
-            let square = x * x + y * y;
-            if it.is_quiet && square < self.clear_square && y >= floor {
-                it.touch.stay([x, y]);
-            } else {
-                is_quiet = false;
-            }
-        }
-        let (alert, danger) = if is_quiet {
-            (false, false)
+        state.wait = if counts {
+            self.limits.stride
         } else {
-            self.near(state, planes, sample, counts, notices)
-        };
-        let sees = planes.iter().any(Option::is_some);
+            state.wait
+        } - 1;
+        let [of_a, of_b] = &mut state.planes;
+        let [floor_a, floor_b] = state.proof.floors();
+        let [a, b] = places;
+        let beyond = self.see(of_a, a, floor_a, counts) | self.see(of_b, b, floor_b, counts);
+        let sees = a.is_some() || b.is_some();
         state.lost = if sees {
             0
         } else {
@@ -180,74 +155,85 @@ impl Guard {
         } else {
             0
         };
-        let floats = self.proof.take(&mut state.proof, planes, levitated);
+        state.is_alert = beyond & ALERT != 0;
         state.verdict = Verdict {
-            danger,
+            danger: beyond & (DANGER | BELOW) != 0,
             lost: state.lost >= self.lost_samples,
             off: state.off >= OFF_SAMPLES,
-            floats: floats && !alert,
+            floats: false,
         };
     }
-}
 
-impl Guard {
-    /// Where a plane is near a limit or has been in the last millisecond: whether one is beyond alert, and beyond
-    /// danger or below its floor.
-    #[inline(never)]
-    fn near(
-        &self,
-        state: &mut GuardState,
-        places: [Option<[f32; 2]>; PLANES],
-        sample: u64,
-        counts: bool,
-        notices: &mut Notices,
-    ) -> (bool, bool) {
-        let (mut alert, mut danger) = (false, false);
-        let floors = state.proof.floors();
-        let planes = state.planes.iter_mut().zip(places);
-        for ((it, place), (plane, floor)) in
-            planes.zip([Plane::A, Plane::B].into_iter().zip(floors))
-        {
-            if let Some(place) = place {
-                if counts {
-                    let risen = self.limits.take(&mut it.alarm, place, floor);
-                    if risen != [None; 2] {
-                        self.tell_alarms(risen, plane, place, sample, notices);
-                    }
-                }
-                self.touches.follow(&mut it.touch, place);
+    /// Takes a plane's place, m, which may count; what the plane is beyond.
+    #[inline]
+    fn see(&self, it: &mut PlaneState, place: Option<[f32; 2]>, floor: f32, counts: bool) -> u32 {
+        if let Some([x, y]) = place {
+            let square = x * x + y * y;
+            let is_near = square >= self.clear_square || y < floor;
+            if is_near || !it.seen || !it.limits.is_clear() {
+                return self.look(it, square, y < floor, counts);
             }
-            alert |= self.limits.is_beyond(&it.alarm, Level::Alert);
-            danger |= self.limits.is_beyond(&it.alarm, Level::Danger);
-            it.is_quiet = it.alarm.is_clear() && it.touch.is_clear();
+            return 0;
         }
-        let [a, b] = &state.planes;
-        let planes = [&a.touch, &b.touch];
-        if let Some(touch) = self.touches.take(&mut state.touch, planes, sample) {
-            tell(notices, Notice::Touch(touch));
-        }
-        (alert, danger)
+        self.limits.beyond(&it.limits)
     }
 
-    #[cold]
-    fn tell_alarms(
+    /// Likewise, near a limit, or not long after.
+    #[inline(never)]
+    fn look(&self, it: &mut PlaneState, square: f32, is_below: bool, counts: bool) -> u32 {
+        let flags = self.limits.flags(square, is_below);
+        if counts {
+            let alarms = if it.seen {
+                self.limits.take(&mut it.limits, flags)
+            } else {
+                it.seen = true;
+                self.limits.begin(&mut it.limits, flags)
+            };
+            if alarms != 0 {
+                (it.alarms, it.late, it.square) = (alarms, 0, square);
+            }
+        }
+        self.limits.beyond(&it.limits)
+    }
+
+    /// What follows from a tick and needs not be on time, in the same `sample`: proof, and the next alarm.
+    #[inline]
+    pub fn follow(
         &self,
-        risen: [Option<Level>; 2],
-        plane: Plane,
-        place: [f32; 2],
+        state: &mut GuardState,
+        places: &[Option<[f32; 2]>; PLANES],
+        levitated: Option<bool>,
         sample: u64,
         notices: &mut Notices,
     ) {
-        let fraction = self.limits.fraction(place);
-        for level in risen.into_iter().flatten() {
-            let alarm = Alarm {
-                plane,
-                level,
-                fraction,
-                sample,
-            };
-            tell(notices, Notice::Alarm(alarm));
+        let floats = self.proof.take(&mut state.proof, places, levitated);
+        state.verdict.floats = floats && !state.is_alert;
+        let [a, b] = &mut state.planes;
+        if a.alarms != 0 {
+            b.late += u8::from(b.alarms != 0);
+            self.tell(a, Plane::A, sample, notices);
+        } else if b.alarms != 0 {
+            self.tell(b, Plane::B, sample, notices);
         }
+    }
+
+    #[inline(never)]
+    fn tell(&self, it: &mut PlaneState, plane: Plane, sample: u64, notices: &mut Notices) {
+        let (level, flag) = if it.alarms & ALERT != 0 {
+            (Level::Alert, ALERT)
+        } else {
+            (Level::Danger, DANGER)
+        };
+        let alarm = Alarm {
+            plane,
+            level,
+            fraction: sqrt(it.square) * self.per_clearance,
+            sample: sample.saturating_sub(u64::from(it.late)),
+        };
+        it.alarms &= !flag;
+        it.late += 1;
+        // There is room for all that a tick can say; without it nothing else may suffer.
+        let _ = notices.push(Notice::Alarm(alarm));
     }
 }
 
@@ -257,11 +243,6 @@ impl GuardState {
         self.verdict
     }
 
-    /// Touches so far.
-    pub fn touches(&self) -> u32 {
-        self.touch.count()
-    }
-
     /// As if the rotor had been seen where it is lifted from.
     pub fn assume_lift(&mut self) {
         self.proof.assume_lift();
@@ -269,18 +250,11 @@ impl GuardState {
 
     /// A proof was lost: where the rotor is lifted from has to be seen anew.
     pub fn lose_proof(&mut self) {
-        self.proof = ProofState::default();
+        self.proof.forget();
     }
 
     /// What was seen so far of a floating rotor does not count.
     pub fn restart_proof(&mut self) {
         self.proof.restart();
     }
-}
-
-/// There is room for all that a tick can say; without it nothing else may suffer.
-#[cold]
-#[inline(never)]
-fn tell(notices: &mut Notices, notice: Notice) {
-    let _ = notices.push(notice);
 }

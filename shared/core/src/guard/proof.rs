@@ -19,6 +19,8 @@ const HEIGHT: f32 = 0.25;
 const FLOOR: f32 = 0.35;
 /// Part of the clearance that it stays within, of its mean place.
 const SPREAD: f32 = 0.2;
+/// Samples of a turn: each plane's place is taken in one, and judged in another.
+const TURN: u16 = 4;
 
 /// Coefficients; m.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +29,7 @@ pub(super) struct Proof {
     /// Whether weight shows where the rotor lies.
     has_weight: bool,
     commissioned: bool,
-    /// Even: each plane is looked at in every other one.
+    /// Whole turns.
     held_samples: u16,
     /// 1 over a plane's samples of a stay.
     scale: f32,
@@ -48,6 +50,7 @@ struct PlaneProof {
     lowest: f32,
     /// Since the first proof after that; infinitely low before it, and where a lift was assumed.
     floor: f32,
+    floats: bool,
 }
 
 /// What was seen of the planes.
@@ -62,11 +65,12 @@ impl Default for PlaneProof {
     fn default() -> Self {
         Self {
             sum: [0.0; 2],
-            least: [f32::INFINITY; 2],
-            most: [f32::NEG_INFINITY; 2],
-            highest: f32::NEG_INFINITY,
+            least: [0.0; 2],
+            most: [0.0; 2],
+            highest: 0.0,
             lowest: f32::INFINITY,
             floor: f32::NEG_INFINITY,
+            floats: false,
         }
     }
 }
@@ -79,75 +83,70 @@ impl Proof {
         commissioned: bool,
     ) -> Self {
         let clearance = detector.machine.clearance;
-        let rate = detector.sample_rate;
-        let of_plane = ((0.5 * HELD * rate) as u16).max(4);
-        let spread = SPREAD * clearance;
-        let alert = config.alert * clearance;
+        let turns = ((HELD * detector.sample_rate) as u16 / TURN).max(4);
+        let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
             fitted: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             has_weight: detector.machine.gravity > 0.0,
             commissioned,
-            held_samples: 2 * of_plane,
-            scale: 1.0 / (f32::from(of_plane) * f32::from(HELDS)),
+            held_samples: TURN * turns,
+            scale: 1.0 / (f32::from(turns) * f32::from(HELDS)),
             height: HEIGHT * clearance,
-            spread_square: spread * spread,
-            alert_square: alert * alert,
+            spread_square: square(SPREAD),
+            alert_square: square(config.alert),
         }
     }
 
     /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to
     /// deliver.
+    #[inline]
     pub(super) fn take(
         &self,
         state: &mut ProofState,
-        planes: [Option<[f32; 2]>; PLANES],
+        [a, b]: &[Option<[f32; 2]>; PLANES],
         levitated: Option<bool>,
     ) -> bool {
-        let mut delivers = true;
-        let turns = [state.samples & 1 == 0, state.samples & 1 != 0];
-        let fitted = self.fitted.into_iter().zip(turns);
-        for ((it, place), (fitted, turn)) in state.planes.iter_mut().zip(planes).zip(fitted) {
-            match place {
-                Some(place) => {
-                    if turn {
-                        it.take(place);
-                    }
-                }
-                None => delivers &= !fitted,
-            }
-        }
+        let delivers = (a.is_some() || !self.fitted[0]) && (b.is_some() || !self.fitted[1]);
         if !delivers || levitated == Some(false) {
             state.restart();
             return false;
         }
+        let (turn, is_new) = (state.samples % TURN, state.samples < TURN);
+        let begins = is_new && state.helds == 0;
         state.samples += 1;
-        if state.samples < self.held_samples {
-            return false;
+        let [of_a, of_b] = &mut state.planes;
+        match (turn, a, b) {
+            (0, Some(place), _) => of_a.take(*place, is_new, begins),
+            (1, _, Some(place)) => of_b.take(*place, is_new, begins),
+            (2, ..) if state.samples + 1 == self.held_samples => self.judge(of_a),
+            (3, ..) if state.samples == self.held_samples => {
+                self.judge(of_b);
+                return self.end_part(state, levitated);
+            }
+            _ => {}
         }
+        false
+    }
+
+    /// At the end of a part of a stay: whether it completes a proof.
+    #[inline(never)]
+    fn end_part(&self, state: &mut ProofState, levitated: Option<bool>) -> bool {
         state.samples = 0;
         state.helds += 1;
-        let is_over = state.helds >= HELDS;
-        let signal = if self.has_weight {
-            true
-        } else {
-            self.commissioned && levitated == Some(true)
-        };
-        let mut floats = is_over && signal;
-        for (it, fitted) in state.planes.iter_mut().zip(self.fitted) {
-            floats &= !fitted || self.floats(it);
-            it.lowest = it.lowest.min(it.highest);
-            it.highest = f32::NEG_INFINITY;
+        if state.helds < HELDS {
+            return false;
         }
+        state.helds = 0;
+        let shows = self.has_weight || self.commissioned && levitated == Some(true);
+        let mut planes = state.planes.iter().zip(self.fitted);
+        let floats = shows && planes.all(|(it, fitted)| it.floats || !fitted);
         if floats {
             state.planes.iter_mut().for_each(|it| self.put_floor(it));
-        }
-        if is_over {
-            state.restart();
         }
         floats
     }
 
-    /// Under a rotor that has just been proven to float, where it has none.
+    /// Under a plane that has just been proven to float, where it has none.
     fn put_floor(&self, it: &mut PlaneProof) {
         let height = it.sum[1] * self.scale - it.lowest;
         if self.has_weight && it.floor == f32::NEG_INFINITY && height.is_finite() {
@@ -155,20 +154,36 @@ impl Proof {
         }
     }
 
-    /// Whether a plane has stayed where only a floating rotor does.
-    fn floats(&self, it: &PlaneProof) -> bool {
+    /// Whether a plane has stayed where only a floating rotor does, and where it was lowest.
+    #[inline(never)]
+    fn judge(&self, it: &mut PlaneProof) {
         let [x, y] = it.sum.map(|sum| sum * self.scale);
-        let reach = |mean: f32, least: f32, most: f32| (most - mean).max(mean - least);
+        let reach = |mean: f32, least: f32, most: f32| {
+            let (up, down) = (most - mean, mean - least);
+            if up > down { up } else { down }
+        };
         let dx = reach(x, it.least[0], it.most[0]);
         let dy = reach(y, it.least[1], it.most[1]);
         let is_lifted = !self.has_weight || y - it.lowest >= self.height;
-        is_lifted && dx * dx + dy * dy <= self.spread_square && x * x + y * y <= self.alert_square
+        it.floats = is_lifted
+            && dx * dx + dy * dy <= self.spread_square
+            && x * x + y * y <= self.alert_square;
+        if it.highest < it.lowest {
+            it.lowest = it.highest;
+        }
     }
 }
 
 impl PlaneProof {
+    /// Takes a place, m, the first of a part or of the whole stay.
     #[inline]
-    fn take(&mut self, place: [f32; 2]) {
+    fn take(&mut self, place: [f32; 2], is_new: bool, begins: bool) {
+        if is_new {
+            self.highest = place[1];
+        }
+        if begins {
+            (self.sum, self.least, self.most) = ([0.0; 2], place, place);
+        }
         let axes = self.sum.iter_mut().zip(&mut self.least);
         for (((sum, least), most), value) in axes.zip(&mut self.most).zip(place) {
             *sum += value;
@@ -204,12 +219,13 @@ impl ProofState {
     /// Begins a stay, and keeps where the rotor was lowest.
     pub(super) fn restart(&mut self) {
         (self.samples, self.helds) = (0, 0);
+    }
+
+    /// Begins a stay, and forgets where the rotor was lowest.
+    pub(super) fn forget(&mut self) {
+        self.restart();
         for it in &mut self.planes {
-            *it = PlaneProof {
-                lowest: it.lowest,
-                floor: it.floor,
-                ..PlaneProof::default()
-            };
+            (it.lowest, it.floor) = (f32::INFINITY, f32::NEG_INFINITY);
         }
     }
 }
