@@ -4,7 +4,7 @@ use stm32f4::stm32f405::{GPIOB, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
-use crate::speed::{Speed, SpeedState};
+use crate::speed::{Speed, SpeedState, pulses_a_capture};
 
 /// The timer counts every eighth tick: one turn of it takes 6.2 ms.
 const PRESCALER: u32 = 8;
@@ -28,19 +28,29 @@ impl Inputs {
         pins.afrh().modify(|_, w| w.afrh8().af2());
         pins.moder().modify(|_, w| w.moder8().alternate());
         timer.psc().write(|w| w.psc().set(PRESCALER as u16 - 1));
-        timer.ccmr2_input().write(|w| w.cc3s().ti3());
+        let Settings { monitor, wiring } = settings;
+        let (spin, rate) = (monitor.detector.machine.spin, monitor.detector.sample_rate);
+        let captured = wiring
+            .pulses_per_turn
+            .map(|it| (it, pulses_a_capture(it, spin, rate)));
+        let every = captured.map_or(1, |(_, every)| every).trailing_zeros() as u8;
+        // Eight samples at 1/32 of the timer's clock, 3 us, are an edge.
+        timer
+            .ccmr2_input()
+            .write(|w| w.cc3s().ti3().ic3f().set(0b1111).ic3psc().set(every));
         timer.ccer().write(|w| w.cc3e().set_bit());
         timer.egr().write(|w| w.ug().set_bit());
         timer.cr1().write(|w| w.cen().enabled());
-        let forward = settings.monitor.detector.machine.spin >= 0.0;
         let hz = (APB1_TIMER_HZ / PRESCALER) as f32;
-        let pulses = settings.wiring.pulses_per_turn;
         Self {
             pins,
             timer,
-            speed: pulses.map(|pulses| Speed::new(pulses, forward, hz)),
+            speed: captured.map(|(pulses, every)| {
+                let turns = f32::from(every) / f32::from(pulses.max(1));
+                Speed::new(turns, spin >= 0.0, hz)
+            }),
             state: SpeedState::default(),
-            levitation: settings.wiring.levitation,
+            levitation: wiring.levitation,
         }
     }
 
@@ -50,6 +60,12 @@ impl Inputs {
         let is_new = self.timer.sr().read().cc3if().bit_is_set();
         // Reading what was captured clears the flag; before the timer, or it could be ahead of it.
         let captured = is_new.then(|| self.timer.ccr3().read().bits() as u16);
+        // An edge that came before another was read is lost, and the time between the two is none of a period.
+        let is_over = self.timer.sr().read().cc3of().bit_is_set();
+        if is_over {
+            self.timer.sr().modify(|_, w| w.cc3of().clear_bit());
+        }
+        let captured = captured.filter(|_| !is_over);
         let now = self.timer.cnt().read().bits() as u16;
         speed.take(&mut self.state, now, captured)
     }
