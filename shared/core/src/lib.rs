@@ -22,6 +22,7 @@ pub mod phase;
 pub mod sample;
 pub mod sensing;
 pub mod severity;
+mod spin;
 pub mod tachometer;
 pub mod touch;
 mod vector;

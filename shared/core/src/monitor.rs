@@ -13,6 +13,7 @@ use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severity, SeverityModel, SeverityState};
+use crate::spin::SpinCheck;
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
@@ -43,6 +44,7 @@ pub struct Monitor {
     touches: Touches,
     sensing: Sensing,
     health: Health,
+    spin: SpinCheck,
     tachometers: Option<Tachometers>,
     detector: Detector,
     severeness: SeverityModel,
@@ -68,6 +70,8 @@ pub struct MonitorState {
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,
     pub(crate) spin: Option<f32>,
+    /// In a row, that were not believed.
+    odd_spins: u16,
     #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
@@ -97,6 +101,7 @@ impl Monitor {
                 .transpose()?,
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
+            spin: SpinCheck::new(&config.detector),
             severeness: SeverityModel::try_new(&config.detector)?,
             touches: Touches::new(
                 config.detector.machine.clearance,
@@ -166,7 +171,9 @@ impl Monitor {
         let reading = self
             .health
             .update(&mut state.health, &self.sensing, sample, phases);
-        state.spin = sample.spin.filter(|spin| spin.is_finite());
+        state.spin = self
+            .spin
+            .take(sample.spin, state.spin, &mut state.odd_spins);
         #[cfg(feature = "serde")]
         {
             state.levitated = sample.levitated;
@@ -179,7 +186,8 @@ impl Monitor {
             .filter(|_| reading.is_own())
             .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
-        state.faults += u64::from(spin.is_none() && sample.spin.is_some());
+        let is_odd = state.odd_spins > 0 || spin.is_none() && sample.spin.is_some();
+        state.faults += u64::from(is_odd);
         let signals = Signals {
             spin,
             retainer,

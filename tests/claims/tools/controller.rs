@@ -110,3 +110,28 @@ fn an_order_is_done_or_says_why_not() {
             .stderr(contains("no sample at that time"));
     }
 }
+
+/// An orbit of 60 um at 30 000 rpm, whose speed reads double for a turn: that looked like a fall.
+#[test]
+fn a_speed_that_is_wrong_for_a_turn_changes_nothing() {
+    let folder = TempDir::new().unwrap();
+    let turn = std::f64::consts::TAU * 500.0;
+    let mut stream = String::from("time_s,ax_um,ay_um,bx_um,by_um,speed_rpm\n");
+    for number in 0..12_000_u32 {
+        let time = f64::from(number) / 20e3;
+        let (y, x) = (-turn * time).sin_cos();
+        // Noise of about 1 um that repeats.
+        let noise = f64::from(number.wrapping_mul(2_654_435_761) >> 16) / 19_000.0 - 1.72;
+        let speed = if (8_000..8_040).contains(&number) { -60e3 } else { -30e3 };
+        let (x, y) = (60.0 * x + noise, 60.0 * y - noise);
+        stream += &format!("{time},{x},{y},{x},{y},{speed}\n");
+    }
+    std::fs::write(folder.path().join("orbit.csv"), stream).unwrap();
+    let run = touchdown(folder.path())
+        .args(["replay", "orbit.csv", "--scene", "rig", "--json", "-"])
+        .assert()
+        .success();
+    let json: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!(events(&json, false), Vec::<&Value>::new());
+    assert_eq!(json["faults"], 40, "the readings are told");
+}

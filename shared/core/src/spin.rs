@@ -1,0 +1,139 @@
+//! Which readings of the spin can be those of a rotor.
+//!
+//! A pulse too many or too few makes a wrong speed for a turn. An orbit at a wrong speed looks like a fall.
+
+use core::f32::consts::TAU;
+
+use crate::config::DetectorConfig;
+
+/// Most that a spin changes by from one sample to the next, as a part of the nominal one: at 20 kHz and 30 000 rpm
+/// 3e6 rad/s^2, which no friction gives, and less than a pulse too many or too few does.
+const MOST_CHANGE: f32 = 0.05;
+/// Turns that another spin must last to be believed, and the longest time for them, s.
+const TURNS: f32 = 3.0;
+const LONGEST: f32 = 0.1;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpinCheck {
+    /// rad/s.
+    most_change: f32,
+    /// Angle times the sample rate, rad/s.
+    angle: f32,
+    longest: u16,
+}
+
+impl SpinCheck {
+    pub(crate) fn new(detector: &DetectorConfig) -> Self {
+        let rate = detector.sample_rate;
+        let nominal = detector.machine.spin.abs();
+        Self {
+            most_change: if nominal > 0.0 {
+                MOST_CHANGE * nominal
+            } else {
+                f32::INFINITY
+            },
+            angle: TURNS * TAU * rate,
+            longest: (LONGEST * rate) as u16,
+        }
+    }
+
+    /// The spin to believe (rad/s), after the `known` one: that stays while another is not believed, `odd` samples in
+    /// a row by now.
+    #[inline]
+    pub(crate) fn take(
+        &self,
+        reading: Option<f32>,
+        known: Option<f32>,
+        odd: &mut u16,
+    ) -> Option<f32> {
+        let reading = reading.filter(|spin| spin.is_finite());
+        if let (Some(new), Some(known)) = (reading, known)
+            && (new - known).abs() > self.most_change
+            && *odd < self.longest
+            && f32::from(*odd) * known.abs() < self.angle
+        {
+            *odd += 1;
+            return Some(known);
+        }
+        *odd = 0;
+        reading
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    const RATE: f32 = 20_000.0;
+    const NOMINAL: f32 = 3_000.0;
+    /// Samples of a turn.
+    const TURN: usize = (TAU * RATE / NOMINAL) as usize;
+
+    fn run(readings: impl IntoIterator<Item = Option<f32>>) -> Vec<Option<f32>> {
+        let check = SpinCheck {
+            most_change: MOST_CHANGE * NOMINAL,
+            angle: TURNS * TAU * RATE,
+            longest: (LONGEST * RATE) as u16,
+        };
+        let (mut known, mut odd) = (None, 0);
+        let take = |reading| {
+            known = check.take(reading, known, &mut odd);
+            known
+        };
+        readings.into_iter().map(take).collect()
+    }
+
+    #[test]
+    fn two_wrong_turns_change_nothing() {
+        for wrong in [
+            2.0 * NOMINAL,
+            0.5 * NOMINAL,
+            6.6e6,
+            -NOMINAL,
+            f32::NAN,
+            f32::INFINITY,
+        ] {
+            let mut readings = vec![Some(NOMINAL); 1_000];
+            readings[500..500 + 2 * TURN].fill(Some(wrong));
+            let believed = run(readings);
+            let is_right =
+                |it: &Option<f32>| *it == Some(NOMINAL) || it.is_none() && !wrong.is_finite();
+            assert!(believed.iter().all(is_right), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_lasts_is_believed_after_three_turns_and_a_wrong_start_at_once() {
+        let readings = [[Some(NOMINAL); 500], [Some(0.7 * NOMINAL); 500]].concat();
+        let changed = run(readings)
+            .iter()
+            .filter(|it| **it == Some(0.7 * NOMINAL))
+            .count();
+        assert!(
+            (500 - 3 * TURN - 5..500 - 3 * TURN + 5).contains(&changed),
+            "{changed}"
+        );
+        let readings = [vec![Some(6.6e6); 50], vec![Some(NOMINAL); 50]].concat();
+        assert_eq!(run(readings)[51], Some(NOMINAL));
+        // A rotor that stands.
+        let readings = [vec![Some(0.0); 50], vec![Some(NOMINAL); 2_050]].concat();
+        assert_eq!(run(readings)[2_060], Some(NOMINAL));
+    }
+
+    #[test]
+    fn friction_is_followed_through_a_change_of_sign() {
+        let readings: Vec<_> = (0..2_000)
+            .map(|it| Some(NOMINAL - 3.0 * it as f32))
+            .collect();
+        assert_eq!(run(readings.clone()), readings);
+    }
+
+    #[test]
+    fn a_pulse_that_is_gone_is_gone() {
+        assert_eq!(run([Some(NOMINAL), None])[1], None);
+    }
+}
