@@ -154,6 +154,60 @@ pub enum Notice {
     Alarm(Alarm),
     /// The rotor came to the wall, or left it.
     Touch(Touch),
+    /// An order came over the link.
+    Ordered(Ordered),
+}
+
+/// What can be ordered over the link. The order of variants and fields is its format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Act {
+    /// Clear what is latched.
+    Clear,
+    /// Store the configuration that was staged, with this checksum, and start with it.
+    Commit(u32),
+    /// Erase this episode.
+    Erase(u32),
+    /// Keep this episode.
+    Lock(u32),
+    /// Give this episode free to be overwritten.
+    Unlock(u32),
+}
+
+impl Act {
+    /// Its code, and its number where it has one.
+    pub const fn parts(self) -> (u8, u32) {
+        match self {
+            Self::Clear => (0, 0),
+            Self::Commit(number) => (1, number),
+            Self::Erase(number) => (2, number),
+            Self::Lock(number) => (3, number),
+            Self::Unlock(number) => (4, number),
+        }
+    }
+
+    /// From [`Self::parts`]; none of an unknown code.
+    pub const fn of_parts(code: u8, number: u32) -> Option<Self> {
+        Some(match code {
+            0 => Self::Clear,
+            1 => Self::Commit(number),
+            2 => Self::Erase(number),
+            3 => Self::Lock(number),
+            4 => Self::Unlock(number),
+            _ => return None,
+        })
+    }
+}
+
+/// What came of an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ordered {
+    /// What was ordered.
+    pub act: Act,
+    /// Why it was not done, a code of the link from 1; 0 where it was.
+    pub refused: u8,
+    /// The last sample before it.
+    pub sample: u64,
 }
 
 /// When a whirl begins, and how it grows; s.

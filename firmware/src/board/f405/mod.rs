@@ -26,7 +26,7 @@ use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::config_block::{self, Block, BlockError, Settings};
+use touchdown_protocol::config_block::{self, Block, BlockError, Key, Settings};
 use touchdown_protocol::controller::{Fault, Faults, Outputs, Shown};
 use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
@@ -113,6 +113,10 @@ impl Board for Silicon {
         self.block.bytes()
     }
 
+    fn service(&self) -> bool {
+        self.pins.service()
+    }
+
     fn feed(&mut self) {
         self.watchdog.feed();
     }
@@ -136,6 +140,7 @@ struct Below {
     remote: Remote,
     inbox: Consumer<'static, Notice>,
     forecast_task: ForecastTask,
+    key: Option<Key>,
 }
 
 /// Starts sampling; looks ahead, logs, and serves the link.
@@ -145,11 +150,12 @@ pub fn main(memory: &'static mut Memory) -> ! {
         mut remote,
         mut inbox,
         mut forecast_task,
+        key,
     }) = start(memory)
     else {
         idle()
     };
-    let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
+    let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32, key);
     let mut known = (Shown::default(), Faults::NONE, 0);
     loop {
         while let Some(notice) = inbox.dequeue() {
@@ -217,7 +223,9 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
-    let identity = Identity::new(block.bytes(), log.as_ref().map_or(0, DropLog::boot));
+    // The log tells the checksum of the block, which would tell of the key.
+    let told = config_block::blanked(block.bytes(), settings.key.is_some());
+    let identity = Identity::new(&told, log.as_ref().map_or(0, DropLog::boot));
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
     let (app, recorder) = filled.inspect_err(refused).ok()?;
@@ -247,9 +255,10 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     unsafe { NVIC::unmask(Interrupt::ADC) };
     Some(Below {
         serial,
-        remote: Remote::new(chip.FLASH, chip.RCC, log),
+        remote: Remote::new(chip.FLASH, chip.RCC, chip.RNG, log),
         inbox,
         forecast_task,
+        key: settings.key,
     })
 }
 

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use super::args::{ExportFormat, LogCommand};
+use super::args::{EpisodeArgs, ExportFormat, LogCommand};
+use super::order::order;
 use crate::gate::{Gate, Outputs};
 use touchdown_base::failure::Failure;
 use touchdown_base::paint::Paint;
+use touchdown_core::event::Act;
 use touchdown_files::drop_log::{
     Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream,
 };
@@ -16,7 +18,7 @@ const OUT: &str = "--out";
 const CFG: &str = "--out (.cfg)";
 const DAT: &str = "--out (.dat)";
 
-/// Lists, shows, exports or verifies the episodes of a log.
+/// Lists, shows, exports or verifies the episodes of a log; keeps or erases those of a controller.
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
         LogCommand::List { file, json } => {
@@ -54,7 +56,14 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
                 Err(Failure::Check(format!("{file}: an episode is damaged")))
             }
         }
+        LogCommand::Lock(args) => order_about(args, Act::Lock),
+        LogCommand::Unlock(args) => order_about(args, Act::Unlock),
+        LogCommand::Erase(args) => order_about(args, Act::Erase),
     }
+}
+
+fn order_about(args: &EpisodeArgs, act: fn(u32) -> Act) -> Result<(), Failure> {
+    order(&args.port, act(args.episode), &args.right)
 }
 
 fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {

@@ -3,13 +3,16 @@
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::sample::{Edges, TACHOMETERS};
+use touchdown_protocol::link::Refusal;
 use touchdown_protocol::log::ending::Ending;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 
+use crate::link::why;
 use crate::stream::{of_field, to_field};
+use touchdown_scene::names::act_name;
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -36,6 +39,8 @@ pub struct Episode {
     pub ending: Option<Ending>,
     /// What was reported, in its order; those of an unknown kind left out.
     pub events: Vec<Event>,
+    /// What was ordered over the link.
+    pub orders: Vec<Order>,
     /// Pages by their state.
     pub report: Report,
     /// What had been learnt before the first sample, as in a stream; none where the episode does not say.
@@ -77,6 +82,17 @@ pub struct Event {
     pub normal_speed_m_s: f32,
 }
 
+/// An order, its time since the trigger.
+#[derive(Clone, Debug, Serialize)]
+pub struct Order {
+    /// s.
+    pub time_s: f64,
+    /// What.
+    pub order: &'static str,
+    /// Why it was refused; none where it was done.
+    pub why: Option<String>,
+}
+
 impl Episode {
     /// From the pages of a slot, or of a file.
     pub fn of(pages: &[u8]) -> Self {
@@ -113,6 +129,9 @@ impl Episode {
             events: header
                 .as_ref()
                 .map_or(Vec::new(), |it| events(it, &notices)),
+            orders: header
+                .as_ref()
+                .map_or(Vec::new(), |it| orders(it, &notices)),
             learnt: learnt(&parts),
             ending,
             report,
@@ -229,6 +248,19 @@ fn impossible(header: &Header) -> Vec<String> {
     broken
         .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
         .collect()
+}
+
+fn orders(header: &Header, notices: &[Notice]) -> Vec<Order> {
+    let rate = f64::from(header.sample_rate);
+    let order = |notice: &Notice| match notice {
+        Notice::Ordered(it) => Some(Order {
+            time_s: (it.sample as f64 - header.trigger as f64) / rate,
+            order: act_name(it.act),
+            why: Refusal::of_code(it.refused).map(|it| why(&it)),
+        }),
+        _ => None,
+    };
+    notices.iter().filter_map(order).collect()
 }
 
 fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {

@@ -42,7 +42,8 @@ fn of_line(error: &io::Error) -> String {
     }
 }
 
-fn why(refusal: &Refusal) -> String {
+/// The reason of a refusal.
+pub fn why(refusal: &Refusal) -> String {
     let text = match refusal {
         Refusal::Busy(busy) => busy_name(*busy),
         Refusal::Block => "that is no configuration of its version",
@@ -50,6 +51,7 @@ fn why(refusal: &Refusal) -> String {
         Refusal::NoStore => "this board cannot keep it",
         Refusal::StoreFailed => "its flash failed",
         Refusal::NoEpisode => "there is no such episode, or it is being written",
+        Refusal::NoRoom => "too few slots would be left for new episodes",
     };
     text.to_owned()
 }

@@ -3,11 +3,13 @@
 use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
+use super::right::{Mac, Nonce};
 use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Cause, Faults, Mode, Outputs};
 use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
 use crate::wire::NOTICE_BYTES;
+use touchdown_core::event::Act;
 use touchdown_core::phase::Phase;
 
 /// Most bytes of a log chunk.
@@ -33,10 +35,11 @@ pub enum Request {
     State,
     /// Answer: `Config`.
     ReadConfig,
-    /// Puts a configuration block in force and stores it. Answer: `Done` or `Refused`.
-    SetConfig(Block),
-    /// Clears what is latched. Answer: `Done` or `Refused`.
-    Clear,
+    /// Checks a configuration block and holds it ready for [`Act::Commit`]. Answer: `Config`, the block as it was
+    /// taken, or `Refused`.
+    Stage(Block),
+    /// Asks for a nonce. Answer: `Challenge`.
+    Challenge,
     /// Answer: `Episodes`.
     Episodes,
     /// Bytes of an episode from `offset` on. Answer: `Chunk` or `Refused`.
@@ -46,10 +49,12 @@ pub enum Request {
         /// First byte.
         offset: u32,
     },
-    /// Erases an episode. Answer: `Done` or `Refused`.
-    Erase {
-        /// The episode's number.
-        episode: u32,
+    /// An order. Answer: `Done` or `Refused`.
+    Order {
+        /// The right to it: [`super::right::mac`].
+        mac: Mac,
+        /// What is ordered.
+        act: Act,
     },
     /// Where the rotor has been just now. Answer: `Recent`.
     Recent {
@@ -70,7 +75,7 @@ pub enum Reply {
     State(State),
     /// A notice, in the bytes of `wire::encode_record`.
     Notice([u8; NOTICE_BYTES]),
-    /// The block in force.
+    /// The block in force or staged, without its key.
     Config(Block),
     /// What was asked is done.
     Done,
@@ -89,6 +94,8 @@ pub enum Reply {
     Recent(Recent),
     /// What was counted over the monitor's life; none where there is no log.
     Lifetime(Option<Lifetime>),
+    /// The nonce of the next order, and whether the controller has a key.
+    Challenge(Nonce, bool),
 }
 
 /// The newest of the recorded samples, at equal distances.
@@ -206,12 +213,45 @@ pub enum Refusal {
     StoreFailed,
     /// There is no such episode, or it is being written.
     NoEpisode,
+    /// Too few slots would be left for new episodes.
+    NoRoom,
 }
 
 impl Refusal {
     /// This parameter breaks its rule.
     pub fn parameter(name: &str) -> Self {
         Self::Parameter(shortened(name))
+    }
+}
+
+impl Refusal {
+    const PLAIN: [Self; 6] = [
+        Self::Block,
+        Self::Parameter(Text::new()),
+        Self::NoStore,
+        Self::StoreFailed,
+        Self::NoEpisode,
+        Self::NoRoom,
+    ];
+
+    /// Code of the reason in a notice, from 1.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::Busy(busy) => 1 + *busy as u8,
+            Self::Block => 17,
+            Self::Parameter(_) => 18,
+            Self::NoStore => 19,
+            Self::StoreFailed => 20,
+            Self::NoEpisode => 21,
+            Self::NoRoom => 22,
+        }
+    }
+
+    /// The reason of a code, without a parameter's name.
+    pub fn of_code(code: u8) -> Option<Self> {
+        let of = |first: u8| code.checked_sub(first).map(usize::from);
+        let busy = Busy::ALL.get(of(1)?).map(|it| Self::Busy(*it));
+        busy.or_else(|| Self::PLAIN.get(of(17)?).cloned())
     }
 }
 
