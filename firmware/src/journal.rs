@@ -44,10 +44,8 @@ pub fn notice(notice: &Notice) {
             touch.peak
         ),
         Notice::Ordered(ordered) => warn!(
-            "order: what {=u8}, refused {=u8}, sample {=u64}",
-            ordered.act.parts().0,
-            ordered.refused,
-            ordered.sample
+            "order: refused {=u8}, sample {=u64}",
+            ordered.refused, ordered.sample
         ),
         Notice::Outlook(outlook) => info!(
             "whirl: forward {=f32}, backward {=f32}, as of sample {=u64}",

@@ -174,31 +174,6 @@ pub enum Act {
     Unlock(u32),
 }
 
-impl Act {
-    /// Its code, and its number where it has one.
-    pub const fn parts(self) -> (u8, u32) {
-        match self {
-            Self::Clear => (0, 0),
-            Self::Commit(number) => (1, number),
-            Self::Erase(number) => (2, number),
-            Self::Lock(number) => (3, number),
-            Self::Unlock(number) => (4, number),
-        }
-    }
-
-    /// From [`Self::parts`]; none of an unknown code.
-    pub const fn of_parts(code: u8, number: u32) -> Option<Self> {
-        Some(match code {
-            0 => Self::Clear,
-            1 => Self::Commit(number),
-            2 => Self::Erase(number),
-            3 => Self::Lock(number),
-            4 => Self::Unlock(number),
-            _ => return None,
-        })
-    }
-}
-
 /// What came of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ordered {

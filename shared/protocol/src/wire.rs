@@ -8,8 +8,7 @@
 
 use crate::controller::{Busy, Cause, Mode, Outputs, Shown};
 use touchdown_core::event::{
-    Act, Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Ordered, Outlook, Plane,
-    Touch,
+    Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Ordered, Outlook, Plane, Touch,
 };
 use touchdown_core::fault::{Condition, Fault, FaultKind};
 pub use touchdown_core::monitor::Summary;
@@ -155,7 +154,7 @@ const ORDERED: u8 = 11;
 /// change of what is shown: tag, the outputs' bits, mode, cause (from 1), and its sample at 16. Of an alarm: tag,
 /// level, plane, and at 24 the fraction (f32). Of a touch: tag, whether it has ended, plane, number, onset, the sample
 /// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order to clear in a
-/// replay file: tag, why not (from 1). Of one over the link: tag, why not, what, a zero byte, and its number (u32).
+/// replay file: tag, why not (from 1). Of one over the link: tag, why not, and the act as over the link.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     // Without a path to a panic, which the tick may not have.
@@ -216,9 +215,11 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(28, &length.to_le_bytes());
         }
         Record::Notice(Notice::Ordered(ordered)) => {
-            let (what, number) = ordered.act.parts();
-            put(0, &[ORDERED, ordered.refused, what]);
-            put(4, &number.to_le_bytes());
+            let mut act = [0; 6];
+            // It has the room.
+            let _ = postcard::to_slice(&ordered.act, &mut act);
+            put(0, &[ORDERED, ordered.refused]);
+            put(2, &act);
             put(16, &ordered.sample.to_le_bytes());
         }
         Record::Switching(Switching { sample, shown }) => {
@@ -313,7 +314,7 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             }))
         }
         ORDERED => Record::Notice(Notice::Ordered(Ordered {
-            act: Act::of_parts(bytes[2], u32::from_le_bytes(four(4)))?,
+            act: postcard::from_bytes(&bytes[2..8]).ok()?,
             refused: bytes[1],
             sample,
         })),

@@ -166,7 +166,7 @@ pub(super) enum Command {
     Config(ConfigArgs),
     /// Clear what is latched in a controller, over its serial link
     #[command(after_help = help::CLEAR)]
-    Clear(ClearArgs),
+    Clear(OrderArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -521,31 +521,23 @@ pub(super) struct ConfigArgs {
 }
 
 #[derive(Args, Clone, Debug)]
-pub(super) struct ClearArgs {
+pub(super) struct OrderArgs {
     /// Serial device, tcp:HOST:PORT or unix:PATH
     pub port: String,
-    #[command(flatten)]
-    pub right: RightArgs,
-}
-
-#[derive(Args, Clone, Debug)]
-pub(super) struct EpisodeArgs {
-    /// Serial device, tcp:HOST:PORT or unix:PATH
-    pub port: String,
-    /// Its number
-    pub episode: u32,
-    #[command(flatten)]
-    pub right: RightArgs,
-}
-
-#[derive(Args, Clone, Debug)]
-pub(super) struct RightArgs {
     /// File with the key that the controller has
     #[arg(long, value_name = "FILE")]
     pub key_file: Option<String>,
     /// What came of it as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct EpisodeArgs {
+    #[command(flatten)]
+    pub order: OrderArgs,
+    /// Its number
+    pub episode: u32,
 }
 
 #[derive(Clone, Debug, Subcommand)]
@@ -594,13 +586,13 @@ pub(super) enum LogCommand {
         json: Option<String>,
     },
     /// Keep an episode of a controller: it is neither overwritten nor erased
-    #[command(after_help = help::LOG_LOCK)]
+    #[command(after_help = help::LOG_ORDER)]
     Lock(EpisodeArgs),
     /// Give an episode of a controller free to be overwritten
-    #[command(after_help = help::LOG_UNLOCK)]
+    #[command(after_help = help::LOG_ORDER)]
     Unlock(EpisodeArgs),
     /// Erase an episode of a controller
-    #[command(after_help = help::LOG_ERASE)]
+    #[command(after_help = help::LOG_ORDER)]
     Erase(EpisodeArgs),
 }
 

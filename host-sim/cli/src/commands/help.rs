@@ -140,31 +140,15 @@ Examples:
 
 Exit status: 0 no episode is damaged; 1 one is; 2 no log, or no answer.";
 
-pub(super) const LOG_LOCK: &str = "\
+pub(super) const LOG_ORDER: &str = "\
 Examples:
   touchdown log lock /dev/ttyACM0 7 --key-file k
-                                                episode 7 is neither overwritten nor erased
-
-It needs the key of the controller's configuration, or where that has none its service
-input on.
-
-Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
-
-pub(super) const LOG_UNLOCK: &str = "\
-Examples:
   touchdown log unlock /dev/ttyACM0 7           with the service input on
+  touchdown log erase /dev/ttyACM0 7 --json -
 
-It needs what `log lock` needs.
-
-Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
-
-pub(super) const LOG_ERASE: &str = "\
-Examples:
-  touchdown log erase /dev/ttyACM0 7 --key-file k
-  touchdown log erase /dev/ttyACM0 7 --json -   with the service input on
-
-It needs what `log lock` needs, and `run` off. A locked episode and the newest one stay.
-Nothing asks again: what is erased is gone.
+A locked episode is neither overwritten nor erased. These orders need the key of the
+controller's configuration, or where that has none its service input on. `erase` needs `run`
+off too. A locked episode and the newest one stay. Nothing asks again.
 
 Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
 

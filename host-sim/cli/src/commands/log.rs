@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{EpisodeArgs, ExportFormat, LogCommand};
+use super::args::{ExportFormat, LogCommand};
 use super::order::order;
 use crate::gate::{Gate, Outputs};
 use touchdown_base::failure::Failure;
@@ -56,14 +56,10 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
                 Err(Failure::Check(format!("{file}: an episode is damaged")))
             }
         }
-        LogCommand::Lock(args) => order_about(args, Act::Lock),
-        LogCommand::Unlock(args) => order_about(args, Act::Unlock),
-        LogCommand::Erase(args) => order_about(args, Act::Erase),
+        LogCommand::Lock(args) => order(Act::Lock(args.episode), &args.order),
+        LogCommand::Unlock(args) => order(Act::Unlock(args.episode), &args.order),
+        LogCommand::Erase(args) => order(Act::Erase(args.episode), &args.order),
     }
-}
-
-fn order_about(args: &EpisodeArgs, act: fn(u32) -> Act) -> Result<(), Failure> {
-    order(&args.port, act(args.episode), &args.right)
 }
 
 fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {

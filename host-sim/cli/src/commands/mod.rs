@@ -65,7 +65,7 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Rig(args)) => rig::rig(&args),
         Some(Command::Log { what }) => log::log(&what),
         Some(Command::Live(args)) => live::live(&args),
-        Some(Command::Clear(args)) => order::order(&args.port, Act::Clear, &args.right),
+        Some(Command::Clear(args)) => order::order(Act::Clear, &args),
         Some(Command::Config(args)) => config::config(&args),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();

@@ -4,7 +4,7 @@ use serde::Serialize;
 use touchdown_core::event::Act;
 use touchdown_protocol::config_block::Key;
 
-use super::args::RightArgs;
+use super::args::OrderArgs;
 use crate::gate::{Gate, note};
 use touchdown_base::failure::Failure;
 use touchdown_files::link::{Client, LinkError, Port, load_key, why};
@@ -22,11 +22,11 @@ struct Told {
 }
 
 /// Orders, and says what came of it.
-pub(super) fn order(port: &str, act: Act, right: &RightArgs) -> Result<(), Failure> {
-    let gate = Gate::new().reads("--key-file", &right.key_file);
-    let mut out = gate.writes("--json", &right.json).open()?;
-    let key = key_of(right.key_file.as_deref())?;
-    let port = Port::of(port);
+pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
+    let gate = Gate::new().reads("--key-file", &args.key_file);
+    let mut out = gate.writes("--json", &args.json).open()?;
+    let key = key_of(args.key_file.as_deref())?;
+    let port = Port::of(&args.port);
     let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
     let mut client = Client::new(port.open().map_err(silent)?);
     client.set_key(key);

@@ -3,11 +3,11 @@
 use serde_json::{Map, Value, json};
 use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_protocol::controller::Fault;
-use touchdown_protocol::link::{Refusal, State};
+use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;
-use touchdown_files::link::why;
+use touchdown_files::link::refused_why;
 use touchdown_run::controller_trace::alarm;
 use touchdown_run::detection::{declared, forecast, touch};
 use touchdown_scene::names::{
@@ -149,7 +149,7 @@ fn order(ordered: &Ordered, watched: &Watched) -> Value {
         "order": act_name(ordered.act),
         "episode": episode,
         "done": ordered.refused == 0,
-        "why": Refusal::of_code(ordered.refused).map(|it| why(&it)),
+        "why": refused_why(ordered.refused),
         "sample": ordered.sample,
         "time_s": watched.timebase().time(ordered.sample as f64),
     })

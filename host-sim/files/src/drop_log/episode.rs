@@ -3,14 +3,13 @@
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::sample::{Edges, TACHOMETERS};
-use touchdown_protocol::link::Refusal;
 use touchdown_protocol::log::ending::Ending;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 
-use crate::link::why;
+use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
 use touchdown_scene::names::act_name;
 
@@ -39,8 +38,8 @@ pub struct Episode {
     pub ending: Option<Ending>,
     /// What was reported, in its order; those of an unknown kind left out.
     pub events: Vec<Event>,
-    /// What was ordered over the link.
-    pub orders: Vec<Order>,
+    /// What was ordered over the link, and what came of it.
+    pub orders: Vec<String>,
     /// Pages by their state.
     pub report: Report,
     /// What had been learnt before the first sample, as in a stream; none where the episode does not say.
@@ -80,17 +79,6 @@ pub struct Event {
     pub declared_s: f64,
     /// Of an impact, m/s.
     pub normal_speed_m_s: f32,
-}
-
-/// An order, its time since the trigger.
-#[derive(Clone, Debug, Serialize)]
-pub struct Order {
-    /// s.
-    pub time_s: f64,
-    /// What.
-    pub order: &'static str,
-    /// Why it was refused; none where it was done.
-    pub why: Option<String>,
 }
 
 impl Episode {
@@ -250,14 +238,15 @@ fn impossible(header: &Header) -> Vec<String> {
         .collect()
 }
 
-fn orders(header: &Header, notices: &[Notice]) -> Vec<Order> {
-    let rate = f64::from(header.sample_rate);
+fn orders(header: &Header, notices: &[Notice]) -> Vec<String> {
     let order = |notice: &Notice| match notice {
-        Notice::Ordered(it) => Some(Order {
-            time_s: (it.sample as f64 - header.trigger as f64) / rate,
-            order: act_name(it.act),
-            why: Refusal::of_code(it.refused).map(|it| why(&it)),
-        }),
+        Notice::Ordered(it) => {
+            let time = it.sample as f64 - header.trigger as f64;
+            let time = 1e3 * time / f64::from(header.sample_rate);
+            let came = refused_why(it.refused)
+                .map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
+            Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
+        }
         _ => None,
     };
     notices.iter().filter_map(order).collect()

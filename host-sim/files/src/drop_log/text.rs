@@ -156,13 +156,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         );
     }
     for order in &episode.orders {
-        let why = order.why.as_deref();
-        let came = why.map_or("done".to_owned(), |it| format!("refused: {it}"));
-        text += &format!(
-            "ordered at {:.4} ms: {}, {came}\n",
-            order.time_s * 1e3,
-            order.order
-        );
+        text += &format!("order: {order}\n");
     }
     text
 }

@@ -55,3 +55,8 @@ pub fn why(refusal: &Refusal) -> String {
     };
     text.to_owned()
 }
+
+/// The reason of a notice of an order, none where it was done.
+pub fn refused_why(code: u8) -> Option<String> {
+    Refusal::of_code(code).map(|it| why(&it))
+}

@@ -16,7 +16,7 @@ mod line;
 mod port;
 
 pub use client::{Client, Told};
-pub use error::{LinkError, why};
+pub use error::{LinkError, refused_why, why};
 pub use key::load as load_key;
 pub(crate) use key::{RULE as KEY_RULE, parse as parse_key};
 pub use line::Line;

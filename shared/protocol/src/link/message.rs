@@ -225,33 +225,20 @@ impl Refusal {
 }
 
 impl Refusal {
-    const PLAIN: [Self; 6] = [
-        Self::Block,
-        Self::Parameter(Text::new()),
-        Self::NoStore,
-        Self::StoreFailed,
-        Self::NoEpisode,
-        Self::NoRoom,
-    ];
-
-    /// Code of the reason in a notice, from 1.
+    /// Code of the reason in a notice, from 1: as over the link, in one byte.
     pub fn code(&self) -> u8 {
-        match self {
-            Self::Busy(busy) => 1 + *busy as u8,
-            Self::Block => 17,
-            Self::Parameter(_) => 18,
-            Self::NoStore => 19,
-            Self::StoreFailed => 20,
-            Self::NoEpisode => 21,
-            Self::NoRoom => 22,
+        let mut bytes = [0; 2 + TEXT_BYTES];
+        let _ = postcard::to_slice(self, &mut bytes);
+        match bytes {
+            [0, busy, ..] => 1 + busy,
+            [other, ..] => 16 + other,
         }
     }
 
     /// The reason of a code, without a parameter's name.
     pub fn of_code(code: u8) -> Option<Self> {
-        let of = |first: u8| code.checked_sub(first).map(usize::from);
-        let busy = Busy::ALL.get(of(1)?).map(|it| Self::Busy(*it));
-        busy.or_else(|| Self::PLAIN.get(of(17)?).cloned())
+        let busy = code.checked_sub(1)?;
+        postcard::from_bytes(&if busy < 16 { [0, busy] } else { [code - 16, 0] }).ok()
     }
 }
 

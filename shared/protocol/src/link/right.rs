@@ -4,7 +4,6 @@ use core::hash::Hasher;
 
 use siphasher::sip128::{Hasher128, SipHasher24};
 
-use super::message::Refusal;
 use crate::config_block::{KEY_BYTES, Key};
 use crate::controller::Busy;
 use touchdown_core::event::Act;
@@ -76,10 +75,10 @@ impl Right {
         block: &[u8],
         now: u64,
         service: bool,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Busy> {
         let open = self.open.take();
         if self.key.is_none() && !service {
-            return Err(Busy::Service.into());
+            return Err(Busy::Service);
         }
         let in_time = open.filter(|(_, at)| now.wrapping_sub(*at) <= self.good);
         let right = in_time.map(|(nonce, _)| mac(self.key.as_ref(), &nonce, act, block));
@@ -92,7 +91,7 @@ impl Right {
         if right.map(differ) == Some(0) {
             Ok(())
         } else {
-            Err(Busy::NoRight.into())
+            Err(Busy::NoRight)
         }
     }
 }

@@ -28,29 +28,6 @@ pub trait Log {
     fn lifetime(&mut self) -> Option<Lifetime>;
 }
 
-/// A controller that keeps no log.
-impl Log for () {
-    fn episodes(&mut self) -> Option<(u32, u32)> {
-        None
-    }
-
-    fn fetch(&mut self, _: u32, _: u32, _: &mut Chunk) -> Result<u32, Refusal> {
-        Err(Refusal::NoEpisode)
-    }
-
-    fn erase(&mut self, _: u32) -> Result<(), Refusal> {
-        Err(Refusal::NoEpisode)
-    }
-
-    fn set_locked(&mut self, _: u32, _: bool) -> Result<(), Refusal> {
-        Err(Refusal::NoEpisode)
-    }
-
-    fn lifetime(&mut self) -> Option<Lifetime> {
-        None
-    }
-}
-
 /// A controller whose log may be missing.
 impl<L: Log> Log for Option<L> {
     fn episodes(&mut self) -> Option<(u32, u32)> {
@@ -229,7 +206,9 @@ impl Server {
             _ => &[],
         };
         let right = self.right.check(mac, &act, block, sample, device.service());
-        let result = right.and_then(|()| self.act(act, device));
+        let result = right
+            .map_err(Refusal::from)
+            .and_then(|()| self.act(act, device));
         device.ordered(&Notice::Ordered(Ordered {
             act,
             refused: result.as_ref().err().map_or(0, Refusal::code),
