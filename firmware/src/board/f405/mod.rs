@@ -97,6 +97,11 @@ impl InForce {
             Self::Default(block) => block,
         }
     }
+
+    /// Without its key: the log tells the checksum, which would tell of it.
+    fn told(&self, settings: &Settings) -> Block {
+        config_block::blanked(self.bytes(), settings.key.is_some())
+    }
 }
 
 impl Board for Silicon {
@@ -223,8 +228,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
-    // The log tells the checksum of the block, which would tell of the key.
-    let told = config_block::blanked(block.bytes(), settings.key.is_some());
+    let told = block.told(&settings);
     let identity = Identity::new(&told, log.as_ref().map_or(0, DropLog::boot));
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
