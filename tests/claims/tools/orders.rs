@@ -11,7 +11,10 @@ use assert_cmd::assert::Assert;
 use predicates::prelude::*;
 use predicates::str::contains;
 use serde_json::{Value, json};
+use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_protocol::config_block::Key;
+use touchdown_protocol::controller::Busy;
+use touchdown_protocol::link::Refusal;
 use touchdown_tests::binary::touchdown;
 use touchdown_tests::controller::{Controller, Machine};
 
@@ -143,10 +146,12 @@ fn orders_are_told_to_who_watches() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path();
     let controller = at_work(at, machine());
-    // One desktop at a time: what was ordered is told to the next one too, by this machine.
-    run(at, &format!("clear {PORT}")).code(1);
-    let ordered = controller.machine().notices.clone();
-    controller.machine().notices.extend(ordered);
+    let refused = Refusal::from(Busy::Service).code();
+    controller.machine().notices.push(Notice::Ordered(Ordered {
+        act: Act::Clear,
+        refused,
+        sample: 7,
+    }));
     let live = run(at, &format!("live {PORT} --json --seconds 2")).success();
     let text = String::from_utf8(live.get_output().stdout.clone()).expect("text");
     let lines = text.lines().map(|it| serde_json::from_str::<Value>(it).expect("JSON"));
