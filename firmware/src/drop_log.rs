@@ -1,12 +1,13 @@
 //! The drop log of a board: the recorder's blocks into flash, and episodes out of it for the link.
 
 use embedded_storage::nor_flash::MultiwriteNorFlash;
+use touchdown_protocol::controller::Busy;
 use touchdown_protocol::link::{CHUNK_BYTES, Chunk, Log, Refusal};
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::counters::Counters;
 
 use crate::recorder::Counted;
-use crate::store::{EPISODE_BYTES, MountError, Store};
+use crate::store::{EPISODE_BYTES, LockError, MountError, Store};
 
 /// A store of `SLOTS` episodes in its flash.
 pub struct DropLog<F, const SLOTS: usize> {
@@ -65,11 +66,23 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
     }
 
     fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
+        if self.store.episodes().any(|it| it == (episode, true)) {
+            return Err(Busy::Locked.into());
+        }
         match self.store.erase_episode(&mut self.flash, episode) {
             Ok(true) => Ok(()),
             Ok(false) => Err(Refusal::NoEpisode),
             Err(_) => Err(Refusal::StoreFailed),
         }
+    }
+
+    fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
+        let done = self.store.set_locked(&mut self.flash, episode, locked);
+        done.map_err(|error| match error {
+            LockError::Unknown => Refusal::NoEpisode,
+            LockError::NoRoom => Refusal::NoRoom,
+            LockError::WornOut | LockError::Flash(_) => Refusal::StoreFailed,
+        })
     }
 
     fn lifetime(&mut self) -> Option<Counters> {

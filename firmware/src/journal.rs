@@ -43,6 +43,10 @@ pub fn notice(notice: &Notice) {
             touch.onset,
             touch.peak
         ),
+        Notice::Ordered(ordered) => warn!(
+            "order: refused {=u8}, sample {=u64}",
+            ordered.refused, ordered.sample
+        ),
         Notice::Outlook(outlook) => info!(
             "whirl: forward {=f32}, backward {=f32}, as of sample {=u64}",
             outlook.probability_forward, outlook.probability_backward, outlook.made_at

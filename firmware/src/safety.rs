@@ -70,9 +70,10 @@ impl Safety {
         }
     }
 
-    /// An order to clear: all begins anew, but for a proof that holds.
+    /// An order to clear: all begins anew. It gives no right to run: that takes a new proof.
     pub fn clear(&mut self) {
         (self.mode, self.cause) = (Mode::SelfTest, Some(Cause::Order));
+        self.proven = false;
     }
 
     /// What it is doing.

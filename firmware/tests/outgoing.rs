@@ -10,7 +10,7 @@ fn a_notice_without_room_is_told_and_the_others_come_whole() {
         number: 7,
         sample: 100,
     };
-    let mut server = Server::new("0.1.0", 20_000.0);
+    let mut server = Server::new("0.1.0", 20_000.0, None);
     let mut outgoing = Outgoing::default();
     let (mut queued, mut lost, mut came) = (0, 0, 0);
     let mut decoder = Decoder::default();

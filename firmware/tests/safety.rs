@@ -29,7 +29,7 @@ struct World {
     in_danger: u8,
     lost: u8,
     off: u8,
-    /// Since the last latch, or power-on: levitation was shown while nothing was latched.
+    /// Since the last latch or order, or power-on: levitation was shown while nothing was latched.
     shown: bool,
     /// Since the last latch or order: the self-test was over.
     tested: bool,
@@ -102,7 +102,7 @@ impl World {
     fn step(mut self, input: &Input) -> Self {
         if input.clears {
             self.safety.clear();
-            (self.tested, self.latched) = (false, None);
+            (self.tested, self.latched, self.shown) = (false, None, false);
         }
         match input.reading {
             Reading::Missing => self.lost = (self.lost + 1).min(WINDOW),
@@ -257,6 +257,10 @@ impl Board for Desk {
 
     fn config(&self) -> &[u8] {
         &self.0
+    }
+
+    fn service(&self) -> bool {
+        false
     }
 
     fn feed(&mut self) {}

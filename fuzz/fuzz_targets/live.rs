@@ -30,7 +30,12 @@ fn said(reply: Reply) -> Option<Said> {
         Reply::Hello(hello) => {
             let wiring = Wiring::default();
             let monitor = default_config();
-            Some(greeting(Settings { monitor, wiring }, hello.sample_rate))
+            let settings = Settings {
+                monitor,
+                wiring,
+                key: None,
+            };
+            Some(greeting(settings, hello.sample_rate))
         }
         Reply::Config(block) => {
             let (_, settings) = config_block::decode(&block).ok()?;

@@ -1,7 +1,7 @@
 //! A controller that is none: the real server of the link behind a socket, over a machine that does as it is
 //! told.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpListener;
 use std::os::unix::net::UnixListener;
@@ -15,8 +15,8 @@ use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, Settings, Wiring};
-use touchdown_protocol::controller::{Faults, Mode, Outputs};
+use touchdown_protocol::config_block::{Block, Key, Settings, Wiring};
+use touchdown_protocol::controller::{Busy, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Chunk, Device, Log, Recent, Refusal, Server, State};
 use touchdown_protocol::log::counters::Counters;
 
@@ -57,6 +57,7 @@ pub fn settings() -> Settings {
             commissioned: false,
         },
         wiring: Wiring::default(),
+        key: None,
     }
 }
 
@@ -124,6 +125,12 @@ pub struct Machine {
     pub lifetime: Option<Counters>,
     /// What it says of its firmware.
     pub firmware: &'static str,
+    /// Whether its service input is on.
+    pub service: bool,
+    /// Of its configuration.
+    pub key: Option<Key>,
+    /// Episodes that are locked.
+    pub locked: BTreeSet<u32>,
     block: Block,
 }
 
@@ -134,6 +141,14 @@ impl Device for Machine {
 
     fn config(&mut self) -> Block {
         self.block.clone()
+    }
+
+    fn service(&mut self) -> bool {
+        self.service
+    }
+
+    fn ordered(&mut self, notice: &Notice) {
+        self.notices.push(*notice);
     }
 
     fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
@@ -166,8 +181,24 @@ impl Log for Machine {
         Ok(bytes.len() as u32)
     }
 
-    fn erase(&mut self, _: u32) -> Result<(), Refusal> {
-        Err(Refusal::NoEpisode)
+    fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
+        if self.locked.contains(&episode) {
+            return Err(Busy::Locked.into());
+        }
+        let erased = self.episodes.remove(&episode);
+        erased.map(|_| ()).ok_or(Refusal::NoEpisode)
+    }
+
+    fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
+        if !self.episodes.contains_key(&episode) {
+            return Err(Refusal::NoEpisode);
+        }
+        if locked {
+            self.locked.insert(episode);
+        } else {
+            self.locked.remove(&episode);
+        }
+        Ok(())
     }
 
     fn lifetime(&mut self) -> Option<Counters> {
@@ -184,6 +215,9 @@ impl Default for Machine {
             episodes: BTreeMap::new(),
             lifetime: None,
             firmware: "0.1.0",
+            service: false,
+            key: None,
+            locked: BTreeSet::new(),
             block: config_block::encode(&settings()),
         }
     }
@@ -262,8 +296,11 @@ impl Drop for Controller {
 
 /// Until one of the ends is gone.
 fn session(mut stream: Box<dyn Stream>, machine: &Mutex<Machine>, plugged: &Mutex<bool>) {
-    let firmware = machine.lock().expect("a machine").firmware;
-    let mut server = Server::new(firmware, SAMPLE_RATE);
+    let (firmware, key) = {
+        let machine = machine.lock().expect("a machine");
+        (machine.firmware, machine.key)
+    };
+    let mut server = Server::new(firmware, SAMPLE_RATE, key);
     let mut told = Instant::now();
     let mut bytes = [0; 512];
     while *plugged.lock().expect("a flag") {

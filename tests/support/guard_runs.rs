@@ -203,6 +203,10 @@ impl Board for Desk {
     fn config(&self) -> &[u8] {
         &self.0
     }
+    fn service(&self) -> bool {
+        false
+    }
+
     fn feed(&mut self) {}
 }
 
@@ -214,6 +218,7 @@ impl Run {
         let settings = Settings {
             monitor: config,
             wiring: Wiring::default(),
+            key: None,
         };
         let mut chain = told.on(machine);
         chain.rate = rate;

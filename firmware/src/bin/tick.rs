@@ -40,6 +40,10 @@ mod image {
             self.0
         }
 
+        fn service(&self) -> bool {
+            false
+        }
+
         fn feed(&mut self) {
             write(0);
         }

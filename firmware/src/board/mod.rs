@@ -26,6 +26,9 @@ pub trait Board {
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];
 
+    /// Whether the local service input is on.
+    fn service(&self) -> bool;
+
     /// Feeds the watchdog; the last call of a tick that ran to its end.
     fn feed(&mut self);
 }
@@ -51,6 +54,7 @@ pub fn default_settings() -> Settings {
     Settings {
         monitor: default_config(),
         wiring: Wiring::default(),
+        key: None,
     }
 }
 

@@ -215,8 +215,8 @@ impl Capture {
         }
     }
 
-    /// An alarm, while half of the room is left for what the detector says.
-    pub(super) fn note_alarm(&mut self, notice: &Notice) {
+    /// An alarm or an order, while half of the room is left for what the detector says.
+    pub(super) fn note_aside(&mut self, notice: &Notice) {
         if self.notices.len() < NOTICES / 2 {
             let _ = self
                 .notices

@@ -249,7 +249,7 @@ impl<'m> Recorder<'m> {
         }
     }
 
-    /// What the forecast says between two ticks.
+    /// What the forecast says between two ticks, or what was ordered.
     pub fn hear(&mut self, notice: &Notice) {
         self.note(notice);
     }
@@ -343,11 +343,11 @@ impl<'m> Recorder<'m> {
                 *touches = touches.saturating_add(u32::from(touch.end.is_none()));
                 return;
             }
-            Notice::Alarm(_) => {
+            Notice::Alarm(_) | Notice::Ordered(_) => {
                 if let Drop::Recorded(at) = self.drop
                     && let Some(capture) = self.captures.get_mut(at)
                 {
-                    capture.note_alarm(notice);
+                    capture.note_aside(notice);
                 }
                 return;
             }

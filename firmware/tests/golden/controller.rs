@@ -40,6 +40,10 @@ impl Board for Desk {
         &self.0
     }
 
+    fn service(&self) -> bool {
+        false
+    }
+
     fn feed(&mut self) {}
 }
 
@@ -74,6 +78,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     let mut desk = Desk(config_block::encode(&Settings {
         monitor: *config,
         wiring: Wiring::default(),
+        key: None,
     }));
     let mut memory = Box::new(Memory::EMPTY);
     let mut recorder = Recorder::new(&mut memory, config, Identity::new(&desk.0, log.boot()));

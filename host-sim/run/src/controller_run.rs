@@ -81,7 +81,7 @@ pub fn run(
         block: &desk.block,
         log: &mut log,
     };
-    let mut server = Server::new(env!("CARGO_PKG_VERSION"), config.detector.sample_rate);
+    let mut server = Server::new(env!("CARGO_PKG_VERSION"), config.detector.sample_rate, None);
     let mut ask = |request| ask(&mut server, &mut remote, &request);
     let (Reply::Hello(hello), Reply::State(state)) = (ask(Request::Hello), ask(Request::State))
     else {
@@ -122,6 +122,7 @@ impl Desk {
             block: config_block::encode(&Settings {
                 monitor: *config,
                 wiring: Wiring::default(),
+                key: None,
             }),
             notices: Vec::new(),
             left_out: 0,
@@ -155,6 +156,10 @@ impl Board for Desk {
         &self.block
     }
 
+    fn service(&self) -> bool {
+        false
+    }
+
     // There is no watchdog on a desktop.
     fn feed(&mut self) {}
 }
@@ -175,6 +180,13 @@ impl Device for Remote<'_> {
     fn config(&mut self) -> Block {
         self.block.clone()
     }
+
+    fn service(&mut self) -> bool {
+        false
+    }
+
+    // Nobody orders over this link.
+    fn ordered(&mut self, _: &Notice) {}
 
     fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
         Err(Refusal::NoStore)

@@ -82,7 +82,7 @@ pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
                     (last.sample, last.declared_s) = begun;
                 }
             }
-            Notice::Alarm(_) => {}
+            Notice::Alarm(_) | Notice::Ordered(_) => {}
             Notice::Confirmed { number, sample } => {
                 // From the end: numbers wrap round in a long run.
                 if let Some(index) = numbers.iter().rposition(|n| *n == number) {

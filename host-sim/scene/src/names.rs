@@ -1,7 +1,7 @@
 //! What phases, events and regimes are called in text.
 
 use touchdown_core::detect::Phase;
-use touchdown_core::event::{EventKind, Plane};
+use touchdown_core::event::{Act, EventKind, Plane};
 use touchdown_core::sample::CHANNELS;
 use touchdown_protocol::controller::{Busy, Cause, Fault, Mode};
 
@@ -73,6 +73,17 @@ pub fn cause_name(cause: Cause) -> &'static str {
     }
 }
 
+/// Name of an order.
+pub fn act_name(act: Act) -> &'static str {
+    match act {
+        Act::Clear => "clear",
+        Act::Commit(_) => "set configuration",
+        Act::Erase(_) => "erase",
+        Act::Lock(_) => "lock",
+        Act::Unlock(_) => "unlock",
+    }
+}
+
 /// Why an order is refused.
 pub fn busy_name(busy: Busy) -> &'static str {
     match busy {
@@ -80,6 +91,10 @@ pub fn busy_name(busy: Busy) -> &'static str {
         Busy::Blind => "no plane gives a position",
         Busy::Watching => "it watches, so the machine may run",
         Busy::Latched => "a drop is latched",
+        Busy::NoRight => "no right: it takes the key of its configuration (--key-file), within 5 s",
+        Busy::Service => "no right: it has no key, so its service input must be on",
+        Busy::Locked => "the episode is locked",
+        Busy::Last => "the episode is the newest one",
     }
 }
 

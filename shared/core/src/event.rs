@@ -154,6 +154,35 @@ pub enum Notice {
     Alarm(Alarm),
     /// The rotor came to the wall, or left it.
     Touch(Touch),
+    /// An order came over the link.
+    Ordered(Ordered),
+}
+
+/// What can be ordered over the link. The order of variants and fields is its format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Act {
+    /// Clear what is latched.
+    Clear,
+    /// Store the configuration that was staged, with this checksum, and start with it.
+    Commit(u32),
+    /// Erase this episode.
+    Erase(u32),
+    /// Keep this episode.
+    Lock(u32),
+    /// Give this episode free to be overwritten.
+    Unlock(u32),
+}
+
+/// What came of an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ordered {
+    /// What was ordered.
+    pub act: Act,
+    /// Why it was not done, a code of the link from 1; 0 where it was.
+    pub refused: u8,
+    /// The last sample before it.
+    pub sample: u64,
 }
 
 /// When a whirl begins, and how it grows; s.

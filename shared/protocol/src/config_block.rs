@@ -13,7 +13,7 @@ use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_rotor::error::ConfigError;
 
 /// First bytes of a block; the last is the version.
-pub const MAGIC: [u8; 4] = *b"TDC\x03";
+pub const MAGIC: [u8; 4] = *b"TDC\x04";
 /// Most bytes of a block.
 pub const BLOCK_BYTES: usize = 384;
 const HEAD: usize = MAGIC.len() + 2;
@@ -29,6 +29,30 @@ pub struct Settings {
     pub monitor: MonitorConfig,
     /// What else is wired.
     pub wiring: Wiring,
+    /// Of the right to order over the link. The last field: [`blanked`] finds it there.
+    pub key: Option<Key>,
+}
+
+/// A key of the right to order.
+#[derive(Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Key(pub [u8; KEY_BYTES]);
+
+/// Bytes of a key.
+pub const KEY_BYTES: usize = 16;
+
+impl Key {
+    /// Stands for a key that is not told: in what is read back, and in what leaves the key as it is.
+    pub const HELD: Self = Self([0; KEY_BYTES]);
+}
+
+impl fmt::Debug for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::HELD {
+            "held"
+        } else {
+            "secret"
+        })
+    }
 }
 
 /// What is wired besides the position sensors.
@@ -88,7 +112,25 @@ pub fn encode(settings: &Settings) -> Block {
     block
 }
 
+/// The block with [`Key::HELD`] for its key, if it is `keyed`. A checksum that was wrong stays wrong.
+pub fn blanked(block: &[u8], keyed: bool) -> Block {
+    let mut blank = Block::from_slice(block).unwrap_or_default();
+    if let Some((checked, checksum)) = blank.split_last_chunk_mut::<TAIL>() {
+        let was = CRC.checksum(checked);
+        if let Some(key) = checked.last_chunk_mut::<KEY_BYTES>().filter(|_| keyed) {
+            *key = Key::HELD.0;
+        }
+        let change = (was ^ CRC.checksum(checked)).to_le_bytes();
+        checksum
+            .iter_mut()
+            .zip(change)
+            .for_each(|(to, it)| *to ^= it);
+    }
+    blank
+}
+
 /// The block at the start of `bytes`, and its settings, checked.
+#[inline(never)]
 pub fn decode(bytes: &[u8]) -> Result<(&[u8], Settings), BlockError> {
     if bytes.iter().take(HEAD).all(|&byte| byte == 0xff) {
         return Err(BlockError::Blank);

@@ -210,11 +210,28 @@ pub enum Busy {
     Watching,
     /// A drop is latched, to be cleared first.
     Latched,
+    /// No nonce, a wrong answer to it, or one that came too late.
+    NoRight,
+    /// There is no key, and the service input is off.
+    Service,
+    /// The episode is locked.
+    Locked,
+    /// The episode is the newest one.
+    Last,
 }
 
 impl Busy {
     /// All reasons, in the order of their codes.
-    pub const ALL: [Self; 4] = [Self::DropRuns, Self::Blind, Self::Watching, Self::Latched];
+    pub const ALL: [Self; 8] = [
+        Self::DropRuns,
+        Self::Blind,
+        Self::Watching,
+        Self::Latched,
+        Self::NoRight,
+        Self::Service,
+        Self::Locked,
+        Self::Last,
+    ];
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 
 use crate::controller::{Busy, Cause, Mode, Outputs, Shown};
 use touchdown_core::event::{
-    Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Outlook, Plane, Touch,
+    Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Ordered, Outlook, Plane, Touch,
 };
 use touchdown_core::fault::{Condition, Fault, FaultKind};
 pub use touchdown_core::monitor::Summary;
@@ -28,6 +28,8 @@ const SPIN_PRESENT: u8 = 1 << 4;
 const LEVITATED_PRESENT: u8 = 1 << 5;
 const LEVITATED_ON: u8 = 1 << 6;
 const CLEAR: u8 = 1 << 7;
+/// Beside the pulse channels.
+const SERVICE: u8 = 1 << 7;
 
 /// Sample to bytes: four u16 counts, flags, which pulse channels are there, their ages, spin (f32),
 /// their counts (u16).
@@ -89,6 +91,17 @@ pub fn has_clear(bytes: &[u8; SAMPLE_BYTES]) -> bool {
     bytes[8] & CLEAR != 0
 }
 
+/// The bytes of a sample at which the service input is on.
+pub fn with_service(mut bytes: [u8; SAMPLE_BYTES]) -> [u8; SAMPLE_BYTES] {
+    bytes[9] |= SERVICE;
+    bytes
+}
+
+/// Whether the service input is on at this sample.
+pub fn has_service(bytes: &[u8; SAMPLE_BYTES]) -> bool {
+    bytes[9] & SERVICE != 0
+}
+
 /// A change of what the controller shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switching {
@@ -132,6 +145,7 @@ const SWITCHING: u8 = 7;
 const ALARM: u8 = 8;
 const TOUCH: u8 = 9;
 const CLEARED: u8 = 10;
+const ORDERED: u8 = 11;
 
 /// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
 /// three 8-byte fields. The summary has the conditions of the channels at 4. Of an
@@ -139,7 +153,8 @@ const CLEARED: u8 = 10;
 /// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32). Of a
 /// change of what is shown: tag, the outputs' bits, mode, cause (from 1), and its sample at 16. Of an alarm: tag,
 /// level, plane, and at 24 the fraction (f32). Of a touch: tag, whether it has ended, plane, number, onset, the sample
-/// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order: tag, why not (from 1).
+/// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order to clear in a
+/// replay file: tag, why not (from 1). Of one over the link: tag, why not, and the act as over the link.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     // Without a path to a panic, which the tick may not have.
@@ -198,6 +213,14 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(16, &touch.declared.to_le_bytes());
             put(24, &touch.peak.to_le_bytes());
             put(28, &length.to_le_bytes());
+        }
+        Record::Notice(Notice::Ordered(ordered)) => {
+            let mut act = [0; 6];
+            // It has the room.
+            let _ = postcard::to_slice(&ordered.act, &mut act);
+            put(0, &[ORDERED, ordered.refused]);
+            put(2, &act);
+            put(16, &ordered.sample.to_le_bytes());
         }
         Record::Switching(Switching { sample, shown }) => {
             let cause = shown.cause.map_or(0, |it| 1 + it as u8);
@@ -290,6 +313,11 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
                 peak: real(24),
             }))
         }
+        ORDERED => Record::Notice(Notice::Ordered(Ordered {
+            act: postcard::from_bytes(&bytes[2..8]).ok()?,
+            refused: bytes[1],
+            sample,
+        })),
         SWITCHING => Record::Switching(Switching {
             sample,
             shown: Shown {

@@ -2,15 +2,16 @@
 
 use proptest::prelude::*;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
+use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
+use touchdown_protocol::config_block::{BlockError, KEY_BYTES, Key, Settings, Wiring};
 use touchdown_protocol::controller::{Busy, Faults, Mode, Outputs};
 use touchdown_protocol::link::{
     Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
-    Reply, Request, Server, State, VERSION, encode,
+    Reply, Request, Server, State, VERSION, encode, mac,
 };
 use touchdown_protocol::log::counters::Counters as Lifetime;
 use touchdown_rotor::error::ConfigError;
@@ -87,14 +88,16 @@ fn settings() -> Settings {
             pulses_per_turn: Some(u16::MAX),
             levitation: true,
         },
+        key: Some(Key(*b"a key of 16 byte")),
     }
 }
 
-/// A controller with one episode.
+/// A controller with one episode. It has no key, and its service input is on.
 struct Bench {
     block: config_block::Block,
     episode: Vec<u8>,
     drop_runs: bool,
+    ordered: Vec<Ordered>,
 }
 
 impl Bench {
@@ -103,6 +106,7 @@ impl Bench {
             block: config_block::encode(&settings()),
             episode: (0..1_000).map(|it| it as u8).collect(),
             drop_runs: false,
+            ordered: vec![],
         }
     }
 }
@@ -114,6 +118,16 @@ impl Device for Bench {
 
     fn config(&mut self) -> config_block::Block {
         self.block.clone()
+    }
+
+    fn service(&mut self) -> bool {
+        true
+    }
+
+    fn ordered(&mut self, notice: &Notice) {
+        if let Notice::Ordered(it) = notice {
+            self.ordered.push(*it);
+        }
     }
 
     fn set_config(&mut self, block: &[u8], _: &Settings) -> Result<(), Refusal> {
@@ -157,13 +171,17 @@ impl Log for Bench {
         Err(Refusal::NoEpisode)
     }
 
+    fn set_locked(&mut self, _: u32, _: bool) -> Result<(), Refusal> {
+        Err(Refusal::NoEpisode)
+    }
+
     fn lifetime(&mut self) -> Option<Lifetime> {
         Some(LIFETIME)
     }
 }
 
 fn server() -> Server {
-    Server::new("0.1.0", 20_000.0)
+    Server::new("0.1.0", 20_000.0, None)
 }
 
 fn ask(server: &mut Server, device: &mut Bench, request: &Request) -> Reply {
@@ -176,6 +194,20 @@ fn ask(server: &mut Server, device: &mut Bench, request: &Request) -> Reply {
     let reply = replies.next().expect("an answer").expect("a whole one");
     assert_eq!(reply.sequence, 9);
     reply.message
+}
+
+/// An order with the right that the server gives.
+fn order(server: &mut Server, device: &mut Bench, act: Act, block: &[u8]) -> Reply {
+    let Reply::Challenge(nonce, false) = ask(server, device, &Request::Challenge) else {
+        panic!("no nonce");
+    };
+    let mac = mac(None, &nonce, &act, block);
+    ask(server, device, &Request::Order { mac, act })
+}
+
+/// A block's own checksum.
+fn checksum(block: &[u8]) -> u32 {
+    u32::from_le_bytes(*block.last_chunk().expect("a block"))
 }
 
 /// The worked examples of docs/formats/link.md: a name in back quotes, then its bytes.
@@ -208,6 +240,18 @@ fn worked_examples_of_the_specification_are_what_is_sent() {
     let lifetime = ask(&mut server, &mut bench, &Request::Lifetime);
     frames.push(("lifetime, asked", encode(9, &Request::Lifetime).unwrap()));
     frames.push(("lifetime, answered", encode(9, &lifetime).unwrap()));
+    let challenge = ask(&mut server, &mut bench, &Request::Challenge);
+    let Reply::Challenge(nonce, false) = challenge else {
+        panic!("{challenge:?}");
+    };
+    let mac = mac(None, &nonce, &Act::Clear, &[]);
+    let act = Act::Clear;
+    frames.push(("challenge, asked", encode(9, &Request::Challenge).unwrap()));
+    frames.push(("challenge, answered", encode(9, &challenge).unwrap()));
+    frames.push((
+        "clear, ordered",
+        encode(2, &Request::Order { mac, act }).unwrap(),
+    ));
     let hex = |frame: &[u8]| {
         frame
             .iter()
@@ -271,31 +315,99 @@ fn every_bit_that_flips_is_found() {
 }
 
 #[test]
-fn configuration_is_read_set_and_refused_with_the_reason() {
+fn configuration_is_read_staged_committed_and_refused_with_the_reason() {
     let (mut server, mut bench) = (server(), Bench::new());
-    let block = config_block::encode(&settings());
+    let plain = Settings {
+        key: None,
+        ..settings()
+    };
+    bench.block = config_block::encode(&plain);
     assert_eq!(
         ask(&mut server, &mut bench, &Request::ReadConfig),
-        Reply::Config(block.clone())
+        Reply::Config(bench.block.clone())
     );
-    let set = Request::SetConfig(block.clone());
-    assert_eq!(ask(&mut server, &mut bench, &set), Reply::Done);
+    // What is staged is read back without its key, and not in force.
+    let block = config_block::encode(&settings());
+    let stage = |block: &config_block::Block| Request::Stage(block.clone());
+    let read_back = ask(&mut server, &mut bench, &stage(&block));
+    assert_eq!(
+        read_back,
+        Reply::Config(config_block::blanked(&block, true))
+    );
+    assert_eq!(bench.block, config_block::encode(&plain));
+    let commit = Act::Commit(checksum(&block));
+    // The right is to these bytes, not to all of that checksum.
+    let reply = order(&mut server, &mut bench, commit, &bench_block(&plain));
+    assert_eq!(reply, Reply::Refused(Busy::NoRight.into()));
+    let other = Act::Commit(checksum(&block) ^ 1);
+    let reply = order(&mut server, &mut bench, other, &block);
+    assert_eq!(reply, Reply::Refused(Refusal::Block));
+    bench.drop_runs = true;
+    let reply = order(&mut server, &mut bench, commit, &block);
+    assert_eq!(reply, Reply::Refused(Refusal::Busy(Busy::DropRuns)));
+    bench.drop_runs = false;
+    assert_eq!(order(&mut server, &mut bench, commit, &block), Reply::Done);
+    assert_eq!(bench.block, block);
+    let refused: Vec<u8> = bench.ordered.iter().map(|it| it.refused).collect();
+    assert_eq!(refused, [5, 17, 1, 0]);
 
     let mut wrong = settings();
     wrong.monitor.detector.machine.clearance = -1.0;
-    let set_wrong = Request::SetConfig(config_block::encode(&wrong));
+    let reply = ask(&mut server, &mut bench, &stage(&bench_block(&wrong)));
     let refused = Reply::Refused(Refusal::Parameter("clearance".try_into().unwrap()));
-    assert_eq!(ask(&mut server, &mut bench, &set_wrong), refused);
-    let mut damaged = block;
+    assert_eq!(reply, refused);
+    // No key can be kept where there is none.
+    wrong = settings();
+    wrong.key = Some(Key::HELD);
+    let held = bench_block(&wrong);
+    ask(&mut server, &mut bench, &stage(&held));
+    let commit = Act::Commit(checksum(&held));
+    let reply = order(&mut server, &mut bench, commit, &held);
+    assert_eq!(reply, Reply::Refused(Refusal::parameter("key")));
+    let mut damaged = block.clone();
     damaged[20] ^= 1;
-    let refused = Reply::Refused(Refusal::Block);
-    assert_eq!(
-        ask(&mut server, &mut bench, &Request::SetConfig(damaged)),
-        refused
-    );
-    bench.drop_runs = true;
-    let refused = Reply::Refused(Refusal::Busy(Busy::DropRuns));
-    assert_eq!(ask(&mut server, &mut bench, &set), refused);
+    let reply = ask(&mut server, &mut bench, &stage(&damaged));
+    assert_eq!(reply, Reply::Refused(Refusal::Block));
+    assert_eq!(bench.block, block);
+}
+
+fn bench_block(settings: &Settings) -> config_block::Block {
+    config_block::encode(settings)
+}
+
+#[test]
+fn a_block_without_its_key_tells_nothing_of_it_and_a_damaged_one_stays_damaged() {
+    let mut other = settings();
+    other.key = Some(Key([9; KEY_BYTES]));
+    let [block, other] = [settings(), other].map(|it| config_block::encode(&it));
+    let blank = config_block::blanked(&block, true);
+    assert_eq!(blank, config_block::blanked(&other, true));
+    let (_, shown) = config_block::decode(&blank).expect("a block");
+    assert_eq!(shown.key, Some(Key::HELD));
+    assert_eq!(format!("{:?}", settings().key), "Some(secret)");
+    for bit in 0..8 * block.len() {
+        let mut damaged = block.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        let blank = config_block::blanked(&damaged, true);
+        assert!(config_block::decode(&blank).is_err(), "bit {bit}");
+    }
+}
+
+#[test]
+fn a_right_is_siphash_2_4_over_nonce_act_and_block() {
+    let nonce = core::array::from_fn(|it| it as u8);
+    let key = Key(nonce);
+    let reference = |bytes: &[u8]| {
+        let hasher = siphasher::sip128::SipHasher24::new_with_key(&key.0);
+        hasher.hash(bytes).as_bytes()
+    };
+    // First of the 128-bit vectors of the reference implementation (veorq/SipHash, vectors.h).
+    let empty = 0xa381_7f04_ba25_a8e6_6df6_7214_c755_0293_u128;
+    assert_eq!(reference(&[]), empty.to_be_bytes());
+    // Variant 2, and 300 in seven bits a byte.
+    let message = [&nonce[..], &[2, 0xac, 0x02], &[18, 19]].concat();
+    let right = mac(Some(&key), &nonce, &Act::Erase(300), &[18, 19]);
+    assert_eq!(right, reference(&message));
 }
 
 #[test]
@@ -369,7 +481,7 @@ fn longest_settings_and_chunk_have_room() {
         Ok((block.as_slice(), settings()))
     );
     let full = core::iter::repeat_n(0xff, config_block::BLOCK_BYTES).collect();
-    assert!(encode(0xff, &Request::SetConfig(full)).is_some());
+    assert!(encode(0xff, &Request::Stage(full)).is_some());
     let bytes = core::iter::repeat_n(0xff, 256).collect();
     let total = u32::MAX;
     assert!(encode(0xff, &Reply::Chunk { total, bytes }).is_some());

@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::config_block::{Key, Settings};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Mode};
-use touchdown_core::event::{EventKind, Notice};
-use touchdown_protocol::link::{Refusal, Request, State};
+use touchdown_core::event::{Act, EventKind, Notice};
+use touchdown_protocol::link::{Refusal, State};
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_files::drop_log::{Dump, Episode};
 use touchdown_files::link::{Client, LinkError, Told};
@@ -82,7 +82,7 @@ fn fetched(talk: &mut Client, number: u32) -> Vec<u8> {
 
 fn refused(talk: &mut Client, block: &[u8]) -> Refusal {
     let block = config_block::Block::from_slice(block).expect("fits");
-    match talk.order(&Request::SetConfig(block)) {
+    match talk.set_block(&block) {
         Err(LinkError::Refused(why)) => why,
         other => panic!("{other:?}"),
     }
@@ -90,6 +90,17 @@ fn refused(talk: &mut Client, block: &[u8]) -> Refusal {
 
 fn settings_in_force(talk: &mut Client) -> Settings {
     talk.settings().expect("a valid configuration")
+}
+
+/// Switches the service input on, and waits until the image has seen it.
+fn serve(rig: &Rig, talk: &mut Client) {
+    rig.order(Order::Service(true));
+    until("the service input is seen", || {
+        !matches!(
+            talk.order(Act::Erase(u32::MAX)),
+            Err(LinkError::Refused(Refusal::Busy(Busy::Service)))
+        )
+    });
 }
 
 /// Since the last call.
@@ -120,8 +131,12 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     let why = refused(&mut talk, &config_block::encode(&settings));
     assert_eq!(why, Refusal::parameter("clearance"));
     settings.monitor.detector.machine.clearance = 0.31e-3;
-    talk.order(&Request::SetConfig(config_block::encode(&settings)))
-        .expect("is taken");
+    // Without a key it takes the service input.
+    let why = refused(&mut talk, &config_block::encode(&settings));
+    assert_eq!(why, Refusal::Busy(Busy::Service));
+    assert_eq!(rig.starts(), 1);
+    serve(&rig, &mut talk);
+    talk.set_settings(&settings).expect("is taken");
     until("a restart", || rig.starts() == 2);
     assert_eq!(settings_in_force(&mut talk), settings);
 
@@ -158,13 +173,73 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     assert_eq!(counters.landings - counters.unweighed, 1);
 
     let (first, last) = talk.episodes().expect("answers").expect("some");
-    for episode in first..=last {
-        talk.order(&Request::Erase { episode }).expect("is erased");
+    let because = |result: Result<(), LinkError>| match result {
+        Err(LinkError::Refused(why)) => why,
+        other => panic!("{other:?}"),
+    };
+    talk.order(Act::Lock(first)).expect("is locked");
+    assert_eq!(because(talk.order(Act::Erase(first))), Busy::Locked.into());
+    talk.order(Act::Unlock(first)).expect("is free again");
+    for episode in first..last {
+        talk.order(Act::Erase(episode)).expect("is erased");
     }
-    assert_eq!(talk.episodes().expect("answers"), None);
-    let again = talk.order(&Request::Erase { episode: last });
-    assert!(matches!(again, Err(LinkError::Refused(Refusal::NoEpisode))));
+    assert_eq!(because(talk.order(Act::Erase(last))), Busy::Last.into());
+    assert_eq!(talk.episodes().expect("answers"), Some((last, last)));
+    assert_eq!(because(talk.order(Act::Erase(first))), Refusal::NoEpisode);
+    rig.order(Order::Service(false));
+    until("the service input is off", || {
+        talk.order(Act::Unlock(last)).is_err()
+    });
+    assert_eq!(because(talk.order(Act::Erase(last))), Busy::Service.into());
     assert_eq!(talk.damaged(), 0);
+    rig.stop().expect("no failure");
+}
+
+#[test]
+fn with_a_key_the_image_obeys_its_holder_alone_and_tells_every_order() {
+    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = TempDir::new().expect("a folder");
+    let rig = started("rig", folder.path(), 0.0);
+    let mut talk = talk(&rig);
+    let key = Key(*b"sixteen letters.");
+    let mut settings = settings_in_force(&mut talk);
+    settings.key = Some(key);
+    serve(&rig, &mut talk);
+    talk.set_settings(&settings).expect("is taken");
+    until("a restart", || rig.starts() == 2);
+    // The key is in force, and not told.
+    assert_eq!(settings_in_force(&mut talk).key, Some(Key::HELD));
+    let stored = fs::read(folder.path().join("settings")).expect("the block");
+    assert_eq!(stored, config_block::encode(&settings).to_vec());
+    // The service input stands in for no key.
+    let no_right = |result| {
+        matches!(result, Err(LinkError::Refused(Refusal::Busy(Busy::NoRight))))
+    };
+    until("the first sample", || talk.state().is_ok_and(|it| it.sample != u64::MAX));
+    assert!(no_right(talk.order(Act::Clear)));
+    talk.set_key(Some(Key([1; 16])));
+    assert!(no_right(talk.order(Act::Clear)));
+    talk.set_key(Some(key));
+    until("it is cleared", || talk.order(Act::Clear).is_ok());
+    talk.state().expect("answers");
+    let told = std::iter::from_fn(|| talk.listen(Duration::ZERO).expect("a line"));
+    let orders: Vec<_> = told
+        .filter_map(|told| match told {
+            Told::Notice(Notice::Ordered(it)) if it.act == Act::Clear => Some(it.refused),
+            _ => None,
+        })
+        .collect();
+    let no_right = Refusal::Busy(Busy::NoRight).code();
+    assert_eq!(orders[..2], [no_right; 2]);
+    assert_eq!(orders.last(), Some(&0));
+    // A file without a key keeps it.
+    settings.key = Some(Key::HELD);
+    settings.wiring.levitation = true;
+    talk.set_settings(&settings).expect("is taken");
+    until("a restart", || rig.starts() == 3);
+    settings.key = Some(key);
+    let stored = fs::read(folder.path().join("settings")).expect("the block");
+    assert_eq!(stored, config_block::encode(&settings).to_vec());
     rig.stop().expect("no failure");
 }
 
@@ -305,13 +380,14 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
     let state = state_when(&mut talk, "a trip", |it| it.mode == Mode::Faulted);
     assert_eq!(state.outputs.bits(), 0);
     assert!(state.faults.contains(Fault::SensorsLost));
-    let cleared = talk.order(&Request::Clear);
+    serve(&rig, &mut talk);
+    let cleared = talk.order(Act::Clear);
     assert!(matches!(
         cleared,
         Err(LinkError::Refused(Refusal::Busy(Busy::Blind)))
     ));
     rig.order(Order::Repair);
-    until("it is cleared", || talk.order(&Request::Clear).is_ok());
+    until("it is cleared", || talk.order(Act::Clear).is_ok());
     // It floats, but has not been seen where it is lifted from since.
     let state = state_when(&mut talk, "arming", |it| it.mode == Mode::Arming);
     assert_eq!(state.cause, Some(Cause::NoProof));
@@ -337,7 +413,8 @@ fn a_stored_configuration_that_is_damaged_never_gives_current_until_cleared() {
     });
     assert_eq!(state.mode, Mode::Faulted);
     assert!(state.faults.contains(Fault::ConfigDamaged));
-    until("it is cleared", || talk.order(&Request::Clear).is_ok());
+    rig.order(Order::Service(true));
+    until("it is cleared", || talk.order(Act::Clear).is_ok());
     state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     rig.stop().expect("no failure");
 }

@@ -89,7 +89,17 @@ const JSON: [&str; 15] = [
 ];
 
 /// Those that give no numbers, or lines of them, or need a controller.
-const OTHERS: [&str; 5] = ["rig", "live", "config", "log export", "completions"];
+const OTHERS: [&str; 9] = [
+    "rig",
+    "live",
+    "config",
+    "clear",
+    "log export",
+    "log lock",
+    "log unlock",
+    "log erase",
+    "completions",
+];
 
 /// Names of all commands that do something, as `log list`.
 fn commands() -> Vec<String> {

@@ -11,7 +11,7 @@ use assert_cmd::assert::Assert;
 use predicates::str::contains;
 use proptest::prelude::*;
 use serde_json::Value;
-use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::config_block::{Key, Settings};
 use touchdown_protocol::controller::Mode;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_files::configuration::{differences, parse, text};
@@ -82,6 +82,10 @@ fn a_configuration_is_saved_edited_sent_back_and_kept_and_refused_in_a_drop() {
 
     let (saved, before) = shown(at, &port);
     assert!(saved.contains("clearance_mm = 0.3\n"), "{saved}");
+    rig.order(Order::Service(true));
+    until("the service input is seen", || {
+        touchdown(at).args(["clear", &port]).ok().is_ok()
+    });
     fs::write(at.join("same.toml"), &saved).expect("a file");
     config(at, &port, &["--set", "same.toml"])
         .success()
@@ -187,12 +191,73 @@ fn what_is_wrong_is_said_with_its_line_before_anything_is_sent() {
         .stderr(contains("unix:nobody: no such file"));
 }
 
+/// Bytes, not only lines: the end of a number is a number.
+#[test]
+fn no_part_of_a_file_is_taken_for_all_of_it() {
+    let plain = text(&settings());
+    let keyed = plain.replace(
+        "[guard]",
+        "[link]\nkey = \"000102030405060708090a0b0c0d0e0f\"\n\n[guard]",
+    );
+    let parsed = parse("c.toml", &keyed).expect("a configuration");
+    assert_eq!(parsed.key, Some(Key(core::array::from_fn(|it| it as u8))));
+    let mut bearing = settings();
+    bearing.monitor.tachometers = Some(TachometersConfig {
+        marks: [Some(3), Some(7)],
+        cage_ratio: 0.4,
+        bore_radius: 12e-3,
+        edge_error: 1e-3,
+        window: 0.01,
+    });
+    for whole in [plain, keyed, text(&bearing)] {
+        assert!(parse("c.toml", &whole).is_ok(), "{whole}");
+        for length in 0..whole.len() {
+            let cut = parse("c.toml", &whole[..length]);
+            let error = cut.expect_err(&whole[..length]);
+            assert!(error.line().is_some(), "{length}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_key_is_read_and_never_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let (unkeyed, mut keyed) = (settings(), settings());
+    keyed.key = Some(Key([0x5a; 16]));
+    let mut held = settings();
+    held.key = Some(Key::HELD);
+    let (shown, read_back) = (text(&keyed), text(&held));
+    assert!(!shown.contains("5a5a"), "{shown}");
+    assert!(read_back.contains("[link]\n# key = set\n"), "{read_back}");
+    let changed = |from, to| differences(from, to).into_iter().map(|it| (it.from, it.to));
+    let some = |text: &str| Some(text.to_owned());
+    let none_to_new: Vec<_> = changed(&unkeyed, &keyed).collect();
+    assert_eq!(none_to_new, [(None, some("another"))]);
+    let old_to_new: Vec<_> = changed(&held, &keyed).collect();
+    assert_eq!(old_to_new, [(some("set"), some("another"))]);
+    for wrong in ["5a5a", "00000000000000000000000000000000", "+a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"] {
+        let file = text(&settings()).replace("[guard]", &format!("[link]\nkey = \"{wrong}\"\n\n[guard]"));
+        fs::write(at.join("c.toml"), file).expect("a file");
+        let run = config(at, "unix:nobody", &["--set", "c.toml"])
+            .code(2)
+            .stderr(contains("the key must be 32 hexadecimal digits"));
+        assert!(!String::from_utf8_lossy(&run.get_output().stderr).contains(wrong));
+        fs::write(at.join("k"), wrong).expect("a file");
+        touchdown(at)
+            .args(["clear", "unix:nobody", "--key-file", "k"])
+            .assert()
+            .code(2)
+            .stderr(contains("k:1: the key must be 32 hexadecimal digits"));
+    }
+}
+
 #[test]
 fn a_controller_that_keeps_nothing_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path();
     let machine = Arc::new(Mutex::new(Machine::default()));
-    let _controller = Controller::at_path(&at.join("rig.sock"), machine);
+    let controller = Controller::at_path(&at.join("rig.sock"), machine);
     assert_eq!(shown(at, "unix:rig.sock").1, settings());
     config(at, "unix:rig.sock", &["--json", "c.json"]).success();
     let told = fs::read(at.join("c.json")).expect("a file");
@@ -202,6 +267,10 @@ fn a_controller_that_keeps_nothing_says_so() {
     assert_eq!(told["changed"], Value::Array(vec![]));
     let other = text(&settings()).replace("friction = 0.1", "friction = 0.2");
     fs::write(at.join("c.toml"), other).expect("a file");
+    config(at, "unix:rig.sock", &["--set", "c.toml"])
+        .code(1)
+        .stderr(contains("its service input must be on"));
+    controller.machine().service = true;
     config(at, "unix:rig.sock", &["--set", "c.toml"])
         .code(1)
         .stderr(contains("refuses: this board cannot keep it"));

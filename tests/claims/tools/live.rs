@@ -329,7 +329,7 @@ struct Noisy {
 impl Noisy {
     fn new(every: usize) -> Self {
         Self {
-            server: Server::new("0.1.0", SAMPLE_RATE),
+            server: Server::new("0.1.0", SAMPLE_RATE, None),
             machine: Machine::default(),
             out: Vec::new(),
             every,
@@ -418,7 +418,7 @@ fn another_version_is_named() {
 
 #[test]
 fn silence_is_an_error_and_what_came_meanwhile_is_kept() {
-    let mut server = Server::new("0.1.0", SAMPLE_RATE);
+    let mut server = Server::new("0.1.0", SAMPLE_RATE, None);
     let mut machine = Machine::default();
     let mut bytes = server.state(&mut machine).expect("a frame").to_vec();
     bytes.extend(server.state(&mut machine).expect("a frame"));

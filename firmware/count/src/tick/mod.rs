@@ -155,6 +155,7 @@ fn board(scene: &Scene) -> Idle {
     Idle(config_block::encode(&Settings {
         monitor: scene.config(),
         wiring: Wiring::default(),
+        key: None,
     }))
 }
 
@@ -174,6 +175,10 @@ impl Board for Idle {
 
     fn config(&self) -> &[u8] {
         &self.0
+    }
+
+    fn service(&self) -> bool {
+        false
     }
 
     fn feed(&mut self) {}

@@ -26,7 +26,7 @@ use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::config_block::{self, Block, BlockError, Settings};
+use touchdown_protocol::config_block::{self, Block, BlockError, Key, Settings};
 use touchdown_protocol::controller::{Fault, Faults, Outputs, Shown};
 use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
@@ -97,6 +97,11 @@ impl InForce {
             Self::Default(block) => block,
         }
     }
+
+    /// Without its key: the log tells the checksum, which would tell of it.
+    fn told(&self, settings: &Settings) -> Block {
+        config_block::blanked(self.bytes(), settings.key.is_some())
+    }
 }
 
 impl Board for Silicon {
@@ -111,6 +116,10 @@ impl Board for Silicon {
 
     fn config(&self) -> &[u8] {
         self.block.bytes()
+    }
+
+    fn service(&self) -> bool {
+        self.pins.service()
     }
 
     fn feed(&mut self) {
@@ -136,6 +145,7 @@ struct Below {
     remote: Remote,
     inbox: Consumer<'static, Notice>,
     forecast_task: ForecastTask,
+    key: Option<Key>,
 }
 
 /// Starts sampling; looks ahead, logs, and serves the link.
@@ -145,11 +155,12 @@ pub fn main(memory: &'static mut Memory) -> ! {
         mut remote,
         mut inbox,
         mut forecast_task,
+        key,
     }) = start(memory)
     else {
         idle()
     };
-    let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32);
+    let mut server = Server::new(env!("CARGO_PKG_VERSION"), SAMPLE_RATE_HZ as f32, key);
     let mut known = (Shown::default(), Faults::NONE, 0);
     loop {
         while let Some(notice) = inbox.dequeue() {
@@ -217,7 +228,8 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
-    let identity = Identity::new(block.bytes(), log.as_ref().map_or(0, DropLog::boot));
+    let told = block.told(&settings);
+    let identity = Identity::new(&told, log.as_ref().map_or(0, DropLog::boot));
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
     let (app, recorder) = filled.inspect_err(refused).ok()?;
@@ -247,9 +259,10 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     unsafe { NVIC::unmask(Interrupt::ADC) };
     Some(Below {
         serial,
-        remote: Remote::new(chip.FLASH, chip.RCC, log),
+        remote: Remote::new(chip.FLASH, chip.RCC, chip.RNG, log),
         inbox,
         forecast_task,
+        key: settings.key,
     })
 }
 

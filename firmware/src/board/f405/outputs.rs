@@ -4,7 +4,7 @@ use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
-/// circuits behind them need pull-downs.
+/// circuits behind them need pull-downs. PC4, of the same port, is the service input, high while on.
 pub struct OutputPins(GPIOC);
 
 impl OutputPins {
@@ -13,6 +13,8 @@ impl OutputPins {
         rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
         let outputs = Self(pins);
         outputs.drive(Outputs::SAFE);
+        // A broken wire reads as off.
+        outputs.0.pupdr().modify(|_, w| w.pupdr4().pull_down());
         outputs.0.moder().modify(|_, w| {
             w.moder6().output().moder7().output();
             w.moder2().output().moder3().output()
@@ -34,6 +36,11 @@ impl OutputPins {
                 .bs3()
                 .bit(outputs.ready)
         });
+    }
+
+    /// Whether the service input is on.
+    pub fn service(&self) -> bool {
+        self.0.idr().read().idr4().bit_is_set()
     }
 
     /// Takes the current off all, whatever else the program holds: the first act of one that stops.

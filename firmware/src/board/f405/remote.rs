@@ -1,7 +1,8 @@
 //! What the link may ask of this board.
 
 use cortex_m::peripheral::DWT;
-use stm32f4::stm32f405::{FLASH, GPIOB, RCC};
+use stm32f4::stm32f405::{FLASH, GPIOB, RCC, RNG};
+use touchdown_core::event::Notice;
 use touchdown_protocol::config_block::{Block, Settings};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, State};
 
@@ -9,6 +10,9 @@ use super::clocks::CORE_HZ;
 use super::outputs::Watchdog;
 use super::{ChipLog, record, store, with_tick};
 use crate::board::{Board, SAMPLE_RATE_HZ};
+
+/// Looks at the noise source, far more than a word takes.
+const WORD_POLLS: u32 = 1_000;
 
 /// PB6 sends, PB7 receives: USART1.
 pub fn wire(pins: &GPIOB, rcc: &RCC) {
@@ -25,6 +29,7 @@ pub fn wire(pins: &GPIOB, rcc: &RCC) {
 pub struct Remote {
     flash: FLASH,
     rcc: RCC,
+    random: RNG,
     log: Option<ChipLog>,
     wants_reset: bool,
     lost_notices: u32,
@@ -32,10 +37,13 @@ pub struct Remote {
 
 impl Remote {
     /// With nothing asked yet.
-    pub fn new(flash: FLASH, rcc: RCC, log: Option<ChipLog>) -> Self {
+    pub fn new(flash: FLASH, rcc: RCC, random: RNG, log: Option<ChipLog>) -> Self {
+        rcc.ahb2enr().modify(|_, w| w.rngen().enabled());
+        random.cr().write(|w| w.rngen().enabled());
         Self {
             flash,
             rcc,
+            random,
             log,
             wants_reset: false,
             lost_notices: 0,
@@ -51,6 +59,15 @@ impl Remote {
                 with_tick(|tick| tick.recorder.fetch()).flatten()
             });
         }
+    }
+
+    /// A word of the noise source; none where it fails: RM0090, random number generator. It takes 40 of its cycles.
+    fn word(&self) -> Option<u32> {
+        let is_ready = || self.random.sr().read().drdy().bit_is_set();
+        let came = (0..WORD_POLLS).any(|_| is_ready());
+        let status = self.random.sr().read();
+        let failed = status.secs().bit_is_set() || status.cecs().bit_is_set();
+        (came && !failed).then(|| self.random.dr().read().bits())
     }
 
     /// Counts a notice for which there was no room on the line.
@@ -77,6 +94,22 @@ impl Device for Remote {
     fn config(&mut self) -> Block {
         with_tick(|tick| Block::from_slice(tick.board.config()).unwrap_or_default())
             .unwrap_or_default()
+    }
+
+    fn service(&mut self) -> bool {
+        with_tick(|tick| tick.board.service()).unwrap_or(false)
+    }
+
+    fn unknown(&mut self) -> u64 {
+        let [low, high] = [self.word(), self.word()].map(|it| u64::from(it.unwrap_or(0)));
+        high << 32 | low
+    }
+
+    fn ordered(&mut self, notice: &Notice) {
+        with_tick(|tick| {
+            tick.board.report(notice);
+            tick.recorder.hear(notice);
+        });
     }
 
     fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {

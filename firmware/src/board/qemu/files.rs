@@ -85,8 +85,11 @@ impl Replay {
         Ok((config, powers_on != [0]))
     }
 
-    /// The next samples, each with whether an order to clear comes before it; `None` at the end of the file.
-    pub fn samples(&mut self) -> Result<Option<impl Iterator<Item = (Sample, bool)>>, Failure> {
+    /// The next samples, each with whether an order to clear comes before it, and whether the service input is on;
+    /// `None` at the end of the file.
+    pub fn samples(
+        &mut self,
+    ) -> Result<Option<impl Iterator<Item = (Sample, bool, bool)>>, Failure> {
         let bytes = self.block.as_flattened_mut();
         let mut filled = 0;
         while let Some(space) = bytes.get_mut(filled..).filter(|space| !space.is_empty()) {
@@ -100,9 +103,10 @@ impl Replay {
         }
         let records = &self.block[..filled / wire::SAMPLE_BYTES];
         Ok((!records.is_empty()).then(|| {
-            records
-                .iter()
-                .map(|it| (wire::decode_sample(it), wire::has_clear(it)))
+            records.iter().map(|it| {
+                let sample = wire::decode_sample(it);
+                (sample, wire::has_clear(it), wire::has_service(it))
+            })
         }))
     }
 }

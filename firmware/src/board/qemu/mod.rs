@@ -61,6 +61,7 @@ struct Emulated {
     ticks: u64,
     block: Block,
     line: Line,
+    service: bool,
     failed: bool,
 }
 
@@ -86,6 +87,10 @@ impl Board for Emulated {
 
     fn config(&self) -> &[u8] {
         &self.block
+    }
+
+    fn service(&self) -> bool {
+        self.service
     }
 
     // No watchdog is emulated.
@@ -132,18 +137,22 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
     let (config, powers_on) = replay.config()?;
-    let (block, config, found) = found_at_power_on(config, settings.as_ref());
+    let (block, in_force, found) = found_at_power_on(config, settings.as_ref());
+    let config = in_force.monitor;
     journal::config(&config);
     let mut board = Emulated {
         answer,
         shown: None,
         ticks: 0,
         block,
-        line: Line::new(config.detector.sample_rate, settings),
+        line: Line::new(config.detector.sample_rate, in_force.key, settings),
+        service: false,
         failed: false,
     };
     let boot = log.as_ref().map_or(0, DropLog::boot);
-    let identity = Identity::new(&board.block, boot);
+    // The log tells the checksum of the block, which would tell of the key.
+    let told = config_block::blanked(&board.block, in_force.key.is_some());
+    let identity = Identity::new(&told, boot);
     let filled = memory.fill(&config, found, identity);
     let (app, recorder) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
@@ -159,7 +168,8 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
     let mut is_over = false;
     loop {
         if let Some(samples) = replay.samples()? {
-            for (sample, clears) in samples {
+            for (sample, clears, service) in samples {
+                board.service = service;
                 if clears {
                     board.cleared(app.clear().err());
                 }
@@ -191,7 +201,9 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         if let Some(log) = &mut log {
             store(log, recorder);
         }
-        board.line.serve(app, recorder, &board.block, &mut log);
+        board
+            .line
+            .serve(app, recorder, &board.block, board.service, &mut log);
         if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
             return Err(Failure::Log);
         }
@@ -211,11 +223,11 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
 fn found_at_power_on(
     replayed: MonitorConfig,
     settings: Option<&SettingsFile>,
-) -> (Block, MonitorConfig, Faults) {
+) -> (Block, Settings, Faults) {
     let stored = settings.map_or(Err(BlockError::Blank), SettingsFile::load);
     let found = match stored {
         Ok((block, it)) if it.monitor.detector.sample_rate == replayed.detector.sample_rate => {
-            return (block, it.monitor, Faults::NONE);
+            return (block, it, Faults::NONE);
         }
         Err(BlockError::Blank) => Faults::NONE,
         _ => {
@@ -223,11 +235,12 @@ fn found_at_power_on(
             Faults::NONE.with(Fault::ConfigDamaged)
         }
     };
-    let block = config_block::encode(&Settings {
+    let settings = Settings {
         monitor: replayed,
         wiring: Wiring::default(),
-    });
-    (block, replayed, found)
+        key: None,
+    };
+    (config_block::encode(&settings), settings, found)
 }
 
 /// All that is ready.

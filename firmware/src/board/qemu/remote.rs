@@ -5,7 +5,7 @@ use core::time::Duration;
 use semihosting::experimental::time::Instant;
 use stm32f4::stm32f405::Peripherals;
 use touchdown_core::event::Notice;
-use touchdown_protocol::config_block::{Block, Settings};
+use touchdown_protocol::config_block::{Block, Key, Settings};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
 use super::FileLog;
@@ -13,6 +13,7 @@ use super::settings::SettingsFile;
 use crate::app::App;
 use crate::board::STATE_SAMPLES;
 use crate::board::serial::Serial;
+use crate::journal;
 use crate::recorder::Recorder;
 
 /// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
@@ -38,14 +39,14 @@ pub struct Line {
 }
 
 impl Line {
-    /// Says `sample_rate` (Hz) to who asks, and keeps the configuration in `settings`.
-    pub fn new(sample_rate: f32, settings: Option<SettingsFile>) -> Self {
+    /// Says `sample_rate` (Hz) to who asks, obeys who has `key`, and keeps the configuration in `settings`.
+    pub fn new(sample_rate: f32, key: Option<Key>, settings: Option<SettingsFile>) -> Self {
         // SAFETY: called once, and nobody else takes them.
         let chip = unsafe { Peripherals::steal() };
         Self {
             // The emulated line has no speed.
             serial: Serial::new(chip.USART1, 16),
-            server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate),
+            server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate, key),
             told: 0,
             rate: sample_rate,
             settings,
@@ -82,14 +83,17 @@ impl Line {
     pub fn serve(
         &mut self,
         app: &mut App,
-        recorder: &Recorder<'_>,
+        recorder: &mut Recorder<'_>,
         block: &Block,
+        service: bool,
         log: &mut Option<FileLog>,
     ) {
         let mut remote = Remote {
             app,
             recorder,
             block,
+            service,
+            told: None,
             log,
             rate: self.rate,
             settings: self.settings.as_ref(),
@@ -121,21 +125,29 @@ impl Line {
             let _ = self
                 .serial
                 .send(self.server.take(byte, &mut remote).as_ref());
+            if let Some(notice) = remote.told.take() {
+                journal::notice(&notice);
+                // Without room, as on silicon.
+                let _ = self.serial.send(self.server.notice(&notice).as_ref());
+            }
         }
     }
 }
 
-struct Remote<'a> {
+struct Remote<'a, 'm> {
     app: &'a mut App,
-    recorder: &'a Recorder<'a>,
+    recorder: &'a mut Recorder<'m>,
     block: &'a Block,
+    service: bool,
+    /// Of an order, to be passed on.
+    told: Option<Notice>,
     log: &'a mut Option<FileLog>,
     rate: f32,
     settings: Option<&'a SettingsFile>,
     wants_restart: &'a mut bool,
 }
 
-impl Device for Remote<'_> {
+impl Device for Remote<'_, '_> {
     fn state(&mut self) -> State {
         // QEMU says nothing about time, and no notice is lost.
         self.app.report(0, 0)
@@ -143,6 +155,15 @@ impl Device for Remote<'_> {
 
     fn config(&mut self) -> Block {
         self.block.clone()
+    }
+
+    fn service(&mut self) -> bool {
+        self.service
+    }
+
+    fn ordered(&mut self, notice: &Notice) {
+        self.recorder.hear(notice);
+        self.told = Some(*notice);
     }
 
     fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {

@@ -38,6 +38,8 @@ Examples:
   touchdown log list flash.bin          the drops that the firmware recorded
   touchdown live /dev/ttyACM0           what the controller sees and does now
   touchdown config /dev/ttyACM0         what it was configured with; --set changes it
+  touchdown clear /dev/ttyACM0 --key-file k
+                                        clear what is latched there
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -150,7 +152,7 @@ pub(super) enum Command {
     #[cfg(unix)]
     #[command(after_help = help::RIG)]
     Rig(RigArgs),
-    /// List, show, export or verify the drops that the firmware recorded
+    /// List, show, export or verify the drops that the firmware recorded; keep or erase them
     #[command(after_help = help::LOG)]
     Log {
         #[command(subcommand)]
@@ -162,6 +164,9 @@ pub(super) enum Command {
     /// Show a controller's configuration, or set another one over its serial link
     #[command(after_help = help::CONFIG)]
     Config(ConfigArgs),
+    /// Clear what is latched in a controller, over its serial link
+    #[command(after_help = help::CLEAR)]
+    Clear(OrderArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -507,9 +512,32 @@ pub(super) struct ConfigArgs {
     /// Set this configuration: a file as this command prints it. The controller restarts with it
     #[arg(long, value_name = "FILE.toml")]
     pub set: Option<String>,
+    /// File with the key that the controller has
+    #[arg(long, value_name = "FILE", requires = "set")]
+    pub key_file: Option<String>,
     /// The configuration in force, and what changed, as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct OrderArgs {
+    /// Serial device, tcp:HOST:PORT or unix:PATH
+    pub port: String,
+    /// File with the key that the controller has
+    #[arg(long, value_name = "FILE")]
+    pub key_file: Option<String>,
+    /// What came of it as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct EpisodeArgs {
+    #[command(flatten)]
+    pub order: OrderArgs,
+    /// Its number
+    pub episode: u32,
 }
 
 #[derive(Clone, Debug, Subcommand)]
@@ -557,6 +585,15 @@ pub(super) enum LogCommand {
         #[arg(long, value_name = "FILE")]
         json: Option<String>,
     },
+    /// Keep an episode of a controller: it is neither overwritten nor erased
+    #[command(after_help = help::LOG_ORDER)]
+    Lock(EpisodeArgs),
+    /// Give an episode of a controller free to be overwritten
+    #[command(after_help = help::LOG_ORDER)]
+    Unlock(EpisodeArgs),
+    /// Erase an episode of a controller
+    #[command(after_help = help::LOG_ORDER)]
+    Erase(EpisodeArgs),
 }
 
 /// What `log export` writes.

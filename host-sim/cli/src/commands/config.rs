@@ -6,6 +6,7 @@ use serde::Serialize;
 use touchdown_protocol::config_block::Settings;
 
 use super::args::ConfigArgs;
+use super::order::key_of;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
@@ -22,6 +23,8 @@ struct Told {
     firmware: String,
     /// In force now.
     config: Tables,
+    /// Whether it has a key.
+    key: bool,
     /// By this command.
     changed: Vec<Difference>,
 }
@@ -30,13 +33,16 @@ struct Told {
 pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     let mut out = Gate::new()
         .reads("--set", &args.set)
+        .reads("--key-file", &args.key_file)
         .writes("--json", &args.json)
         .open()?;
     // What is wrong with the file is said whether or not there is a controller.
     let wanted = args.set.as_deref().map(load).transpose()?;
+    let key = key_of(args.key_file.as_deref())?;
     let port = Port::of(&args.port);
     let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
     let mut client = Client::new(port.open().map_err(silent)?);
+    client.set_key(key);
     let before = in_force(&mut client).map_err(silent)?;
     let (config, changed, shown) = match wanted {
         None => {
@@ -44,8 +50,10 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
         Some(mut wanted) => {
-            // A file is no record of a commissioning check: the controller keeps its own.
+            // A file is no record of a commissioning check: the controller keeps its own. So it does its key, where the
+            // file has none.
             wanted.monitor.commissioned = before.settings.monitor.commissioned;
+            wanted.key = wanted.key.or(before.settings.key);
             let changed = differences(&before.settings, &wanted);
             if wanted != before.settings {
                 put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
@@ -58,6 +66,7 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
         port: port.to_string(),
         firmware: before.firmware,
         config: Tables::from(&config),
+        key: config.key.is_some(),
         changed,
     };
     out.json("--json", || json::text(&told))?;

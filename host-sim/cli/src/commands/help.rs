@@ -68,6 +68,7 @@ It prints the socket and takes orders, a line each. The rotor lies at first:
   repair                all channels
   noise PART            of the link's bytes: 0.01 spoils one in a hundred
   cut                   the controller's power, and give it back at once
+  service on|off        its service input: without a key it obeys only while that is on
   quit
 
 In another terminal:
@@ -105,6 +106,7 @@ pub(super) const LOG: &str = "\
 Examples:
   touchdown log list flash.bin                  a dump of the log's flash
   touchdown log list /dev/ttyACM0               the controller itself, 5 s an episode
+  touchdown log erase /dev/ttyACM0 7 --key-file k
 
 DUMP or port: a dump from the log's first address, a file of one episode, a serial device
 (/dev/..., COM3), tcp:HOST:PORT or unix:PATH.";
@@ -137,6 +139,32 @@ Examples:
   touchdown log verify flash.bin --json verdict.json
 
 Exit status: 0 no episode is damaged; 1 one is; 2 no log, or no answer.";
+
+pub(super) const LOG_ORDER: &str = "\
+Examples:
+  touchdown log lock /dev/ttyACM0 7 --key-file k
+  touchdown log unlock /dev/ttyACM0 7           with the service input on
+  touchdown log erase /dev/ttyACM0 7 --json -
+
+A locked episode is neither overwritten nor erased. These orders need the key of the
+controller's configuration, or where that has none its service input on. `erase` needs `run`
+off too. A locked episode and the newest one stay. Nothing asks again.
+
+Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
+
+pub(super) const CLEAR: &str = "\
+Examples:
+  touchdown clear /dev/ttyACM0 --key-file k
+  touchdown clear /dev/ttyACM0 --json -         with the service input on
+
+It clears a trip and the faults, if their causes are gone. It does not start the machine:
+`run` comes with a new proof of levitation. It needs the key of the controller's
+configuration, or where that has none its service input on; and a rotor that floats or
+lies still, and that is seen.
+
+The key file has the 32 hexadecimal digits of `key` in the configuration's `[link]`.
+
+Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
 
 pub(super) const SCENE: &str = "\
 Examples:
@@ -175,7 +203,8 @@ pub(super) const CONFIG: &str = "\
 Examples:
   touchdown config /dev/ttyACM0               as TOML, to look at
   touchdown config /dev/ttyACM0 > c.toml      or to edit
-  touchdown config /dev/ttyACM0 --set c.toml  and to send back
+  touchdown config /dev/ttyACM0 --set c.toml --key-file k
+                                              and to send back
   touchdown config unix:/tmp/rig.sock --json -
                                               the emulated controller's, as JSON
 
@@ -183,6 +212,11 @@ The file has tables, keys and units of a scene, and those of the sensors' conver
 docs/formats/link.md. It is checked before anything is sent. The controller stores it and
 restarts: its outputs fall for a moment. It refuses while it watches, and while a drop runs
 or is latched. What has changed is printed once it is back.
+
+--set needs the controller's key, or where it has none its service input on. The file sets
+another key by `[link] key = \"...\"`, 32 hexadecimal digits, before `[guard]`; without it
+the key stays. A key is never shown. `[guard]` comes last, with all its keys: a file that
+was cut short is refused.
 
 Exit status: 0 done; 1 the controller refuses; 2 bad usage or input, or no answer.";
 

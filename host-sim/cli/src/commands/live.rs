@@ -146,25 +146,25 @@ impl Session<'_> {
             let Event::Key(key) = event::read().map_err(&fail)? else {
                 continue;
             };
-            match Key::of(&key) {
-                Key::Quit => return Ok(()),
-                Key::Hold => {
+            match Press::of(&key) {
+                Press::Quit => return Ok(()),
+                Press::Hold => {
                     held = match held {
                         Some(_) => None,
                         None => Some((self.watched.clone(), now)),
                     };
                     view.held = held.is_some();
                 }
-                Key::Plane => view.plane = 1 - view.plane,
-                Key::Clear => self.watched.forget_trail(),
-                Key::Other => {}
+                Press::Plane => view.plane = 1 - view.plane,
+                Press::Clear => self.watched.forget_trail(),
+                Press::Other => {}
             }
         }
         Ok(())
     }
 }
 
-enum Key {
+enum Press {
     Quit,
     Hold,
     Plane,
@@ -172,7 +172,7 @@ enum Key {
     Other,
 }
 
-impl Key {
+impl Press {
     fn of(key: &KeyEvent) -> Self {
         if key.kind != KeyEventKind::Press {
             return Self::Other;

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use super::args::{ExportFormat, LogCommand};
+use super::order::order;
 use crate::gate::{Gate, Outputs};
 use touchdown_base::failure::Failure;
 use touchdown_base::paint::Paint;
+use touchdown_core::event::Act;
 use touchdown_files::drop_log::{
     Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream,
 };
@@ -16,7 +18,7 @@ const OUT: &str = "--out";
 const CFG: &str = "--out (.cfg)";
 const DAT: &str = "--out (.dat)";
 
-/// Lists, shows, exports or verifies the episodes of a log.
+/// Lists, shows, exports or verifies the episodes of a log; keeps or erases those of a controller.
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
         LogCommand::List { file, json } => {
@@ -54,6 +56,9 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
                 Err(Failure::Check(format!("{file}: an episode is damaged")))
             }
         }
+        LogCommand::Lock(args) => order(Act::Lock(args.episode), &args.order),
+        LogCommand::Unlock(args) => order(Act::Unlock(args.episode), &args.order),
+        LogCommand::Erase(args) => order(Act::Erase(args.episode), &args.order),
     }
 }
 

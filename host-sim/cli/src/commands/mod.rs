@@ -8,6 +8,7 @@ mod help;
 mod limits;
 mod live;
 mod log;
+mod order;
 mod paper;
 #[cfg(unix)]
 mod rig;
@@ -30,6 +31,7 @@ use crate::gate::{Gate, note, said};
 use touchdown_base::failure::Failure;
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
+use touchdown_core::event::Act;
 use touchdown_page::{json, report, timeline};
 use touchdown_run::{drop, fidelity, replay};
 use touchdown_scene::{BUILT_IN, Scene};
@@ -63,6 +65,7 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Rig(args)) => rig::rig(&args),
         Some(Command::Log { what }) => log::log(&what),
         Some(Command::Live(args)) => live::live(&args),
+        Some(Command::Clear(args)) => order::order(Act::Clear, &args),
         Some(Command::Config(args)) => config::config(&args),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();

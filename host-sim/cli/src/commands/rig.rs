@@ -51,7 +51,7 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
     )?;
     print(&format!(
         "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n\
-         lift, drop, fault CHANNEL KIND, repair, noise PART, cut, quit\n",
+         lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off, quit\n",
         rig.address(),
         log.display()
     ))?;
@@ -102,6 +102,8 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
         ["drop"] => Order::Drop,
         ["repair"] => Order::Repair,
         ["cut"] => Order::Cut,
+        ["service", "on"] => Order::Service(true),
+        ["service", "off"] => Order::Service(false),
         ["noise", part] => match part.parse() {
             Ok(part) if (0.0..=1.0).contains(&part) => Order::Noise(part),
             _ => return Err("noise is a part from 0 to 1"),
@@ -111,7 +113,11 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
             let channel = channel.ok_or("the channels are ax, ay, bx, by")?;
             Order::Spoil(channel.into(), failing(kind)?)
         }
-        _ => return Err("lift, drop, fault CHANNEL KIND, repair, noise PART, cut or quit"),
+        _ => {
+            let rule =
+                "lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off or quit";
+            return Err(rule);
+        }
     }))
 }
 
@@ -139,12 +145,14 @@ mod tests {
             Ok(Some(Order::Spoil(3, Failing::Stuck)))
         );
         assert_eq!(order("noise 1e-3"), Ok(Some(Order::Noise(1e-3))));
+        assert_eq!(order("service on"), Ok(Some(Order::Service(true))));
         assert_eq!(order(""), Ok(None));
         for wrong in [
             "noise 2",
             "noise NaN",
             "fault cx stuck",
             "fault ax odd",
+            "service",
             "fly",
         ] {
             assert!(order(wrong).is_err(), "{wrong}");

@@ -1,15 +1,18 @@
 //! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
 
 use serde_json::{Map, Value, json};
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_protocol::controller::Fault;
 use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;
+use touchdown_files::link::refused_why;
 use touchdown_run::controller_trace::alarm;
 use touchdown_run::detection::{declared, forecast, touch};
-use touchdown_scene::names::{channel_name, event_name, fault_name, mode_name, told_phase_name};
+use touchdown_scene::names::{
+    act_name, channel_name, event_name, fault_name, mode_name, told_phase_name,
+};
 
 /// The line without its end; `watched` has taken in what came before.
 pub fn line(update: &Update, watched: &Watched) -> String {
@@ -133,5 +136,21 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
         Notice::Outlook(outlook) => ("outlook", json!(forecast(outlook, timebase))),
         Notice::Alarm(it) => ("alarm", json!(alarm(it, timebase))),
         Notice::Touch(it) => ("touch", json!(touch(it, timebase))),
+        Notice::Ordered(it) => ("order", order(it, watched)),
     }
+}
+
+fn order(ordered: &Ordered, watched: &Watched) -> Value {
+    let episode = match ordered.act {
+        Act::Clear | Act::Commit(_) => None,
+        Act::Erase(number) | Act::Lock(number) | Act::Unlock(number) => Some(number),
+    };
+    json!({
+        "order": act_name(ordered.act),
+        "episode": episode,
+        "done": ordered.refused == 0,
+        "why": refused_why(ordered.refused),
+        "sample": ordered.sample,
+        "time_s": watched.timebase().time(ordered.sample as f64),
+    })
 }

@@ -140,7 +140,7 @@ impl Watched {
                     it.event.withdrawn_s = at(*sample);
                 }
             }
-            Notice::Outlook(_) | Notice::Alarm(_) | Notice::Touch(_) => {}
+            Notice::Outlook(_) | Notice::Alarm(_) | Notice::Touch(_) | Notice::Ordered(_) => {}
         }
     }
 

@@ -60,6 +60,8 @@ pub enum Order {
     Noise(f64),
     /// Cut the controller's power, and give it back.
     Cut,
+    /// Switch its service input on or off.
+    Service(bool),
 }
 
 /// A rig at work; it stops when this is dropped.
@@ -172,6 +174,7 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
     let (mut session, mut pipe) = supply.on()?;
     let block = Duration::from_secs_f64(BLOCK_SAMPLES as f64 / supply.scene.run.sample_rate);
     let mut due = Instant::now();
+    let mut service = false;
     loop {
         let mut cut = false;
         match orders.try_recv() {
@@ -182,6 +185,7 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
             // The line lives as long as this.
             Ok(Order::Noise(part)) => drop(supply.line.send(LineOrder::Noise(part))),
             Ok(Order::Cut) => cut = true,
+            Ok(Order::Service(on)) => service = on,
             Err(TryRecvError::Disconnected) => return Ok(()),
             Err(TryRecvError::Empty) => {}
         }
@@ -199,7 +203,8 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
         }
         if pipe.is_free() {
             let samples = machine.by_ref().take(BLOCK_SAMPLES);
-            pipe.put(samples.flat_map(|it| wire::encode_sample(&it)));
+            let bytes = samples.map(|it| wire::encode_sample(&it));
+            pipe.put(bytes.flat_map(|it| if service { wire::with_service(it) } else { it }));
         }
         let is_through = pipe.push();
         if !is_through {

@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::config_block::{Key, Settings};
 
 use crate::link::{Client, LinkError, Port};
 use touchdown_base::plain::shown;
@@ -43,6 +43,11 @@ pub fn in_force(client: &mut Client) -> Result<InForce, LinkError> {
 /// Sets another configuration, and waits until the controller has restarted with it.
 pub fn put(port: &Port, mut client: Client, settings: &Settings) -> Result<(), ChangeError> {
     client.set_settings(settings)?;
+    // What is read back has no key.
+    let settings = Settings {
+        key: settings.key.map(|_| Key::HELD),
+        ..*settings
+    };
     let end = Instant::now() + RESTART;
     // Some lines outlast a restart, others are closed by it.
     let mut line = Some(client);
@@ -54,7 +59,7 @@ pub fn put(port: &Port, mut client: Client, settings: &Settings) -> Result<(), C
         };
         let found = client.as_mut().map(Client::settings);
         let why = match found {
-            Ok(Ok(it)) if it == *settings => return Ok(()),
+            Ok(Ok(it)) if it == settings => return Ok(()),
             Ok(Ok(_)) => {
                 line = client.ok();
                 "it still has the old one".to_owned()

@@ -39,6 +39,7 @@ fn lines(text: &str) -> Vec<(String, String)> {
     let mut lines = Vec::new();
     for line in text.lines() {
         if let Some((key, value)) = line.split_once(" = ") {
+            let key = key.trim_start_matches("# ");
             lines.push((format!("{table}.{key}"), value.to_owned()));
         } else {
             table = line.trim_matches(['[', ']']);

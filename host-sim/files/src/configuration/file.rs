@@ -1,6 +1,8 @@
 //! Text to settings that are valid, and back.
 
-use touchdown_protocol::config_block::Settings;
+use toml::de::DeTable;
+use touchdown_core::guard::GuardConfig;
+use touchdown_protocol::config_block::{Key, Settings};
 use touchdown_rotor::error::ConfigError;
 
 use super::table::Tables;
@@ -9,20 +11,60 @@ use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::read;
 use touchdown_scene::rule::translate;
 
+/// The table that closes a file.
+const LAST: &str = "guard";
+
 /// The settings of the file `text`, as valid as the controller wants them; errors name it `name`.
 pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
     let tables: Tables = read(name, text)?;
+    if let Some(rule) = cut_short(text) {
+        let line = text.lines().count().max(1) as u64;
+        return Err(InputError::at_line(name, line, rule));
+    }
     let checked = tables.settings().and_then(|settings| {
         let valid = settings.validate();
         valid.map_err(|it| key_of(&it)).map(|()| settings)
     });
-    checked.map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))
+    checked.map_err(|flaw| {
+        let is_secret = flaw.table == "link";
+        let error = InputError::at_span(name, text, flaw.span(text), flaw.rule);
+        if is_secret {
+            error.of_named_file()
+        } else {
+            error
+        }
+    })
 }
 
-/// The file of `settings`.
+/// The rule that a file breaks which was cut short: `[guard]` comes last, with all its keys, and the last line ends.
+fn cut_short(text: &str) -> Option<String> {
+    let root = DeTable::parse(text).ok()?;
+    let tables = root.get_ref().iter();
+    let (name, table) = tables.max_by_key(|(name, _)| name.span().start)?;
+    let keys = table
+        .get_ref()
+        .as_table()
+        .filter(|_| name.get_ref() == LAST);
+    let all = toml::Table::try_from(GuardConfig::default()).unwrap_or_default();
+    let why = match keys.map(|keys| all.keys().find(|it| !keys.contains_key(it.as_str()))) {
+        None => format!("the last table must be [{LAST}]"),
+        Some(Some(key)) => format!("missing required key `{key}` of [{LAST}]"),
+        Some(None) if text.ends_with('\n') => return None,
+        Some(None) => "the last line has no end".to_owned(),
+    };
+    Some(format!("{why}: the file may be cut short"))
+}
+
+/// The file of `settings`. It does not tell a key.
 pub fn text(settings: &Settings) -> String {
     // Tables of numbers, names and lists of them: all of that TOML has.
-    toml::to_string(&Tables::from(settings)).unwrap_or_default()
+    let text = toml::to_string(&Tables::from(settings)).unwrap_or_default();
+    let key = match settings.key {
+        None => return text,
+        Some(Key::HELD) => "set",
+        Some(_) => "another",
+    };
+    text.replacen("[guard]", &format!("[link]\n# key = {key}\n\n[guard]"), 1)
 }
 
 /// A rule in the words of the controller, in those of the file.

@@ -7,9 +7,10 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{PLANES, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
-use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::config_block::{Key, Settings, Wiring};
 
 use super::decimal::shortest;
+use crate::link::{KEY_RULE, parse_key};
 use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
@@ -32,6 +33,8 @@ pub struct Tables {
     ball_bearing: Option<BallBearingTable>,
     #[serde(default)]
     detector: Tuning,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    link: Option<LinkTable>,
     #[serde(default)]
     guard: GuardConfig,
 }
@@ -70,9 +73,19 @@ struct BallBearingTable {
     window_ms: f64,
 }
 
+/// Read, and never written.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct LinkTable {
+    #[serde(skip_serializing)]
+    key: Option<String>,
+}
+
 impl From<&Settings> for Tables {
     fn from(settings: &Settings) -> Self {
-        let Settings { monitor, wiring } = settings;
+        let Settings {
+            monitor, wiring, ..
+        } = settings;
         let DetectorConfig {
             sample_rate,
             machine,
@@ -110,6 +123,7 @@ impl From<&Settings> for Tables {
             },
             ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
             detector: tuning,
+            link: None,
             guard: monitor.guard,
         }
     }
@@ -158,7 +172,16 @@ impl Tables {
                 pulses_per_turn: sensors.pulses_per_turn,
                 levitation: sensors.levitation_signal,
             },
+            key: self.link.as_ref().map_or(Ok(None), LinkTable::key)?,
         })
+    }
+}
+
+impl LinkTable {
+    fn key(&self) -> Result<Option<Key>, Diagnostic> {
+        let flaw = || Diagnostic::new("link", "key", KEY_RULE);
+        let key = self.key.as_deref();
+        key.map(|it| parse_key(it).ok_or_else(flaw)).transpose()
     }
 }
 

@@ -9,7 +9,9 @@ use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
 
+use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
+use touchdown_scene::names::act_name;
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -36,6 +38,8 @@ pub struct Episode {
     pub ending: Option<Ending>,
     /// What was reported, in its order; those of an unknown kind left out.
     pub events: Vec<Event>,
+    /// What was ordered over the link, and what came of it.
+    pub orders: Vec<String>,
     /// Pages by their state.
     pub report: Report,
     /// What had been learnt before the first sample, as in a stream; none where the episode does not say.
@@ -113,6 +117,9 @@ impl Episode {
             events: header
                 .as_ref()
                 .map_or(Vec::new(), |it| events(it, &notices)),
+            orders: header
+                .as_ref()
+                .map_or(Vec::new(), |it| orders(it, &notices)),
             learnt: learnt(&parts),
             ending,
             report,
@@ -229,6 +236,20 @@ fn impossible(header: &Header) -> Vec<String> {
     broken
         .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
         .collect()
+}
+
+fn orders(header: &Header, notices: &[Notice]) -> Vec<String> {
+    let order = |notice: &Notice| match notice {
+        Notice::Ordered(it) => {
+            let time = it.sample as f64 - header.trigger as f64;
+            let time = 1e3 * time / f64::from(header.sample_rate);
+            let came = refused_why(it.refused)
+                .map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
+            Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
+        }
+        _ => None,
+    };
+    notices.iter().filter_map(order).collect()
 }
 
 fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {

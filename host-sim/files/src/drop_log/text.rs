@@ -155,5 +155,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             event.declared_s * 1e3,
         );
     }
+    let orders = episode.orders.iter();
+    text.extend(orders.map(|it| format!("order: {it}\n")));
     text
 }

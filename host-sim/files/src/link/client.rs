@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use touchdown_core::event::Notice;
-use touchdown_protocol::config_block::{self, Settings};
+use touchdown_core::event::{Act, Notice};
+use touchdown_protocol::config_block::{self, Block, Key, Settings};
 use touchdown_protocol::link::{
-    Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode,
+    Decoder, FrameError, Hello, Recent, Refusal, Reply, Request, State, encode, mac,
 };
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::wire::{Record, decode_record};
@@ -49,6 +49,7 @@ pub struct Client {
     sequence: u8,
     damaged: u32,
     repeated: u32,
+    key: Option<Key>,
 }
 
 impl Client {
@@ -63,7 +64,13 @@ impl Client {
             sequence: 0,
             damaged: 0,
             repeated: 0,
+            key: None,
         }
+    }
+
+    /// Orders by the right of `key`, where the controller has one.
+    pub fn set_key(&mut self, key: Option<Key>) {
+        self.key = key;
     }
 
     /// The same, and waits for 35 s before it gives up: for an emulator, or a line with noise.
@@ -135,9 +142,18 @@ impl Client {
         }
     }
 
-    /// Has something done: SetConfig, Clear or Erase.
-    pub fn order(&mut self, request: &Request) -> Result<(), LinkError> {
-        match self.ask(request)? {
+    /// Has something done: by the right of the key, or where the controller has none by its service input.
+    pub fn order(&mut self, act: Act) -> Result<(), LinkError> {
+        self.order_about(act, &[])
+    }
+
+    fn order_about(&mut self, act: Act, block: &[u8]) -> Result<(), LinkError> {
+        let Reply::Challenge(nonce, keyed) = self.ask(&Request::Challenge)? else {
+            return Err(LinkError::Senseless);
+        };
+        let key = self.key.as_ref().filter(|_| keyed);
+        let mac = mac(key, &nonce, &act, block);
+        match self.ask(&Request::Order { mac, act })? {
             Reply::Done => Ok(()),
             _ => Err(LinkError::Senseless),
         }
@@ -156,10 +172,20 @@ impl Client {
 
     /// Puts another configuration in force; the controller restarts with it.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), LinkError> {
-        match self.ask(&Request::SetConfig(config_block::encode(settings)))? {
-            Reply::Done => Ok(()),
-            _ => Err(LinkError::Senseless),
-        }
+        self.set_block(&config_block::encode(settings))
+    }
+
+    /// The same with a block: staged, read back, and only then put in force.
+    pub fn set_block(&mut self, block: &Block) -> Result<(), LinkError> {
+        let taken = self.ask(&Request::Stage(block.clone()))?;
+        let (_, settings) = config_block::decode(block).map_err(LinkError::Config)?;
+        let (true, Some(checksum)) = (
+            taken == Reply::Config(config_block::blanked(block, settings.key.is_some())),
+            block.last_chunk(),
+        ) else {
+            return Err(LinkError::Senseless);
+        };
+        self.order_about(Act::Commit(u32::from_le_bytes(*checksum)), block)
     }
 
     /// Where the rotor has been: every `step`-th of the newest samples.

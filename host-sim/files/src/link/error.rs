@@ -42,7 +42,8 @@ fn of_line(error: &io::Error) -> String {
     }
 }
 
-fn why(refusal: &Refusal) -> String {
+/// The reason of a refusal.
+pub fn why(refusal: &Refusal) -> String {
     let text = match refusal {
         Refusal::Busy(busy) => busy_name(*busy),
         Refusal::Block => "that is no configuration of its version",
@@ -50,6 +51,12 @@ fn why(refusal: &Refusal) -> String {
         Refusal::NoStore => "this board cannot keep it",
         Refusal::StoreFailed => "its flash failed",
         Refusal::NoEpisode => "there is no such episode, or it is being written",
+        Refusal::NoRoom => "too few slots would be left for new episodes",
     };
     text.to_owned()
+}
+
+/// The reason of a notice of an order, none where it was done.
+pub fn refused_why(code: u8) -> Option<String> {
+    Refusal::of_code(code).map(|it| why(&it))
 }

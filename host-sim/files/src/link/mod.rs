@@ -6,14 +6,18 @@
 //! | `port` | what a person types, to a line |
 //! | `line` | bytes to and from a serial device or a socket |
 //! | `client` | requests, retries, answers |
+//! | `key` | the key of the right to order, from its file |
 //! | `error` | why there is no answer |
 
 mod client;
 mod error;
+mod key;
 mod line;
 mod port;
 
 pub use client::{Client, Told};
-pub use error::LinkError;
+pub use error::{LinkError, refused_why, why};
+pub use key::load as load_key;
+pub(crate) use key::{RULE as KEY_RULE, parse as parse_key};
 pub use line::Line;
 pub use port::Port;

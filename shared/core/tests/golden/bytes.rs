@@ -2,16 +2,20 @@
 
 use std::fmt::Write;
 
-use touchdown_core::event::{Alarm, Event, EventKind, Level, Moment, Motion, Notice, Plane, Touch};
+use touchdown_core::event::{
+    Act, Alarm, Event, EventKind, Level, Moment, Motion, Notice, Ordered, Plane, Touch,
+};
 use touchdown_core::forecast::{Onset, Outlook};
 use touchdown_core::health::{Condition, Fault, FaultKind};
 use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::severity::Severity;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{ConfigScrub, Settings, Wiring};
+use touchdown_protocol::config_block::{ConfigScrub, Key, Settings, Wiring};
 use touchdown_protocol::controller::{Busy, Cause, Mode, Outputs, Shown};
-use touchdown_protocol::link::{Chunk, Decoder, Recent, Reply, Request, State, encode};
+use touchdown_protocol::link::{
+    Chunk, Decoder, NONCE_BYTES, Recent, Reply, Request, State, encode, mac,
+};
 use touchdown_protocol::log::block::{Block, Kind, Page};
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::ending::{Closing, Ending};
@@ -196,6 +200,14 @@ fn wires(text: &mut String) {
                 refused: Some(Busy::Blind),
             }),
         ),
+        (
+            "ordered",
+            Record::Notice(Notice::Ordered(Ordered {
+                act: Act::Erase(300),
+                refused: 8,
+                sample,
+            })),
+        ),
         ("severity", Record::Severity(SEVERITY)),
         ("summary", Record::Summary(summary)),
     ] {
@@ -266,7 +278,13 @@ fn link(text: &mut String) {
         episode: 300,
         offset: 512,
     };
-    for (name, request) in [("fetch", fetch), ("recent", Request::Recent { step: 5 })] {
+    let act = Act::Erase(300);
+    let mac = mac(None, &[7; NONCE_BYTES], &act, &[]);
+    for (name, request) in [
+        ("fetch", fetch),
+        ("recent", Request::Recent { step: 5 }),
+        ("order", Request::Order { mac, act }),
+    ] {
         put(
             text,
             &format!("request {name}"),
@@ -282,6 +300,7 @@ fn configuration(text: &mut String) {
             pulses_per_turn: Some(2),
             levitation: true,
         },
+        key: Some(Key(*b"a key of 16 byte")),
     };
     let mut block = config_block::encode(&settings);
     assert_eq!(config_block::decode(&block), Ok((&block[..], settings)));

@@ -50,6 +50,7 @@ fn line(notice: &Notice) -> String {
             "touch     #{} of plane {:?} from {}, declared at {}, end {:?}, peak {}",
             touch.number, touch.plane, touch.onset, touch.declared, touch.end, touch.peak
         ),
+        Notice::Ordered(_) => unreachable!("nobody orders here"),
         Notice::Outlook(outlook) => {
             let onset = outlook.onset.map_or(String::new(), |onset| {
                 format!(

@@ -9,7 +9,7 @@ use super::cobs::{self, Unstuffer};
 use touchdown_core::checksum::CRC;
 
 /// Version of the frames and of all messages.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 /// Most bytes of a frame before the stuffing.
 const PLAIN_BYTES: usize = 448;
 /// Most bytes of a frame on the line: one more for each 254, the first length and the zero.

@@ -3,11 +3,13 @@
 use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
+use super::right::{Mac, Nonce};
 use crate::config_block::{Block, BlockError};
 use crate::controller::{Busy, Cause, Faults, Mode, Outputs};
 use crate::log::counters::Counters as Lifetime;
 use crate::log::waveform::{self, COUNTS_BYTES, Counts};
 use crate::wire::NOTICE_BYTES;
+use touchdown_core::event::Act;
 use touchdown_core::phase::Phase;
 
 /// Most bytes of a log chunk.
@@ -33,10 +35,11 @@ pub enum Request {
     State,
     /// Answer: `Config`.
     ReadConfig,
-    /// Puts a configuration block in force and stores it. Answer: `Done` or `Refused`.
-    SetConfig(Block),
-    /// Clears what is latched. Answer: `Done` or `Refused`.
-    Clear,
+    /// Checks a configuration block and holds it ready for [`Act::Commit`]. Answer: `Config`, the block as it was
+    /// taken, or `Refused`.
+    Stage(Block),
+    /// Asks for a nonce. Answer: `Challenge`.
+    Challenge,
     /// Answer: `Episodes`.
     Episodes,
     /// Bytes of an episode from `offset` on. Answer: `Chunk` or `Refused`.
@@ -46,10 +49,12 @@ pub enum Request {
         /// First byte.
         offset: u32,
     },
-    /// Erases an episode. Answer: `Done` or `Refused`.
-    Erase {
-        /// The episode's number.
-        episode: u32,
+    /// An order. Answer: `Done` or `Refused`.
+    Order {
+        /// The right to it: [`super::right::mac`].
+        mac: Mac,
+        /// What is ordered.
+        act: Act,
     },
     /// Where the rotor has been just now. Answer: `Recent`.
     Recent {
@@ -70,7 +75,7 @@ pub enum Reply {
     State(State),
     /// A notice, in the bytes of `wire::encode_record`.
     Notice([u8; NOTICE_BYTES]),
-    /// The block in force.
+    /// The block in force or staged, without its key.
     Config(Block),
     /// What was asked is done.
     Done,
@@ -89,6 +94,8 @@ pub enum Reply {
     Recent(Recent),
     /// What was counted over the monitor's life; none where there is no log.
     Lifetime(Option<Lifetime>),
+    /// The nonce of the next order, and whether the controller has a key.
+    Challenge(Nonce, bool),
 }
 
 /// The newest of the recorded samples, at equal distances.
@@ -206,12 +213,32 @@ pub enum Refusal {
     StoreFailed,
     /// There is no such episode, or it is being written.
     NoEpisode,
+    /// Too few slots would be left for new episodes.
+    NoRoom,
 }
 
 impl Refusal {
     /// This parameter breaks its rule.
     pub fn parameter(name: &str) -> Self {
         Self::Parameter(shortened(name))
+    }
+}
+
+impl Refusal {
+    /// Code of the reason in a notice, from 1: as over the link, in one byte.
+    pub fn code(&self) -> u8 {
+        let mut bytes = [0; 2 + TEXT_BYTES];
+        let _ = postcard::to_slice(self, &mut bytes);
+        match bytes {
+            [0, busy, ..] => 1 + busy,
+            [other, ..] => 16 + other,
+        }
+    }
+
+    /// The reason of a code, without a parameter's name.
+    pub fn of_code(code: u8) -> Option<Self> {
+        let busy = code.checked_sub(1)?;
+        postcard::from_bytes(&if busy < 16 { [0, busy] } else { [code - 16, 0] }).ok()
     }
 }
 

@@ -1,11 +1,13 @@
-//! The controller's side: requests in, answers out.
+//! The controller's side: requests in, answers out, orders only by right.
 
 use super::frame::{self, Decoder, Frame};
 use super::message::{Chunk, Hello, Recent, Refusal, Reply, Request, State, shortened};
-use crate::config_block::{self, Block, Settings};
+use super::right::{Mac, Right};
+use crate::config_block::{self, Block, Key, Settings};
+use crate::controller::Busy;
 use crate::log::counters::Counters as Lifetime;
 use crate::wire::{Record, encode_record};
-use touchdown_core::event::Notice;
+use touchdown_core::event::{Act, Notice, Ordered};
 
 /// The log, as the link sees it: numbered episodes of bytes.
 pub trait Log {
@@ -16,30 +18,14 @@ pub trait Log {
     /// are, and how many the whole has.
     fn fetch(&mut self, episode: u32, offset: u32, chunk: &mut Chunk) -> Result<u32, Refusal>;
 
-    /// Erases an episode.
+    /// Erases an episode that is not locked.
     fn erase(&mut self, episode: u32) -> Result<(), Refusal>;
+
+    /// Keeps an episode, or gives it free to be overwritten.
+    fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal>;
 
     /// The lifetime counters.
     fn lifetime(&mut self) -> Option<Lifetime>;
-}
-
-/// A controller that keeps no log.
-impl Log for () {
-    fn episodes(&mut self) -> Option<(u32, u32)> {
-        None
-    }
-
-    fn fetch(&mut self, _: u32, _: u32, _: &mut Chunk) -> Result<u32, Refusal> {
-        Err(Refusal::NoEpisode)
-    }
-
-    fn erase(&mut self, _: u32) -> Result<(), Refusal> {
-        Err(Refusal::NoEpisode)
-    }
-
-    fn lifetime(&mut self) -> Option<Lifetime> {
-        None
-    }
 }
 
 /// A controller whose log may be missing.
@@ -57,6 +43,11 @@ impl<L: Log> Log for Option<L> {
         self.as_mut().ok_or(Refusal::NoEpisode)?.erase(episode)
     }
 
+    fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
+        let log = self.as_mut().ok_or(Refusal::NoEpisode)?;
+        log.set_locked(episode, locked)
+    }
+
     fn lifetime(&mut self) -> Option<Lifetime> {
         self.as_mut()?.lifetime()
     }
@@ -67,10 +58,21 @@ pub trait Device {
     /// What goes on now. The link fills in its own counter.
     fn state(&mut self) -> State;
 
-    /// The block in force.
+    /// The block in force, with its key.
     fn config(&mut self) -> Block;
 
-    /// Stores a block that is valid and puts it in force; refused while a drop runs.
+    /// Whether the local service input is on.
+    fn service(&mut self) -> bool;
+
+    /// What nobody can know before; 0 on a board without a source of it.
+    fn unknown(&mut self) -> u64 {
+        0
+    }
+
+    /// Takes note of an order, done or not.
+    fn ordered(&mut self, notice: &Notice);
+
+    /// Stores a block that is valid and puts it in force; refused while the machine may run or a drop runs.
     fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal>;
 
     /// Clears what is latched.
@@ -91,17 +93,24 @@ pub struct Server {
     decoder: Decoder,
     damaged: u32,
     sequence: u8,
+    right: Right,
+    staged: Block,
+    /// The last order's right, and what came of it.
+    last: Option<(Mac, Result<(), Refusal>)>,
 }
 
 impl Server {
-    /// Says `firmware` and `sample_rate` (Hz) to who asks.
-    pub fn new(firmware: &'static str, sample_rate: f32) -> Self {
+    /// Says `firmware` and `sample_rate` (Hz) to who asks, and obeys who has the `key` of the block in force.
+    pub fn new(firmware: &'static str, sample_rate: f32, key: Option<Key>) -> Self {
         Self {
             firmware,
             sample_rate,
             decoder: Decoder::default(),
             damaged: 0,
             sequence: 0,
+            right: Right::new(key, sample_rate),
+            staged: Block::new(),
+            last: None,
         }
     }
 
@@ -142,7 +151,7 @@ impl Server {
         state
     }
 
-    fn answer(&self, request: Request, device: &mut impl Device) -> Reply {
+    fn answer(&mut self, request: Request, device: &mut impl Device) -> Reply {
         let done = |result: Result<(), Refusal>| match result {
             Ok(()) => Reply::Done,
             Err(refusal) => Reply::Refused(refusal),
@@ -153,9 +162,18 @@ impl Server {
                 sample_rate: self.sample_rate,
             }),
             Request::State => Reply::State(self.state_of(device)),
-            Request::ReadConfig => Reply::Config(device.config()),
-            Request::SetConfig(bytes) => done(set_config(&bytes, device)),
-            Request::Clear => done(device.clear()),
+            Request::ReadConfig => {
+                let keyed = self.right.key.is_some();
+                Reply::Config(config_block::blanked(&device.config(), keyed))
+            }
+            Request::Stage(bytes) => self.stage(&bytes).unwrap_or_else(Reply::Refused),
+            Request::Challenge => {
+                let boot = device.log().lifetime().map_or(0, |it| it.boots);
+                let (now, unknown) = (device.state().sample, device.unknown());
+                let nonce = self.right.challenge(now, boot, unknown);
+                Reply::Challenge(nonce, self.right.key.is_some())
+            }
+            Request::Order { mac, act } => done(self.order(&mac, act, device)),
             Request::Episodes => Reply::Episodes(device.log().episodes()),
             Request::Fetch { episode, offset } => {
                 let mut bytes = Chunk::new();
@@ -164,14 +182,64 @@ impl Server {
                     Err(refusal) => Reply::Refused(refusal),
                 }
             }
-            Request::Erase { episode } => done(device.log().erase(episode)),
             Request::Lifetime => Reply::Lifetime(device.log().lifetime()),
             Request::Recent { step } => Reply::Recent(device.recent(step.max(1))),
         }
     }
-}
 
-fn set_config(bytes: &[u8], device: &mut impl Device) -> Result<(), Refusal> {
-    let (block, settings) = config_block::decode(bytes)?;
-    device.set_config(block, &settings)
+    fn stage(&mut self, bytes: &[u8]) -> Result<Reply, Refusal> {
+        let (block, settings) = config_block::decode(bytes)?;
+        self.staged = Block::from_slice(block).unwrap_or_default();
+        let shown = config_block::blanked(block, settings.key.is_some());
+        Ok(Reply::Config(shown))
+    }
+
+    /// Once for each nonce: an order that comes again, as its answer was lost or somebody recorded it, has the same
+    /// answer, and nothing is done.
+    fn order(&mut self, mac: &Mac, act: Act, device: &mut impl Device) -> Result<(), Refusal> {
+        if let Some((_, result)) = self.last.as_ref().filter(|(last, _)| last == mac) {
+            return result.clone();
+        }
+        let sample = device.state().sample;
+        let block: &[u8] = match act {
+            Act::Commit(_) => &self.staged,
+            _ => &[],
+        };
+        let right = self.right.check(mac, &act, block, sample, device.service());
+        let result = right
+            .map_err(Refusal::from)
+            .and_then(|()| self.act(act, device));
+        device.ordered(&Notice::Ordered(Ordered {
+            act,
+            refused: result.as_ref().err().map_or(0, Refusal::code),
+            sample,
+        }));
+        self.last = Some((*mac, result.clone()));
+        result
+    }
+
+    fn act(&self, act: Act, device: &mut impl Device) -> Result<(), Refusal> {
+        match act {
+            Act::Clear => device.clear(),
+            Act::Commit(checksum) => self.commit(checksum, device),
+            Act::Erase(_) if device.state().outputs.run => Err(Busy::Watching.into()),
+            Act::Erase(episode) => match device.log().episodes() {
+                Some((_, last)) if last == episode => Err(Busy::Last.into()),
+                _ => device.log().erase(episode),
+            },
+            Act::Lock(episode) => device.log().set_locked(episode, true),
+            Act::Unlock(episode) => device.log().set_locked(episode, false),
+        }
+    }
+
+    fn commit(&self, checksum: u32, device: &mut impl Device) -> Result<(), Refusal> {
+        let (block, mut settings) = config_block::decode(&self.staged)?;
+        if block.last_chunk() != Some(&checksum.to_le_bytes()) {
+            return Err(Refusal::Block);
+        }
+        if settings.key == Some(Key::HELD) {
+            settings.key = Some(self.right.key.ok_or_else(|| Refusal::parameter("key"))?);
+        }
+        device.set_config(&config_block::encode(&settings), &settings)
+    }
 }

@@ -1,0 +1,39 @@
+//! The key of the right to order, as it is written: 32 hexadecimal digits.
+
+use std::fs;
+use std::path::Path;
+
+use touchdown_base::input_error::InputError;
+use touchdown_protocol::config_block::{KEY_BYTES, Key};
+
+/// What a key must be.
+pub const RULE: &str = "the key must be 32 hexadecimal digits, not all of them 0";
+
+/// The key of `text`.
+pub fn parse(text: &str) -> Option<Key> {
+    let is_hex = text.len() == 2 * KEY_BYTES && text.bytes().all(|it| it.is_ascii_hexdigit());
+    let number = u128::from_str_radix(text, 16)
+        .ok()
+        .filter(|it| is_hex && *it != 0)?;
+    Some(Key(number.to_be_bytes()))
+}
+
+/// The key in the file `name`, and a warning where others may read it.
+pub fn load(name: &str) -> Result<(Key, Option<String>), InputError> {
+    let path = Path::new(name);
+    let text = InputError::read(path, 1_000)?;
+    let key = parse(text.trim()).ok_or_else(|| InputError::at_line(name, 1, RULE))?;
+    let warning = others_read(path).then(|| format!("{name}: others can read this key"));
+    Ok((key, warning))
+}
+
+#[cfg(unix)]
+fn others_read(path: &Path) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    fs::metadata(path).is_ok_and(|it| it.permissions().mode() & 0o077 != 0)
+}
+
+#[cfg(not(unix))]
+fn others_read(_: &Path) -> bool {
+    false
+}
