@@ -257,6 +257,7 @@ fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
             zero_count: 2_048.0,
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
+            calibration: None,
         },
         tachometers: None,
         detector: DetectorConfig {

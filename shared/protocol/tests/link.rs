@@ -58,6 +58,7 @@ fn settings() -> Settings {
                 zero_count: 2_048.0,
                 full_scale: 4_095,
                 mounting_angle: [0.0; 2],
+                calibration: None,
             },
             tachometers: Some(TachometersConfig {
                 marks: [Some(u16::MAX), Some(u16::MAX)],

@@ -43,9 +43,7 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
             let head = format!("# {port}, firmware {}\n\n", before.firmware);
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
-        Some(mut wanted) => {
-            // A file is no record of a commissioning check: the controller keeps its own.
-            wanted.monitor.commissioned = before.settings.monitor.commissioned;
+        Some(wanted) => {
             let changed = differences(&before.settings, &wanted);
             if wanted != before.settings {
                 put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
