@@ -64,7 +64,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     out.finish_with(|files| shown + &files.lines().map(note).collect::<String>())
 }
 
-fn load(name: &str) -> Result<Settings, Failure> {
+/// The settings of a file.
+pub(super) fn load(name: &str) -> Result<Settings, Failure> {
     Ok(parse(
         name,
         &InputError::read(Path::new(name), LARGEST_TOML)?,
