@@ -249,7 +249,8 @@ impl Run {
     }
 }
 
-fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
+/// What a machine of this kind is told.
+pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
     MonitorConfig {
         fitted: 0b1111,
         sensing: SensingConfig {

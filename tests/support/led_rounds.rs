@@ -55,12 +55,21 @@ impl Truth {
 /// Angle and radius (part of the gap) of a rotor that is lifted to the wall, led along an arc (rad), let go some times,
 /// and brought back.
 fn way(rng: &mut Rng, arc: f64) -> Vec<[f64; 2]> {
-    let (start, sense) = (rng.uniform(0.0, TAU), [-1.0, 1.0][(rng.next_u64() % 2) as usize]);
+    let (start, sense) = (
+        rng.uniform(0.0, TAU),
+        [-1.0, 1.0][(rng.next_u64() % 2) as usize],
+    );
     let ends = [rng.uniform(0.5, 3.0), TIME - rng.uniform(0.5, 3.0)];
     let hangs = rng.uniform(0.0, 0.5);
     let count = rng.next_u64() % 7;
     let leaves: Vec<[f64; 3]> = (0..count)
-        .map(|_| [rng.uniform(ends[0], ends[1]), rng.uniform(0.1, 0.6), rng.uniform(0.05, 1.0)])
+        .map(|_| {
+            [
+                rng.uniform(ends[0], ends[1]),
+                rng.uniform(0.1, 0.6),
+                rng.uniform(0.05, 1.0),
+            ]
+        })
         .collect();
     let smooth = |u: f64| {
         let u = u.clamp(0.0, 1.0);
@@ -84,8 +93,38 @@ fn way(rng: &mut Rng, arc: f64) -> Vec<[f64; 2]> {
 /// Readings (m) of a plane over such a way.
 pub fn readings(rng: &mut Rng, truth: &Truth, arc: f64, noise: f64) -> Vec<[f64; 2]> {
     let way = way(rng, arc);
-    let place = |[angle, part]: [f64; 2]| [part * truth.gap * angle.cos(), part * truth.gap * angle.sin()];
-    way.into_iter().map(|it| truth.read(rng, place(it), noise)).collect()
+    let place = |[angle, part]: [f64; 2]| {
+        [
+            part * truth.gap * angle.cos(),
+            part * truth.gap * angle.sin(),
+        ]
+    };
+    way.into_iter()
+        .map(|it| truth.read(rng, place(it), noise))
+        .collect()
+}
+
+/// A recording of a machine of 0.3 mm.
+pub fn example() -> String {
+    let mut rng = Rng(7);
+    let planes = [0, 1].map(|_| Truth::wrong(&mut rng, 0.3e-3));
+    stream(7, &planes, 5.5)
+}
+
+/// A recording of such planes, one or two, as a stream.
+pub fn stream(seed: u64, planes: &[Truth], arc: f64) -> String {
+    let all: Vec<_> = planes
+        .iter()
+        .map(|it| readings(&mut Rng(seed), it, arc, 1e-6))
+        .collect();
+    let names = ["ax_um,ay_um", "bx_um,by_um"];
+    let mut text = format!("time_s,{}\n", names[..planes.len()].join(","));
+    for number in 0..all[0].len() {
+        let values = all.iter().flat_map(|it| it[number]);
+        let values: Vec<_> = values.map(|it| format!("{:.3}", 1e6 * it)).collect();
+        text += &format!("{:.4},{}\n", number as f64 / RATE, values.join(","));
+    }
+    text
 }
 
 /// Of one quantity over all planes.
@@ -156,11 +195,17 @@ pub fn run(runs: u64, first_seed: u64) -> Summary {
         Some(format!("seed {}: {}", it.0, why?))
     };
     let row = |(number, (name, tolerance)): (usize, (&'static str, f64))| {
-        let found = all.iter().filter_map(|it| Some((it.1.as_ref().ok()?, &it.2)));
-        let values: Vec<_> = found.map(|(plane, truth)| quantities(plane, truth)[number]).collect();
+        let found = all
+            .iter()
+            .filter_map(|it| Some((it.1.as_ref().ok()?, &it.2)));
+        let values: Vec<_> = found
+            .map(|(plane, truth)| quantities(plane, truth)[number])
+            .collect();
         // What was given is not found.
         let values = values.iter().filter(|(it, _)| it.error > 0.0);
-        let off: Vec<_> = values.map(|(it, truth)| ((it.value - truth).abs(), it.error)).collect();
+        let off: Vec<_> = values
+            .map(|(it, truth)| ((it.value - truth).abs(), it.error))
+            .collect();
         let share = |holds: &dyn Fn(&(f64, f64)) -> bool| {
             off.iter().filter(|it| holds(it)).count() as f64 / off.len() as f64
         };

@@ -9,9 +9,9 @@ use super::ellipse::{Ellipse, Fitted};
 /// Directions in which the outermost reading is looked for.
 const DIRECTIONS: usize = 180;
 /// Curves through five of them that are tried.
-const TRIES: usize = 400;
+const TRIES: usize = 200;
 /// Readings that a curve is tried on.
-const TRIED_ON: usize = 2_000;
+const TRIED_ON: usize = 1_000;
 /// Most of the readings that may be outside the wall: spikes.
 const OUTSIDE: f64 = 0.02;
 /// Standard deviations beyond which a reading, or the mean of a window, is not of the wall.
