@@ -40,7 +40,8 @@ pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<(Vec<usize>, Fitte
             ));
         }
         let fitted = ellipse.fit(&points);
-        let fitted = fitted.ok_or("the fit does not settle: too little of the wall was touched")?;
+        let fitted =
+            fitted.ok_or("the fit does not settle: too little of the wall, or too much noise")?;
         let squares: f64 = fitted.residuals.iter().map(|it| it * it).sum();
         spread = (squares / points.len() as f64).sqrt();
         ellipse = fitted.ellipse;

@@ -230,3 +230,87 @@ impl Sensing {
         [plane(a, ax, ay), plane(b, bx, by)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONFIG: SensingConfig = SensingConfig {
+        resolution: 0.5e-6,
+        zero_count: 2_048.0,
+        full_scale: 4_095,
+        mounting_angle: [0.3, -2.0],
+        calibration: None,
+    };
+    const PLANE: PlaneCalibration = PlaneCalibration {
+        zero: [40e-6, -25e-6],
+        gain: [1.2, 0.85],
+        skew: 0.07,
+    };
+
+    fn with(planes: [PlaneCalibration; PLANES]) -> Sensing {
+        let calibration = Some(Calibration { date: 0, planes });
+        let config = SensingConfig {
+            calibration,
+            ..CONFIG
+        };
+        Sensing::try_new(&config).unwrap()
+    }
+
+    /// Readings by the definition of zero, gain and skew, in f64.
+    #[test]
+    fn wrong_sensors_show_the_place_that_is() {
+        let sensing = with([PLANE, PLANE]);
+        for place in [[0.0, 0.0], [120e-6, -60e-6], [-90e-6, 200e-6]] {
+            let counts = [0, 1, 2, 3].map(|channel: usize| {
+                let second = (channel % 2) as f64 * (core::f64::consts::FRAC_PI_2 + 0.07);
+                let angle = f64::from(CONFIG.mounting_angle[channel / 2]) + second;
+                let along = place[0] * libm::cos(angle) + place[1] * libm::sin(angle);
+                let (zero, gain) = (PLANE.zero[channel % 2], PLANE.gain[channel % 2]);
+                let reading = f64::from(zero) + f64::from(gain) * along;
+                Some((2_048.0 + reading / 0.5e-6) as f32)
+            });
+            for seen in sensing.place(counts) {
+                let [x, y] = seen.unwrap().map(f64::from);
+                assert!(
+                    (x - place[0]).abs() < 1e-9 && (y - place[1]).abs() < 1e-9,
+                    "{x} {y}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_record_of_no_error_changes_no_bit() {
+        let (told, none) = (with(Default::default()), Sensing::try_new(&CONFIG).unwrap());
+        assert_eq!(told, none);
+        assert_eq!(CONFIG.finest_resolution(), CONFIG.resolution);
+    }
+
+    #[test]
+    fn what_is_no_sensor_is_refused() {
+        for plane in [
+            PlaneCalibration {
+                gain: [1.0, 0.1],
+                ..PLANE
+            },
+            PlaneCalibration { skew: 0.6, ..PLANE },
+            PlaneCalibration {
+                zero: [f32::NAN, 0.0],
+                ..PLANE
+            },
+        ] {
+            let calibration = Some(Calibration {
+                date: 0,
+                planes: [PLANE, plane],
+            });
+            assert!(
+                Sensing::try_new(&SensingConfig {
+                    calibration,
+                    ..CONFIG
+                })
+                .is_err()
+            );
+        }
+    }
+}
