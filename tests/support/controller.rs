@@ -37,6 +37,7 @@ pub fn settings() -> Settings {
                 zero_count: 2_048.0,
                 full_scale: 4_095,
                 mounting_angle: [0.0; 2],
+                calibration: None,
             },
             tachometers: None,
             detector: DetectorConfig {

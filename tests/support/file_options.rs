@@ -8,11 +8,14 @@ use std::process::Command;
 
 use clap::CommandFactory;
 use tempfile::TempDir;
+use touchdown_files::configuration;
 use touchdown_scene::BUILT_IN;
 use touchdown_sim::commands::Cli;
 
 use crate::binary::{program, touchdown};
+use crate::controller::settings;
 use crate::episode::{dump, episode};
+use crate::led_rounds;
 
 /// Where an output goes.
 #[derive(Clone, Copy, Debug)]
@@ -266,6 +269,25 @@ pub const ROWS: &[Row] = &[
         ..NONE
     },
     Row {
+        command: "calibrate",
+        words: "calibrate led.csv --scene my.toml --columns map.toml",
+        inputs: &[
+            ("recording", "led.csv"),
+            ("scene", "my.toml"),
+            ("columns", "map.toml"),
+        ],
+        outputs: &[File("--json"), File("--report"), File("--write")],
+        others: &["clearance", "scale", "date", "resample"],
+        ..NONE
+    },
+    Row {
+        command: "calibrate",
+        words: "calibrate led.csv --config old.toml",
+        inputs: &[("recording", "led.csv"), ("config", "old.toml")],
+        outputs: &[File("--json"), File("--report"), File("--write")],
+        ..NONE
+    },
+    Row {
         command: "force",
         words: "force r.csv --calibration c.csv --calibration c-y.csv",
         inputs: &[
@@ -360,6 +382,8 @@ pub fn folder() -> TempDir {
     put("my.toml", BUILT_IN[0].text.as_bytes());
     put("plan.toml", PLAN.as_bytes());
     put("flash.bin", &dump(&[episode(1), episode(2)]));
+    put("led.csv", led_rounds::example().as_bytes());
+    put("old.toml", configuration::text(&settings()).as_bytes());
     put("image", b"no image");
     put("c.toml", b"");
     put("map.toml", MAP.as_bytes());

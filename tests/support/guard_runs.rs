@@ -254,7 +254,8 @@ impl Run {
     }
 }
 
-fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
+/// What a machine of this kind is told.
+pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
     MonitorConfig {
         fitted: 0b1111,
         sensing: SensingConfig {
@@ -262,6 +263,7 @@ fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
             zero_count: 2_048.0,
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
+            calibration: None,
         },
         tachometers: None,
         detector: DetectorConfig {

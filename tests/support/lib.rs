@@ -11,6 +11,7 @@ pub mod episode;
 pub mod file_options;
 pub mod growth;
 pub mod guard_runs;
+pub mod led_rounds;
 pub mod minimal_scene;
 pub mod moment;
 pub mod plant;

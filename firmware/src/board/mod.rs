@@ -67,6 +67,7 @@ pub fn default_config() -> MonitorConfig {
             zero_count: 2_048.0,
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
+            calibration: None,
         },
         tachometers: None,
         detector: DetectorConfig {

@@ -2,8 +2,10 @@
 
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
+use touchdown_core::sensing::Calibration;
 
 use super::auto::auto;
+use super::calibration::CalibrationTable;
 use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
@@ -36,7 +38,9 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
     let materials = materials(file.materials.as_ref())?;
-    let sensors = sensors(&file.sensors, tachometers)?;
+    let calibration = file.calibration.as_ref();
+    let calibration = calibration.map(CalibrationTable::check).transpose()?;
+    let sensors = sensors(&file.sensors, calibration, tachometers)?;
     let faults = faults(&file.fault, &sensors, &run)?;
     let mut scene = Scene {
         name: name.to_owned(),
@@ -213,6 +217,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
 
 fn sensors(
     table: &SensorsTable,
+    calibration: Option<Calibration>,
     tachometers: Option<Tachometers>,
 ) -> Result<SensorsConfig, Diagnostic> {
     let config = SensorsConfig {
@@ -222,6 +227,7 @@ fn sensors(
         noise: MICRO * table.noise_um,
         bandwidth: table.bandwidth_hz,
         mounting_angle: table.mounting_deg.map(f64::to_radians),
+        skew: table.skew_deg.map(f64::to_radians),
         offset: table.offset_um.map(|offset| MICRO * offset),
         gain_error: table.gain_error_percent.map(|error| error / 100.0),
         nonlinearity: table.nonlinearity_percent / 100.0,
@@ -229,6 +235,7 @@ fn sensors(
         runout_harmonic: table.runout_harmonic,
         speed: table.speed,
         levitation_signal: table.levitation_signal,
+        calibration,
         tachometers,
     };
     config.check().map_err(|error| translate(&error))?;

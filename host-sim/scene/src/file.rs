@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use touchdown_core::detect::Tuning;
 use touchdown_core::guard::GuardConfig;
 
+use super::calibration::CalibrationTable;
 use super::diagnostic;
 use super::faults::FaultTable;
 use super::list;
@@ -60,6 +61,7 @@ pub(super) struct SceneFile {
     pub materials: Option<MaterialsTable>,
     #[serde(default)]
     pub sensors: SensorsTable,
+    pub calibration: Option<CalibrationTable>,
     #[serde(default)]
     pub fault: Vec<FaultTable>,
     #[serde(default)]
@@ -212,6 +214,8 @@ pub(super) struct SensorsTable {
     #[serde(deserialize_with = "list::exactly")]
     pub mounting_deg: [f64; 2],
     #[serde(deserialize_with = "list::exactly")]
+    pub skew_deg: [f64; 2],
+    #[serde(deserialize_with = "list::exactly")]
     pub offset_um: [f64; 4],
     #[serde(deserialize_with = "list::exactly")]
     pub gain_error_percent: [f64; 4],
@@ -231,6 +235,7 @@ impl Default for SensorsTable {
             noise_um: 1.0,
             bandwidth_hz: None,
             mounting_deg: [0.0; 2],
+            skew_deg: [0.0; 2],
             offset_um: [0.0; 4],
             gain_error_percent: [0.0; 4],
             nonlinearity_percent: 0.0,

@@ -2,6 +2,7 @@
 
 mod auto;
 mod builtin;
+pub mod calibration;
 pub mod check;
 mod contact;
 pub mod diagnostic;

@@ -98,6 +98,7 @@ pub fn translate(error: &ConfigError) -> Diagnostic {
         "noise" => ("sensors", "noise_um"),
         "bandwidth" => ("sensors", "bandwidth_hz"),
         "mounting_angle" => ("sensors", "mounting_deg"),
+        "skew" => ("sensors", "skew_deg"),
         "offset" => ("sensors", "offset_um"),
         "gain_error" => ("sensors", "gain_error_percent"),
         "nonlinearity" => ("sensors", "nonlinearity_percent"),

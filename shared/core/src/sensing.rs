@@ -21,6 +21,64 @@ pub struct SensingConfig {
     pub full_scale: u16,
     /// Angle from the scene's x axis to each plane's first axis, counter-clockwise, rad.
     pub mounting_angle: [f32; PLANES],
+    /// What a commissioning check found; `None` where there was none.
+    pub calibration: Option<Calibration>,
+}
+
+impl SensingConfig {
+    /// Displacement of one count of the channel with the steepest slope, m.
+    pub fn finest_resolution(&self) -> f32 {
+        let planes = self.calibration.unwrap_or_default().planes;
+        let gains = planes.iter().flat_map(|it| it.gain);
+        self.resolution / gains.fold(0.0, f32::max)
+    }
+}
+
+/// What a commissioning check found of the sensors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Calibration {
+    /// Day of the check, as the number 20261231.
+    pub date: u32,
+    /// Of each plane.
+    pub planes: [PlaneCalibration; PLANES],
+}
+
+/// Errors of a plane's two channels against `resolution`, `zero_count` and right angles; by default none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneCalibration {
+    /// What each channel reads at the retainer's centre, m.
+    pub zero: [f32; 2],
+    /// Slope of each channel: reading over displacement.
+    pub gain: [f32; 2],
+    /// Angle from the first axis to the second, less 90 degrees, counter-clockwise, rad.
+    pub skew: f32,
+}
+
+impl Default for PlaneCalibration {
+    fn default() -> Self {
+        Self {
+            zero: [0.0; 2],
+            gain: [1.0; 2],
+            skew: 0.0,
+        }
+    }
+}
+
+impl PlaneCalibration {
+    fn validate(&self) -> Result<(), ConfigError> {
+        if self.zero.iter().any(|zero| !zero.is_finite()) {
+            return Err(ConfigError::NotFinite("zero"));
+        }
+        if self.gain.iter().any(|gain| !(0.2..=5.0).contains(gain)) {
+            return Err(ConfigError::OutOfRange("gain", "0.2 to 5"));
+        }
+        if !(-0.5..=0.5).contains(&self.skew) {
+            return Err(ConfigError::OutOfRange("skew", "-0.5 to 0.5 rad"));
+        }
+        Ok(())
+    }
 }
 
 /// Where the rotor is, by plane.
@@ -58,11 +116,45 @@ impl Reading {
 /// Coefficients of the conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
-    resolution: f32,
-    zero_count: f32,
     full_scale: u16,
-    /// Sine and cosine of the mounting angles.
-    rotation: [[f32; 2]; PLANES],
+    planes: [PlaneSensing; PLANES],
+}
+
+/// Of a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PlaneSensing {
+    /// Count of each channel at the retainer's centre.
+    zero_count: [f32; 2],
+    /// Displacement of one count of each channel, m.
+    resolution: [f32; 2],
+    /// From the channels' displacements to x and y; the second number of the first row is subtracted.
+    turn: [[f32; 2]; 2],
+}
+
+impl PlaneSensing {
+    fn new(config: &SensingConfig, angle: f32, calibration: &PlaneCalibration) -> Self {
+        let PlaneCalibration { zero, gain, skew } = *calibration;
+        let (sin, cos) = sin_cos(angle);
+        let (second_sin, second_cos) = sin_cos(angle + skew);
+        let (_, between) = sin_cos(skew);
+        Self {
+            zero_count: zero.map(|zero| config.zero_count + zero / config.resolution),
+            resolution: gain.map(|gain| config.resolution / gain),
+            turn: [
+                [second_cos / between, sin / between],
+                [second_sin / between, cos / between],
+            ],
+        }
+    }
+
+    /// From the plane's counts to its position, m.
+    #[inline]
+    fn position(&self, [first, second]: [f32; 2]) -> [f32; 2] {
+        let u = (first - self.zero_count[0]) * self.resolution[0];
+        let v = (second - self.zero_count[1]) * self.resolution[1];
+        let [[xu, xv], [yu, yv]] = self.turn;
+        [xu * u - xv * v, yu * u + yv * v]
+    }
 }
 
 impl Sensing {
@@ -86,14 +178,17 @@ impl Sensing {
         if config.mounting_angle.iter().any(|angle| !angle.is_finite()) {
             return Err(ConfigError::NotFinite("mounting_angle"));
         }
+        let calibration = config.calibration.unwrap_or_default();
+        let [a, b] = calibration.planes;
+        a.validate()?;
+        b.validate()?;
+        let [of_a, of_b] = config.mounting_angle;
         Ok(Self {
-            resolution: config.resolution,
-            zero_count: config.zero_count,
             full_scale: config.full_scale,
-            rotation: config.mounting_angle.map(|angle| {
-                let (sin, cos) = sin_cos(angle);
-                [sin, cos]
-            }),
+            planes: [
+                PlaneSensing::new(config, of_a, &a),
+                PlaneSensing::new(config, of_b, &b),
+            ],
         })
     }
 
@@ -104,11 +199,11 @@ impl Sensing {
         let [ax, ay, bx, by] = sample.counts;
         let last = self.full_scale - 1;
         let is_inside = |count: u16| count.wrapping_sub(1) < last;
-        let plane = |rotation, channels: u8, u: u16, v: u16| {
+        let plane = |of: &PlaneSensing, channels: u8, u: u16, v: u16| {
             let usable = sample.valid & channels == channels && is_inside(u) && is_inside(v);
-            usable.then(|| self.turn(rotation, [f32::from(u), f32::from(v)]))
+            usable.then(|| of.position([f32::from(u), f32::from(v)]))
         };
-        let [a, b] = self.rotation;
+        let [a, b] = &self.planes;
         [plane(a, 0b0011, ax, ay), plane(b, 0b1100, bx, by)]
     }
 
@@ -130,22 +225,92 @@ impl Sensing {
 
     /// Positions of the planes, m, from their channels' counts, whole or not.
     pub fn place(&self, [ax, ay, bx, by]: [Option<f32>; CHANNELS]) -> [Option<[f32; 2]>; PLANES] {
-        let [a, b] = self.rotation;
-        [self.rotate(a, ax, ay), self.rotate(b, bx, by)]
+        let [a, b] = &self.planes;
+        let plane = |of: &PlaneSensing, u: Option<f32>, v: Option<f32>| Some(of.position([u?, v?]));
+        [plane(a, ax, ay), plane(b, bx, by)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONFIG: SensingConfig = SensingConfig {
+        resolution: 0.5e-6,
+        zero_count: 2_048.0,
+        full_scale: 4_095,
+        mounting_angle: [0.3, -2.0],
+        calibration: None,
+    };
+    const PLANE: PlaneCalibration = PlaneCalibration {
+        zero: [40e-6, -25e-6],
+        gain: [1.2, 0.85],
+        skew: 0.07,
+    };
+
+    fn with(planes: [PlaneCalibration; PLANES]) -> Sensing {
+        let calibration = Some(Calibration { date: 0, planes });
+        let config = SensingConfig {
+            calibration,
+            ..CONFIG
+        };
+        Sensing::try_new(&config).unwrap()
     }
 
-    fn rotate(
-        &self,
-        [sin, cos]: [f32; 2],
-        first: Option<f32>,
-        second: Option<f32>,
-    ) -> Option<[f32; 2]> {
-        Some(self.turn([sin, cos], [first?, second?]))
+    /// Readings by the definition of zero, gain and skew, in f64.
+    #[test]
+    fn wrong_sensors_show_the_place_that_is() {
+        let sensing = with([PLANE, PLANE]);
+        for place in [[0.0, 0.0], [120e-6, -60e-6], [-90e-6, 200e-6]] {
+            let counts = [0, 1, 2, 3].map(|channel: usize| {
+                let second = (channel % 2) as f64 * (core::f64::consts::FRAC_PI_2 + 0.07);
+                let angle = f64::from(CONFIG.mounting_angle[channel / 2]) + second;
+                let along = place[0] * libm::cos(angle) + place[1] * libm::sin(angle);
+                let (zero, gain) = (PLANE.zero[channel % 2], PLANE.gain[channel % 2]);
+                let reading = f64::from(zero) + f64::from(gain) * along;
+                Some((2_048.0 + reading / 0.5e-6) as f32)
+            });
+            for seen in sensing.place(counts) {
+                let [x, y] = seen.unwrap().map(f64::from);
+                assert!(
+                    (x - place[0]).abs() < 1e-9 && (y - place[1]).abs() < 1e-9,
+                    "{x} {y}"
+                );
+            }
+        }
     }
 
-    /// From a plane's counts to its position, m.
-    fn turn(&self, [sin, cos]: [f32; 2], counts: [f32; 2]) -> [f32; 2] {
-        let [u, v] = counts.map(|count| (count - self.zero_count) * self.resolution);
-        [cos * u - sin * v, sin * u + cos * v]
+    #[test]
+    fn a_record_of_no_error_changes_no_bit() {
+        let (told, none) = (with(Default::default()), Sensing::try_new(&CONFIG).unwrap());
+        assert_eq!(told, none);
+        assert_eq!(CONFIG.finest_resolution(), CONFIG.resolution);
+    }
+
+    #[test]
+    fn what_is_no_sensor_is_refused() {
+        for plane in [
+            PlaneCalibration {
+                gain: [1.0, 0.1],
+                ..PLANE
+            },
+            PlaneCalibration { skew: 0.6, ..PLANE },
+            PlaneCalibration {
+                zero: [f32::NAN, 0.0],
+                ..PLANE
+            },
+        ] {
+            let calibration = Some(Calibration {
+                date: 0,
+                planes: [PLANE, plane],
+            });
+            assert!(
+                Sensing::try_new(&SensingConfig {
+                    calibration,
+                    ..CONFIG
+                })
+                .is_err()
+            );
+        }
     }
 }

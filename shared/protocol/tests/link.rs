@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sensing::SensingConfig;
+use touchdown_core::sensing::{Calibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{BlockError, KEY_BYTES, Key, Settings, Wiring};
@@ -59,6 +59,10 @@ fn settings() -> Settings {
                 zero_count: 2_048.0,
                 full_scale: 4_095,
                 mounting_angle: [0.0; 2],
+                calibration: Some(Calibration {
+                    date: u32::MAX,
+                    ..Calibration::default()
+                }),
             },
             tachometers: Some(TachometersConfig {
                 marks: [Some(u16::MAX), Some(u16::MAX)],
@@ -492,7 +496,7 @@ fn what_is_no_block_says_why() {
     let block = config_block::encode(&settings());
     assert_eq!(config_block::decode(&[0xff; 400]), Err(BlockError::Blank));
     assert_eq!(
-        config_block::decode(b"TDC\x02......"),
+        config_block::decode(b"TDC\x03......"),
         Err(BlockError::Version)
     );
     for length in 6..block.len() {

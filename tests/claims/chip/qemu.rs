@@ -26,6 +26,7 @@ fn config() -> MonitorConfig {
             zero_count: ZERO_COUNT,
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
+            calibration: None,
         },
         tachometers: None,
         detector: DetectorConfig {

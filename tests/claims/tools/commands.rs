@@ -9,10 +9,13 @@ use std::process::{Command, Stdio};
 use clap::CommandFactory;
 use serde_json::Value;
 use tempfile::TempDir;
+use touchdown_files::configuration::text;
 use touchdown_scene::BUILT_IN;
 use touchdown_sim::commands::Cli;
 use touchdown_tests::binary::{program, touchdown};
+use touchdown_tests::controller::settings;
 use touchdown_tests::episode::{dump, episode};
+use touchdown_tests::led_rounds::example;
 
 const PLAN: &str = r#"
 scene = "rig"
@@ -37,6 +40,8 @@ fn folder() -> TempDir {
     let at = folder.path();
     let scene = BUILT_IN[0].text;
     fs::write(at.join("my.toml"), scene).expect("a scene");
+    fs::write(at.join("led.csv"), example()).expect("a recording");
+    fs::write(at.join("old.toml"), text(&settings())).expect("a configuration");
     fs::write(at.join("plan.toml"), PLAN).expect("a plan");
     fs::write(at.join("flash.bin"), dump(&[episode(1), episode(2)])).expect("a dump");
     for run in [
@@ -70,7 +75,7 @@ fn folder() -> TempDir {
 
 /// Every command that gives numbers, and a run of it that lasts seconds at most. `limits` stands for those whose
 /// check can fail.
-const JSON: [&str; 15] = [
+const JSON: [&str; 16] = [
     "drop my.toml",
     "replay s.csv --scene my.toml",
     "compare a.csv b.csv --scene my.toml",
@@ -84,6 +89,7 @@ const JSON: [&str; 15] = [
     "log show flash.bin",
     "log verify flash.bin",
     "force r.csv --calibration c.csv",
+    "calibrate led.csv --scene my.toml",
     "scene list",
     "scene explain my.toml",
 ];

@@ -13,6 +13,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use touchdown_protocol::config_block::{Key, Settings};
 use touchdown_protocol::controller::Mode;
+use touchdown_core::sensing::{Calibration, PlaneCalibration};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_files::configuration::{differences, parse, text};
 use touchdown_files::link::Client;
@@ -312,7 +313,10 @@ fn any_settings() -> impl Strategy<Value = Settings> {
     );
     let bearing = proptest::option::of(bearing.prop_filter("fitted", |it| it.0 != [None; 2]));
     let tuning = (any_between(1e-15, 0.009), 4_u8..=32, any_between(1e-3, 9.0));
-    (machine, sensing, wired, bearing, tuning).prop_map(|(m, s, wired, bearing, tuning)| {
+    let checked = (any_between(0.2, 5.0), -0.4_f32..0.4, -1e-3_f32..1e-3);
+    let checked = proptest::option::of(checked);
+    let all = (machine, sensing, wired, bearing, tuning, checked);
+    all.prop_map(|(m, s, wired, bearing, tuning, checked)| {
         let mut it = settings();
         let machine = &mut it.monitor.detector.machine;
         machine.mass = m.0;
@@ -336,6 +340,18 @@ fn any_settings() -> impl Strategy<Value = Settings> {
             edge_error: b.3,
             window: b.4,
         });
+        it.monitor.sensing.calibration = checked.map(|(gain, skew, zero)| Calibration {
+            date: 20_261_231,
+            planes: [
+                PlaneCalibration {
+                    zero: [zero, -zero],
+                    gain: [gain, 1.0],
+                    skew,
+                },
+                PlaneCalibration::default(),
+            ],
+        });
+        it.monitor.commissioned = it.monitor.sensing.calibration.is_some();
         let it_tuning = &mut it.monitor.detector.tuning;
         it_tuning.false_alarm = tuning.0;
         it_tuning.release_instants = tuning.1;

@@ -40,6 +40,8 @@ Examples:
   touchdown config /dev/ttyACM0         what it was configured with; --set changes it
   touchdown clear /dev/ttyACM0 --key-file k
                                         clear what is latched there
+  touchdown calibrate led.csv --scene my.toml --write c.toml
+                                        the sensors' errors, from a rotor led round the wall
   touchdown force r.csv --calibration c.csv
                                         the contact force from measured accelerations
 
@@ -167,6 +169,9 @@ pub(super) enum Command {
     /// Clear what is latched in a controller, over its serial link
     #[command(after_help = help::CLEAR)]
     Clear(OrderArgs),
+    /// Find zero, gain and skew of the sensors from a rotor that was led round the retainer
+    #[command(after_help = help::CALIBRATE)]
+    Calibrate(CalibrateArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
     #[command(after_help = FORCE)]
     Force(ForceArgs),
@@ -538,6 +543,57 @@ pub(super) struct EpisodeArgs {
     pub order: OrderArgs,
     /// Its number
     pub episode: u32,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(group = clap::ArgGroup::new("told").required(true).args(["scene", "config"]))]
+pub(super) struct CalibrateArgs {
+    /// A recording, as for `replay`, of a rotor that was led round the wall
+    pub recording: String,
+    /// Scene with the retainer and the sensors
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// Or the controller's configuration, as `config` prints it
+    #[arg(long, value_name = "FILE.toml")]
+    pub config: Option<String>,
+    /// Radial clearance, mm, as it was measured, in place of the one told
+    #[arg(long, value_name = "MM", value_parser = clearance)]
+    pub clearance: Option<f64>,
+    /// What is believed: the clearance, or the gain of each plane's first axis
+    #[arg(long, value_enum, default_value_t)]
+    pub scale: ScaleArg,
+    /// Day of the check; today (UTC) without
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = super::calibrate::date)]
+    pub date: Option<u32>,
+    /// What was found as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+    /// Readings, curves and residuals as one HTML page
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<String>,
+    /// The configuration with the record of this check, for `config --set`; not if it is refused
+    #[arg(long, value_name = "FILE.toml")]
+    pub write: Option<String>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// What an ellipse leaves open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum ScaleArg {
+    /// The clearance is right, all gains are measured
+    #[default]
+    Clearance,
+    /// The first axis is right, the clearance is measured
+    Sensor,
+}
+
+/// A clearance, mm.
+fn clearance(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let range = touchdown_scene::limits::CLEARANCE_MM;
+    let number = number.filter(|it| range.contains(it));
+    number.ok_or_else(|| format!("{} to {} mm", range.start(), range.end()))
 }
 
 #[derive(Clone, Debug, Subcommand)]

@@ -50,9 +50,7 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
         Some(mut wanted) => {
-            // A file is no record of a commissioning check: the controller keeps its own. So it does its key, where the
-            // file has none.
-            wanted.monitor.commissioned = before.settings.monitor.commissioned;
+            // The controller keeps its key where the file has none.
             wanted.key = wanted.key.or(before.settings.key);
             let changed = differences(&before.settings, &wanted);
             if wanted != before.settings {
@@ -75,7 +73,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     out.finish_with(|files| shown + &files.lines().map(note).collect::<String>())
 }
 
-fn load(name: &str) -> Result<Settings, Failure> {
+/// The settings of a file.
+pub(super) fn load(name: &str) -> Result<Settings, Failure> {
     Ok(parse(
         name,
         &InputError::read(Path::new(name), LARGEST_TOML)?,

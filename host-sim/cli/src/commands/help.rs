@@ -199,6 +199,18 @@ fields. A line that breaks is opened again until q, Ctrl-C or --seconds ends it.
 
 Exit status: 0 done; 2 bad usage, or no controller answered in all the time of --seconds.";
 
+pub(super) const CALIBRATE: &str = "\
+Examples:
+  touchdown calibrate led.csv --scene my.toml
+  touchdown calibrate led.csv --scene my.toml --clearance 0.252 --write new.toml
+  touchdown calibrate led.csv --config old.toml --scale sensor --report r.html --json -
+
+Lead the rotor slowly round the retainer, pushed outward by the magnets, and record that:
+docs/use/calibrate.md. An ellipse shows zero, skew and the ratio of the gains. It does not
+tell gain from clearance: --scale says which of them is believed.
+
+Exit status: 0 done; 1 the check is refused; 2 bad usage or input.";
+
 pub(super) const CONFIG: &str = "\
 Examples:
   touchdown config /dev/ttyACM0               as TOML, to look at

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod calibrate;
 mod compare;
 mod config;
 mod force;
@@ -57,6 +58,7 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Compare(args)) => compare::compare_recordings(&args),
         Some(Command::Trade(args)) => trade::table(&args),
         Some(Command::Paper(args)) => paper::check(&args),
+        Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Force(args)) => force::measure(&args),
         Some(Command::Limits(args)) => limits::check(&args),
         Some(Command::Score(args)) => score::measure(&args),

@@ -67,6 +67,15 @@ pub fn text(settings: &Settings) -> String {
     text.replacen("[guard]", &format!("[link]\n# key = {key}\n\n[guard]"), 1)
 }
 
+/// The same with the machine's name on the record of its commissioning check.
+pub fn record_text(settings: &Settings, machine: String) -> String {
+    let mut tables = Tables::from(settings);
+    if let Some(it) = &mut tables.calibration {
+        it.machine = Some(machine);
+    }
+    toml::to_string(&tables).unwrap_or_default()
+}
+
 /// A rule in the words of the controller, in those of the file.
 fn key_of(error: &ConfigError) -> Diagnostic {
     let parameter = error.parameter();

@@ -16,5 +16,5 @@ mod table;
 
 pub use change::{ChangeError, InForce, in_force, put};
 pub use difference::{Difference, differences};
-pub use file::{parse, text};
+pub use file::{parse, record_text, text};
 pub use table::Tables;

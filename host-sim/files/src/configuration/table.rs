@@ -5,12 +5,13 @@ use touchdown_core::detect::{DetectorConfig, Tuning};
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
-use touchdown_core::sensing::{PLANES, SensingConfig};
+use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block::{Key, Settings, Wiring};
 
 use super::decimal::shortest;
 use crate::link::{KEY_RULE, parse_key};
+use touchdown_scene::calibration::{CalibrationTable, DEGREE, PlaneTable, text_of_day};
 use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
@@ -18,8 +19,6 @@ use touchdown_scene::machine::{retainer, rotor};
 use touchdown_scene::names::channel_name;
 use touchdown_scene::rule::{MICRO, MILLI, RPM};
 use touchdown_scene::{list, machine_config};
-
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// A configuration in the file's units.
 #[derive(Deserialize, Serialize)]
@@ -35,6 +34,8 @@ pub struct Tables {
     detector: Tuning,
     #[serde(skip_serializing_if = "Option::is_none")]
     link: Option<LinkTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) calibration: Option<CalibrationTable>,
     #[serde(default)]
     guard: GuardConfig,
 }
@@ -124,8 +125,26 @@ impl From<&Settings> for Tables {
             ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
             detector: tuning,
             link: None,
+            calibration: sensing.calibration.as_ref().map(record),
             guard: monitor.guard,
         }
+    }
+}
+
+/// The machine is not known here.
+fn record(calibration: &Calibration) -> CalibrationTable {
+    let [a, b] = calibration.planes.map(|plane| {
+        (plane != PlaneCalibration::default()).then(|| PlaneTable {
+            zero_um: plane.zero.map(|it| shortest(it, MICRO)),
+            gain: plane.gain.map(|it| shortest(it, 1.0)),
+            skew_deg: shortest(plane.skew, DEGREE),
+        })
+    });
+    CalibrationTable {
+        date: text_of_day(calibration.date),
+        machine: None,
+        a,
+        b,
     }
 }
 
@@ -150,6 +169,8 @@ impl Tables {
         let retainer = retainer(&self.retainer)?;
         let gravity = gravity(self.run.gravity_m_s2)?;
         let sensors = &self.sensors;
+        let calibration = self.calibration.as_ref();
+        let calibration = calibration.map(CalibrationTable::check).transpose()?;
         Ok(Settings {
             monitor: MonitorConfig {
                 fitted: sensors.fitted()?,
@@ -158,6 +179,7 @@ impl Tables {
                     zero_count: sensors.zero_count as f32,
                     full_scale: sensors.full_scale,
                     mounting_angle: sensors.mounting_deg.map(|it| (DEGREE * it) as f32),
+                    calibration,
                 },
                 tachometers: self.ball_bearing.as_ref().map(BallBearingTable::config),
                 detector: DetectorConfig {
@@ -166,7 +188,7 @@ impl Tables {
                     tuning: self.detector,
                 },
                 guard: self.guard,
-                commissioned: false,
+                commissioned: calibration.is_some(),
             },
             wiring: Wiring {
                 pulses_per_turn: sensors.pulses_per_turn,

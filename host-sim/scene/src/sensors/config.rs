@@ -1,7 +1,7 @@
 //! The sensor chain as the scene gives it.
 
 use touchdown_core::sample::CHANNELS;
-use touchdown_core::sensing::{PLANES, SensingConfig};
+use touchdown_core::sensing::{Calibration, PLANES, SensingConfig};
 use touchdown_rotor::error::ConfigError;
 
 use super::Tachometers;
@@ -23,6 +23,8 @@ pub struct SensorsConfig {
     pub bandwidth: Option<f64>,
     /// Angle from the scene's x axis to each plane's first axis, counter-clockwise, rad.
     pub mounting_angle: [f64; PLANES],
+    /// Angle between a plane's axes, less 90 degrees, rad.
+    pub skew: [f64; PLANES],
     /// Reading at the bearing's centre, by channel, m.
     pub offset: [f64; CHANNELS],
     /// Relative error of the slope, by channel.
@@ -37,6 +39,8 @@ pub struct SensorsConfig {
     pub speed: bool,
     /// Whether "levitation on" is wired.
     pub levitation_signal: bool,
+    /// What the monitor is told of the errors above.
+    pub calibration: Option<Calibration>,
     /// Optical sensors of a ball bearing, where the retainer is one that is watched.
     pub tachometers: Option<Tachometers>,
 }
@@ -69,14 +73,20 @@ impl SensorsConfig {
             zero_count: self.zero_count() as f32,
             full_scale: self.full_scale(),
             mounting_angle: self.mounting_angle.map(|angle| angle as f32),
+            calibration: self.calibration,
         }
     }
 
     /// Checks every field.
     pub fn check(&self) -> Result<(), ConfigError> {
         use ConfigError::{Negative, NotFinite, NotPositive, OutOfRange};
-        let lists = [&self.offset[..], &self.gain_error, &self.mounting_angle];
-        let names = ["offset", "gain_error", "mounting_angle"];
+        let lists = [
+            &self.offset[..],
+            &self.gain_error,
+            &self.mounting_angle,
+            &self.skew,
+        ];
+        let names = ["offset", "gain_error", "mounting_angle", "skew"];
         for (list, name) in lists.into_iter().zip(names) {
             if list.iter().any(|value| !value.is_finite()) {
                 return Err(NotFinite(name));
@@ -113,6 +123,9 @@ impl SensorsConfig {
         }
         if self.gain_error.iter().any(|error| *error <= -1.0) {
             return Err(OutOfRange("gain_error", "above -100 %"));
+        }
+        if self.skew.iter().any(|skew| skew.abs() > 0.5) {
+            return Err(OutOfRange("skew", "-0.5 to 0.5 rad"));
         }
         if self.nonlinearity.abs() > 0.3 {
             return Err(OutOfRange("nonlinearity", "-30 to 30 %"));

@@ -113,9 +113,12 @@ impl Sensors {
         let waves = f64::from(self.config.runout_harmonic);
         let mut seen = [0.0; CHANNELS];
         for (plane, angle) in self.config.mounting_angle.into_iter().enumerate() {
-            let along = to_sensor_axes(motion.planes[plane], angle);
+            let skewed = angle + self.config.skew[plane];
+            let [first, _] = to_sensor_axes(motion.planes[plane], angle);
+            let [_, second] = to_sensor_axes(motion.planes[plane], skewed);
+            let along = [first, second];
             for axis in 0..2 {
-                let direction = angle + axis as f64 * TAU / 4.0;
+                let direction = [angle, skewed + TAU / 4.0][axis];
                 let runout = self.config.runout * (waves * (shaft - direction)).cos();
                 seen[2 * plane + axis] = along[axis] + runout;
             }

@@ -93,7 +93,7 @@ impl Health {
             fitted,
             watch: Watch::new(
                 threshold,
-                REACH * fall / (rate * sensing.resolution),
+                REACH * fall / (rate * sensing.finest_resolution()),
                 sensing.full_scale,
             ),
             pair: PlaneOffset::new(tolerance),

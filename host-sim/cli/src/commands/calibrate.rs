@@ -1,0 +1,266 @@
+//! `touchdown calibrate`.
+
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
+use touchdown_protocol::config_block::{Settings, Wiring};
+
+use super::args::{CalibrateArgs, ScaleArg};
+use super::{load, warn};
+use crate::gate::Gate;
+use touchdown_base::failure::Failure;
+use touchdown_base::input_error::InputError;
+use touchdown_base::output::Output;
+use touchdown_base::plain::shown;
+use touchdown_calibrate::{Checked, Readings, Scale, page, plane};
+use touchdown_files::configuration;
+use touchdown_files::recording::Recording;
+use touchdown_page::json;
+use touchdown_scene::Scene;
+use touchdown_scene::calibration::{day, text_of_day};
+use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
+
+const NAMES: [&str; PLANES] = ["a", "b"];
+
+/// What the machine is told, and how its recordings are read.
+struct Machine {
+    settings: Settings,
+    scene: Scene,
+    /// For the record.
+    name: String,
+}
+
+/// Finds zero, gain and skew of each plane, says them, and writes them into a configuration.
+pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
+    let mut out = Gate::new()
+        .reads_recording("RECORDING", &args.recording)
+        .reads("--scene", &args.scene)
+        .reads("--config", &args.config)
+        .reads("--columns", &args.reading.columns)
+        .claims("--write", &args.write)
+        .writes("--json", &args.json)
+        .writes("--report", &args.report)
+        .open()?;
+    let date = args.date.unwrap_or_else(today);
+    let mut machine = machine(args)?;
+    if let Some(clearance) = args.clearance {
+        machine.settings.monitor.detector.machine.clearance = (1e-3 * clearance) as f32;
+    }
+    let clearance = f64::from(machine.settings.monitor.detector.machine.clearance);
+    let scale = match args.scale {
+        ScaleArg::Clearance => Scale::Clearance(clearance),
+        ScaleArg::Sensor => Scale::Sensor,
+    };
+    let planes = check(args, &machine, scale)?;
+    let title = format!("Commissioning check: {}", machine.name);
+    out.json("--json", || {
+        json::text(&told(&machine.name, date, args.scale, &planes))
+    })?;
+    out.put("--report", || page::page(&title, &planes))?;
+    let mut text: String = planes.iter().map(page::text).collect();
+    let refused = planes.iter().find_map(|it| Some((it.name, it.refused()?)));
+    if let Some((name, why)) = refused {
+        let rule = format!("{}: plane {name}: {why}", shown(&args.recording));
+        out.finish(&text)?;
+        return Err(Failure::Check(rule));
+    }
+    text += &record(&mut machine.settings, date, args.scale, &planes);
+    if let Some(file) = &args.write {
+        let valid = machine.settings.validate();
+        valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
+        let mut config = Output::create(file)?;
+        config.put(&configuration::record_text(&machine.settings, machine.name))?;
+        out.add("--write", vec![config]);
+    }
+    out.finish(&text)
+}
+
+/// From the scene or the configuration.
+fn machine(args: &CalibrateArgs) -> Result<Machine, Failure> {
+    if let Some(name) = &args.config {
+        let settings = super::config::load(name)?;
+        let mut scene = Scene::load("rig")?;
+        scene.name.clone_from(name);
+        scene.retainer.clearance = f64::from(settings.monitor.detector.machine.clearance);
+        scene.sensors = sensors(&settings.monitor.sensing, settings.monitor.fitted);
+        return Ok(Machine {
+            settings,
+            scene,
+            name: name.clone(),
+        });
+    }
+    let scene = load(args.scene.as_deref().unwrap_or_default())?;
+    Ok(Machine {
+        settings: Settings {
+            monitor: scene.monitor_config(),
+            wiring: Wiring {
+                pulses_per_turn: None,
+                levitation: scene.sensors.levitation_signal,
+            },
+            key: None,
+        },
+        name: scene.heading().to_owned(),
+        scene,
+    })
+}
+
+/// Sensors of a scene that have this converter.
+fn sensors(sensing: &SensingConfig, fitted: u8) -> SensorsConfig {
+    let counts = u32::from(sensing.full_scale) + 1;
+    let bits = counts.next_power_of_two().trailing_zeros().max(4);
+    SensorsConfig {
+        planes: if fitted & 0b1100 == 0 { 1 } else { 2 },
+        bits,
+        range: f64::from(sensing.resolution) * f64::from(1 << (bits - 1)),
+        noise: 0.0,
+        bandwidth: None,
+        mounting_angle: sensing.mounting_angle.map(f64::from),
+        skew: [0.0; PLANES],
+        offset: [0.0; 4],
+        gain_error: [0.0; 4],
+        nonlinearity: 0.0,
+        runout: 0.0,
+        runout_harmonic: 1,
+        speed: false,
+        levitation_signal: false,
+        calibration: None,
+        tachometers: None,
+    }
+}
+
+/// Reads the recording and looks at each plane that it has.
+fn check(args: &CalibrateArgs, machine: &Machine, scale: Scale) -> Result<Vec<Checked>, Failure> {
+    let sensing = &machine.settings.monitor.sensing;
+    let reading = args.reading.load()?;
+    let mut recording = Recording::open(Path::new(&args.recording), &reading, &machine.scene)?;
+    let mut readings: [Readings; PLANES] = Default::default();
+    for row in recording.by_ref() {
+        let row = row?;
+        let (positions, _) = row.positions.as_chunks::<2>();
+        for (plane, position) in positions.iter().enumerate() {
+            let angle = f64::from(sensing.mounting_angle[plane]);
+            let along = to_sensor_axes(*position, angle);
+            if along.iter().all(|it| is_inside(sensing, *it)) {
+                readings[plane].push(along);
+            }
+        }
+    }
+    warn(&recording.warnings());
+    let resolution = f64::from(sensing.resolution);
+    let fitted = [0b0011, 0b1100].map(|it| machine.settings.monitor.fitted & it != 0);
+    let there = NAMES.into_iter().zip(readings).zip(fitted);
+    let planes: Vec<_> = there
+        .filter(|((_, it), fitted)| *fitted && !it.kept().is_empty())
+        .map(|((name, readings), _)| Checked {
+            name,
+            plane: plane(readings.kept(), resolution, scale),
+            readings,
+        })
+        .collect();
+    if planes.is_empty() {
+        let rule = "no plane that is fitted has a reading within the converter's range";
+        return Err(InputError::of_file(&args.recording, rule).into());
+    }
+    Ok(planes)
+}
+
+/// Whether the converter shows this reading, m, neither at 0 nor at full scale.
+fn is_inside(sensing: &SensingConfig, reading: f64) -> bool {
+    let count = reading / f64::from(sensing.resolution) + f64::from(sensing.zero_count);
+    count >= 0.5 && count < f64::from(sensing.full_scale) - 0.5
+}
+
+/// Puts what was found on record; what is worth a warning.
+fn record(settings: &mut Settings, date: u32, scale: ScaleArg, planes: &[Checked]) -> String {
+    let monitor = &mut settings.monitor;
+    // A plane that the recording lacks keeps what it had.
+    let mut calibration = Calibration {
+        date,
+        ..monitor.sensing.calibration.unwrap_or_default()
+    };
+    let mut radii = Vec::new();
+    for (name, slot) in NAMES.into_iter().zip(&mut calibration.planes) {
+        let checked = planes.iter().find(|it| it.name == name);
+        let Some(Ok(found)) = checked.map(|it| &it.plane) else {
+            continue;
+        };
+        *slot = PlaneCalibration {
+            zero: found.zero_m.map(|it| it.value as f32),
+            gain: found.gain.map(|it| it.value as f32),
+            skew: found.skew_rad.value as f32,
+        };
+        radii.push(found.radius_m.value);
+    }
+    monitor.sensing.calibration = Some(calibration);
+    monitor.commissioned = true;
+    if scale == ScaleArg::Clearance {
+        return String::new();
+    }
+    let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+    monitor.detector.machine.clearance = mean as f32;
+    let apart = radii
+        .iter()
+        .map(|it| (it / mean - 1.0).abs())
+        .fold(0.0, f64::max);
+    if apart <= f64::from(monitor.detector.tuning.wall_tolerance) {
+        return String::new();
+    }
+    format!(
+        "warning: the planes' radii differ by {:.0} % from their mean, which is set as the clearance: more \
+         than wall_tolerance\n",
+        100.0 * apart
+    )
+}
+
+/// As JSON.
+fn told(machine: &str, date: u32, scale: ScaleArg, planes: &[Checked]) -> impl Serialize {
+    let mut all = Map::new();
+    for it in planes {
+        let told = match &it.plane {
+            Ok(plane) => json!(plane),
+            Err(why) => json!({ "refused": why }),
+        };
+        all.insert(it.name.to_owned(), told);
+    }
+    json!({
+        "date": text_of_day(date),
+        "machine": machine,
+        "scale": if scale == ScaleArg::Clearance { "clearance" } else { "sensor" },
+        "planes": Value::Object(all),
+    })
+}
+
+/// In UTC, as [`day`] has it. Days to a date: H. Hinnant, "chrono-compatible low-level date algorithms".
+fn today() -> u32 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    let days = since.map_or(0, |it| it.as_secs() / 86_400) as u32 + 719_468;
+    let (era, in_era) = (days / 146_097, days % 146_097);
+    let year = (in_era - in_era / 1_460 + in_era / 36_524 - in_era / 146_096) / 365;
+    let in_year = in_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * in_year + 2) / 153;
+    let of_month = in_year - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 {
+        (month + 3, 0)
+    } else {
+        (month - 9, 1)
+    };
+    10_000 * (400 * era + year + next) + 100 * month + of_month
+}
+
+/// A day on the command line.
+pub(super) fn date(text: &str) -> Result<u32, String> {
+    day(text).ok_or_else(|| "a day as 2026-12-31".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn today_is_a_day() {
+        assert!(day(&text_of_day(today())).is_some());
+    }
+}
