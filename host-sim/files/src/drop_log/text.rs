@@ -155,7 +155,10 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             event.declared_s * 1e3,
         );
     }
+    text + &orders(episode)
+}
+
+fn orders(episode: &Episode) -> String {
     let orders = episode.orders.iter();
-    text.extend(orders.map(|it| format!("order: {it}\n")));
-    text
+    orders.map(|it| format!("order: {it}\n")).collect()
 }
