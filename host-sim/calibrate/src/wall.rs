@@ -21,6 +21,10 @@ const ROUNDS: usize = 12;
 
 /// The readings on the wall (index of each) and the curve through them; why there is none.
 pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<(Vec<usize>, Fitted), String> {
+    if readings.len() < 100 {
+        let count = readings.len();
+        return Err(format!("only {count} samples, 100 are the fewest"));
+    }
     let smooth = medians(readings);
     let noise = noise(readings).max(resolution / 12_f64.sqrt());
     let mut ellipse = first(&smooth, noise).ok_or(
