@@ -230,6 +230,11 @@ impl Outputs {
             .extend(outputs.into_iter().map(|out| (option, out)));
     }
 
+    /// Leaves the output of an option as it was.
+    pub fn leave(&mut self, option: &str) {
+        self.files.retain(|it| it.0 != option);
+    }
+
     /// The output of an option, if that is given.
     pub fn file(&mut self, option: &str) -> Option<&mut Output> {
         let mut files = self.files.iter_mut();

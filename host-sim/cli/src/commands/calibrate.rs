@@ -13,7 +13,6 @@ use super::{load, warn};
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
-use touchdown_base::output::Output;
 use touchdown_base::plain::shown;
 use touchdown_calibrate::{Checked, Readings, Scale, page, plane};
 use touchdown_files::configuration;
@@ -40,9 +39,9 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         .reads("--scene", &args.scene)
         .reads("--config", &args.config)
         .reads("--columns", &args.reading.columns)
-        .claims("--write", &args.write)
         .writes("--json", &args.json)
         .writes("--report", &args.report)
+        .writes("--write", &args.write)
         .open()?;
     let date = args.date.unwrap_or_else(today);
     let mut machine = machine(args)?;
@@ -64,6 +63,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let refused = planes.iter().find_map(|it| Some((it.name, it.refused()?)));
     if let Some((name, why)) = refused {
         let rule = format!("{}: plane {name}: {why}", shown(&args.recording));
+        out.leave("--write");
         out.finish(&text)?;
         return Err(Failure::Check(rule));
     }
@@ -71,10 +71,10 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     if let Some(file) = &args.write {
         let valid = machine.settings.validate();
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
-        let mut config = Output::create(file)?;
-        config.put(&configuration::record_text(&machine.settings, machine.name))?;
-        out.add("--write", vec![config]);
     }
+    out.put("--write", || {
+        configuration::record_text(&machine.settings, machine.name)
+    })?;
     out.finish(&text)
 }
 
