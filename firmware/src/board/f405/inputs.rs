@@ -28,7 +28,9 @@ impl Inputs {
         pins.afrh().modify(|_, w| w.afrh8().af2());
         pins.moder().modify(|_, w| w.moder8().alternate());
         timer.psc().write(|w| w.psc().set(PRESCALER as u16 - 1));
-        let Settings { monitor, wiring } = settings;
+        let Settings {
+            monitor, wiring, ..
+        } = settings;
         let (spin, rate) = (monitor.detector.machine.spin, monitor.detector.sample_rate);
         let captured = wiring
             .pulses_per_turn

@@ -50,8 +50,13 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
         Some(mut wanted) => {
-            // The controller keeps its key where the file has none.
+            // The controller keeps its key, and the record of its commissioning check, where the file has none.
             wanted.key = wanted.key.or(before.settings.key);
+            if wanted.monitor.sensing.calibration.is_none() {
+                let kept = &before.settings.monitor;
+                wanted.monitor.sensing.calibration = kept.sensing.calibration;
+                wanted.monitor.commissioned = kept.commissioned;
+            }
             let changed = differences(&before.settings, &wanted);
             if wanted != before.settings {
                 put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
