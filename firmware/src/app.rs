@@ -157,9 +157,12 @@ impl App {
         self.faults = self.faults.with(fault);
     }
 
-    /// Clears what is latched. Refused while the rotor is neither floating nor lying still, and
-    /// while the sensors are gone; a fault whose cause lasts comes back.
+    /// Clears what is latched. Refused while the rotor is neither floating nor lying still, while the sensors are gone,
+    /// and without a configuration of its own; another fault whose cause lasts comes back.
     pub fn clear(&mut self) -> Result<(), Busy> {
+        if self.faults.last() {
+            return Err(Busy::Configuration);
+        }
         if self.state.position().is_none() {
             return Err(Busy::Blind);
         }

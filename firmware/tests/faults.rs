@@ -4,7 +4,9 @@ use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{Board, SAMPLE_RATE_HZ, default_config, default_settings};
+use touchdown_firmware::board::{
+    Abilities, Board, SAMPLE_RATE_HZ, default_config, default_settings,
+};
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, ConfigScrub};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Shown};
@@ -464,7 +466,7 @@ fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
 
 #[test]
 fn what_was_wrong_at_power_on_keeps_the_outputs_safe_until_cleared() {
-    for fault in [Fault::ConfigDamaged, Fault::WatchdogReset, Fault::Crash] {
+    for fault in [Fault::WatchdogReset, Fault::Crash] {
         let mut bench = Bench::new(Faults::NONE.with(fault));
         for _ in 0..2 * ARMED {
             assert_eq!(bench.float(), 0, "{fault:?}");
@@ -473,6 +475,39 @@ fn what_was_wrong_at_power_on_keeps_the_outputs_safe_until_cleared() {
         assert_eq!(bench.cause(), Some(Cause::Fault));
         bench.lie_clear_and_lift();
     }
+}
+
+#[test]
+fn without_a_configuration_of_its_own_there_is_never_current() {
+    for fault in [Fault::Unconfigured, Fault::ConfigDamaged, Fault::ConfigMisfit] {
+        let mut bench = Bench::new(Faults::NONE.with(fault));
+        for _ in 0..ARMED {
+            assert_eq!(bench.float(), 0, "{fault:?}");
+        }
+        assert_eq!(bench.app.clear(), Err(Busy::Configuration));
+        for _ in 0..ARMED {
+            assert_eq!(bench.place([0.0, -CLEARANCE]), 0, "{fault:?}");
+        }
+        assert_eq!(bench.app.clear(), Err(Busy::Configuration));
+        assert_eq!(bench.app.may_restart(), Ok(()), "to take another one");
+    }
+}
+
+#[test]
+fn a_configuration_has_to_fit_the_board() {
+    let board = Abilities {
+        sample_rate: SAMPLE_RATE_HZ as f32,
+        full_scale: 4_095,
+        tachometers: false,
+    };
+    let fits = default_config();
+    assert_eq!(board.misfit(&fits), None);
+    let mut other = fits;
+    other.detector.sample_rate = 10_000.0;
+    assert_eq!(board.misfit(&other), Some("sample_rate"));
+    let mut other = fits;
+    other.sensing.full_scale = 65_535;
+    assert_eq!(board.misfit(&other), Some("full_scale"));
 }
 
 #[test]

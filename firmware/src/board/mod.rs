@@ -33,6 +33,32 @@ pub trait Board {
     fn feed(&mut self);
 }
 
+/// What a board can do, which a configuration has to fit.
+#[derive(Clone, Copy, Debug)]
+pub struct Abilities {
+    /// Hz.
+    pub sample_rate: f32,
+    /// Highest count.
+    pub full_scale: u16,
+    /// Whether it takes the pulses of ring and cage.
+    pub tachometers: bool,
+}
+
+impl Abilities {
+    /// The first parameter of `config` that does not fit.
+    pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
+        if config.detector.sample_rate != self.sample_rate {
+            Some("sample_rate")
+        } else if config.sensing.full_scale != self.full_scale {
+            Some("full_scale")
+        } else if config.tachometers.is_some() && !self.tachometers {
+            Some("marks")
+        } else {
+            None
+        }
+    }
+}
+
 /// Samples that a controller without a chip takes between two turns of log and link.
 pub const BLOCK_SAMPLES: usize = 256;
 /// Episodes of its drop log.

@@ -95,6 +95,7 @@ pub fn busy_name(busy: Busy) -> &'static str {
         Busy::Service => "no right: it has no key, so its service input must be on",
         Busy::Locked => "the episode is locked",
         Busy::Last => "the episode is the newest one",
+        Busy::Configuration => "the configuration is missing, damaged, or of another board: set it",
     }
 }
 
@@ -117,6 +118,8 @@ pub fn fault_name(fault: Fault) -> &'static str {
         Fault::ConfigDamaged => "configuration damaged",
         Fault::WatchdogReset => "watchdog reset",
         Fault::Crash => "crash",
+        Fault::Unconfigured => "not configured",
+        Fault::ConfigMisfit => "configuration of another board",
     }
 }
 

@@ -147,11 +147,15 @@ pub enum Fault {
     WatchdogReset = 5,
     /// The program stopped by a panic or a fault of the core, and left a record.
     Crash = 6,
+    /// No configuration is stored: the defaults are in force.
+    Unconfigured = 7,
+    /// The stored configuration is none of this board's: the defaults are in force.
+    ConfigMisfit = 8,
 }
 
 impl Fault {
     /// All faults, in the order of their codes.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Overrun,
         Self::Overload,
         Self::SensorsLost,
@@ -159,6 +163,8 @@ impl Fault {
         Self::ConfigDamaged,
         Self::WatchdogReset,
         Self::Crash,
+        Self::Unconfigured,
+        Self::ConfigMisfit,
     ];
 
     /// Whether it trips; the others only put out the ready lamp.
@@ -176,6 +182,11 @@ impl Faults {
     pub const NONE: Self = Self(0);
 
     const TRIPPING: u16 = !Self::NONE.with(Fault::Overrun).0;
+    const LASTING: u16 = Self::NONE
+        .with(Fault::ConfigDamaged)
+        .with(Fault::Unconfigured)
+        .with(Fault::ConfigMisfit)
+        .0;
 
     /// These and `fault`.
     #[must_use]
@@ -191,6 +202,11 @@ impl Faults {
     /// Whether one of them trips.
     pub const fn trip(self) -> bool {
         self.0 & Self::TRIPPING != 0
+    }
+
+    /// Whether one of them takes another configuration to go away.
+    pub const fn last(self) -> bool {
+        self.0 & Self::LASTING != 0
     }
 
     /// Whether there is none.
@@ -218,11 +234,13 @@ pub enum Busy {
     Locked,
     /// The episode is the newest one.
     Last,
+    /// There is no configuration, a damaged one, or one of another board.
+    Configuration,
 }
 
 impl Busy {
     /// All reasons, in the order of their codes.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::DropRuns,
         Self::Blind,
         Self::Watching,
@@ -231,6 +249,7 @@ impl Busy {
         Self::Service,
         Self::Locked,
         Self::Last,
+        Self::Configuration,
     ];
 }
 

@@ -399,7 +399,7 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
 }
 
 #[test]
-fn a_stored_configuration_that_is_damaged_never_gives_current_until_cleared() {
+fn a_stored_configuration_that_is_damaged_never_gives_current_until_another_is_set() {
     let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("settings"), b"TDC\x01 is not all").expect("a file");
@@ -413,8 +413,17 @@ fn a_stored_configuration_that_is_damaged_never_gives_current_until_cleared() {
     });
     assert_eq!(state.mode, Mode::Faulted);
     assert!(state.faults.contains(Fault::ConfigDamaged));
-    rig.order(Order::Service(true));
-    until("it is cleared", || talk.order(Act::Clear).is_ok());
+    serve(&rig, &mut talk);
+    assert!(matches!(
+        talk.order(Act::Clear),
+        Err(LinkError::Refused(Refusal::Busy(Busy::Configuration)))
+    ));
+    let settings = settings_in_force(&mut talk);
+    talk.set_settings(&settings).expect("is taken");
+    until("a restart", || rig.starts() == 2);
+    rig.order(Order::Drop);
+    state_when(&mut talk, "permit", |it| it.outputs.permit);
+    rig.order(Order::Lift);
     state_when(&mut talk, "watching, and armed", |it| it.outputs.ready);
     rig.stop().expect("no failure");
 }

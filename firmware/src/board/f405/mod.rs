@@ -38,7 +38,7 @@ use self::inputs::Inputs;
 use self::outputs::{OutputPins, Watchdog};
 use self::remote::Remote;
 use super::serial::Serial;
-use super::{BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
+use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
 use crate::crash::{Cause, Crash};
 use crate::drop_log::DropLog;
@@ -73,6 +73,13 @@ impl Memory {
         }
     }
 }
+
+/// 12 bit; no pin takes the pulses of ring and cage.
+const ABILITIES: Abilities = Abilities {
+    sample_rate: SAMPLE_RATE_HZ as f32,
+    full_scale: 4_095,
+    tachometers: false,
+};
 
 static TICK: Mutex<RefCell<Option<&'static mut Tick>>> = Mutex::new(RefCell::new(None));
 
@@ -299,12 +306,17 @@ fn found_at_power_on(rcc: &stm32f4::stm32f405::RCC) -> (InForce, Settings, Fault
         found = found.with(Fault::Crash);
     }
     match store::load() {
-        Ok((block, settings)) => (InForce::Stored(block), settings, found),
-        Err(why) => {
-            if why != BlockError::Blank {
-                error!("config: damaged, the defaults are in force");
-                found = found.with(Fault::ConfigDamaged);
-            }
+        Ok((block, settings)) if ABILITIES.misfit(&settings.monitor).is_none() => {
+            (InForce::Stored(block), settings, found)
+        }
+        other => {
+            let fault = match other {
+                Ok(_) => Fault::ConfigMisfit,
+                Err(BlockError::Blank) => Fault::Unconfigured,
+                Err(_) => Fault::ConfigDamaged,
+            };
+            error!("config: fault {=u8}, the defaults are in force", fault as u8);
+            found = found.with(fault);
             let settings = default_settings();
             let block = InForce::Default(config_block::encode(&settings));
             (block, settings, found)

@@ -8,8 +8,8 @@ use touchdown_protocol::link::{Device, Log, Recent, Refusal, State};
 
 use super::clocks::CORE_HZ;
 use super::outputs::Watchdog;
-use super::{ChipLog, record, store, with_tick};
-use crate::board::{Board, SAMPLE_RATE_HZ};
+use super::{ABILITIES, ChipLog, record, store, with_tick};
+use crate::board::Board;
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
@@ -113,9 +113,8 @@ impl Device for Remote {
     }
 
     fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
-        // This board's timer gives one rate.
-        if settings.monitor.detector.sample_rate != SAMPLE_RATE_HZ as f32 {
-            return Err(Refusal::parameter("sample_rate"));
+        if let Some(parameter) = ABILITIES.misfit(&settings.monitor) {
+            return Err(Refusal::parameter(parameter));
         }
         with_tick(|tick| tick.app.may_restart()).unwrap_or(Ok(()))?;
         store::store(&self.flash, block)?;

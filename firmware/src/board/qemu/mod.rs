@@ -20,7 +20,7 @@ use self::files::{Answer, Files};
 use self::nor::NorFile;
 use self::remote::Line;
 use self::settings::SettingsFile;
-use super::{Board, EMULATED_SLOTS};
+use super::{Abilities, Board, EMULATED_SLOTS};
 use crate::drop_log::DropLog;
 use crate::journal;
 use crate::memory::{self, Memory};
@@ -137,7 +137,8 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
     let (config, powers_on) = replay.config()?;
-    let (block, in_force, found) = found_at_power_on(config, settings.as_ref());
+    let abilities = abilities(&config);
+    let (block, in_force, found) = found_at_power_on(config, abilities, settings.as_ref());
     let config = in_force.monitor;
     journal::config(&config);
     let mut board = Emulated {
@@ -145,7 +146,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         shown: None,
         ticks: 0,
         block,
-        line: Line::new(config.detector.sample_rate, in_force.key, settings),
+        line: Line::new(abilities, in_force.key, settings),
         service: false,
         failed: false,
     };
@@ -219,19 +220,34 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
     }
 }
 
+/// Those of a board that gives the samples of this configuration.
+fn abilities(replayed: &MonitorConfig) -> Abilities {
+    Abilities {
+        sample_rate: replayed.detector.sample_rate,
+        full_scale: replayed.sensing.full_scale,
+        tachometers: replayed.tachometers.is_some(),
+    }
+}
+
 /// The configuration in force, and what was wrong: that of the replay file, where none is stored.
 fn found_at_power_on(
     replayed: MonitorConfig,
+    abilities: Abilities,
     settings: Option<&SettingsFile>,
 ) -> (Block, Settings, Faults) {
     let stored = settings.map_or(Err(BlockError::Blank), SettingsFile::load);
     let found = match stored {
-        Ok((block, it)) if it.monitor.detector.sample_rate == replayed.detector.sample_rate => {
+        Ok((block, it)) if abilities.misfit(&it.monitor).is_none() => {
             return (block, it, Faults::NONE);
         }
+        // What a replay brings counts as configured.
         Err(BlockError::Blank) => Faults::NONE,
-        _ => {
-            error!("config: damaged or of another rate, that of the replay is in force");
+        Ok(_) => {
+            error!("config: of another board, that of the replay is in force");
+            Faults::NONE.with(Fault::ConfigMisfit)
+        }
+        Err(_) => {
+            error!("config: damaged, that of the replay is in force");
             Faults::NONE.with(Fault::ConfigDamaged)
         }
     };

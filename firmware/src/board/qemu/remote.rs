@@ -11,7 +11,7 @@ use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 use super::FileLog;
 use super::settings::SettingsFile;
 use crate::app::App;
-use crate::board::STATE_SAMPLES;
+use crate::board::{Abilities, STATE_SAMPLES};
 use crate::board::serial::Serial;
 use crate::journal;
 use crate::recorder::Recorder;
@@ -31,7 +31,7 @@ pub struct Line {
     serial: Serial,
     server: Server,
     told: u64,
-    rate: f32,
+    abilities: Abilities,
     settings: Option<SettingsFile>,
     wants_restart: bool,
     heard: bool,
@@ -39,16 +39,16 @@ pub struct Line {
 }
 
 impl Line {
-    /// Says `sample_rate` (Hz) to who asks, obeys who has `key`, and keeps the configuration in `settings`.
-    pub fn new(sample_rate: f32, key: Option<Key>, settings: Option<SettingsFile>) -> Self {
+    /// Says its rate to who asks, obeys who has `key`, and keeps the configuration in `settings`.
+    pub fn new(abilities: Abilities, key: Option<Key>, settings: Option<SettingsFile>) -> Self {
         // SAFETY: called once, and nobody else takes them.
         let chip = unsafe { Peripherals::steal() };
         Self {
             // The emulated line has no speed.
             serial: Serial::new(chip.USART1, 16),
-            server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate, key),
+            server: Server::new(env!("CARGO_PKG_VERSION"), abilities.sample_rate, key),
             told: 0,
-            rate: sample_rate,
+            abilities,
             settings,
             wants_restart: false,
             heard: false,
@@ -95,7 +95,7 @@ impl Line {
             service,
             told: None,
             log,
-            rate: self.rate,
+            abilities: self.abilities,
             settings: self.settings.as_ref(),
             wants_restart: &mut self.wants_restart,
         };
@@ -142,7 +142,7 @@ struct Remote<'a, 'm> {
     /// Of an order, to be passed on.
     told: Option<Notice>,
     log: &'a mut Option<FileLog>,
-    rate: f32,
+    abilities: Abilities,
     settings: Option<&'a SettingsFile>,
     wants_restart: &'a mut bool,
 }
@@ -167,10 +167,8 @@ impl Device for Remote<'_, '_> {
     }
 
     fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
-        // The samples come at one rate.
-        let [now, asked] = [self.rate, settings.monitor.detector.sample_rate];
-        if now != asked {
-            return Err(Refusal::parameter("sample_rate"));
+        if let Some(parameter) = self.abilities.misfit(&settings.monitor) {
+            return Err(Refusal::parameter(parameter));
         }
         self.app.may_restart()?;
         self.settings.ok_or(Refusal::NoStore)?.store(block)?;

@@ -46,7 +46,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     let before = in_force(&mut client).map_err(silent)?;
     let (config, changed, shown) = match wanted {
         None => {
-            let head = format!("# {port}, firmware {}\n\n", before.firmware);
+            let state = if before.is_own { "" } else { "\n# the defaults: not configured, no current" };
+            let head = format!("# {port}, firmware {}{state}\n\n", before.firmware);
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
         Some(mut wanted) => {
@@ -58,7 +59,7 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
                 wanted.monitor.commissioned = kept.commissioned;
             }
             let changed = differences(&before.settings, &wanted);
-            if wanted != before.settings {
+            if wanted != before.settings || !before.is_own {
                 put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
             }
             let shown = summary(&port, &changed);

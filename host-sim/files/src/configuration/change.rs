@@ -20,6 +20,8 @@ pub struct InForce {
     pub firmware: String,
     /// The configuration.
     pub settings: Settings,
+    /// Whether it was set, and not the defaults for want of a valid one.
+    pub is_own: bool,
 }
 
 /// Why another configuration is not in force.
@@ -37,7 +39,12 @@ pub enum ChangeError {
 pub fn in_force(client: &mut Client) -> Result<InForce, LinkError> {
     let firmware = shown(&client.hello()?.firmware).into_owned();
     let settings = client.settings()?;
-    Ok(InForce { firmware, settings })
+    let is_own = !client.state()?.faults.last();
+    Ok(InForce {
+        firmware,
+        settings,
+        is_own,
+    })
 }
 
 /// Sets another configuration, and waits until the controller has restarted with it.
