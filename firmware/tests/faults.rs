@@ -479,7 +479,11 @@ fn what_was_wrong_at_power_on_keeps_the_outputs_safe_until_cleared() {
 
 #[test]
 fn without_a_configuration_of_its_own_there_is_never_current() {
-    for fault in [Fault::Unconfigured, Fault::ConfigDamaged, Fault::ConfigMisfit] {
+    for fault in [
+        Fault::Unconfigured,
+        Fault::ConfigDamaged,
+        Fault::ConfigMisfit,
+    ] {
         let mut bench = Bench::new(Faults::NONE.with(fault));
         for _ in 0..ARMED {
             assert_eq!(bench.float(), 0, "{fault:?}");

@@ -262,10 +262,42 @@ pub const ROWS: &[Row] = &[
     },
     Row {
         command: "config",
-        words: "config unix:rig.sock --set c.toml",
-        inputs: &[("set", "c.toml")],
+        words: "config unix:rig.sock --set c.toml --key-file k",
+        inputs: &[("set", "c.toml"), ("key_file", "k")],
         outputs: &[File("--json")],
         others: &["port"],
+        ..NONE
+    },
+    Row {
+        command: "clear",
+        words: "clear unix:rig.sock --key-file k",
+        inputs: &[("key_file", "k")],
+        outputs: &[File("--json")],
+        others: &["port"],
+        ..NONE
+    },
+    Row {
+        command: "log lock",
+        words: "log lock unix:rig.sock 1 --key-file k",
+        inputs: &[("key_file", "k")],
+        outputs: &[File("--json")],
+        others: &["port", "episode"],
+        ..NONE
+    },
+    Row {
+        command: "log unlock",
+        words: "log unlock unix:rig.sock 1 --key-file k",
+        inputs: &[("key_file", "k")],
+        outputs: &[File("--json")],
+        others: &["port", "episode"],
+        ..NONE
+    },
+    Row {
+        command: "log erase",
+        words: "log erase unix:rig.sock 1 --key-file k",
+        inputs: &[("key_file", "k")],
+        outputs: &[File("--json")],
+        others: &["port", "episode"],
         ..NONE
     },
     Row {
@@ -386,6 +418,7 @@ pub fn folder() -> TempDir {
     put("old.toml", configuration::text(&settings()).as_bytes());
     put("image", b"no image");
     put("c.toml", b"");
+    put("k", b"00112233445566778899aabbccddeeff\n");
     put("map.toml", MAP.as_bytes());
     put("map-b.toml", MAP.as_bytes());
     fs::create_dir(at.join("bin")).expect("a folder");

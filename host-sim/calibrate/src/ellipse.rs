@@ -2,7 +2,9 @@
 //!
 //! On a circle of radius r, at angle p from the first axis, the channels read
 //!
-//!     u = zero_u + g_u r cos p,    v = zero_v + g_v r sin(p - skew).
+//! ```text
+//! u = zero_u + g_u r cos p,    v = zero_v + g_v r sin(p - skew)
+//! ```
 //!
 //! Sources: S. J. Ahn, W. Rauh, H.-J. Warnecke, "Least-squares orthogonal distances fitting of circle, sphere,
 //! ellipse, hyperbola, and parabola" (2001), for the fit; K. Kanatani, "Ellipse fitting with hyperaccuracy" (2006), for

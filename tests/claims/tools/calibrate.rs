@@ -109,7 +109,9 @@ fn refusals_and_bad_input_have_their_status() {
         ("date = \"2026-12-01\"\n[calibration.a]\nzero_um = [0.0, 0.0]\ngain = [7.0, 1.0]\nskew_deg = 0.0", "gain of plane a must be 0.2 to 5, is 7"),
         ("date = \"2026-12-01\"\n[calibration.b]\nzero_um = [0.0, 0.0]\ngain = [1.0, 1.0]\nskew_deg = 50.0", "skew_deg of plane b must be"),
     ] {
-        fs::write(at.join("c.toml"), format!("{good}\n[calibration]\n{table}\n")).expect("a file");
+        // `[guard]` stays the last table.
+        let file = good.replace("[guard]", &format!("[calibration]\n{table}\n\n[guard]"));
+        fs::write(at.join("c.toml"), file).expect("a file");
         calibrate(at, "part.csv --config c.toml").code(2).stderr(contains(why));
     }
 }

@@ -315,7 +315,10 @@ fn found_at_power_on(rcc: &stm32f4::stm32f405::RCC) -> (InForce, Settings, Fault
                 Err(BlockError::Blank) => Fault::Unconfigured,
                 Err(_) => Fault::ConfigDamaged,
             };
-            error!("config: fault {=u8}, the defaults are in force", fault as u8);
+            error!(
+                "config: fault {=u8}, the defaults are in force",
+                fault as u8
+            );
             found = found.with(fault);
             let settings = default_settings();
             let block = InForce::Default(config_block::encode(&settings));

@@ -46,7 +46,11 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     let before = in_force(&mut client).map_err(silent)?;
     let (config, changed, shown) = match wanted {
         None => {
-            let state = if before.is_own { "" } else { "\n# the defaults: not configured, no current" };
+            let state = if before.is_own {
+                ""
+            } else {
+                "\n# the defaults: not configured, no current"
+            };
             let head = format!("# {port}, firmware {}{state}\n\n", before.firmware);
             (before.settings, Vec::new(), head + &text(&before.settings))
         }
