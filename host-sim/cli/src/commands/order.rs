@@ -49,15 +49,13 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
         why,
     };
     out.json("--json", || json::text(&told))?;
-    match told.why {
-        None => out.finish(&format!("{port}: {done}\n")),
-        Some(why) => {
-            out.finish("")?;
-            Err(Failure::Check(format!(
-                "{port}: the controller refuses: {why}"
-            )))
-        }
-    }
+    let Some(why) = told.why else {
+        return out.finish(&format!("{port}: {done}\n"));
+    };
+    out.finish(&format!("{port}: nothing is done\n"))?;
+    Err(Failure::Check(format!(
+        "{port}: the controller refuses: {why}"
+    )))
 }
 
 /// The key in a file, with a warning where others may read it.
