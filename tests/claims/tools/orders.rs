@@ -49,7 +49,7 @@ fn without_a_key_it_takes_the_service_input() {
     ] {
         run(at, &order)
             .code(1)
-            .stdout("")
+            .stdout(contains(": nothing is done"))
             .stderr(contains("its service input must be on"));
     }
     assert_eq!(controller.machine().episodes.len(), 4);
