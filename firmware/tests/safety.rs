@@ -195,6 +195,9 @@ impl World {
         if must && !self.safety.is_latched() {
             because("does not latch");
         }
+        if self.safety.is_latched() && self.safety.is_proven() {
+            because("is proven to float, with a trip latched");
+        }
         // What has not been proven may lie where it is, to be lifted.
         if self.safety.is_latched() && !before.safety.is_latched() && !must {
             because("latches for nothing");
