@@ -160,7 +160,7 @@ impl App {
     /// Clears what is latched. Refused while the rotor is neither floating nor lying still, while the sensors are gone,
     /// and without a configuration of its own; another fault whose cause lasts comes back.
     pub fn clear(&mut self) -> Result<(), Busy> {
-        if self.faults.last() {
+        if self.faults.lasting() {
             return Err(Busy::Configuration);
         }
         if self.state.position().is_none() {

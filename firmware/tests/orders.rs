@@ -4,11 +4,12 @@
 mod common;
 
 use common::chip::{Bus, Chip, NoDelay, flash, random};
+use common::desk::Desk;
 use common::rig::{IDENTITY, Rig, config};
 use touchdown_core::event::{Act, EventKind, Notice, Notices, Ordered};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{Board, default_config, default_settings};
+use touchdown_firmware::board::{default_config, default_settings};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::w25q::W25q;
@@ -26,24 +27,6 @@ const RATE: u64 = 20_000;
 const GOOD: u64 = 5 * RATE;
 
 type Episodes = DropLog<W25q<Bus, NoDelay>, 5>;
-
-struct Desk(Block);
-
-impl Board for Desk {
-    fn report(&mut self, _: &Notice) {}
-
-    fn drive(&mut self, _: Shown) {}
-
-    fn config(&self) -> &[u8] {
-        &self.0
-    }
-
-    fn service(&self) -> bool {
-        false
-    }
-
-    fn feed(&mut self) {}
-}
 
 /// A controller with four episodes.
 struct Controller {

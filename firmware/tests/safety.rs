@@ -3,18 +3,21 @@
 //! The guard's filters stand in with the shortest window that they can have, four samples: three beyond danger are
 //! "beyond", four without a position are "lost", three without the signal are "off".
 
+mod common;
+
 use std::collections::HashMap;
 
+use common::desk::Desk;
 use proptest::prelude::*;
-use touchdown_core::event::{Notice, Notices};
+use touchdown_core::event::Notices;
 use touchdown_core::guard::Verdict;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{Board, default_config, default_settings};
+use touchdown_firmware::board::{default_config, default_settings};
 use touchdown_firmware::outputs::{Condition, outputs};
 use touchdown_firmware::safety::{Findings, Safety};
-use touchdown_protocol::config_block::{self, Block};
-use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs, Shown};
+use touchdown_protocol::config_block;
+use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs};
 
 const WINDOW: u8 = 4;
 const OFF: u8 = 3;
@@ -248,25 +251,6 @@ fn every_state_of_the_safety_machine_is_safe_and_none_is_a_trap() {
     }
     let trap = worlds.iter().zip(&runs).find(|(_, runs)| !**runs);
     assert_eq!(trap, None, "no way back to running");
-}
-
-/// A board that remembers nothing.
-struct Desk(Block);
-
-impl Board for Desk {
-    fn report(&mut self, _: &Notice) {}
-
-    fn drive(&mut self, _: Shown) {}
-
-    fn config(&self) -> &[u8] {
-        &self.0
-    }
-
-    fn service(&self) -> bool {
-        false
-    }
-
-    fn feed(&mut self) {}
 }
 
 /// A stretch of readings of the same kind.

@@ -1,5 +1,6 @@
-//! What the tests of the log share: a simulated chip, and drops to record.
+//! What the tests share: a simulated chip, drops to record, and a board without a chip.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod chip;
+pub mod desk;
 pub mod rig;

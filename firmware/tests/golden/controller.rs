@@ -3,22 +3,23 @@
 use std::fmt::Write;
 
 use touchdown_core::checksum::CRC;
-use touchdown_core::event::{Notice, Notices};
+use touchdown_core::event::Notices;
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{BLOCK_SAMPLES, Board};
+use touchdown_firmware::board::BLOCK_SAMPLES;
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Block, Settings, Wiring};
-use touchdown_protocol::controller::{Faults, Shown};
+use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::controller::Faults;
 use touchdown_protocol::link::{Chunk, Log};
 use touchdown_protocol::log::block::BLOCK_BYTES;
 use touchdown_protocol::log::reader::{Item, Reader};
 
 use crate::common::chip::{Bus, Chip, NoDelay, flash};
+use crate::common::desk::Desk;
 use crate::stream::Stream;
 
 type Episodes = DropLog<W25q<Bus, NoDelay>, 4>;
@@ -27,25 +28,6 @@ type Episodes = DropLog<W25q<Bus, NoDelay>, 4>;
 const CAPACITY: u8 = 20;
 /// Time after a stream without anything new, in which its last drop ends, s.
 const QUIET: f32 = 1.1;
-
-/// A board that keeps nothing but its configuration.
-struct Desk(Block);
-
-impl Board for Desk {
-    fn report(&mut self, _: &Notice) {}
-
-    fn drive(&mut self, _: Shown) {}
-
-    fn config(&self) -> &[u8] {
-        &self.0
-    }
-
-    fn service(&self) -> bool {
-        false
-    }
-
-    fn feed(&mut self) {}
-}
 
 /// Every change of the outputs and what is in the log; then, switched on again with its first episode erased, once more.
 pub fn text(stream: &Stream) -> String {

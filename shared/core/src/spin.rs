@@ -9,7 +9,8 @@ use crate::config::DetectorConfig;
 /// Most that a spin changes by from one sample to the next, as a part of the nominal one: at 20 kHz and 30 000 rpm
 /// 3e6 rad/s^2, which no friction gives, and less than a pulse too many or too few does.
 const MOST_CHANGE: f32 = 0.05;
-/// Turns that another spin must last to be believed, and the longest time for them, s.
+/// Turns that another spin must last to be believed: a pulse too many is wrong for one turn, one too few for two. And the
+/// longest time for them, s: a rotor that stands makes no turn.
 const TURNS: f32 = 3.0;
 const LONGEST: f32 = 0.1;
 

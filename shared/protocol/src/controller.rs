@@ -205,7 +205,7 @@ impl Faults {
     }
 
     /// Whether one of them takes another configuration to go away.
-    pub const fn last(self) -> bool {
+    pub const fn lasting(self) -> bool {
         self.0 & Self::LASTING != 0
     }
 

@@ -1,8 +1,8 @@
 //! `touchdown calibrate`.
 
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
+use chrono::{Datelike, Utc};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
@@ -233,21 +233,10 @@ fn told(machine: &str, date: u32, scale: ScaleArg, planes: &[Checked]) -> impl S
     })
 }
 
-/// In UTC, as [`day`] has it. Days to a date: H. Hinnant, "chrono-compatible low-level date algorithms".
+/// In UTC, as [`day`] has it.
 fn today() -> u32 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    let days = since.map_or(0, |it| it.as_secs() / 86_400) as u32 + 719_468;
-    let (era, in_era) = (days / 146_097, days % 146_097);
-    let year = (in_era - in_era / 1_460 + in_era / 36_524 - in_era / 146_096) / 365;
-    let in_year = in_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * in_year + 2) / 153;
-    let of_month = in_year - (153 * month + 2) / 5 + 1;
-    let (month, next) = if month < 10 {
-        (month + 3, 0)
-    } else {
-        (month - 9, 1)
-    };
-    10_000 * (400 * era + year + next) + 100 * month + of_month
+    let today = Utc::now().date_naive();
+    10_000 * today.year().unsigned_abs() + 100 * today.month() + today.day()
 }
 
 /// A day on the command line.

@@ -39,7 +39,7 @@ pub enum ChangeError {
 pub fn in_force(client: &mut Client) -> Result<InForce, LinkError> {
     let firmware = shown(&client.hello()?.firmware).into_owned();
     let settings = client.settings()?;
-    let is_own = !client.state()?.faults.last();
+    let is_own = !client.state()?.faults.lasting();
     Ok(InForce {
         firmware,
         settings,
