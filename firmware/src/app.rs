@@ -14,6 +14,7 @@ use touchdown_rotor::error::ConfigError;
 use crate::blind_timer::BlindTimer;
 use crate::board::Board;
 use crate::lift_interlock::LiftInterlock;
+use crate::memory_scrub::MemoryScrub;
 use crate::outputs::{self, Condition};
 use crate::safety::{Findings, Safety};
 
@@ -23,6 +24,7 @@ pub struct App {
     monitor: Monitor,
     state: MonitorState,
     patrol: ConfigScrub,
+    coefficients: MemoryScrub,
     blind: BlindTimer,
     permit: LiftInterlock,
     safety: Safety,
@@ -57,6 +59,13 @@ impl App {
         self.assume_lift();
     }
 
+    /// As the log says after power-on: a `drop` that nobody has cleared is latched still.
+    pub fn recall(&mut self, drop: Option<Cause>) {
+        if let Some(cause) = drop {
+            self.safety.recall(cause);
+        }
+    }
+
     /// With the monitor of `config`. Nothing here can fail, so that it is made in its place.
     pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
@@ -64,6 +73,7 @@ impl App {
             state: monitor.start(),
             monitor,
             patrol: ConfigScrub::default(),
+            coefficients: MemoryScrub::default(),
             blind: BlindTimer::new(sample_rate),
             permit: LiftInterlock::new(sample_rate, config.fitted),
             safety: Safety::default(),
@@ -126,8 +136,7 @@ impl App {
         }
     }
 
-    /// The monitor and its state, for who counts the parts of a tick.
-    #[cfg(target_os = "none")]
+    /// The monitor and its state, for who counts the parts of a tick or plants a fault.
     pub fn monitor(&mut self) -> (&Monitor, &mut MonitorState) {
         (&self.monitor, &mut self.state)
     }
@@ -150,6 +159,9 @@ impl App {
             Some(true) => self.tested.config = true,
             Some(false) => self.latch(Fault::ConfigChanged),
             None => {}
+        }
+        if self.coefficients.step(&self.monitor) == Some(false) {
+            self.latch(Fault::MemoryChanged);
         }
     }
 
@@ -221,7 +233,12 @@ impl App {
         &self.state
     }
 
-    /// What is latched, after the last tick.
+    /// What waits for an order to clear: a drop by its cause, or a fault.
+    pub fn latched(&self) -> Option<Cause> {
+        self.safety.latched()
+    }
+
+    /// The latched faults, after the last tick.
     pub fn faults(&self) -> Faults {
         self.faults
     }

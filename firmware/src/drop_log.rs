@@ -1,7 +1,7 @@
 //! The drop log of a board: the recorder's blocks into flash, and episodes out of it for the link.
 
 use embedded_storage::nor_flash::MultiwriteNorFlash;
-use touchdown_protocol::controller::Busy;
+use touchdown_protocol::controller::{Busy, Cause};
 use touchdown_protocol::link::{CHUNK_BYTES, Chunk, Log, Refusal};
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::counters::Counters;
@@ -32,9 +32,20 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
         self.store.counters().boots
     }
 
-    /// Writes or erases once at most; `counted` is the recorder's. Whether there may be more to do: an error is tried
-    /// again.
-    pub fn work(&mut self, counted: Counted, fetch: impl FnOnce() -> Option<Block>) -> bool {
+    /// The drop that nobody has cleared.
+    pub fn uncleared(&self) -> Option<Cause> {
+        self.store.counters().uncleared
+    }
+
+    /// Writes or erases once at most; `counted` is the recorder's, `latched` the application's. Whether there may be more
+    /// to do: an error is tried again.
+    pub fn work(
+        &mut self,
+        counted: Counted,
+        latched: Option<Cause>,
+        fetch: impl FnOnce() -> Option<Block>,
+    ) -> bool {
+        self.store.note_latched(latched);
         self.store.count_lost(counted.lost);
         self.store.count_touches(counted.touches);
         self.store.work(&mut self.flash, fetch).unwrap_or(false)

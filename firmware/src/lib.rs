@@ -15,6 +15,7 @@ pub mod drop_log;
 mod journal;
 pub mod lift_interlock;
 pub mod memory;
+pub mod memory_scrub;
 pub mod outgoing;
 pub mod outputs;
 pub mod overrun;

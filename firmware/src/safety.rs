@@ -70,6 +70,11 @@ impl Safety {
         }
     }
 
+    /// As it was before power went, latched by `cause`.
+    pub fn recall(&mut self, cause: Cause) {
+        (self.mode, self.cause) = (Mode::Dropped, Some(cause));
+    }
+
     /// An order to clear: all begins anew. It gives no right to run: that takes a new proof.
     pub fn clear(&mut self) {
         (self.mode, self.cause) = (Mode::SelfTest, Some(Cause::Order));
@@ -89,6 +94,15 @@ impl Safety {
     /// Whether the rotor has been proven to float, and nothing has tripped since.
     pub fn is_proven(&self) -> bool {
         self.proven
+    }
+
+    /// What waits for an order to clear: a drop by its cause, or a fault.
+    pub fn latched(&self) -> Option<Cause> {
+        match self.mode {
+            Mode::Dropped => self.cause,
+            Mode::Faulted => Some(Cause::Fault),
+            Mode::SelfTest | Mode::Arming | Mode::Watching => None,
+        }
     }
 
     /// Whether a trip waits for an order to clear.

@@ -1,12 +1,19 @@
 //! Each fault of docs/build/firmware.md brings the outputs to safety within the ticks stated there.
 
+mod common;
+
+use common::chip::{Chip, NoDelay, flash};
 use touchdown_core::event::{EventKind, Notice, Notices};
-use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{
     Abilities, Board, SAMPLE_RATE_HZ, default_config, default_settings,
 };
+use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::memory_scrub::MemoryScrub;
+use touchdown_firmware::recorder::Counted;
+use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, ConfigScrub};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Shown};
@@ -483,6 +490,7 @@ fn without_a_configuration_of_its_own_there_is_never_current() {
         Fault::Unconfigured,
         Fault::ConfigDamaged,
         Fault::ConfigMisfit,
+        Fault::ImageDamaged,
     ] {
         let mut bench = Bench::new(Faults::NONE.with(fault));
         for _ in 0..ARMED {
@@ -536,4 +544,73 @@ fn a_fault_while_dropped_takes_the_permit_away() {
         bench.has(Fault::SensorsLost) || bench.blind() != 0
     });
     assert!(bench.has(Fault::SensorsLost));
+}
+
+/// The lowest bit of the clearance, in the first coefficient that is one.
+fn flip_a_bit_of_the_coefficients(app: &mut App) {
+    let monitor = core::ptr::from_ref(app.monitor().0).cast::<u32>();
+    let app = core::ptr::from_mut(app).cast::<u32>();
+    // SAFETY: of the monitor in the application; any number is one.
+    unsafe {
+        let first = app.add(monitor.offset_from_unsigned(app));
+        let words = (0..MemoryScrub::steps::<Monitor>()).map(|it| first.add(it));
+        let mut clearances = words.filter(|it| it.read_volatile() == (CLEARANCE as f32).to_bits());
+        *clearances.next().expect("a clearance") ^= 1;
+    }
+}
+
+#[test]
+fn coefficients_that_change_in_memory_trip_within_two_passes() {
+    let mut bench = Bench::watching();
+    let pass = MemoryScrub::steps::<Monitor>() as u32;
+    (0..pass).for_each(|_| assert_eq!(bench.float(), WATCHING));
+    flip_a_bit_of_the_coefficients(&mut bench.app);
+    ticks_until(2 * pass, || bench.float() == 0);
+    assert!(bench.has(Fault::MemoryChanged));
+    // The cause lasts: clearing it never gives current.
+    assert_eq!(bench.app.clear(), Ok(()));
+    for _ in 0..ARMED {
+        assert_eq!(bench.float() & 0b0001, 0);
+    }
+    assert_eq!(bench.mode(), Mode::Faulted);
+}
+
+#[test]
+fn a_drop_outlives_the_power_until_it_is_cleared() {
+    let (chip, bus) = flash(Chip::new(20));
+    let mut log = DropLog::<_, 4>::mount(chip).unwrap();
+    let mut bench = Bench::watching();
+    let store = |log: &mut DropLog<_, 4>, app: &App| {
+        while log.work(Counted::default(), app.latched(), || None) {}
+    };
+    store(&mut log, &bench.app);
+    assert_eq!(log.uncleared(), None);
+    for tick in 1..SAMPLE_RATE_HZ {
+        let time = seconds(tick);
+        bench.place([0.0, -(0.5 * GRAVITY * time * time).min(CLEARANCE)]);
+    }
+    assert_eq!(
+        (bench.mode(), bench.cause()),
+        (Mode::Dropped, Some(Cause::Fall))
+    );
+    store(&mut log, &bench.app);
+    // The power goes and comes, twice: nobody has cleared it.
+    for _ in 0..2 {
+        log = DropLog::mount(W25q::try_new(bus.clone(), NoDelay).unwrap()).unwrap();
+        bench = Bench::new(Faults::NONE);
+        bench.app.recall(log.uncleared());
+        bench.app.assume_lift();
+        for _ in 0..ARMED {
+            assert_eq!(bench.float() & 0b0011, 0);
+        }
+        assert_eq!(
+            (bench.mode(), bench.cause()),
+            (Mode::Dropped, Some(Cause::Fall))
+        );
+        store(&mut log, &bench.app);
+    }
+    bench.lie_clear_and_lift();
+    store(&mut log, &bench.app);
+    log = DropLog::mount(W25q::try_new(bus, NoDelay).unwrap()).unwrap();
+    assert_eq!(log.uncleared(), None);
 }

@@ -76,7 +76,7 @@ fn settings(key: Option<Key>) -> Settings {
 /// With the number of the power-on in flash, as both boards have it before they serve the link.
 fn mounted(flash: W25q<Bus, NoDelay>) -> Episodes {
     let mut log = Episodes::mount(flash).unwrap_or_else(|_| panic!("a log"));
-    while log.work(Default::default(), || None) {}
+    while log.work(Default::default(), None, || None) {}
     log
 }
 

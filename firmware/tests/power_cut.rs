@@ -6,8 +6,10 @@ mod common;
 
 use common::chip::{Bus, Chip, NoDelay, Tear, flash};
 use common::rig::{Rig, read};
+use touchdown_core::event::EventKind;
 use touchdown_firmware::store::{EPISODE_BYTES, Store};
 use touchdown_firmware::w25q::W25q;
+use touchdown_protocol::controller::Cause;
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::log::waveform::Counts;
@@ -36,6 +38,10 @@ struct Known {
     counters: Counters,
     /// What the episodes add up to.
     landings: u32,
+    /// Operations since the drop tripped, this one included; 0 where none waits to be cleared.
+    tripped: usize,
+    /// Whether a fall began the newest episode.
+    falls: bool,
 }
 
 fn episode(log: &Log, flash: &mut Flash, sequence: u32) -> Vec<u8> {
@@ -83,6 +89,13 @@ fn check(chip: Chip, known: &Known, fed: &[Vec<Counts>], tally: &mut Tally, at: 
         counters.landings,
         known.landings
     );
+    let falls = known.falls && found.len() > known.complete.len();
+    // Two operations after the trip it is written: a sector may have to be erased first.
+    if known.tripped > 2 || falls {
+        assert!(counters.uncleared.is_some(), "{at}: the drop is forgotten");
+    } else if known.tripped == 0 && known.counters.uncleared.is_none() {
+        assert_eq!(counters.uncleared, None, "{at}: it has been cleared");
+    }
     let mut rig = Rig::new(RATE, 99);
     let before = log.episodes().map(|(it, _)| it).max().unwrap_or(0);
     one_drop(&mut rig, &mut log, &mut flash, |_| {});
@@ -105,8 +118,8 @@ fn check(chip: Chip, known: &Known, fed: &[Vec<Counts>], tally: &mut Tally, at: 
 /// Ticks per second of the campaign.
 const RATE: f32 = 2_000.0;
 
-/// Feeds a drop and lets the store work until it has nothing left to do; `look` comes after every
-/// call of `work`.
+/// Feeds a drop, which is cleared at its end, and lets the store work until it has nothing left to do; `look` comes
+/// after every call of `work`.
 fn one_drop(rig: &mut Rig, log: &mut Log, flash: &mut Flash, mut look: impl FnMut(&Log)) {
     for _ in 0..150 {
         rig.tick(&[]);
@@ -114,10 +127,12 @@ fn one_drop(rig: &mut Rig, log: &mut Log, flash: &mut Flash, mut look: impl FnMu
     for tick in 0..600 {
         rig.drop_tick(tick, 450);
         if tick % 3 == 0 {
+            log.note_latched((2..500).contains(&tick).then_some(Cause::Fall));
             log.work(flash, || rig.recorder.fetch()).unwrap();
             look(log);
         }
     }
+    log.note_latched(None);
     while log.work(flash, || rig.recorder.fetch()).unwrap() {
         look(log);
     }
@@ -136,10 +151,11 @@ fn power_may_be_cut_at_any_operation() {
         let mut log = Log::mount(&mut flash, 0).unwrap();
         for drop in 0..4_u32 {
             let number = boot * 4 + drop + 1;
-            let mut rig = Rig::new(RATE, u64::from(number) * 7919);
+            let mut rig = rig(number);
             // The samples are known beforehand: the same rig, fed the same way.
             fed.push(forecast(number));
             let mut pending = *log.counters();
+            let mut tripped = 0;
             one_drop(&mut rig, &mut log, &mut flash, |log| {
                 let chip = bus.0.borrow();
                 if chip.operations == operations {
@@ -147,6 +163,7 @@ fn power_may_be_cut_at_any_operation() {
                 }
                 assert_eq!(chip.operations, operations + 1, "one operation a call");
                 operations = chip.operations;
+                tripped = log.counters().uncleared.map_or(0, |_| tripped + 1);
                 let found: Vec<u32> = log.episodes().map(|(it, _)| it).collect();
                 // Those that are given up by this very operation may be there or not.
                 let gone = complete.iter().copied().find(|it| !found.contains(it));
@@ -157,6 +174,8 @@ fn power_may_be_cut_at_any_operation() {
                     open,
                     counters: written,
                     landings: number - 1,
+                    tripped,
+                    falls: number % 2 == 0,
                 };
                 for (way, tear) in Tear::ALL.into_iter().enumerate() {
                     let torn = chip.torn(tear, (operations * 5 + way) as u64 * 0x9e37_79b9);
@@ -183,8 +202,17 @@ fn power_may_be_cut_at_any_operation() {
     assert!(tally.cuts == operations * Tear::ALL.len() && tally.incomplete > 0);
 }
 
-fn forecast(number: u32) -> Vec<Counts> {
+/// Every other drop begins with the fall, the others with contact.
+fn rig(number: u32) -> Rig {
     let mut rig = Rig::new(RATE, u64::from(number) * 7919);
+    if number % 2 == 1 {
+        rig.trigger = EventKind::Impact;
+    }
+    rig
+}
+
+fn forecast(number: u32) -> Vec<Counts> {
+    let mut rig = rig(number);
     for _ in 0..150 {
         rig.tick(&[]);
     }

@@ -86,6 +86,7 @@ pub const COUNTERS: Counters = Counters {
     boots: 7,
     episodes: 2,
     landings: 5,
+    uncleared: None,
     unweighed: 1,
     touches: 5,
     lost: 3,

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
 
+use crate::image_check;
 use crate::machine::Machine;
 use crate::toolchain::TARGET;
 use crate::workspace;
@@ -130,7 +131,7 @@ fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
         .status()
         .context("cannot start cargo for the firmware: `cargo xtask setup` installs it")?;
     ensure!(status.success(), "the firmware does not build ({status})");
-    Ok(())
+    image_check::write(&folder(image.profile).join(image.name))
 }
 
 fn target_directory() -> PathBuf {

@@ -7,6 +7,7 @@ mod firmware;
 mod flash;
 mod golden;
 mod house;
+mod image_check;
 mod instructions;
 mod machine;
 mod setup;

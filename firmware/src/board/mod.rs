@@ -3,6 +3,8 @@
 #[cfg(target_os = "none")]
 pub mod f405;
 #[cfg(target_os = "none")]
+mod image;
+#[cfg(target_os = "none")]
 pub mod qemu;
 #[cfg(target_os = "none")]
 mod serial;

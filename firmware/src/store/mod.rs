@@ -9,6 +9,8 @@ mod ledger;
 mod slots;
 
 use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash, ReadNorFlash};
+use touchdown_core::event::EventKind;
+use touchdown_protocol::controller::Cause;
 use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind};
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::ending::Ending;
@@ -77,6 +79,8 @@ pub struct Store<const SLOTS: usize> {
     /// Lost drops and touches since reset that are counted in.
     lost: u32,
     touches: u32,
+    /// Why the outputs are off, where that is latched.
+    latched: Option<Cause>,
 }
 
 impl<const SLOTS: usize> Store<SLOTS> {
@@ -93,7 +97,11 @@ impl<const SLOTS: usize> Store<SLOTS> {
         let counted = ledger.counters().episodes;
         for (slot, sequence) in slots.after(counted) {
             let ending = slots::ending(flash, layout, slot, sequence).map_err(MountError::Flash)?;
-            ledger.update(|counters| counters.count(sequence, ending.as_ref()));
+            // Power went before it was counted, maybe before the trip was noted.
+            let falls = slots::trigger(flash, layout, slot, sequence).map_err(MountError::Flash)?
+                == Some(EventKind::FreeFall);
+            let latched = falls.then_some(Cause::Fall);
+            ledger.update(|counters| counters.count(sequence, ending.as_ref(), latched));
         }
         ledger.update(|counters| counters.boots = counters.boots.saturating_add(1));
         Ok(Self {
@@ -104,6 +112,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
             clearing: false,
             lost: 0,
             touches: 0,
+            latched: None,
         })
     }
 
@@ -118,11 +127,12 @@ impl<const SLOTS: usize> Store<SLOTS> {
         fetch: impl FnOnce() -> Option<Block>,
     ) -> Result<bool, F::Error> {
         match self.state {
+            // Also amid an episode: a trip is noted before its record is whole.
+            _ if self.ledger.is_ahead() => self.ledger.write(flash).map(|()| true),
             State::Writing { slot, block } => match fetch() {
                 Some(next) => self.write(flash, slot, block, &next).map(|()| true),
                 None => Ok(false),
             },
-            _ if self.ledger.is_ahead() => self.ledger.write(flash).map(|()| true),
             _ if self.clearing => self.clear_next(flash),
             State::Unprepared => self.prepare(flash),
             State::Erasing { slot, sector } => self.erase(flash, slot, sector).map(|()| true),
@@ -156,6 +166,18 @@ impl<const SLOTS: usize> Store<SLOTS> {
             self.touches = since_reset;
             self.ledger
                 .update(|counters| counters.touches = counters.touches.saturating_add(more));
+        }
+    }
+
+    /// Takes note of why the outputs are off, where that is latched: a drop is remembered until nothing is. A fault
+    /// alone is none.
+    pub fn note_latched(&mut self, latched: Option<Cause>) {
+        self.latched = latched;
+        let known = self.ledger.counters().uncleared;
+        let tripped = latched.filter(|it| *it != Cause::Fault);
+        let drop = latched.and(known.or(tripped));
+        if drop != known {
+            self.ledger.update(|counters| counters.uncleared = drop);
         }
     }
 
@@ -307,7 +329,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
         let complete = ending.is_some_and(|it| u32::from(it.blocks) == block + 1);
         if complete || block + 1 == BLOCKS_PER_SLOT {
             self.ledger
-                .update(|counters| counters.count(sequence, ending.as_ref()));
+                .update(|counters| counters.count(sequence, ending.as_ref(), self.latched));
             self.state = State::Unprepared;
         } else {
             let block = block + 1;

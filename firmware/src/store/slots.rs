@@ -1,8 +1,10 @@
 //! Which episode is in which slot.
 
 use embedded_storage::nor_flash::ReadNorFlash;
+use touchdown_core::event::EventKind;
 use touchdown_protocol::log::block::{BLOCK_BYTES, Kind, Page};
 use touchdown_protocol::log::ending::Ending;
+use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::marks::{MARKS_BYTES, Marks};
 
 use super::layout::{BLOCKS_PER_SLOT, Layout};
@@ -160,6 +162,22 @@ pub(super) fn ending<F: ReadNorFlash>(
         }
     }
     Ok(None)
+}
+
+/// What began episode `sequence` in `slot`; none where its first page is lost.
+pub(super) fn trigger<F: ReadNorFlash>(
+    flash: &mut F,
+    layout: Layout,
+    slot: usize,
+    sequence: u32,
+) -> Result<Option<EventKind>, F::Error> {
+    let mut bytes = [0; BLOCK_BYTES];
+    flash.read(layout.slot(slot), &mut bytes)?;
+    let Page::Sealed(sealed) = Page::open(&bytes) else {
+        return Ok(None);
+    };
+    let header = Header::decode(sealed.payload).filter(|_| sealed.sequence == sequence);
+    Ok(header.map(|it| it.trigger_kind))
 }
 
 /// Episode that the first pages of a slot belong to; 0 for none.

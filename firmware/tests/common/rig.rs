@@ -30,6 +30,8 @@ pub struct Rig {
     pub recorder: Recorder<'static>,
     /// Counts of every tick since reset.
     pub fed: Vec<Counts>,
+    /// What begins a drop.
+    pub trigger: EventKind,
     seed: u64,
     number: u16,
 }
@@ -48,6 +50,7 @@ impl Rig {
         Self {
             recorder: Recorder::new(memory, &config(rate), IDENTITY),
             fed: Vec::new(),
+            trigger: EventKind::FreeFall,
             seed: seed | 1,
             number: 0,
         }
@@ -88,7 +91,7 @@ impl Rig {
     /// What happens in tick `tick` of a drop that is levitated again after `length` ticks.
     pub fn drop_tick(&mut self, tick: usize, length: usize) {
         match tick {
-            0 => self.tick(&[EventKind::FreeFall]),
+            0 => self.tick(&[self.trigger]),
             _ if tick == length => {
                 self.tick(&[EventKind::LiftOff, EventKind::Levitated]);
                 self.recorder.set_phase(Phase::Levitated);

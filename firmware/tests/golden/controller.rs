@@ -87,7 +87,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
                 .expect("a string");
         }
         if number % BLOCK_SAMPLES == 0 {
-            while log.work(recorder.counted(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
         }
     }
     writeln!(text, "Clear at the end: {:?}", app.clear()).expect("a string");
@@ -95,7 +95,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     for sample in stream.samples.last().into_iter().cycle().take(quiet) {
         recorder.take(sample, &[]);
     }
-    while log.work(recorder.counted(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
 }
 
 fn tell(log: &mut Episodes, text: &mut String) {

@@ -64,10 +64,10 @@ pub fn run(
         }
         fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
-            while log.work(recorder.counted(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
         }
     }
-    while log.work(recorder.counted(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,

@@ -120,6 +120,8 @@ pub fn fault_name(fault: Fault) -> &'static str {
         Fault::Crash => "crash",
         Fault::Unconfigured => "not configured",
         Fault::ConfigMisfit => "configuration of another board",
+        Fault::MemoryChanged => "memory changed",
+        Fault::ImageDamaged => "image damaged",
     }
 }
 

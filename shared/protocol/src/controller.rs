@@ -151,11 +151,15 @@ pub enum Fault {
     Unconfigured = 7,
     /// The stored configuration is none of this board's: the defaults are in force.
     ConfigMisfit = 8,
+    /// Coefficients in memory, which follow from the configuration, changed by themselves.
+    MemoryChanged = 9,
+    /// The image in flash is not what was built.
+    ImageDamaged = 10,
 }
 
 impl Fault {
     /// All faults, in the order of their codes.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Overrun,
         Self::Overload,
         Self::SensorsLost,
@@ -165,6 +169,8 @@ impl Fault {
         Self::Crash,
         Self::Unconfigured,
         Self::ConfigMisfit,
+        Self::MemoryChanged,
+        Self::ImageDamaged,
     ];
 
     /// Whether it trips; the others only put out the ready lamp.
@@ -186,6 +192,7 @@ impl Faults {
         .with(Fault::ConfigDamaged)
         .with(Fault::Unconfigured)
         .with(Fault::ConfigMisfit)
+        .with(Fault::ImageDamaged)
         .0;
 
     /// These and `fault`.
@@ -204,7 +211,7 @@ impl Faults {
         self.0 & Self::TRIPPING != 0
     }
 
-    /// Whether one of them takes another configuration to go away.
+    /// Whether one of them takes another configuration or image to go away.
     pub const fn lasting(self) -> bool {
         self.0 & Self::LASTING != 0
     }
@@ -234,7 +241,7 @@ pub enum Busy {
     Locked,
     /// The episode is the newest one.
     Last,
-    /// There is no configuration, a damaged one, or one of another board.
+    /// There is no configuration, a damaged one, or one of another board; or the image is damaged.
     Configuration,
 }
 

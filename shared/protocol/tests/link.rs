@@ -8,7 +8,7 @@ use touchdown_core::sensing::{Calibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{BlockError, KEY_BYTES, Key, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Busy, Cause, Faults, Mode, Outputs};
 use touchdown_protocol::link::{
     Chunk, Counters, Decoder, Device, FRAME_BYTES, FrameError, Log, Received, Recent, Refusal,
     Reply, Request, Server, State, VERSION, encode, mac,
@@ -21,6 +21,7 @@ const LIFETIME: Lifetime = Lifetime {
     boots: 3,
     episodes: 9,
     landings: 5,
+    uncleared: Some(Cause::Fall),
     unweighed: 1,
     touches: 9,
     lost: 0,

@@ -1,8 +1,10 @@
 //! The drop log's format: what is written is read, and any bytes may be read.
 
 use proptest::prelude::*;
+use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::sample::Edges;
+use touchdown_protocol::controller::Cause;
 use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind, PAYLOAD_BYTES, Page};
 use touchdown_protocol::log::counters::{COUNTERS_BYTES, Counters};
 use touchdown_protocol::log::ending::{Closing, Ending};
@@ -258,18 +260,36 @@ fn one_wrong_bit_makes_no_mark_and_undoes_none() {
 #[test]
 fn counters_only_grow() {
     let mut counters = Counters::default();
-    counters.count(1, Some(&ending(8)));
-    counters.count(2, None);
+    counters.count(1, Some(&ending(8)), None);
+    counters.count(2, None, None);
+    assert_eq!(counters.uncleared, None);
     let mut nonsense = ending(8);
     for index in [f32::NAN, -1.0, f32::INFINITY] {
         nonsense.index = index;
         let before = counters.weight;
-        counters.count(3, Some(&nonsense));
+        counters.count(3, Some(&nonsense), Some(Cause::Danger));
         assert!(counters.weight >= before);
     }
     assert_eq!((counters.landings, counters.unweighed), (5, 1));
     assert_eq!(counters.weight, 3_250 + 10_000_000 + 10_000_000);
     assert_eq!(Counters::decode(&counters.encode()), Some(counters));
+    assert_eq!(counters.uncleared, Some(Cause::Danger));
+}
+
+/// Of a record from before there was such a field, and of one from newer firmware.
+#[test]
+fn a_drop_that_is_not_cleared_is_read_from_any_record() {
+    for (code, expected) in [
+        (0, None),
+        (1 + Cause::Fall as u8, Some(Cause::Fall)),
+        (200, Some(Cause::Contact)),
+    ] {
+        let mut bytes = Counters::default().encode();
+        bytes[40] = code;
+        let checksum = CRC.checksum(&bytes[..60]);
+        bytes[60..].copy_from_slice(&checksum.to_le_bytes());
+        assert_eq!(Counters::decode(&bytes).unwrap().uncleared, expected);
+    }
 }
 
 /// Reads to the end; every page must be counted once.

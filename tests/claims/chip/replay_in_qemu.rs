@@ -6,11 +6,12 @@ use std::io::Sink;
 use serde_json::Value;
 use tempfile::TempDir;
 use touchdown_core::event::EventKind;
+use touchdown_protocol::controller::Fault;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::wire::Switching;
 use touchdown_files::drop_log::Dump;
 use touchdown_run::drop;
-use touchdown_run::emulator::Emulator;
+use touchdown_run::emulator::{Emulator, built};
 use touchdown_run::outcome::Outcome;
 use touchdown_run::target::Target;
 use touchdown_scene::{BUILT_IN, Scene};
@@ -94,6 +95,38 @@ fn the_four_phases_are_declared_on_the_target() {
     ]
     .map(first);
     assert!(order.is_sorted(), "{order:?}");
+}
+
+/// A bit of a vector that is never used, and of the check itself.
+#[test]
+fn an_image_with_a_wrong_bit_never_gives_current() {
+    let image = std::fs::read(built("touchdown-qemu")).expect("the image");
+    // Behind the headers, which have these addresses too.
+    let find = |bytes: &[u8]| {
+        let place = image.windows(bytes.len()).rposition(|it| it == bytes);
+        place.unwrap_or_else(|| panic!("{bytes:02x?} is not in the image"))
+    };
+    // The vector table begins with the stack's first address: memory.x.
+    let stack = 0x2000_8000_u32.to_le_bytes();
+    let is_vectors = |it: &[u8]| it[..4] == stack && it[7] == 0x08;
+    let vectors = image.windows(8).position(is_vectors).expect("a vector table");
+    // It is the first section of the check, with its address and length.
+    let check = find(&[0x0800_0000_u32.to_le_bytes(), 0x188_u32.to_le_bytes()].concat()) - 4;
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("image");
+    let scene = Scene::load("rig").expect("built-in scene");
+    for (at, bit) in [(vectors + 4 * 90, 3), (check, 0), (check + 12, 7), (check + 3, 5)] {
+        let mut damaged = image.clone();
+        damaged[at] ^= 1 << bit;
+        std::fs::write(&path, damaged).expect("a file");
+        let emulator = Emulator::find(Some(&path)).unwrap_or_else(|error| panic!("{error}"));
+        let (outcome, _) = drop::run::<Sink>(&scene, &Target::Qemu(emulator), None).expect("drops");
+        let state = outcome.conduct.state;
+        assert!(state.faults.contains(Fault::ImageDamaged), "{at:#x}");
+        for switched in &outcome.conduct.outputs {
+            assert_eq!(switched.shown.outputs.bits(), 0, "{at:#x}");
+        }
+    }
 }
 
 /// Switched on over a drop, ordered to clear while it falls and again where it lies: the same JSON.

@@ -308,8 +308,12 @@ fn brown_out_while_logging_leaves_earlier_episodes_whole_and_the_new_one_whole_o
                 true
             }
         });
-        // At rest, before it is lifted again.
-        state_when(&mut talk, "permit", |it| it.outputs.permit);
+        // The drop outlives the power. At rest it is cleared, to be lifted again.
+        let state = state_when(&mut talk, "permit", |it| it.outputs.permit);
+        assert_eq!(state.mode, Mode::Dropped);
+        serve(&rig, &mut talk);
+        talk.order(Act::Clear).expect("is cleared");
+        state_when(&mut talk, "permit again", |it| it.mode == Mode::Arming && it.outputs.permit);
     }
     println!(
         "{} cuts, {open} of them in the middle of an episode; {counted} landings",

@@ -37,6 +37,7 @@ use self::converter::Converter;
 use self::inputs::Inputs;
 use self::outputs::{OutputPins, Watchdog};
 use self::remote::Remote;
+use super::image;
 use super::serial::Serial;
 use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
@@ -220,9 +221,13 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     };
     let pins = OutputPins::new(chip.GPIOC, &chip.RCC);
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
-    let (block, settings, found) = found_at_power_on(&chip.RCC);
+    let (block, settings, mut found) = found_at_power_on(&chip.RCC);
     journal::config(&settings.monitor);
     clocks::start(&chip.RCC, &chip.FLASH);
+    if !image::is_whole() {
+        error!("image damaged");
+        found = found.with(Fault::ImageDamaged);
+    }
     start_cycle_counter(core.DCB, core.DWT);
     let converter = Converter::new(
         chip.ADC1,
@@ -240,6 +245,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     let filled = memory.monitor.fill(&settings.monitor, found, identity);
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
     let (app, recorder) = filled.inspect_err(refused).ok()?;
+    app.recall(log.as_ref().and_then(DropLog::uncleared));
     let forecast_task = memory::forecast_task(&settings.monitor)
         .inspect_err(refused)
         .ok()?;

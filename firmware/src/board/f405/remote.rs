@@ -54,8 +54,9 @@ impl Remote {
     pub fn work(&mut self) {
         let Some(log) = &mut self.log else { return };
         if log.flash().is_busy() == Ok(false) {
-            let counted = with_tick(|tick| tick.recorder.counted()).unwrap_or_default();
-            log.work(counted, || {
+            let known = with_tick(|tick| (tick.recorder.counted(), tick.app.latched()));
+            let (counted, latched) = known.unwrap_or_default();
+            log.work(counted, latched, || {
                 with_tick(|tick| tick.recorder.fetch()).flatten()
             });
         }

@@ -12,7 +12,7 @@ use defmt::{Debug2Format, Display2Format, error, info};
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_protocol::config_block::{self, Block, BlockError, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Fault, Faults, Shown};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Shown};
 use touchdown_protocol::wire::{Cleared, Record, Switching};
 
 pub use self::counter::Counter;
@@ -20,7 +20,7 @@ use self::files::{Answer, Files};
 use self::nor::NorFile;
 use self::remote::Line;
 use self::settings::SettingsFile;
-use super::{Abilities, Board, EMULATED_SLOTS};
+use super::{Abilities, Board, EMULATED_SLOTS, image};
 use crate::drop_log::DropLog;
 use crate::journal;
 use crate::memory::{self, Memory};
@@ -138,7 +138,11 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         .transpose()?;
     let (config, powers_on) = replay.config()?;
     let abilities = abilities(&config);
-    let (block, in_force, found) = found_at_power_on(config, abilities, settings.as_ref());
+    let (block, in_force, mut found) = found_at_power_on(config, abilities, settings.as_ref());
+    if !image::is_whole() {
+        error!("image damaged");
+        found = found.with(Fault::ImageDamaged);
+    }
     let config = in_force.monitor;
     journal::config(&config);
     let mut board = Emulated {
@@ -159,7 +163,9 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
-    if !powers_on {
+    if powers_on {
+        app.recall(log.as_ref().and_then(DropLog::uncleared));
+    } else {
         app.assume_lift();
     }
     let mut forecast_task = memory::forecast_task(&config).map_err(|_| Failure::Config)?;
@@ -200,7 +206,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
         }
         // Between blocks of samples: the link is no part of the tick.
         if let Some(log) = &mut log {
-            store(log, recorder);
+            store(log, recorder, app.latched());
         }
         board
             .line
@@ -260,6 +266,7 @@ fn found_at_power_on(
 }
 
 /// All that is ready.
-fn store(log: &mut FileLog, recorder: &mut Recorder<'_>) {
-    while !log.flash().has_failed() && log.work(recorder.counted(), || recorder.fetch()) {}
+fn store(log: &mut FileLog, recorder: &mut Recorder<'_>, latched: Option<Cause>) {
+    let mut work = |log: &mut FileLog| log.work(recorder.counted(), latched, || recorder.fetch());
+    while !log.flash().has_failed() && work(log) {}
 }

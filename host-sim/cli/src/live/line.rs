@@ -63,6 +63,7 @@ pub fn line(update: &Update, watched: &Watched) -> String {
                 "weight": it.weight as f64 / 1e3,
                 "drops_not_recorded": it.lost,
                 "touches": it.touches,
+                "uncleared": it.uncleared,
             }),
         ),
         Said::Damaged(count) => ("damaged", json!({ "frames": count })),

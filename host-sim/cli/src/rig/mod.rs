@@ -154,7 +154,7 @@ impl Supply<'_> {
     /// Switches the controller on.
     fn on(&self) -> Result<(Session, Pipe), EmulatorError> {
         let folder: &Path = &self.options.folder;
-        let head = touchdown_run::emulator::replay_head(&self.scene.monitor_config(), false);
+        let head = touchdown_run::emulator::replay_head(&self.scene.monitor_config(), true);
         let pipe = head.and_then(|head| Pipe::make(&folder.join("replay"), head));
         let pipe = pipe.map_err(|e| EmulatorError::Io("make a pipe", e))?;
         let mut session = self.emulator.open(folder)?;

@@ -6,7 +6,7 @@ use touchdown_protocol::log::reader::DamageKind;
 use super::dump::Dump;
 use super::episode::{Completeness, Episode};
 use touchdown_base::paint::Paint;
-use touchdown_scene::names::event_name;
+use touchdown_scene::names::{cause_name, event_name};
 
 /// A line for each episode, then the counters.
 pub fn list(dump: &Dump, paint: Paint) -> String {
@@ -29,6 +29,9 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
                 it.lost,
                 it.touches
             );
+            if let Some(cause) = it.uncleared {
+                text += &format!("a drop is not cleared: {}\n", cause_name(cause));
+            }
         }
         None => text += "no counters\n",
     }

@@ -119,6 +119,7 @@ const COUNTERS: Counters = Counters {
     boots: 3,
     episodes: 9,
     landings: 5,
+    uncleared: None,
     unweighed: 1,
     touches: 9,
     lost: 2,

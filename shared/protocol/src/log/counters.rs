@@ -3,6 +3,7 @@
 use super::checksum;
 use super::ending::Ending;
 use super::fields::{Fields, Row};
+use crate::controller::Cause;
 
 /// Bytes of a record of the counters.
 pub const COUNTERS_BYTES: usize = 64;
@@ -31,12 +32,18 @@ pub struct Counters {
     pub weight: u64,
     /// Times that the rotor came to the wall, whatever held it. 0 in records from before there was such a count.
     pub touches: u32,
+    /// Why the outputs went off in a drop that nobody has cleared. Outlives the power.
+    pub uncleared: Option<Cause>,
 }
 
 impl Counters {
-    /// Counts episode `sequence`, with its ending if it has one. Cut off, it is taken for a landing.
-    pub fn count(&mut self, sequence: u32, ending: Option<&Ending>) {
+    /// Counts episode `sequence`, with its ending if it has one. Cut off, it is taken for a landing. A landing while a
+    /// trip is `latched` is a drop.
+    pub fn count(&mut self, sequence: u32, ending: Option<&Ending>, latched: Option<Cause>) {
         self.episodes = self.episodes.max(sequence);
+        if ending.is_none_or(|it| it.landing) {
+            self.uncleared = self.uncleared.or(latched);
+        }
         match ending {
             Some(ending) if ending.landing => {
                 self.landings = self.landings.saturating_add(1);
@@ -63,6 +70,7 @@ impl Counters {
             .put(&self.lost.to_le_bytes())
             .put(&self.weight.to_le_bytes())
             .put(&self.touches.to_le_bytes())
+            .put(&[self.uncleared.map_or(0, |it| 1 + it as u8)])
             .bytes();
         let checksum = checksum(&bytes[..COUNTERS_BYTES - 4]);
         bytes[COUNTERS_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
@@ -85,6 +93,11 @@ impl Counters {
             lost: fields.u32()?,
             weight: fields.u64()?,
             touches: fields.u32()?,
+            // A cause that is not known here is one all the same.
+            uncleared: fields.u8()?.checked_sub(1).map(|code| {
+                let known = Cause::ALL.get(usize::from(code));
+                known.copied().unwrap_or(Cause::Contact)
+            }),
         })
     }
 }

@@ -1,0 +1,91 @@
+//! Whether a value that nobody writes keeps its bits.
+
+use core::ptr::from_ref;
+
+use crc::Digest;
+use touchdown_core::checksum::CRC;
+
+/// Bytes that a step takes in.
+pub const WORD_BYTES: usize = size_of::<u32>();
+
+/// Checks a value where it lies over and over, a word a step. The first pass learns its checksum.
+pub struct MemoryScrub {
+    at: usize,
+    digest: Digest<'static, u32>,
+    known: Option<u32>,
+}
+
+impl Default for MemoryScrub {
+    fn default() -> Self {
+        Self {
+            at: 0,
+            digest: CRC.digest(),
+            known: None,
+        }
+    }
+}
+
+/// A clone of what is checked has its own bytes between the fields: it is learnt anew.
+impl Clone for MemoryScrub {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl MemoryScrub {
+    /// Takes in the next word of `held`, the same at every step; at the end of a pass, whether it is what it was in the
+    /// first.
+    pub fn step<T>(&mut self, held: &T) -> Option<bool> {
+        const {
+            assert!(align_of::<T>() >= WORD_BYTES && size_of::<T>() > 0);
+        }
+        let words = from_ref(held).cast::<u32>();
+        // SAFETY: `at` is within the value, which has whole words. Between its fields may be bytes that nobody wrote: a
+        // volatile access takes them as they are.
+        let word = unsafe { words.add(self.at).read_volatile() };
+        self.digest.update(&word.to_le_bytes());
+        self.at += 1;
+        if self.at < Self::steps::<T>() {
+            return None;
+        }
+        self.at = 0;
+        let checksum = core::mem::replace(&mut self.digest, CRC.digest()).finalize();
+        Some(*self.known.get_or_insert(checksum) == checksum)
+    }
+
+    /// Steps of a pass.
+    pub const fn steps<T>() -> usize {
+        size_of::<T>() / WORD_BYTES
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board::default_config;
+    use touchdown_core::monitor::Monitor;
+
+    #[test]
+    fn any_bit_of_the_coefficients_that_flips_is_found_within_two_passes() {
+        let mut monitor = Box::new(Monitor::try_new(&default_config()).unwrap());
+        let bits = 8 * size_of::<Monitor>();
+        let pass = MemoryScrub::steps::<Monitor>();
+        let mut scrub = MemoryScrub::default();
+        for bit in 0..bits {
+            for _ in 0..2 * pass + bit % pass {
+                assert_ne!(scrub.step(&*monitor), Some(false), "nothing flipped");
+            }
+            let flip = |monitor: &mut Monitor| {
+                let byte = core::ptr::from_mut(monitor).cast::<u8>();
+                // SAFETY: of the value, which nobody reads as what it is until the bit is back.
+                unsafe { *byte.add(bit / 8) ^= 1 << (bit % 8) };
+            };
+            flip(&mut monitor);
+            let found = (0..2 * pass).any(|_| scrub.step(&*monitor) == Some(false));
+            flip(&mut monitor);
+            assert!(found, "bit {bit}");
+            scrub = MemoryScrub::default();
+        }
+        println!("{bits} bits");
+    }
+}
