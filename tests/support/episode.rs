@@ -72,6 +72,7 @@ pub fn sealed(sequence: u32, header: &Header) -> Vec<[u8; BLOCK_BYTES]> {
         notices_lost: 0,
         index: 0.99,
         last: TRIGGER + 20_000,
+        latched: None,
     };
     blocks.extend([Block::of(Kind::Ending, &ending.encode()); 2]);
     let sealed = blocks.iter().enumerate();

@@ -70,7 +70,7 @@ mod image {
     ) {
         app.tick(&mut Bare(config), sample, lost, notices);
         recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase());
+        recorder.set_phase(app.state().phase(), app.latched());
         recorder.take(sample, notices);
         recorder.keep(app.state());
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))

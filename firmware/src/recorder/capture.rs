@@ -5,6 +5,7 @@ use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::Learnt;
 use touchdown_core::sample::Sample;
 use touchdown_core::severity::Severity;
+use touchdown_protocol::controller::Cause;
 use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::{Block, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
@@ -21,6 +22,14 @@ const NOTICES: usize = 64;
 /// Notices of a block.
 const NOTICES_PER_BLOCK: usize = touchdown_protocol::log::block::PAYLOAD_BYTES / NOTICE_BYTES;
 const COPIES: u8 = reader::COPIES as u8;
+
+/// How an episode ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closed {
+    pub(super) why: Closing,
+    pub(super) tick: u64,
+    pub(super) latched: Option<Cause>,
+}
 
 /// What began an episode.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +68,7 @@ pub(super) struct Capture {
     newest: u64,
     pulses: Pulses,
     trigger: Option<Trigger>,
-    closing: Option<(Closing, u64)>,
+    closing: Option<Closed>,
     notices: Vec<[u8; NOTICE_BYTES], NOTICES>,
     notices_lost: u32,
     touched: bool,
@@ -224,8 +233,8 @@ impl Capture {
         }
     }
 
-    pub(super) fn end(&mut self, closing: Closing, tick: u64) {
-        self.closing = Some((closing, tick));
+    pub(super) fn end(&mut self, closed: Closed) {
+        self.closing = Some(closed);
     }
 
     pub(super) fn set_severity(&mut self, severity: &Severity) {
@@ -249,9 +258,9 @@ impl Capture {
             .or_else(|| self.pulses(ring, plan))
             .or_else(|| self.events(complete && self.closing.is_some()))
             .or_else(|| {
-                let (closing, last) = self.closing.filter(|_| complete)?;
+                let closed = self.closing.filter(|_| complete)?;
                 self.severity()
-                    .or_else(|| Some(self.ending(&trigger, closing, last, plan)))
+                    .or_else(|| Some(self.ending(&trigger, &closed, plan)))
             })?;
         self.fetched.blocks += 1;
         Some(block)
@@ -331,18 +340,19 @@ impl Capture {
         Some(Block::of(Kind::Severity, &payload))
     }
 
-    fn ending(&mut self, trigger: &Trigger, closing: Closing, last: u64, plan: &Plan) -> Block {
+    fn ending(&mut self, trigger: &Trigger, closed: &Closed, plan: &Plan) -> Block {
         let left = u16::from(COPIES - self.fetched.endings);
         self.fetched.endings += 1;
         let ending = Ending {
-            closing,
+            closing: closed.why,
             landing: self.touched && trigger.lands,
             blocks: self.fetched.blocks + left,
             samples: self.held as u32,
             notices: self.notices.len() as u32,
             notices_lost: self.notices_lost,
             index: self.fastest / plan.fall_speed,
-            last,
+            last: closed.tick,
+            latched: closed.latched,
         };
         Block::of(Kind::Ending, &ending.encode())
     }

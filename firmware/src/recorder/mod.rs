@@ -16,6 +16,7 @@ use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
+use touchdown_protocol::controller::Cause;
 use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::ending::Closing;
@@ -23,7 +24,7 @@ use touchdown_protocol::log::pulses::PULSE_BYTES;
 use touchdown_protocol::log::waveform::{self, Counts};
 use touchdown_rotor::real;
 
-use self::capture::Capture;
+use self::capture::{Capture, Closed};
 use self::pulses::{ROOM, Ring};
 
 /// Samples of a buffer.
@@ -190,6 +191,7 @@ pub struct Recorder<'m> {
     last_notice: u64,
     /// It has floated since reset, and since it last touched the retainer: only then it lands.
     floated: bool,
+    latched: Option<Cause>,
     counted: Counted,
 }
 
@@ -219,6 +221,7 @@ impl<'m> Recorder<'m> {
             drop: Drop::None,
             last_notice: 0,
             floated: false,
+            latched: None,
             counted: Counted::default(),
         }
     }
@@ -289,9 +292,10 @@ impl<'m> Recorder<'m> {
         }
     }
 
-    /// The rotor's phase, before the tick's [`Self::take`].
-    pub fn set_phase(&mut self, phase: Phase) {
+    /// The rotor's phase and what waits for an order to clear, before the tick's [`Self::take`].
+    pub fn set_phase(&mut self, phase: Phase, latched: Option<Cause>) {
         self.floated |= phase == Phase::Levitated;
+        self.latched = latched;
     }
 
     /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
@@ -394,7 +398,11 @@ impl<'m> Recorder<'m> {
         if let Drop::Recorded(at) = self.drop
             && let Some(capture) = self.captures.get_mut(at)
         {
-            capture.end(closing, self.tick);
+            capture.end(Closed {
+                why: closing,
+                tick: self.tick,
+                latched: self.latched,
+            });
         }
         self.drop = Drop::None;
     }

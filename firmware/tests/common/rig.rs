@@ -40,7 +40,7 @@ impl Rig {
     /// Of a rotor that has floated.
     pub fn new(rate: f32, seed: u64) -> Self {
         let mut rig = Self::switched_on(rate, seed);
-        rig.recorder.set_phase(Phase::Levitated);
+        rig.recorder.set_phase(Phase::Levitated, None);
         rig
     }
 
@@ -94,7 +94,7 @@ impl Rig {
             0 => self.tick(&[self.trigger]),
             _ if tick == length => {
                 self.tick(&[EventKind::LiftOff, EventKind::Levitated]);
-                self.recorder.set_phase(Phase::Levitated);
+                self.recorder.set_phase(Phase::Levitated, None);
             }
             _ if tick < length && tick % 37 == 36 => self.tick(&[EventKind::Impact]),
             _ => self.tick(&[]),

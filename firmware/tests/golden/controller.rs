@@ -72,7 +72,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     for (number, sample) in (0_usize..).zip(&stream.samples) {
         app.tick(&mut desk, sample, 0, &mut notices);
         recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase());
+        recorder.set_phase(app.state().phase(), app.latched());
         recorder.take(sample, &notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
         {

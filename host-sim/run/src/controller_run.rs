@@ -54,7 +54,7 @@ pub fn run(
         }
         app.tick(&mut desk, &sample, 0, &mut notices);
         recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase());
+        recorder.set_phase(app.state().phase(), app.latched());
         recorder.take(&sample, &notices);
         recorder.keep(app.state());
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))

@@ -69,6 +69,20 @@ impl Cause {
         Self::Fault,
         Self::Order,
     ];
+
+    /// In a byte: 0 for none, else one more than its code.
+    pub const fn byte_of(cause: Option<Self>) -> u8 {
+        match cause {
+            None => 0,
+            Some(cause) => 1 + cause as u8,
+        }
+    }
+
+    /// From that byte. A cause that is not known here is one all the same.
+    pub fn of_byte(byte: u8) -> Option<Self> {
+        let known = Self::ALL.get(usize::from(byte.checked_sub(1)?));
+        Some(known.copied().unwrap_or(Self::Contact))
+    }
 }
 
 /// What the controller shows: it is told at each change.

@@ -58,6 +58,7 @@ fn ending(blocks: u16) -> Ending {
         notices_lost: 0,
         index: 3.25,
         last: 104_000,
+        latched: Some(Cause::Fall),
     }
 }
 

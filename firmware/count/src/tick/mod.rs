@@ -86,7 +86,7 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
         let ((), instructions) = counter.count(|| {
             app.tick(&mut board, sample, 0, &mut notices);
             recorder.set_severity(app.state().severity());
-            recorder.set_phase(app.state().phase());
+            recorder.set_phase(app.state().phase(), app.latched());
             recorder.take(sample, &notices);
             recorder.keep(app.state());
         });
@@ -121,7 +121,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
-            recorder.set_phase(app.state().phase());
+            recorder.set_phase(app.state().phase(), app.latched());
             recorder.take(sample, &notices);
         });
         let (outlook, forecast) =

@@ -351,7 +351,8 @@ pub fn on_converted() {
         let notices = &mut tick.notices;
         tick.app.tick(&mut tick.board, &sample, lost, notices);
         tick.recorder.set_severity(tick.app.state().severity());
-        tick.recorder.set_phase(tick.app.state().phase());
+        let app = &*tick.app;
+        tick.recorder.set_phase(app.state().phase(), app.latched());
         tick.recorder.take(&sample, notices);
         tick.recorder.keep(tick.app.state());
     });

@@ -182,7 +182,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
                 }
                 app.tick(&mut board, &sample, 0, &mut notices);
                 recorder.set_severity(app.state().severity());
-                recorder.set_phase(app.state().phase());
+                recorder.set_phase(app.state().phase(), app.latched());
                 recorder.take(&sample, &notices);
                 recorder.keep(app.state());
                 if let Some(outlook) =

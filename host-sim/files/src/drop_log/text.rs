@@ -137,7 +137,11 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             Closing::Quiet => "nothing more happened",
             Closing::Longest => "as long as an episode may be",
         };
-        text += &format!("ended: {why}; velocity index {:.2}\n", ending.index);
+        let off = match ending.latched {
+            Some(cause) => format!("outputs off: {}", cause_name(cause)),
+            None => "nothing latched".to_owned(),
+        };
+        text += &format!("ended: {why}; velocity index {:.2}; {off}\n", ending.index);
     }
     if !episode.events.is_empty() {
         text += &paint.bold(&format!(

@@ -113,6 +113,7 @@ const ENDING: Ending = Ending {
     notices_lost: 5,
     index: 3.25,
     last: 104_000,
+    latched: Some(Cause::Danger),
 };
 const COUNTERS: Counters = Counters {
     generation: 20,

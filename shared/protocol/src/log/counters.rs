@@ -70,7 +70,7 @@ impl Counters {
             .put(&self.lost.to_le_bytes())
             .put(&self.weight.to_le_bytes())
             .put(&self.touches.to_le_bytes())
-            .put(&[self.uncleared.map_or(0, |it| 1 + it as u8)])
+            .put(&[Cause::byte_of(self.uncleared)])
             .bytes();
         let checksum = checksum(&bytes[..COUNTERS_BYTES - 4]);
         bytes[COUNTERS_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
@@ -93,11 +93,7 @@ impl Counters {
             lost: fields.u32()?,
             weight: fields.u64()?,
             touches: fields.u32()?,
-            // A cause that is not known here is one all the same.
-            uncleared: fields.u8()?.checked_sub(1).map(|code| {
-                let known = Cause::ALL.get(usize::from(code));
-                known.copied().unwrap_or(Cause::Contact)
-            }),
+            uncleared: Cause::of_byte(fields.u8()?),
         })
     }
 }

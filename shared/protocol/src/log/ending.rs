@@ -1,9 +1,10 @@
 //! The last block of an episode: it is complete.
 
 use super::fields::{Fields, Row};
+use crate::controller::Cause;
 
 /// Bytes of an ending.
-pub const ENDING_BYTES: usize = 28;
+pub const ENDING_BYTES: usize = 29;
 
 /// Why an episode ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +47,8 @@ pub struct Ending {
     pub index: f32,
     /// Tick at which it ended.
     pub last: u64,
+    /// What waited for an order to clear then. None in episodes from before it was recorded.
+    pub latched: Option<Cause>,
 }
 
 impl Ending {
@@ -59,6 +62,7 @@ impl Ending {
             .put(&self.notices_lost.to_le_bytes())
             .put(&self.index.to_le_bytes())
             .put(&self.last.to_le_bytes())
+            .put(&[Cause::byte_of(self.latched)])
             .bytes()
     }
 
@@ -74,6 +78,7 @@ impl Ending {
             notices_lost: fields.u32()?,
             index: fields.f32()?,
             last: fields.u64()?,
+            latched: fields.u8().and_then(Cause::of_byte),
         })
     }
 }
