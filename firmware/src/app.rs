@@ -32,6 +32,8 @@ pub struct App {
     /// Whether the rotor lies still enough on the retainer to be lifted.
     lies_still: bool,
     tested: Tested,
+    /// What trips, of the notices since the last look.
+    told: Option<Cause>,
     lost: u32,
 }
 
@@ -80,6 +82,7 @@ impl App {
             faults: found,
             lies_still: false,
             tested: Tested::default(),
+            told: None,
             lost: 0,
         }
     }
@@ -93,9 +96,25 @@ impl App {
         lost: u32,
         notices: &mut Notices,
     ) {
-        self.monitor.tick(&mut self.state, sample, notices);
-        self.follow(board, notices, lost);
-        board.feed();
+        self.take(board, sample, false, lost, notices);
+    }
+
+    /// Likewise; one that was `missed` was never taken, and the next one that was does what follows.
+    #[inline]
+    pub fn take(
+        &mut self,
+        board: &mut impl Board,
+        sample: &Sample,
+        missed: bool,
+        lost: u32,
+        notices: &mut Notices,
+    ) {
+        self.monitor.take(&mut self.state, sample, missed, notices);
+        self.hear(board, notices);
+        if !missed {
+            self.act(board, lost);
+            board.feed();
+        }
     }
 
     /// What the forecast below the tick needs; an estimate only where it `asks` for one.
@@ -105,20 +124,29 @@ impl App {
 
     /// What follows from the notices of a tick, outputs included.
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
-        let mut told = None;
+        self.hear(board, notices);
+        self.act(board, lost);
+    }
+
+    /// After `lost` samples and one that was taken.
+    fn act(&mut self, board: &mut impl Board, lost: u32) {
+        let position = self.state.position();
+        self.lies_still = self.permit.take(position, self.state.phases());
+        self.watch_itself(board.config(), position.is_some(), lost);
+        let told = self.told.take();
+        self.step(told);
+        board.drive(self.shown());
+    }
+
+    fn hear(&mut self, board: &mut impl Board, notices: &[Notice]) {
         for notice in notices {
             // Whirl weighs most: it trips what has not been proven to float as well.
-            if told != Some(Cause::Whirl) {
-                told = trip_of(notice).or(told);
+            if self.told != Some(Cause::Whirl) {
+                self.told = trip_of(notice).or(self.told);
             }
             self.permit.hear(notice);
             board.report(notice);
         }
-        let position = self.state.position();
-        self.lies_still = self.permit.take(position, self.state.phases());
-        self.watch_itself(board.config(), position.is_some(), lost);
-        self.step(told);
-        board.drive(self.shown());
     }
 
     /// Mode, cause and proof.

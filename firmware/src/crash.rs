@@ -5,8 +5,8 @@ use core::panic::PanicInfo;
 use touchdown_core::checksum::CRC;
 
 /// Words of a record, the checksum included.
-pub const WORDS: usize = 5;
-const MAGIC: u32 = u32::from_le_bytes(*b"TDX\x01");
+pub const WORDS: usize = 8;
+const MAGIC: u32 = u32::from_le_bytes(*b"TDX\x02");
 
 /// Why the program stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,19 @@ pub struct Crash {
     pub place: u32,
     /// For a panic the CRC-32 of the file's name, for a fault the link register, else 0.
     pub detail: u32,
+    /// Of a fault, what the core says of it.
+    pub status: FaultStatus,
+}
+
+/// Registers of the core after a fault: ARMv7-M, system control block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FaultStatus {
+    /// CFSR: usage, bus and memory faults.
+    pub configurable: u32,
+    /// HFSR.
+    pub hard: u32,
+    /// BFAR, where CFSR says that it holds; else 0.
+    pub address: u32,
 }
 
 impl Crash {
@@ -39,20 +52,44 @@ impl Crash {
             cause: Cause::Panic,
             place: place.map_or(0, |place| place.line()),
             detail: place.map_or(0, |place| CRC.checksum(place.file().as_bytes())),
+            status: FaultStatus::default(),
         }
     }
 
-    /// Record to words: magic, cause, place, detail, CRC-32 of these.
+    /// Record to words: magic, cause, place, detail, CFSR, HFSR, address, CRC-32 of these.
     pub fn encode(&self) -> [u32; WORDS] {
-        let said = [MAGIC, self.cause as u32, self.place, self.detail];
-        let [magic, cause, place, detail] = said;
-        [magic, cause, place, detail, checksum(&said)]
+        let FaultStatus {
+            configurable,
+            hard,
+            address,
+        } = self.status;
+        let mut words = [
+            MAGIC,
+            self.cause as u32,
+            self.place,
+            self.detail,
+            configurable,
+            hard,
+            address,
+            0,
+        ];
+        words[WORDS - 1] = checksum(&words);
+        words
     }
 
     /// Words to record; `None` for what is none, as after power-on.
     pub fn decode(words: &[u32; WORDS]) -> Option<Self> {
-        let [magic, cause, place, detail, sum] = *words;
-        if magic != MAGIC || sum != checksum(&[magic, cause, place, detail]) {
+        let [
+            magic,
+            cause,
+            place,
+            detail,
+            configurable,
+            hard,
+            address,
+            sum,
+        ] = *words;
+        if magic != MAGIC || sum != checksum(words) {
             return None;
         }
         let causes = [Cause::Panic, Cause::HardFault, Cause::StrayInterrupt];
@@ -60,13 +97,20 @@ impl Crash {
             cause: causes.into_iter().find(|&it| it as u32 == cause)?,
             place,
             detail,
+            status: FaultStatus {
+                configurable,
+                hard,
+                address,
+            },
         })
     }
 }
 
-fn checksum(words: &[u32; WORDS - 1]) -> u32 {
+/// Of all but the last.
+fn checksum(words: &[u32; WORDS]) -> u32 {
     let mut digest = CRC.digest();
-    words.iter().for_each(|it| digest.update(&it.to_le_bytes()));
+    let said = words.iter().take(WORDS - 1);
+    said.for_each(|it| digest.update(&it.to_le_bytes()));
     digest.finalize()
 }
 
@@ -78,6 +122,11 @@ mod tests {
         cause: Cause::HardFault,
         place: 0x0800_1234,
         detail: 0x0800_0567,
+        status: FaultStatus {
+            configurable: 0x8200,
+            hard: 0x4000_0000,
+            address: 0x4002_3c00,
+        },
     };
 
     #[test]

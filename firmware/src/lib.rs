@@ -23,4 +23,5 @@ pub mod recorder;
 pub mod safety;
 pub mod speed;
 pub mod store;
+pub mod tick;
 pub mod w25q;

@@ -1,50 +1,56 @@
-//! Ticks that came too late.
+//! Samples that were lost because a tick took longer than the sample period.
 
-/// Tells how many samples were lost because a tick took longer than the sample period.
-#[derive(Clone, Copy, Debug)]
+/// Tells how many, by the number that the hardware counts.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Overruns {
-    period: u32,
-    last: Option<u32>,
+    last: Option<u16>,
+    /// Samples begun less those taken and told as lost. Below 0 after one was told too early: it had begun, but was not
+    /// over, when the one before it was taken late.
+    begun: i32,
 }
 
 impl Overruns {
-    /// For ticks that are due every `period` cycles of a free-running counter; `period` above 0.
-    pub const fn new(period: u32) -> Self {
-        Self { period, last: None }
-    }
-
-    /// Takes the counter at the start of a tick; the samples lost just before it. The counter may
-    /// wrap. Lateness below half a period is jitter.
-    pub fn tick(&mut self, now: u32) -> u32 {
-        let last = self.last.replace(now).unwrap_or(now);
-        let elapsed = now.wrapping_sub(last).saturating_add(self.period / 2);
-        (elapsed / self.period).saturating_sub(1)
+    /// Takes the number of the newest sample that has begun, modulo 2^16, at the start of a tick; the samples lost just
+    /// before it. Over a run they are as many as were lost, whenever in its period a tick starts.
+    pub fn tick(&mut self, number: u16) -> u32 {
+        let last = self.last.replace(number);
+        let more = last.map_or(1, |last| number.wrapping_sub(last));
+        self.begun += i32::from(more) - 1;
+        let lost = self.begun.max(0);
+        self.begun -= lost;
+        lost.unsigned_abs()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn lost(ticks: &[u32]) -> Vec<u32> {
-        let mut overruns = Overruns::new(8_400);
-        ticks.iter().map(|&now| overruns.tick(now)).collect()
-    }
+    use proptest::prelude::*;
 
     #[test]
-    fn ticks_on_time_lose_nothing() {
-        assert_eq!(lost(&[100, 8_500, 16_900]), [0, 0, 0]);
-        assert_eq!(lost(&[u32::MAX - 10, 8_389]), [0, 0]);
+    fn gaps_are_told_across_the_wrap() {
+        let mut overruns = Overruns::default();
+        let lost = [65_533, 65_534, 2, 3].map(|number| overruns.tick(number));
+        assert_eq!(lost, [0, 0, 3, 0]);
     }
 
-    #[test]
-    fn jitter_below_half_a_period_loses_nothing() {
-        assert_eq!(lost(&[0, 8_400 + 4_199, 16_800]), [0, 0, 0]);
-    }
-
-    #[test]
-    fn late_ticks_tell_what_was_lost() {
-        assert_eq!(lost(&[0, 16_800]), [0, 1]);
-        assert_eq!(lost(&[0, 42_000, 50_400, 58_800]), [0, 4, 0, 0]);
+    proptest! {
+        /// Ticks of any length: each takes the newest sample whose conversion, a quarter of a period, is over.
+        #[test]
+        fn what_is_lost_is_told_exactly(lengths in prop::collection::vec(0.05..4.0_f64, 2..400)) {
+            let mut overruns = Overruns::default();
+            let (mut now, mut told, mut taken, mut newest) = (0.25, 0, 0, 0_u32);
+            for length in lengths {
+                // Samples begin at 0, 1, 2, ...; the interrupt waits for the next one that is over.
+                let next = f64::from(newest) + 0.25;
+                now = if taken == 0 { now } else { f64::max(now, next) };
+                told += overruns.tick((now.floor() as u32) as u16);
+                newest = (now - 0.25).floor() as u32 + 1;
+                taken += 1;
+                let lost = newest - taken;
+                prop_assert!(told == lost || told == lost + 1, "{told} told, {lost} lost");
+                now += length;
+            }
+        }
     }
 }

@@ -17,10 +17,12 @@ mod image {
     fn main() -> ! {
         if let Some(left) = f405::rehearse() {
             defmt::info!(
-                "{=u8} {=u32:#x} {=u32:#x}",
+                "{=u8} {=u32:#x} {=u32:#x} {=u32:#x} {=u32:#x}",
                 left.cause as u8,
                 left.place,
-                left.detail
+                left.detail,
+                left.status.configurable,
+                left.status.hard
             );
             semihosting::process::exit(0);
         }

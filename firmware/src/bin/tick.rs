@@ -12,6 +12,7 @@ mod image {
     use touchdown_firmware::app::App;
     use touchdown_firmware::board::Board;
     use touchdown_firmware::recorder::Recorder;
+    use touchdown_firmware::tick::tick;
     use touchdown_protocol::controller::Shown;
 
     /// Registers that notices and outputs go to.
@@ -68,11 +69,7 @@ mod image {
         notices: &mut Notices,
         forecast_task: &mut ForecastTask,
     ) {
-        app.tick(&mut Bare(config), sample, lost, notices);
-        recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase(), app.latched());
-        recorder.take(sample, notices);
-        recorder.keep(app.state());
+        tick(app, recorder, &mut Bare(config), sample, lost, notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
         {
             recorder.hear(&outlook);

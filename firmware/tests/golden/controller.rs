@@ -10,6 +10,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::BLOCK_SAMPLES;
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::tick::tick;
 use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Settings, Wiring};
@@ -70,10 +71,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     let mut notices = Notices::new();
     let mut last = None;
     for (number, sample) in (0_usize..).zip(&stream.samples) {
-        app.tick(&mut desk, sample, 0, &mut notices);
-        recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase(), app.latched());
-        recorder.take(sample, &notices);
+        tick(&mut app, &mut recorder, &mut desk, sample, 0, &mut notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
         {
             recorder.hear(&outlook);

@@ -9,6 +9,7 @@ use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_firmware::store::bytes_of;
+use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{
@@ -52,11 +53,7 @@ pub fn run(
                 refused: app.clear().err(),
             });
         }
-        app.tick(&mut desk, &sample, 0, &mut notices);
-        recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase(), app.latched());
-        recorder.take(&sample, &notices);
-        recorder.keep(app.state());
+        tick(&mut app, &mut recorder, &mut desk, &sample, 0, &mut notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
         {
             desk.report(&outlook);

@@ -131,9 +131,25 @@ impl Monitor {
     /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
     #[inline]
     pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
+        self.take(state, sample, false, notices);
+    }
+
+    /// Likewise; a sample that was `missed` was never taken: time goes on, and no sensor is blamed.
+    #[inline]
+    pub fn take(
+        &self,
+        state: &mut MonitorState,
+        sample: &Sample,
+        missed: bool,
+        notices: &mut Notices,
+    ) {
         let places = self.guard(state, sample);
         self.tell(state, &places, sample.levitated, notices);
-        let seen = self.sense(state, sample);
+        let seen = if missed {
+            self.miss(state, sample)
+        } else {
+            self.sense(state, sample)
+        };
         self.detect(state, &seen, notices);
         self.update_severity(state, notices);
     }
@@ -194,6 +210,22 @@ impl Monitor {
             levitated: sample.levitated,
         };
         Seen { reading, signals }
+    }
+
+    /// In place of the third part, of a sample that was never taken.
+    #[inline(never)]
+    fn miss(&self, state: &mut MonitorState, missed: &Sample) -> Seen {
+        let signals = Signals {
+            spin: state.spin,
+            retainer: self.retainer(state, missed),
+            levitated: missed.levitated,
+        };
+        state.samples += 1;
+        state.position = None;
+        Seen {
+            reading: Reading::default(),
+            signals,
+        }
     }
 
     /// Fourth part: the detector.

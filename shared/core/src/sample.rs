@@ -30,6 +30,18 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// The one before it, that was never taken: no values, the same signals.
+    #[must_use]
+    pub const fn missed(&self) -> Self {
+        Self {
+            counts: [0; CHANNELS],
+            valid: 0,
+            spin: None,
+            levitated: self.levitated,
+            edges: [None; TACHOMETERS],
+        }
+    }
+
     /// Whether channel `channel` delivered a value.
     pub const fn is_valid(&self, channel: usize) -> bool {
         channel < CHANNELS && self.valid & (1 << channel) != 0

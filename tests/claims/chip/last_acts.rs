@@ -67,11 +67,14 @@ fn outputs_are_dropped_first_and_the_reason_outlives_the_reset() {
     for (how, cause) in [("panic", 1), ("fault", 2), ("interrupt", 3)] {
         let (log, writes) = stopped(how);
         let log = log.unwrap_or_else(|error| panic!("{how}: {error}"));
-        let [cause_told, place, _] = log[0].split(' ').collect::<Vec<_>>()[..] else {
+        let [cause_told, place, _, cfsr, hfsr] = log[0].split(' ').collect::<Vec<_>>()[..] else {
             panic!("{log:?}");
         };
         assert_eq!(cause_told, cause.to_string(), "{how}: {log:?}");
         assert_ne!(place, "0x0", "{how}: {log:?}");
+        // An undefined instruction, which became a hard fault: ARMv7-M, CFSR.UNDEFINSTR, HFSR.FORCED.
+        let status = if how == "fault" { ["0x10000", "0x40000000"] } else { ["0x0", "0x0"] };
+        assert_eq!([cfsr, hfsr], status, "{how}: {log:?}");
         // The outputs got current, the watchdog was fed; the next write of all takes the current away.
         let fed = writes
             .iter()

@@ -21,6 +21,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::Board;
 use touchdown_firmware::memory;
 use touchdown_firmware::recorder::{self, Identity, Recorder};
+use touchdown_firmware::tick::tick;
 
 /// All but the forecast, which is below the tick, are parts of it.
 const PARTS: [&str; 8] = [
@@ -83,13 +84,8 @@ fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) 
     let mut told = 0;
     scene.play(|sample| {
         let sample = black_box(sample);
-        let ((), instructions) = counter.count(|| {
-            app.tick(&mut board, sample, 0, &mut notices);
-            recorder.set_severity(app.state().severity());
-            recorder.set_phase(app.state().phase(), app.latched());
-            recorder.take(sample, &notices);
-            recorder.keep(app.state());
-        });
+        let ((), instructions) =
+            counter.count(|| tick(app, &mut recorder, &mut board, sample, 0, &mut notices));
         told += notices.len() as u32;
         tally.add(instructions);
         // What the loop below the tick does.

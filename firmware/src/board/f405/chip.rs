@@ -96,6 +96,8 @@ pub struct Cycles;
 
 impl DelayNs for Cycles {
     fn delay_ns(&mut self, time: u32) {
-        cortex_m::asm::delay((CORE_HZ / 1_000_000).saturating_mul(time / 1_000 + 1));
+        const CYCLES_A_MICROSECOND: u32 = CORE_HZ / 1_000_000;
+        let rest = (CYCLES_A_MICROSECOND * (time % 1_000)).div_ceil(1_000);
+        cortex_m::asm::delay(CYCLES_A_MICROSECOND * (time / 1_000) + rest);
     }
 }

@@ -1,10 +1,10 @@
 //! Four channels at a fixed rate: TIM2 starts the converter in hardware, so that software jitter
-//! does not reach the sampling instant.
+//! does not reach the sampling instant. TIM3 counts these starts in hardware.
 //!
 //! The four conversions follow each other by 40 converter cycles, 1.9 us: the channels of one
 //! sample are up to 5.7 us apart.
 
-use stm32f4::stm32f405::{ADC_COMMON, ADC1, GPIOA, RCC, TIM2};
+use stm32f4::stm32f405::{ADC_COMMON, ADC1, GPIOA, RCC, TIM2, TIM3};
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 
 use super::clocks::APB1_TIMER_HZ;
@@ -17,13 +17,22 @@ const INPUTS: [u8; CHANNELS] = [4, 5, 6, 7];
 pub struct Converter {
     adc: ADC1,
     timer: TIM2,
+    number: TIM3,
 }
 
 impl Converter {
     /// Sets both up, stopped.
-    pub fn new(adc: ADC1, common: &ADC_COMMON, timer: TIM2, pins: &GPIOA, rcc: &RCC) -> Self {
+    pub fn new(
+        adc: ADC1,
+        common: &ADC_COMMON,
+        timer: TIM2,
+        number: TIM3,
+        pins: &GPIOA,
+        rcc: &RCC,
+    ) -> Self {
         rcc.ahb1enr().modify(|_, w| w.gpioaen().enabled());
-        rcc.apb1enr().modify(|_, w| w.tim2en().enabled());
+        rcc.apb1enr()
+            .modify(|_, w| w.tim2en().enabled().tim3en().enabled());
         rcc.apb2enr().modify(|_, w| w.adc1en().enabled());
         pins.moder().modify(|_, w| {
             w.moder4().analog().moder5().analog();
@@ -55,12 +64,22 @@ impl Converter {
             .arr()
             .write(|w| w.arr().set(APB1_TIMER_HZ / SAMPLE_RATE_HZ - 1));
         timer.cr2().write(|w| w.mms().update());
-        Self { adc, timer }
+        // Its clock is TIM2's trigger: RM0090, TIMx internal trigger connection.
+        number
+            .smcr()
+            .write(|w| w.ts().itr1().sms().ext_clock_mode());
+        number.cr1().write(|w| w.cen().enabled());
+        Self { adc, timer, number }
     }
 
     /// Starts sampling.
     pub fn start(&self) {
         self.timer.cr1().write(|w| w.cen().enabled());
+    }
+
+    /// Number of the newest sample, modulo 2^16.
+    pub fn number(&self) -> u16 {
+        self.number.cnt().read().cnt().bits() as u16
     }
 
     /// The sample just converted.

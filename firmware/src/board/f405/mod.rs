@@ -32,7 +32,7 @@ use touchdown_protocol::link::Server;
 use touchdown_rotor::error::ConfigError;
 
 use self::chip::{Chip, Cycles, Spi};
-use self::clocks::{APB2_HZ, CORE_HZ};
+use self::clocks::APB2_HZ;
 use self::converter::Converter;
 use self::inputs::Inputs;
 use self::outputs::{OutputPins, Watchdog};
@@ -41,12 +41,13 @@ use super::image;
 use super::serial::Serial;
 use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
-use crate::crash::{Cause, Crash};
+use crate::crash::{Cause, Crash, FaultStatus};
 use crate::drop_log::DropLog;
 use crate::journal;
 use crate::memory;
 use crate::overrun::Overruns;
 use crate::recorder::{Identity, Recorder};
+use crate::tick;
 use crate::w25q::W25q;
 
 /// The drop log in the chip on the board, 2 MiB.
@@ -233,6 +234,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
         chip.ADC1,
         &chip.ADC_COMMON,
         chip.TIM2,
+        chip.TIM3,
         &chip.GPIOA,
         &chip.RCC,
     );
@@ -261,7 +263,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
         recorder,
         inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
         board,
-        overruns: Overruns::new(CORE_HZ / SAMPLE_RATE_HZ),
+        overruns: Overruns::default(),
         notices: Notices::new(),
         at: DWT::cycle_count(),
         converter,
@@ -302,12 +304,12 @@ fn found_at_power_on(rcc: &stm32f4::stm32f405::RCC) -> (InForce, Settings, Fault
         cause,
         place,
         detail,
+        status,
     }) = record::read()
     {
-        let cause = cause as u8;
         error!(
-            "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}",
-            cause, place, detail
+            "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}; cfsr {=u32:#x}, hfsr {=u32:#x}, address {=u32:#x}",
+            cause as u8, place, detail, status.configurable, status.hard, status.address
         );
         found = found.with(Fault::Crash);
     }
@@ -342,19 +344,20 @@ pub fn on_converted() {
     let now = DWT::cycle_count();
     with_tick(|tick| {
         tick.at = now;
-        let lost = tick.overruns.tick(now);
+        let lost = tick.overruns.tick(tick.converter.number());
         let sample = Sample {
             spin: tick.inputs.spin(),
             levitated: tick.inputs.levitated(),
             ..tick.converter.take()
         };
-        let notices = &mut tick.notices;
-        tick.app.tick(&mut tick.board, &sample, lost, notices);
-        tick.recorder.set_severity(tick.app.state().severity());
-        let app = &*tick.app;
-        tick.recorder.set_phase(app.state().phase(), app.latched());
-        tick.recorder.take(&sample, notices);
-        tick.recorder.keep(tick.app.state());
+        let Tick {
+            app,
+            recorder,
+            board,
+            notices,
+            ..
+        } = tick;
+        tick::tick(app, recorder, board, &sample, lost, notices);
     });
 }
 
@@ -386,6 +389,7 @@ pub fn on_hard_fault(pc: u32, lr: u32) -> ! {
         cause: Cause::HardFault,
         place: pc,
         detail: lr,
+        status: record::fault_status(),
     })
 }
 
@@ -395,6 +399,7 @@ pub fn on_stray_interrupt(number: i16) -> ! {
         cause: Cause::StrayInterrupt,
         place: number as u32,
         detail: 0,
+        status: FaultStatus::default(),
     })
 }
 

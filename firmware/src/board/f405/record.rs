@@ -7,7 +7,7 @@ use core::ptr::addr_of_mut;
 use cortex_m::peripheral::SCB;
 
 use super::outputs::OutputPins;
-use crate::crash::{Crash, WORDS};
+use crate::crash::{Crash, FaultStatus, WORDS};
 
 #[unsafe(link_section = ".uninit.crash")]
 static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
@@ -31,6 +31,21 @@ fn write(words: [u32; WORDS]) {
         addr_of_mut!(RECORD)
             .cast::<[u32; WORDS]>()
             .write_volatile(words)
+    }
+}
+
+/// What the core says of the fault that it is in.
+pub fn fault_status() -> FaultStatus {
+    /// ARMv7-M, CFSR: bus fault address valid.
+    const BFARVALID: u32 = 1 << 15;
+    // SAFETY: reads only.
+    let block = unsafe { &*SCB::PTR };
+    let configurable = block.cfsr.read();
+    let is_valid = configurable & BFARVALID != 0;
+    FaultStatus {
+        configurable,
+        hard: block.hfsr.read(),
+        address: if is_valid { block.bfar.read() } else { 0 },
     }
 }
 

@@ -25,6 +25,7 @@ use crate::drop_log::DropLog;
 use crate::journal;
 use crate::memory::{self, Memory};
 use crate::recorder::{Identity, Recorder};
+use crate::tick::tick;
 
 /// Why a run failed; the exit status.
 #[derive(Clone, Copy, Debug)]
@@ -180,11 +181,7 @@ fn run(memory: &'static mut Memory) -> Result<End, Failure> {
                 if clears {
                     board.cleared(app.clear().err());
                 }
-                app.tick(&mut board, &sample, 0, &mut notices);
-                recorder.set_severity(app.state().severity());
-                recorder.set_phase(app.state().phase(), app.latched());
-                recorder.take(&sample, &notices);
-                recorder.keep(app.state());
+                tick(app, recorder, &mut board, &sample, 0, &mut notices);
                 if let Some(outlook) =
                     forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
                 {
