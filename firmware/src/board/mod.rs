@@ -6,8 +6,6 @@ pub mod f405;
 mod image;
 #[cfg(target_os = "none")]
 pub mod qemu;
-#[cfg(target_os = "none")]
-mod serial;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;

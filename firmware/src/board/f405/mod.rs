@@ -8,6 +8,7 @@ mod chip;
 mod clocks;
 mod converter;
 mod inputs;
+mod line;
 mod outputs;
 mod record;
 mod remote;
@@ -35,10 +36,10 @@ use self::chip::{Chip, Cycles, Spi};
 use self::clocks::APB2_HZ;
 use self::converter::Converter;
 use self::inputs::Inputs;
+use self::line::Line;
 use self::outputs::{OutputPins, Watchdog};
 use self::remote::Remote;
 use super::image;
-use super::serial::Serial;
 use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, STATE_SAMPLES, default_settings};
 use crate::app::App;
 use crate::crash::{Cause, Crash, FaultStatus};
@@ -150,7 +151,7 @@ struct Tick {
 
 /// What works below the tick.
 struct Below {
-    serial: Serial,
+    line: Line,
     remote: Remote,
     inbox: Consumer<'static, Notice>,
     forecast_task: ForecastTask,
@@ -160,7 +161,7 @@ struct Below {
 /// Starts sampling; looks ahead, logs, and serves the link.
 pub fn main(memory: &'static mut Memory) -> ! {
     let Some(Below {
-        mut serial,
+        mut line,
         mut remote,
         mut inbox,
         mut forecast_task,
@@ -174,7 +175,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
     loop {
         while let Some(notice) = inbox.dequeue() {
             journal::notice(&notice);
-            if !serial.send(server.notice(&notice).as_ref()) {
+            if !line.send(server.notice(&notice).as_ref()) {
                 remote.lose_notice();
             }
         }
@@ -186,9 +187,10 @@ pub fn main(memory: &'static mut Memory) -> ! {
             });
         }
         remote.work();
-        if let Some(byte) = serial.poll() {
+        line.push();
+        while let Some(byte) = line.next() {
             // An answer without room is asked for again.
-            let _ = serial.send(server.take(byte, &mut remote).as_ref());
+            let _ = line.send(server.take(byte, &mut remote).as_ref());
         }
         let (shown, faults, samples) = with_tick(|tick| {
             let app = &*tick.app;
@@ -204,10 +206,10 @@ pub fn main(memory: &'static mut Memory) -> ! {
         let is_due = samples.saturating_sub(known.2) >= STATE_SAMPLES;
         if is_due {
             // The next one tells more.
-            let _ = serial.send(server.state(&mut remote).as_ref());
+            let _ = line.send(server.state(&mut remote).as_ref());
         }
         known = (shown, faults, if is_due { samples } else { known.2 });
-        if remote.wants_reset() && serial.is_done() {
+        if remote.wants_reset() && line.is_done() {
             SCB::sys_reset();
         }
     }
@@ -239,7 +241,8 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
         &chip.RCC,
     );
     remote::wire(&chip.GPIOB, &chip.RCC);
-    let serial = Serial::new(chip.USART1, (APB2_HZ / BAUD) as u16);
+    let divider = (APB2_HZ / BAUD) as u16;
+    let line = Line::new(chip.USART1, chip.DMA2, divider, &chip.RCC);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
     let told = block.told(&settings);
@@ -273,7 +276,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     // SAFETY: what the handler needs is in place, and no critical section is open.
     unsafe { NVIC::unmask(Interrupt::ADC) };
     Some(Below {
-        serial,
+        line,
         remote: Remote::new(chip.FLASH, chip.RCC, chip.RNG, log),
         inbox,
         forecast_task,

@@ -6,6 +6,7 @@ mod files;
 mod name;
 mod nor;
 mod remote;
+mod serial;
 mod settings;
 
 use defmt::{Debug2Format, Display2Format, error, info};

@@ -9,9 +9,9 @@ use touchdown_protocol::config_block::{Block, Key, Settings};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
 use super::FileLog;
+use super::serial::Serial;
 use super::settings::SettingsFile;
 use crate::app::App;
-use crate::board::serial::Serial;
 use crate::board::{Abilities, STATE_SAMPLES};
 use crate::journal;
 use crate::recorder::Recorder;

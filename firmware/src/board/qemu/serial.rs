@@ -1,4 +1,4 @@
-//! USART1, polled: in the emulator as on silicon.
+//! USART1, polled: the emulator has no DMA.
 
 use stm32f4::stm32f405::USART1;
 use touchdown_protocol::link::Frame;
