@@ -23,6 +23,8 @@ struct DropJson<'a> {
     history: HistoryJson<'a>,
     #[serde(rename = "final")]
     end: EndJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth_given_up_s: Option<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rings: Vec<RingJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -178,6 +180,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             ledger,
             imbalance_j: ledger.imbalance_j(),
         }),
+        truth_given_up_s: outcome.given_up,
         validity: validity(scene),
         detector: EventsJson {
             events: events(&outcome.detection),

@@ -238,8 +238,20 @@ fn severity(detection: &Detection) -> String {
     text
 }
 
+/// Of a truth that would take too long.
+pub fn given_up(outcome: &Outcome) -> Option<String> {
+    let at = millis(outcome.given_up?);
+    let end = millis(outcome.model.end.time);
+    Some(format!(
+        "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
+    ))
+}
+
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text = String::new();
+    if let Some(line) = given_up(outcome) {
+        text += &(paint.bad(&line) + "\n");
+    }
     if outcome.model.regime != outcome.truth.regime {
         let line = format!("the model ends as {}", regime_name(outcome.model.regime));
         text += &(paint.bad(&line) + "\n");

@@ -42,11 +42,13 @@ pub fn run<W: Write>(
     };
     let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, &mut feed)?;
     let timebase = Timebase::of(scene);
+    let given_up = feed.truth.given_up();
     let (truth, trace, spectrogram, stream) = feed.finish();
     let rings = histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
         model: histories.whole,
         truth: truth.whole,
+        given_up,
         ledger,
         ring,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
@@ -142,6 +144,9 @@ impl<W: Write> Iterator for SampleSource<'_, W> {
         self.next += 1;
         self.progress.at(self.next);
         let state = self.truth.advance(time);
+        if self.truth.given_up().is_some() {
+            return None;
+        }
         let motion = Motion {
             planes: state.sensed,
             spin: state.rotor.spin,

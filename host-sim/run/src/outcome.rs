@@ -169,6 +169,8 @@ pub struct Outcome {
     pub model: History,
     /// The independent reference.
     pub truth: History,
+    /// When it was given up, s: it would take too long. The stream of the sensors ends there.
+    pub given_up: Option<f64>,
     /// The model's energy, where its rung keeps account of it.
     pub ledger: Option<Ledger>,
     /// The model's retainer ring at the end, where it moves or turns.

@@ -116,7 +116,16 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Goes on to the end of the run.
+    /// When it was given up, s: it would take too long. It stays there.
+    pub fn given_up(&self) -> Option<f64> {
+        match &self.source {
+            Source::Planar(_) => None,
+            Source::Support(reference) => reference.given_up(),
+            Source::TwoPlane(reference) => reference.given_up(),
+        }
+    }
+
+    /// Goes on to the end of the run, or to where it is given up.
     pub fn finish(mut self) -> Histories {
         let duration = self.scene.run.duration;
         let end = self.advance(duration).rotor;

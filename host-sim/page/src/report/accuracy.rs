@@ -54,6 +54,7 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     );
     let apart = error(apart(model, truth) / subject.machine.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
+    let given_up = crate::timeline::given_up(outcome);
     let table = table("Model against reference", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())
@@ -63,6 +64,7 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
         p {
             "The model ran in " (subject.precision) " with an output interval of "
             (si(subject.step, "s")) ". The reference is an independent solver in f64."
+            @if let Some(line) = given_up { " " strong { "The " (line) "." } }
         }
         (table.draw())
     }

@@ -98,6 +98,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         rings: Vec::new(),
         ledger: None,
         ring: None,
+        given_up: None,
         model: truth.clone(),
         detection: detection(&truth),
         conduct: conduct(),

@@ -231,7 +231,7 @@ impl SupportReference {
             (moment.place, moment.speed);
         let stop = self.motion.walls() > 1;
         SupportState {
-            time,
+            time: moment.time,
             position: [x, y],
             velocity: [vx, vy],
             spin,
@@ -252,6 +252,11 @@ impl SupportReference {
     /// Translation, spin, height and spring, J.
     pub fn energy(&self, state: &SupportState) -> f64 {
         self.motion.energy(&state.moment)
+    }
+
+    /// When its steps were spent, s; it stays there.
+    pub fn given_up(&self) -> Option<f64> {
+        self.motion.given_up()
     }
 
     /// Size of the last terms of the series (1e-18 of the clearance if not set).

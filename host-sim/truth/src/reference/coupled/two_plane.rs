@@ -278,7 +278,7 @@ impl TwoPlaneReference {
         let moment = self.motion.advance(time, on_event);
         let ([x, y, a, b, spin_angle, _], [vx, vy, da, db, spin, _]) = (moment.place, moment.speed);
         TwoPlaneState {
-            time,
+            time: moment.time,
             position: [x, y],
             velocity: [vx, vy],
             tilt: [a, b],
@@ -295,6 +295,11 @@ impl TwoPlaneReference {
     /// Translation, tilt, spin, gravity and magnets, J.
     pub fn energy(&self, state: &TwoPlaneState) -> f64 {
         self.motion.energy(&state.moment)
+    }
+
+    /// When its steps were spent, s; it stays there.
+    pub fn given_up(&self) -> Option<f64> {
+        self.motion.given_up()
     }
 
     /// Size of the last terms of the series (1e-18 of the clearance if not set).
