@@ -160,7 +160,8 @@ fn headers_that_no_recorder_writes_are_damage() {
         dump(&[sealed(1, &header)])
     };
     assert!(sound(&with(&|_| ())));
-    let changes: [&dyn Fn(&mut Header); 7] = [
+    let changes: [&dyn Fn(&mut Header); 8] = [
+        &|it| it.mounting_angle = [f32::NAN, 0.0],
         &|it| it.sample_rate = 0.0,
         &|it| it.sample_rate = f32::NAN,
         &|it| it.resolution = f32::INFINITY,
