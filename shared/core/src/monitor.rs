@@ -7,13 +7,14 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
+use crate::fault::{Found, SPEED};
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severity, SeverityModel, SeverityState};
-use crate::spin::SpinCheck;
+use crate::spin::{SpinCheck, SpinFaults};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
@@ -55,6 +56,7 @@ pub struct Monitor {
 pub struct Seen {
     reading: Reading,
     signals: Signals,
+    speed: Option<Found>,
 }
 
 /// What the tick carries from sample to sample.
@@ -72,6 +74,7 @@ pub struct MonitorState {
     pub(crate) spin: Option<f32>,
     /// In a row, that were not believed.
     odd_spins: u16,
+    spin_faults: SpinFaults,
     #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
@@ -162,6 +165,9 @@ impl Monitor {
         self.guard.follow(guard, places, levitated, sample, notices);
         self.touches
             .update(&mut state.touch, places, sample, notices);
+        if !notices.is_empty() {
+            self.health.hear(&mut state.health, notices);
+        }
     }
 
     /// Third part: what the sensors say, and whether they can be believed.
@@ -171,9 +177,15 @@ impl Monitor {
         let reading = self
             .health
             .update(&mut state.health, &self.sensing, sample, phases);
-        state.spin = self
-            .spin
-            .take(sample.spin, state.spin, &mut state.odd_spins);
+        let known = (state.spin, state.odd_spins);
+        state.spin = self.spin.take(sample.spin, known.0, &mut state.odd_spins);
+        let speed = if known.1 > 0 || known.0.is_some() && state.spin.is_none() {
+            let faults = &mut state.spin_faults;
+            let now = (state.spin, state.odd_spins);
+            self.spin.find(faults, known, now, state.samples)
+        } else {
+            None
+        };
         #[cfg(feature = "serde")]
         {
             state.levitated = sample.levitated;
@@ -193,7 +205,11 @@ impl Monitor {
             retainer,
             levitated: sample.levitated,
         };
-        Seen { reading, signals }
+        Seen {
+            reading,
+            signals,
+            speed,
+        }
     }
 
     /// Fourth part: the detector.
@@ -202,6 +218,9 @@ impl Monitor {
         let detector = &mut state.detector;
         self.detector
             .update(detector, &seen.reading, &seen.signals, notices);
+        if let Some(found) = seen.speed {
+            self.detector.tell_fault(detector, SPEED, found, notices);
+        }
     }
 
     /// Last part: what it does to the machine.
@@ -283,6 +302,11 @@ impl MonitorState {
     /// Likewise, for who keeps the proof of levitation.
     pub fn guard_mut(&mut self) -> &mut GuardState {
         &mut self.guard
+    }
+
+    /// Tells a wall that has moved once more, where it is seen again.
+    pub fn forget_wall(&mut self) {
+        self.health.wall = Default::default();
     }
 
     /// The present phase.

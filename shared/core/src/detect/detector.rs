@@ -22,6 +22,7 @@ use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
+use crate::fault::Found;
 use crate::phase::Phase;
 use crate::sensing::{PLANES, Reading};
 use crate::vector::{direction, square, sum};
@@ -151,6 +152,25 @@ impl Detector {
             }
         }
         state.next_number = next_number;
+    }
+
+    /// Tells, after the tick's update, a fault that its caller found in the same sample.
+    #[inline(never)]
+    pub(crate) fn tell_fault(
+        &self,
+        state: &mut DetectorState,
+        channel: u8,
+        found: Found,
+        notices: &mut Notices,
+    ) {
+        let mut writer = EventWriter {
+            sample: state.sample.saturating_sub(1),
+            plane: Plane::Both,
+            motion: state.ends.motion(),
+            next_number: &mut state.next_number,
+            notices,
+        };
+        writer.tell_fault(channel, found);
     }
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends

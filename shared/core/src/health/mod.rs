@@ -6,11 +6,13 @@
 //! | `plane_offset` | how one plane goes on without the other |
 //! | `orbit_sense` | a plane of a floating rotor: drift, and the sense of its orbit |
 //! | `contact_check` | a plane of a rotor on the wall: whether it rests where it can |
+//! | `wall_check` | the same against the commissioning check |
 
 mod channel;
 mod contact_check;
 mod orbit_sense;
 mod plane_offset;
+mod wall_check;
 
 pub use crate::fault::{Condition, Fault, FaultKind, Found};
 
@@ -18,7 +20,9 @@ use self::channel::{ChannelMonitorState, Look, Watch};
 use self::contact_check::{ContactCheck, ContactCheckState, Place};
 use self::orbit_sense::{OrbitSense, OrbitSenseState};
 use self::plane_offset::{PlaneOffset, PlaneOffsetState};
+use self::wall_check::{WallCheck, WallCheckState};
 use crate::config::DetectorConfig;
+use crate::event::{Notice, Plane};
 use crate::phase::Phase;
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
@@ -45,6 +49,7 @@ pub struct Health {
     pair: PlaneOffset,
     float: OrbitSense,
     lie: ContactCheck,
+    wall: WallCheck,
     /// Samples between two looks at the planes.
     look_every: u16,
     /// m.
@@ -57,6 +62,7 @@ pub struct Health {
 pub struct HealthState {
     pub(crate) channels: [ChannelMonitorState; CHANNELS],
     pub(crate) planes: PlanesState,
+    pub(crate) wall: [WallCheckState; PLANES],
 }
 
 /// What is known of the planes.
@@ -104,6 +110,7 @@ impl Health {
                 machine.gravity > 0.0 && machine.friction < STEEP,
                 looks as u16,
             ),
+            wall: WallCheck::new(machine.clearance, rate, sensing.calibration.is_some()),
             look_every: every as u16,
             tolerance,
             spin: machine.spin,
@@ -169,6 +176,21 @@ impl Health {
         reading
     }
 
+    /// Takes the guard's notices of a tick: touches that have ended.
+    #[inline(never)]
+    pub fn hear(&self, state: &mut HealthState, notices: &[Notice]) {
+        for notice in notices {
+            if let Notice::Touch(touch) = notice
+                && touch.end.is_some()
+            {
+                let there = [touch.plane != Plane::B, touch.plane != Plane::A];
+                for (it, _) in state.wall.iter_mut().zip(there).filter(|it| it.1) {
+                    self.wall.touch(it, touch);
+                }
+            }
+        }
+    }
+
     /// Of the channels (one bit each) whose sample is not as foreseen: which values can be used. So many of the
     /// others are loud.
     #[inline(never)]
@@ -225,7 +247,11 @@ impl Health {
                 *it = ContactCheckState::default();
                 continue;
             };
-            let Some(place) = self.lie.take(it, position, phase.is_contact()) else {
+            let Some(wall) = state.wall.get_mut(index) else {
+                continue;
+            };
+            let rest = |mean, ends| self.wall.rest(wall, mean, ends);
+            let Some(place) = self.lie.take(it, position, phase.is_contact(), rest) else {
                 continue;
             };
             let (axis, kind) = match place {
@@ -239,6 +265,14 @@ impl Health {
             let [of_a, of_b] = state.spare();
             let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
+        }
+        for (index, it) in state.wall.iter_mut().enumerate() {
+            if let Some(slot @ None) = reading.found.get_mut(2 * index)
+                && self.wall.tell(it)
+            {
+                let (kind, age) = (FaultKind::Moved, 0);
+                *slot = Some(Found { kind, age });
+            }
         }
         if phases != [Phase::Levitated; PLANES] {
             state.planes.floating = Default::default();
