@@ -7,7 +7,6 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
-use crate::fault::{Found, SPEED};
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
@@ -56,7 +55,6 @@ pub struct Monitor {
 pub struct Seen {
     reading: Reading,
     signals: Signals,
-    speed: Option<Found>,
 }
 
 /// What the tick carries from sample to sample.
@@ -163,9 +161,8 @@ impl Monitor {
         let sample = state.samples;
         let guard = &mut state.guard;
         self.guard.follow(guard, places, levitated, sample, notices);
-        self.touches
-            .update(&mut state.touch, places, sample, notices);
-        if !notices.is_empty() {
+        let touch = &mut state.touch;
+        if self.touches.update(touch, places, sample, notices) {
             self.health.hear(&mut state.health, notices);
         }
     }
@@ -177,12 +174,11 @@ impl Monitor {
         let reading = self
             .health
             .update(&mut state.health, &self.sensing, sample, phases);
-        let known = (state.spin, state.odd_spins);
-        state.spin = self.spin.take(sample.spin, known.0, &mut state.odd_spins);
-        let speed = if known.1 > 0 || known.0.is_some() && state.spin.is_none() {
+        let (known, was_odd) = (state.spin, state.odd_spins);
+        state.spin = self.spin.take(sample.spin, known, &mut state.odd_spins);
+        let spin_fault = if was_odd > state.odd_spins || known.is_some() && state.spin.is_none() {
             let faults = &mut state.spin_faults;
-            let now = (state.spin, state.odd_spins);
-            self.spin.find(faults, known, now, state.samples)
+            (self.spin).find(faults, (known, was_odd), state.spin, state.samples)
         } else {
             None
         };
@@ -202,14 +198,11 @@ impl Monitor {
         state.faults += u64::from(is_odd);
         let signals = Signals {
             spin,
+            spin_fault,
             retainer,
             levitated: sample.levitated,
         };
-        Seen {
-            reading,
-            signals,
-            speed,
-        }
+        Seen { reading, signals }
     }
 
     /// Fourth part: the detector.
@@ -218,9 +211,6 @@ impl Monitor {
         let detector = &mut state.detector;
         self.detector
             .update(detector, &seen.reading, &seen.signals, notices);
-        if let Some(found) = seen.speed {
-            self.detector.tell_fault(detector, SPEED, found, notices);
-        }
     }
 
     /// Last part: what it does to the machine.

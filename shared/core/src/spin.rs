@@ -75,21 +75,20 @@ impl SpinCheck {
         reading
     }
 
-    /// What is wrong with a speed that was or is not believed, or is gone in this `sample`: each time the spin and the
-    /// samples in a row that were not believed. Once, until it has been right for as long as it takes to believe another.
+    /// What is wrong with a speed that is gone in this `sample`, or believed again or anew: the `spin` now, and before it
+    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it takes to believe another.
     /// A rotor that stops has no pulses either, so a spin that was no more than a change is not missed.
     #[inline(never)]
     pub(crate) fn find(
         &self,
         state: &mut SpinFaults,
         (known, was_odd): (Option<f32>, u16),
-        (spin, odd): (Option<f32>, u16),
+        spin: Option<f32>,
         sample: u64,
     ) -> Option<Found> {
         let known = known?;
         let (kind, due) = match spin {
             None if known.abs() > self.most_change => (FaultKind::Missing, &mut state.gone),
-            Some(_) if odd > 0 => return None,
             Some(new) if (new - known).abs() > self.most_change => {
                 if (new - known).abs() <= self.impact {
                     return None;

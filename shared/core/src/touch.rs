@@ -66,7 +66,8 @@ impl Touches {
         }
     }
 
-    /// One tick: each plane's place (m) in this `sample`, `None` where it did not deliver. Bounded; cannot fail.
+    /// One tick: each plane's place (m) in this `sample`, `None` where it did not deliver; whether a touch has ended.
+    /// Bounded; cannot fail.
     #[inline]
     pub fn update(
         &self,
@@ -74,13 +75,14 @@ impl Touches {
         places: &[Option<[f32; 2]>; PLANES],
         sample: u64,
         notices: &mut Notices,
-    ) {
+    ) -> bool {
         let [of_a, of_b] = &mut state.planes;
         let [a, b] = places;
         let is_clear = self.see(of_a, *a) & self.see(of_b, *b);
         if !is_clear || !state.was_clear || state.open.is_some() {
-            self.take(state, sample, notices);
+            return self.take(state, sample, notices);
         }
+        false
     }
 
     /// Takes a plane's place, m; whether it is far from the wall.
@@ -128,19 +130,19 @@ impl Touches {
         }
     }
 
-    /// Tells a touch that begins or ends with this sample.
+    /// Tells a touch that begins or ends with this sample; whether it ends.
     #[inline(never)]
-    fn take(&self, state: &mut TouchState, sample: u64, notices: &mut Notices) {
+    fn take(&self, state: &mut TouchState, sample: u64, notices: &mut Notices) -> bool {
         let [a, b] = &state.planes;
         let is_at_wall = a.at_wall || b.at_wall;
         if !state.was_clear {
             // One that lies there at first has not come.
             state.was_clear = !is_at_wall;
-            return;
+            return false;
         }
         let is_new = state.open.is_none();
         if is_new && !is_at_wall {
-            return;
+            return false;
         }
         let mut open = state.open.unwrap_or(Open {
             onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
@@ -154,13 +156,14 @@ impl Touches {
         }
         state.open = is_at_wall.then_some(open);
         if is_at_wall && !is_new {
-            return;
+            return false;
         }
         state.count = state.count.saturating_add(u32::from(is_new));
         let end = (!is_at_wall).then(|| sample.saturating_sub(u64::from(IN_A_ROW)));
         let touch = Self::touch(&open, state.count, sample, end);
         // There is room for all that a tick can say; without it nothing else may suffer.
         let _ = notices.push(Notice::Touch(touch));
+        end.is_some()
     }
 
     fn touch(open: &Open, count: u32, declared: u64, end: Option<u64>) -> Touch {

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::fault::{Fault, FaultKind, SPEED};
 use touchdown_core::sample::Edges;
 use touchdown_core::sensing::{Calibration, PlaneCalibration};
 use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind, PAYLOAD_BYTES, Page};
@@ -60,6 +61,31 @@ fn ending(blocks: u16) -> Ending {
         index: 3.25,
         last: 104_000,
     }
+}
+
+#[test]
+fn a_fault_of_the_speed_goes_into_a_record_and_comes_back() {
+    let told = |channel| {
+        let fault = Some(Fault {
+            channel,
+            kind: FaultKind::Moved,
+        });
+        let Notice::Declared(event) = IMPACT else {
+            panic!("an event");
+        };
+        Record::Notice(Notice::Declared(Event { fault, ..event }))
+    };
+    for channel in [0, SPEED] {
+        let record = told(channel);
+        assert_eq!(
+            wire::decode_record(&wire::encode_record(&record)),
+            Some(record)
+        );
+    }
+    assert_eq!(
+        wire::decode_record(&wire::encode_record(&told(SPEED + 1))),
+        None
+    );
 }
 
 /// Header twice, 30 and 15 samples, an event, a severity, ending twice.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::fault::FaultKind;
 use touchdown_core::sample::{CHANNELS, Edges, TACHOMETERS};
 use touchdown_core::sensing::Sensing;
 use touchdown_protocol::log::ending::Ending;
@@ -12,7 +13,7 @@ use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Wav
 
 use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
-use touchdown_scene::names::act_name;
+use touchdown_scene::names::{act_name, channel_name};
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -80,6 +81,17 @@ pub struct Event {
     pub declared_s: f64,
     /// Of an impact, m/s.
     pub normal_speed_m_s: f32,
+    /// Of a sensor fault.
+    pub fault: Option<LoggedFault>,
+}
+
+/// What was wrong with which channel.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LoggedFault {
+    /// As in `replay --json`.
+    pub channel: &'static str,
+    /// What.
+    pub kind: FaultKind,
 }
 
 impl Episode {
@@ -278,6 +290,10 @@ fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {
             onset_s: since(event.onset.samples()),
             declared_s: since(event.declared as f64),
             normal_speed_m_s: event.normal_speed,
+            fault: event.fault.map(|it| LoggedFault {
+                channel: channel_name(it.channel),
+                kind: it.kind,
+            }),
         }),
         _ => None,
     };

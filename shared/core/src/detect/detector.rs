@@ -22,7 +22,7 @@ use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
-use crate::fault::Found;
+use crate::fault::SPEED;
 use crate::phase::Phase;
 use crate::sensing::{PLANES, Reading};
 use crate::vector::{direction, square, sum};
@@ -117,6 +117,9 @@ impl Detector {
                 writer.tell_fault(channel, found);
             }
         }
+        if let Some(found) = signals.spin_fault {
+            writer.tell_fault(SPEED, found);
+        }
         if reading.moved != [0.0; 2] {
             state.shift(reading.moved);
         }
@@ -152,25 +155,6 @@ impl Detector {
             }
         }
         state.next_number = next_number;
-    }
-
-    /// Tells, after the tick's update, a fault that its caller found in the same sample.
-    #[inline(never)]
-    pub(crate) fn tell_fault(
-        &self,
-        state: &mut DetectorState,
-        channel: u8,
-        found: Found,
-        notices: &mut Notices,
-    ) {
-        let mut writer = EventWriter {
-            sample: state.sample.saturating_sub(1),
-            plane: Plane::Both,
-            motion: state.ends.motion(),
-            next_number: &mut state.next_number,
-            notices,
-        };
-        writer.tell_fault(channel, found);
     }
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
