@@ -7,6 +7,7 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
+use crate::fault::Found;
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
@@ -161,26 +162,26 @@ impl Monitor {
         let sample = state.samples;
         let guard = &mut state.guard;
         self.guard.follow(guard, places, levitated, sample, notices);
-        let touch = &mut state.touch;
-        if self.touches.update(touch, places, sample, notices) {
-            self.health.hear(&mut state.health, notices);
-        }
+        self.touches
+            .update(&mut state.touch, places, sample, notices);
     }
 
     /// Third part: what the sensors say, and whether they can be believed.
     #[inline]
     pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
         let phases = state.detector.phases();
-        let reading = self
-            .health
-            .update(&mut state.health, &self.sensing, sample, phases);
-        let (known, was_odd) = (state.spin, state.odd_spins);
-        state.spin = self.spin.take(sample.spin, known, &mut state.odd_spins);
-        let spin_fault = if was_odd > state.odd_spins || known.is_some() && state.spin.is_none() {
-            let faults = &mut state.spin_faults;
-            (self.spin).find(faults, (known, was_odd), state.spin, state.samples)
-        } else {
+        let reading = self.health.update(
+            &mut state.health,
+            &self.sensing,
+            sample,
+            phases,
+            &state.touch,
+        );
+        let spin_fault = if state.odd_spins == 0 && self.spin.follows(sample.spin, state.spin) {
+            state.spin = sample.spin;
             None
+        } else {
+            self.judge_spin(state, sample)
         };
         #[cfg(feature = "serde")]
         {
@@ -194,8 +195,6 @@ impl Monitor {
             .filter(|_| reading.is_own())
             .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
-        let is_odd = state.odd_spins > 0 || spin.is_none() && sample.spin.is_some();
-        state.faults += u64::from(is_odd);
         let signals = Signals {
             spin,
             spin_fault,
@@ -203,6 +202,20 @@ impl Monitor {
             levitated: sample.levitated,
         };
         Seen { reading, signals }
+    }
+
+    /// A spin that does not go on from the last one; what is wrong with it.
+    #[inline(never)]
+    fn judge_spin(&self, state: &mut MonitorState, sample: &Sample) -> Option<Found> {
+        let (known, was_odd) = (state.spin, state.odd_spins);
+        state.spin = self.spin.take(sample.spin, known, &mut state.odd_spins);
+        let is_odd = state.odd_spins > 0 || state.spin.is_none() && sample.spin.is_some();
+        state.faults += u64::from(is_odd);
+        if state.odd_spins > 0 {
+            return None;
+        }
+        let faults = &mut state.spin_faults;
+        (self.spin).find(faults, (known?, was_odd), state.spin, state.samples)
     }
 
     /// Fourth part: the detector.
@@ -297,6 +310,7 @@ impl MonitorState {
     /// Tells a wall that has moved once more, where it is seen again.
     pub fn forget_wall(&mut self) {
         self.health.wall = Default::default();
+        self.touch.forget_short();
     }
 
     /// The present phase.

@@ -53,9 +53,17 @@ impl SpinCheck {
         }
     }
 
+    /// Whether a reading goes on from the known spin as a rotor's does, or neither is there.
+    #[inline]
+    pub(crate) fn follows(&self, reading: Option<f32>, known: Option<f32>) -> bool {
+        match (reading, known) {
+            (Some(new), Some(known)) => (new - known).abs() < self.most_change,
+            (reading, known) => reading.is_none() && known.is_none(),
+        }
+    }
+
     /// The spin to believe (rad/s), after the `known` one: that stays while another is not believed, `odd` samples in
     /// a row by now.
-    #[inline]
     pub(crate) fn take(
         &self,
         reading: Option<f32>,
@@ -76,17 +84,16 @@ impl SpinCheck {
     }
 
     /// What is wrong with a speed that is gone in this `sample`, or believed again or anew: the `spin` now, and before it
-    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it takes to believe another.
-    /// A rotor that stops has no pulses either, so a spin that was no more than a change is not missed.
-    #[inline(never)]
+    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it
+    /// takes to believe another. A rotor that stops has no pulses either, so a spin that was no more than a change is not
+    /// missed.
     pub(crate) fn find(
         &self,
         state: &mut SpinFaults,
-        (known, was_odd): (Option<f32>, u16),
+        (known, was_odd): (f32, u16),
         spin: Option<f32>,
         sample: u64,
     ) -> Option<Found> {
-        let known = known?;
         let (kind, due) = match spin {
             None if known.abs() > self.most_change => (FaultKind::Missing, &mut state.gone),
             Some(new) if (new - known).abs() > self.most_change => {
@@ -95,8 +102,8 @@ impl SpinCheck {
                 }
                 (FaultKind::Shift, &mut state.odd)
             }
-            Some(_) => (FaultKind::Spike, &mut state.odd),
-            None => return None,
+            Some(_) if was_odd > 0 => (FaultKind::Spike, &mut state.odd),
+            _ => return None,
         };
         let is_new = sample >= *due;
         *due = sample + u64::from(self.longest);

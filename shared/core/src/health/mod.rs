@@ -22,10 +22,10 @@ use self::orbit_sense::{OrbitSense, OrbitSenseState};
 use self::plane_offset::{PlaneOffset, PlaneOffsetState};
 use self::wall_check::{WallCheck, WallCheckState};
 use crate::config::DetectorConfig;
-use crate::event::{Notice, Plane};
 use crate::phase::Phase;
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
+use crate::touch::TouchState;
 use touchdown_rotor::real::{ln, sqrt};
 
 /// Speed, m/s, that no impact is below of which spikes are told from: two such impacts a sample apart may be.
@@ -110,7 +110,7 @@ impl Health {
                 machine.gravity > 0.0 && machine.friction < STEEP,
                 looks as u16,
             ),
-            wall: WallCheck::new(machine.clearance, rate, sensing.calibration.is_some()),
+            wall: WallCheck::new(machine.clearance, sensing.calibration.is_some()),
             look_every: every as u16,
             tolerance,
             spin: machine.spin,
@@ -124,6 +124,7 @@ impl Health {
         sensing: &Sensing,
         sample: &Sample,
         phases: [Phase; PLANES],
+        touches: &TouchState,
     ) -> Reading {
         let floats = phases == [Phase::Levitated; PLANES];
         let mut reading = Reading::default();
@@ -165,7 +166,7 @@ impl Health {
         state.planes.wait += 1;
         if state.planes.wait >= self.look_every {
             state.planes.wait = 0;
-            self.look(state, &mut reading, phases, sample.spin);
+            self.look(state, &mut reading, phases, sample.spin, touches);
         }
         reading.moved = self.pair.take(
             &mut state.planes.pairing,
@@ -174,21 +175,6 @@ impl Health {
             floats,
         );
         reading
-    }
-
-    /// Takes the guard's notices of a tick: touches that have ended.
-    #[inline(never)]
-    pub fn hear(&self, state: &mut HealthState, notices: &[Notice]) {
-        for notice in notices {
-            if let Notice::Touch(touch) = notice
-                && touch.end.is_some()
-            {
-                let there = [touch.plane != Plane::B, touch.plane != Plane::A];
-                for (it, _) in state.wall.iter_mut().zip(there).filter(|it| it.1) {
-                    self.wall.touch(it, touch);
-                }
-            }
-        }
     }
 
     /// Of the channels (one bit each) whose sample is not as foreseen: which values can be used. So many of the
@@ -237,6 +223,7 @@ impl Health {
         reading: &mut Reading,
         phases: [Phase; PLANES],
         spin: Option<f32>,
+        touches: &TouchState,
     ) {
         let planes = reading.planes;
         for (index, (plane, phase)) in planes.into_iter().zip(phases).enumerate() {
@@ -266,10 +253,9 @@ impl Health {
             let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
         }
-        for (index, it) in state.wall.iter_mut().enumerate() {
-            if let Some(slot @ None) = reading.found.get_mut(2 * index)
-                && self.wall.tell(it)
-            {
+        let walls = state.wall.iter_mut().zip(touches.short());
+        for ((it, short), slot) in walls.zip(reading.found.iter_mut().step_by(2)) {
+            if slot.is_none() && self.wall.tell(it, short) {
                 let (kind, age) = (FaultKind::Moved, 0);
                 *slot = Some(Found { kind, age });
             }

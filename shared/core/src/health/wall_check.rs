@@ -3,7 +3,6 @@
 //! A touch that goes beyond the wall tells nothing, since a retainer gives way. One that ends short of it does, where
 //! no magnet can have turned the rotor back so fast.
 
-use crate::event::Touch;
 use touchdown_rotor::real::sqrt;
 
 /// Part of the clearance by which the wall may seem off. The check's own errors, 2 % of zero and of gain at 95 %, add up
@@ -17,19 +16,11 @@ const STILL: f32 = 0.04;
 const RESTS: u8 = 2;
 /// Touches in a row that end short.
 const TOUCHES: u8 = 3;
-/// Part of the clearance at which a touch begins.
-const TOUCH: f32 = 0.8;
-/// Most with which magnets turn a rotor, m/s^2.
-const STRONGEST: f32 = 200.0;
-/// Samples of a touch: in a shorter one the turn may have been farther out between two of them, by 2 % and more.
-const LEAST: u64 = 8;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallCheck {
     per_clearance: f32,
-    /// Square of the samples in which a magnet turns a rotor back, per part of the clearance that it goes.
-    turn: f32,
     /// Only what has been checked can have moved.
     is_on: bool,
 }
@@ -38,16 +29,14 @@ pub(crate) struct WallCheck {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WallCheckState {
     rests: u8,
-    short: u8,
     told: bool,
 }
 
 impl WallCheck {
-    /// For a `clearance` (m) and a `sample_rate` (Hz).
-    pub(crate) fn new(clearance: f32, sample_rate: f32, is_on: bool) -> Self {
+    /// For a `clearance` (m).
+    pub(crate) fn new(clearance: f32, is_on: bool) -> Self {
         Self {
             per_clearance: 1.0 / clearance,
-            turn: 8.0 * clearance * sample_rate * sample_rate / STRONGEST,
             is_on,
         }
     }
@@ -67,22 +56,10 @@ impl WallCheck {
         };
     }
 
-    /// Takes a touch that has ended. One that was too slow to tell counts for nothing.
-    pub(crate) fn touch(&self, it: &mut WallCheckState, touch: &Touch) {
-        let samples = touch.end.unwrap_or(0).saturating_sub(touch.onset);
-        // Of a parabola to the peak: less than its time.
-        let turn = self.turn * (touch.peak - TOUCH);
-        if touch.peak >= 1.0 - OFF {
-            it.short = 0;
-        } else if samples >= LEAST && (samples * samples) as f32 <= turn {
-            it.short = it.short.saturating_add(1);
-        }
-    }
-
-    /// Whether it is to be told now: once.
+    /// Whether it is to be told now, after so many touches in a row that ended `short`: once.
     #[inline]
-    pub(crate) fn tell(&self, it: &mut WallCheckState) -> bool {
-        let tells = self.is_on && !it.told && (it.rests >= RESTS || it.short >= TOUCHES);
+    pub(crate) fn tell(&self, it: &mut WallCheckState, short: u8) -> bool {
+        let tells = self.is_on && !it.told && (it.rests >= RESTS || short >= TOUCHES);
         it.told |= tells;
         tells
     }
