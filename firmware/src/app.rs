@@ -209,6 +209,7 @@ impl App {
         if self.drop_runs() {
             return Err(Busy::DropRuns);
         }
+        self.state.forget_wall();
         let had = core::mem::replace(&mut self.faults, Faults::NONE);
         if self.safety.mode() == Mode::Watching && !had.trip() {
             return Ok(());

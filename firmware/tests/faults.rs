@@ -4,6 +4,7 @@ mod common;
 
 use common::chip::{Chip, NoDelay, flash};
 use touchdown_core::event::{EventKind, Notice, Notices};
+use touchdown_core::fault::{Condition, FaultKind};
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
@@ -613,4 +614,33 @@ fn a_drop_outlives_the_power_until_it_is_cleared() {
     store(&mut log, &bench.app);
     log = DropLog::mount(W25q::try_new(bus, NoDelay).unwrap()).unwrap();
     assert_eq!(log.uncleared(), None);
+}
+
+/// Rests of 0.1 s at a wall that is nearer by a tenth than at the commissioning check.
+#[test]
+fn a_wall_that_has_moved_is_told_once_until_clear_and_trips_nothing() {
+    let mut config = default_config();
+    config.sensing.calibration = Some(Default::default());
+    let moved = |bench: &Bench| {
+        let faults = bench.board.notices.iter().filter_map(|it| match it {
+            Notice::Declared(event) => event.fault,
+            _ => None,
+        });
+        faults.filter(|it| it.kind == FaultKind::Moved).count()
+    };
+    let mut bench = Bench::configured(&config, Faults::NONE);
+    let lie = |bench: &mut Bench| {
+        for _ in 0..SAMPLE_RATE_HZ {
+            bench.place([0.0, -0.9 * CLEARANCE]);
+        }
+    };
+    lie(&mut bench);
+    assert_eq!(moved(&bench), 2, "a plane each");
+    lie(&mut bench);
+    assert_eq!(moved(&bench), 2);
+    assert_eq!(bench.app.clear(), Ok(()));
+    lie(&mut bench);
+    assert_eq!(moved(&bench), 4);
+    assert_eq!(bench.app.state().conditions(), [Condition::Ok; CHANNELS]);
+    assert_eq!(bench.app.faults(), Faults::NONE);
 }

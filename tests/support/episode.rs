@@ -31,6 +31,8 @@ pub fn header() -> Header {
         zero_count: 2047.5,
         full_scale: 4095,
         pulsed: 0,
+        mounting_angle: [0.0; 2],
+        calibration: None,
     }
 }
 

@@ -284,10 +284,12 @@ impl Capture {
             trigger: trigger.tick,
             first: self.newest - recorded.min(self.newest),
             planned: trigger.planned as u32,
-            resolution: config.resolution,
-            zero_count: config.zero_count,
-            full_scale: config.full_scale,
+            resolution: config.sensing.resolution,
+            zero_count: config.sensing.zero_count,
+            full_scale: config.sensing.full_scale,
             pulsed: plan.pulsed,
+            mounting_angle: config.sensing.mounting_angle,
+            calibration: config.sensing.calibration,
         };
         Some(Block::of(Kind::Header, &header.encode()))
     }

@@ -15,6 +15,7 @@ use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sensing::SensingConfig;
 use touchdown_core::severity::Severity;
 use touchdown_protocol::controller::Cause;
 use touchdown_protocol::link::Recent;
@@ -112,9 +113,7 @@ pub(crate) struct Plan {
 struct Scaling {
     fitted: u8,
     sample_rate: f32,
-    resolution: f32,
-    zero_count: f32,
-    full_scale: u16,
+    sensing: SensingConfig,
 }
 
 impl Plan {
@@ -131,9 +130,7 @@ impl Plan {
             config: Scaling {
                 fitted: config.fitted,
                 sample_rate: rate,
-                resolution: config.sensing.resolution,
-                zero_count: config.sensing.zero_count,
-                full_scale: config.sensing.full_scale,
+                sensing: config.sensing,
             },
             decimation,
             pulsed: if decimation == 1 { pulsed(config) } else { 0 },

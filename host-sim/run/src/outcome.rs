@@ -63,7 +63,7 @@ pub struct TouchEvent {
 /// What is wrong with which channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ChannelFault {
-    /// `ax`, `ay`, `bx` or `by`; the first of a plane stands for the plane where both are wrong.
+    /// `ax`, `ay`, `bx`, `by` or `speed`; the first of a plane stands for the plane where both are wrong.
     pub channel: &'static str,
     /// What.
     pub kind: FaultKind,

@@ -125,9 +125,9 @@ pub fn fault_name(fault: Fault) -> &'static str {
     }
 }
 
-/// Name of a position channel.
+/// Name of a position channel, or of that of the speed.
 pub fn channel_name(channel: u8) -> &'static str {
-    const NAMES: [&str; CHANNELS] = ["ax", "ay", "bx", "by"];
+    const NAMES: [&str; CHANNELS + 1] = ["ax", "ay", "bx", "by", "speed"];
     NAMES.get(usize::from(channel)).unwrap_or(&"?")
 }
 

@@ -1,5 +1,7 @@
 //! What can be wrong with a sensor, and what that leaves of its channel.
 
+use crate::sample::CHANNELS;
+
 /// What is wrong with a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -34,11 +36,13 @@ pub enum FaultKind {
     Mirrored = 12,
     /// The planes show orbits against each other; which is wrong cannot be told.
     Disagree = 13,
+    /// The wall, or the zero of the plane, is not where the commissioning check found it.
+    Moved = 14,
 }
 
 impl FaultKind {
     /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Dropped,
         Self::Missing,
         Self::Short,
@@ -53,6 +57,7 @@ impl FaultKind {
         Self::Swapped,
         Self::Mirrored,
         Self::Disagree,
+        Self::Moved,
     ];
 
     /// As it stands in files.
@@ -72,15 +77,18 @@ impl FaultKind {
             Self::Swapped => "swapped",
             Self::Mirrored => "mirrored",
             Self::Disagree => "disagree",
+            Self::Moved => "moved",
         }
     }
 }
 
+/// The channel of the speed, behind those of the positions.
+pub const SPEED: u8 = CHANNELS as u8;
+
 /// A fault and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Channel, in the order of [`CHANNELS`](crate::sample::CHANNELS); the first of a plane stands for
-    /// a plane.
+    /// Channel, in the order of [`CHANNELS`]; the first of a plane stands for a plane. Or [`SPEED`].
     pub channel: u8,
     /// What.
     pub kind: FaultKind,

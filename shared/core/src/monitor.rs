@@ -7,13 +7,14 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
+use crate::fault::Found;
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
 use crate::severity::{Severity, SeverityModel, SeverityState};
-use crate::spin::SpinCheck;
+use crate::spin::{SpinCheck, SpinFaults};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
@@ -72,6 +73,7 @@ pub struct MonitorState {
     pub(crate) spin: Option<f32>,
     /// In a row, that were not believed.
     odd_spins: u16,
+    spin_faults: SpinFaults,
     #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
@@ -184,12 +186,19 @@ impl Monitor {
     #[inline]
     pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
         let phases = state.detector.phases();
-        let reading = self
-            .health
-            .update(&mut state.health, &self.sensing, sample, phases);
-        state.spin = self
-            .spin
-            .take(sample.spin, state.spin, &mut state.odd_spins);
+        let reading = self.health.update(
+            &mut state.health,
+            &self.sensing,
+            sample,
+            phases,
+            &state.touch,
+        );
+        let spin_fault = if state.odd_spins == 0 && self.spin.follows(sample.spin, state.spin) {
+            state.spin = sample.spin;
+            None
+        } else {
+            self.judge_spin(state, sample)
+        };
         #[cfg(feature = "serde")]
         {
             state.levitated = sample.levitated;
@@ -202,10 +211,9 @@ impl Monitor {
             .filter(|_| reading.is_own())
             .map(|(position, _)| position);
         state.faults += u64::from(reading.unusable.count_ones());
-        let is_odd = state.odd_spins > 0 || spin.is_none() && sample.spin.is_some();
-        state.faults += u64::from(is_odd);
         let signals = Signals {
             spin,
+            spin_fault,
             retainer,
             levitated: sample.levitated,
         };
@@ -219,6 +227,7 @@ impl Monitor {
             spin: state.spin,
             retainer: self.retainer(state, missed),
             levitated: missed.levitated,
+            spin_fault: None,
         };
         state.samples += 1;
         state.position = None;
@@ -226,6 +235,20 @@ impl Monitor {
             reading: Reading::default(),
             signals,
         }
+    }
+
+    /// A spin that does not go on from the last one; what is wrong with it.
+    #[inline(never)]
+    fn judge_spin(&self, state: &mut MonitorState, sample: &Sample) -> Option<Found> {
+        let (known, was_odd) = (state.spin, state.odd_spins);
+        state.spin = self.spin.take(sample.spin, known, &mut state.odd_spins);
+        let is_odd = state.odd_spins > 0 || state.spin.is_none() && sample.spin.is_some();
+        state.faults += u64::from(is_odd);
+        if state.odd_spins > 0 {
+            return None;
+        }
+        let faults = &mut state.spin_faults;
+        (self.spin).find(faults, (known?, was_odd), state.spin, state.samples)
     }
 
     /// Fourth part: the detector.
@@ -315,6 +338,12 @@ impl MonitorState {
     /// Likewise, for who keeps the proof of levitation.
     pub fn guard_mut(&mut self) -> &mut GuardState {
         &mut self.guard
+    }
+
+    /// Tells a wall that has moved once more, where it is seen again.
+    pub fn forget_wall(&mut self) {
+        self.health.wall = Default::default();
+        self.touch.forget_short();
     }
 
     /// The present phase.

@@ -5,6 +5,7 @@
 use core::f32::consts::TAU;
 
 use crate::config::DetectorConfig;
+use crate::fault::{FaultKind, Found};
 
 /// Most that a spin changes by from one sample to the next, as a part of the nominal one: at 20 kHz and 30 000 rpm
 /// 3e6 rad/s^2, which no friction gives, and less than a pulse too many or too few does.
@@ -13,6 +14,8 @@ const MOST_CHANGE: f32 = 0.05;
 /// longest time for them, s: a rotor that stands makes no turn.
 const TURNS: f32 = 3.0;
 const LONGEST: f32 = 0.1;
+/// Fastest that a rotor comes to the wall and leaves it, m/s: what friction takes of a slow spin then is no fault.
+const FASTEST: f32 = 1.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -22,12 +25,21 @@ pub(crate) struct SpinCheck {
     /// Angle times the sample rate, rad/s.
     angle: f32,
     longest: u16,
+    /// Most that an impact changes the spin by, rad/s.
+    impact: f32,
+}
+
+/// The sample from which on one that is gone, and one that is not believed, is told: in between they are one fault.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SpinFaults {
+    gone: u64,
+    odd: u64,
 }
 
 impl SpinCheck {
     pub(crate) fn new(detector: &DetectorConfig) -> Self {
-        let rate = detector.sample_rate;
-        let nominal = detector.machine.spin.abs();
+        let (rate, machine) = (detector.sample_rate, &detector.machine);
+        let nominal = machine.spin.abs();
         Self {
             most_change: if nominal > 0.0 {
                 MOST_CHANGE * nominal
@@ -36,12 +48,22 @@ impl SpinCheck {
             },
             angle: TURNS * TAU * rate,
             longest: (LONGEST * rate) as u16,
+            impact: 2.0 * machine.friction * FASTEST
+                / (machine.inertia_ratio * machine.rotor_radius),
+        }
+    }
+
+    /// Whether a reading goes on from the known spin as a rotor's does, or neither is there.
+    #[inline]
+    pub(crate) fn follows(&self, reading: Option<f32>, known: Option<f32>) -> bool {
+        match (reading, known) {
+            (Some(new), Some(known)) => (new - known).abs() < self.most_change,
+            (reading, known) => reading.is_none() && known.is_none(),
         }
     }
 
     /// The spin to believe (rad/s), after the `known` one: that stays while another is not believed, `odd` samples in
     /// a row by now.
-    #[inline]
     pub(crate) fn take(
         &self,
         reading: Option<f32>,
@@ -59,6 +81,34 @@ impl SpinCheck {
         }
         *odd = 0;
         reading
+    }
+
+    /// What is wrong with a speed that is gone in this `sample`, or believed again or anew: the `spin` now, and before it
+    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it
+    /// takes to believe another. A rotor that stops has no pulses either, so a spin that was no more than a change is not
+    /// missed.
+    pub(crate) fn find(
+        &self,
+        state: &mut SpinFaults,
+        (known, was_odd): (f32, u16),
+        spin: Option<f32>,
+        sample: u64,
+    ) -> Option<Found> {
+        let (kind, due) = match spin {
+            None if known.abs() > self.most_change => (FaultKind::Missing, &mut state.gone),
+            Some(new) if (new - known).abs() > self.most_change => {
+                if (new - known).abs() <= self.impact {
+                    return None;
+                }
+                (FaultKind::Shift, &mut state.odd)
+            }
+            Some(_) if was_odd > 0 => (FaultKind::Spike, &mut state.odd),
+            _ => return None,
+        };
+        let is_new = sample >= *due;
+        *due = sample + u64::from(self.longest);
+        let age = u32::from(was_odd);
+        is_new.then_some(Found { kind, age })
     }
 }
 
@@ -79,6 +129,7 @@ mod tests {
             most_change: MOST_CHANGE * NOMINAL,
             angle: TURNS * TAU * RATE,
             longest: (LONGEST * RATE) as u16,
+            impact: 25.0,
         };
         let (mut known, mut odd) = (None, 0);
         let take = |reading| {

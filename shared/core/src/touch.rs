@@ -15,6 +15,12 @@ const IN_A_ROW: u8 = 2;
 /// Between samples that are left out it may go on. Along the wall it may be faster, in a whirl.
 const FASTEST: f32 = 1.0;
 const NOISE: f32 = 0.1;
+/// Part of the clearance that a touch is short of. Why: `health/wall_check.rs`.
+const SHORT: f32 = 0.95;
+/// Most with which magnets turn a rotor, m/s^2.
+const STRONGEST: f32 = 200.0;
+/// Samples of a touch: in a shorter one the turn may have been farther out between two of them, by 2 % and more.
+const LEAST: u64 = 8;
 
 /// Coefficients; distances are parts of the clearance.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +29,8 @@ pub struct Touches {
     gain: f32,
     /// Farthest that a rotor goes in a sample.
     step: f32,
+    /// Square of the samples in which a magnet turns a rotor back, per part of the clearance that it goes.
+    turn: f32,
 }
 
 /// Of a plane.
@@ -47,6 +55,8 @@ pub struct TouchState {
     was_clear: bool,
     open: Option<Open>,
     count: u32,
+    /// Touches in a row that ended short of the wall, by plane.
+    short: [u8; PLANES],
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,6 +73,7 @@ impl Touches {
             per_clearance: 1.0 / clearance,
             gain: 1.0 / (SMOOTH * sample_rate).max(1.0),
             step: FASTEST / (sample_rate * clearance),
+            turn: 8.0 * clearance * sample_rate * sample_rate / STRONGEST,
         }
     }
 
@@ -161,6 +172,24 @@ impl Touches {
         let touch = Self::touch(&open, state.count, sample, end);
         // There is room for all that a tick can say; without it nothing else may suffer.
         let _ = notices.push(Notice::Touch(touch));
+        if let Some(end) = end {
+            self.judge(state, &open, end);
+        }
+    }
+
+    /// Counts a touch that has ended short of the told wall. One that was too slow to tell counts for nothing.
+    fn judge(&self, state: &mut TouchState, open: &Open, end: u64) {
+        let samples = end.saturating_sub(open.onset);
+        // Of a parabola to the peak: less than its time.
+        let turn = self.turn * (open.peak - AT_WALL);
+        let is_hit = samples >= LEAST && (samples * samples) as f32 <= turn;
+        for (short, _) in state.short.iter_mut().zip(open.planes).filter(|it| it.1) {
+            if open.peak >= SHORT {
+                *short = 0;
+            } else if is_hit {
+                *short = short.saturating_add(1);
+            }
+        }
     }
 
     fn touch(open: &Open, count: u32, declared: u64, end: Option<u64>) -> Touch {
@@ -188,6 +217,16 @@ impl PlaneTouch {
 }
 
 impl TouchState {
+    /// Touches in a row that ended short of the told wall where no magnet turned the rotor back, by plane.
+    pub(crate) fn short(&self) -> [u8; PLANES] {
+        self.short
+    }
+
+    /// Counts them anew.
+    pub(crate) fn forget_short(&mut self) {
+        self.short = [0; PLANES];
+    }
+
     /// Touches so far.
     pub fn count(&self) -> u32 {
         self.count

@@ -10,7 +10,7 @@ use crate::controller::{Busy, Cause, Mode, Outputs, Shown};
 use touchdown_core::event::{
     Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Ordered, Outlook, Plane, Touch,
 };
-use touchdown_core::fault::{Condition, Fault, FaultKind};
+use touchdown_core::fault::{Condition, Fault, FaultKind, SPEED};
 pub use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
@@ -368,7 +368,7 @@ fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {
         return Some(None);
     };
     let kind = *FaultKind::ALL.get(usize::from(kind))?;
-    (usize::from(channel) < CHANNELS).then_some(Some(Fault { channel, kind }))
+    (channel <= SPEED).then_some(Some(Fault { channel, kind }))
 }
 
 fn conditions(codes: [u8; CHANNELS]) -> Option<[Condition; CHANNELS]> {

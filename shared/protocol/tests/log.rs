@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::fault::{Fault, FaultKind, SPEED};
 use touchdown_core::sample::Edges;
+use touchdown_core::sensing::{Calibration, PlaneCalibration};
 use touchdown_protocol::controller::Cause;
 use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind, PAYLOAD_BYTES, Page};
 use touchdown_protocol::log::counters::{COUNTERS_BYTES, Counters};
@@ -32,6 +34,8 @@ const HEADER: Header = Header {
     zero_count: 2_048.0,
     full_scale: 4_095,
     pulsed: 0,
+    mounting_angle: [0.0; 2],
+    calibration: None,
 };
 const IMPACT: Notice = Notice::Declared(Event {
     number: 7,
@@ -60,6 +64,31 @@ fn ending(blocks: u16) -> Ending {
         last: 104_000,
         latched: Some(Cause::Fall),
     }
+}
+
+#[test]
+fn a_fault_of_the_speed_goes_into_a_record_and_comes_back() {
+    let told = |channel| {
+        let fault = Some(Fault {
+            channel,
+            kind: FaultKind::Moved,
+        });
+        let Notice::Declared(event) = IMPACT else {
+            panic!("an event");
+        };
+        Record::Notice(Notice::Declared(Event { fault, ..event }))
+    };
+    for channel in [0, SPEED] {
+        let record = told(channel);
+        assert_eq!(
+            wire::decode_record(&wire::encode_record(&record)),
+            Some(record)
+        );
+    }
+    assert_eq!(
+        wire::decode_record(&wire::encode_record(&told(SPEED + 1))),
+        None
+    );
 }
 
 /// Header twice, 30 and 15 samples, an event, a severity, ending twice.
@@ -235,10 +264,42 @@ fn another_format_is_not_guessed_at() {
     };
     assert_eq!(pulsed.encode()[0], 3);
     assert_eq!(Header::decode(&pulsed.encode()), Some(pulsed));
-    header[0] = 4;
-    assert_eq!(Header::decode(&header), None);
+    for format in [4, 5] {
+        // Too short for the one, unknown the other.
+        header[0] = format;
+        assert_eq!(Header::decode(&header), None);
+    }
     let page = Block::of(Kind::Header, &header).seal(1, 0);
     assert_eq!(report(&page).unknown, 1);
+}
+
+#[test]
+fn a_header_of_sensors_that_were_checked_or_turned_says_how() {
+    let plane = |zero| PlaneCalibration {
+        zero: [zero, -2e-6],
+        gain: [1.1, 0.9],
+        skew: 0.03,
+    };
+    let checked = Header {
+        mounting_angle: [0.5, -0.25],
+        calibration: Some(Calibration {
+            date: 20_261_123,
+            planes: [plane(1e-6), plane(3e-6)],
+        }),
+        pulsed: 1,
+        ..HEADER
+    };
+    let turned = Header {
+        calibration: None,
+        ..checked
+    };
+    for header in [checked, turned] {
+        let mut bytes = header.encode();
+        assert_eq!(bytes[0], 4);
+        assert_eq!(Header::decode(&bytes), Some(header));
+        bytes.pop();
+        assert_eq!(Header::decode(&bytes), None);
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ use touchdown_scene::sensors::{Failing, Faults, Motion, SensorFault, Sensors};
 use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
 
-const NAMES: [&str; 4] = ["ax", "ay", "bx", "by"];
+const NAMES: [&str; 5] = ["ax", "ay", "bx", "by", "speed"];
 const RATE: f64 = 20_000.0;
 
 fn rig(planes: u8, seed: u64) -> Scene {
@@ -155,6 +155,55 @@ fn notices(answer: &MonitorOutput) -> (Vec<(FaultKind, &'static str, u64)>, usiz
     let faults: Vec<_> = faults.collect();
     let others = all.len() - faults.len();
     (faults, others)
+}
+
+/// What is told of a speed, at 3000 rad/s by `change` from 1 s on, of a rotor that floats for 3 s.
+fn of_speed(change: impl Fn(u64) -> Option<f32>) -> Vec<(FaultKind, &'static str, u64)> {
+    let mut scene = rig(2, 1);
+    scene.sensors.speed = true;
+    scene.rotor.spin = 3_000.0;
+    let sensors = Sensors::try_new(&scene.sensors, RATE).expect("valid sensors");
+    let mut state = sensors.start(1);
+    let samples = (0..60_000).map(|k: u64| {
+        let motion = Motion {
+            planes: [[0.0; 2]; 2],
+            spin: scene.rotor.spin,
+            levitated: true,
+            bearing: None,
+        };
+        let mut sample = sensors.read(&mut state, &motion);
+        if let Some(since) = k.checked_sub(20_000) {
+            sample.spin = change(since);
+        }
+        sample
+    });
+    let answer = monitor_run::run(&scene.monitor_config(), samples).expect("a valid scene");
+    let (faults, others) = notices(&answer);
+    assert_eq!(others, 0, "the detector goes on");
+    faults
+}
+
+#[test]
+fn a_speed_that_is_gone_or_impossible_is_told_once() {
+    use FaultKind::{Missing, Shift, Spike};
+    let right = Some(3_000.0);
+    assert_eq!(of_speed(|_| right), []);
+    assert_eq!(of_speed(|_| None), [(Missing, "speed", 20_000)]);
+    let nan = |since| if since < 100 { Some(f32::NAN) } else { right };
+    assert_eq!(of_speed(nan), [(Missing, "speed", 20_000)]);
+    // Two turns at double speed, told when they are over; and again within 0.1 s, which is the same fault.
+    let doubled = |since| if since < 84 || (500..584).contains(&since) { Some(6_000.0) } else { right };
+    assert_eq!(of_speed(doubled), [(Spike, "speed", 20_084)]);
+    let twice = |since| if since < 84 || (9_000..9_084).contains(&since) { Some(6_000.0) } else { right };
+    assert_eq!(of_speed(twice), [(Spike, "speed", 20_084), (Spike, "speed", 29_084)]);
+    let lasting = of_speed(|_| Some(1_500.0));
+    assert!(matches!(lasting[..], [(Shift, "speed", 20_100..20_300)]), "{lasting:?}");
+    // Flickers all the time.
+    let flicker = |since: u64| if since.is_multiple_of(3) { None } else { right };
+    assert_eq!(of_speed(flicker).len(), 1);
+    // Runs down to a stop, where there are no pulses.
+    let stops = |since: u64| Some(3_000.0 - 0.1 * since as f32).filter(|it| *it > 100.0);
+    assert_eq!(of_speed(stops), []);
 }
 
 /// Position on an orbit at `turns` a second, against the spin where negative.

@@ -4,13 +4,15 @@ use std::fs;
 
 use proptest::prelude::*;
 use serde_json::Value;
-use touchdown_core::event::EventKind;
-use touchdown_protocol::log::block::BLOCK_BYTES;
+use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
+use touchdown_core::fault::{Fault, FaultKind, SPEED};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind};
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_files::drop_log::{Dump, is_sound, stream};
 use touchdown_tests::binary::touchdown;
-use touchdown_tests::episode::{SAMPLES, dump, episode, header, sealed};
+use touchdown_protocol::wire::{Record, encode_record};
+use touchdown_tests::episode::{SAMPLES, TRIGGER, dump, episode, header, sealed};
 
 fn json(folder: &std::path::Path, arguments: &[&str]) -> Value {
     let run = touchdown(folder).arg("log").args(arguments).assert();
@@ -77,6 +79,35 @@ fn what_was_recorded_comes_out() {
         serde_json::from_slice::<Value>(&run.get_output().stdout).expect("JSON")
     };
     assert_eq!(events("e.cfg"), events("s.csv"));
+}
+
+/// A fault that was told in a drop is shown with its channel and kind.
+#[test]
+fn what_was_wrong_with_a_sensor_is_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let fault = Notice::Declared(Event {
+        number: 1,
+        kind: EventKind::SensorFault,
+        onset: Moment::of_sample(TRIGGER),
+        declared: TRIGGER,
+        plane: Plane::Both,
+        normal_speed: 0.0,
+        motion: Motion::Cylindrical,
+        fault: Some(Fault {
+            channel: SPEED,
+            kind: FaultKind::Missing,
+        }),
+    });
+    let events = Block::of(Kind::Events, &encode_record(&Record::Notice(fault)));
+    let header = Block::of(Kind::Header, &header().encode());
+    let pages = [header.seal(1, 0), header.seal(1, 1), events.seal(1, 2)];
+    fs::write(at.join("flash.bin"), dump(&[pages.to_vec()])).expect("a dump");
+    let shown = json(at, &["show", "flash.bin", "--json", "-"]);
+    let expected = serde_json::json!({ "channel": "speed", "kind": "missing" });
+    assert_eq!(shown["events"][0]["fault"], expected);
+    let run = touchdown(at).args(["log", "show", "flash.bin"]).assert();
+    run.success().stdout(predicates::str::contains("speed missing"));
 }
 
 #[test]
@@ -160,7 +191,8 @@ fn headers_that_no_recorder_writes_are_damage() {
         dump(&[sealed(1, &header)])
     };
     assert!(sound(&with(&|_| ())));
-    let changes: [&dyn Fn(&mut Header); 7] = [
+    let changes: [&dyn Fn(&mut Header); 8] = [
+        &|it| it.mounting_angle = [f32::NAN, 0.0],
         &|it| it.sample_rate = 0.0,
         &|it| it.sample_rate = f32::NAN,
         &|it| it.resolution = f32::INFINITY,

@@ -7,7 +7,8 @@ use touchdown_protocol::log::learnt::{of_parts, part};
 use touchdown_protocol::log::block::Kind;
 use touchdown_protocol::log::header::Header;
 use touchdown_core::monitor::Monitor;
-use touchdown_files::drop_log::{Dump, Episode, stream};
+use touchdown_core::sensing::{Calibration, PlaneCalibration, Sensing};
+use touchdown_files::drop_log::{Dump, Episode, comtrade, stream};
 use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample};
 use touchdown_run::drop;
 use touchdown_run::outcome::DetectedEvent;
@@ -76,6 +77,71 @@ fn every_built_in_scene_replays_as_it_was_told() {
         println!("{name}: {} events, {from}", told.len());
         assert!(!told.is_empty(), "{name}");
         assert_same(name, &told, &replayed);
+    }
+}
+
+/// Sensors told wrong, turned and skewed, with a commissioning check on record.
+fn checked() -> Scene {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    let plane = |zero: [f32; 2], gain: [f32; 2], skew: f32| PlaneCalibration { zero, gain, skew };
+    let planes = [
+        plane([15e-6, -9e-6], [1.12, 0.91], 0.04),
+        plane([-12e-6, 6e-6], [0.88, 1.05], -0.03),
+    ];
+    let sensors = &mut scene.sensors;
+    sensors.mounting_angle = [0.6, -1.1];
+    sensors.skew = planes.map(|it| f64::from(it.skew));
+    for (channel, error) in sensors.gain_error.iter_mut().enumerate() {
+        let plane = &planes[channel / 2];
+        *error = f64::from(plane.gain[channel % 2]) - 1.0;
+        sensors.offset[channel] = plane.zero[channel % 2].into();
+    }
+    sensors.calibration = Some(Calibration {
+        date: 20_261_123,
+        planes,
+    });
+    scene
+}
+
+#[test]
+fn an_episode_shows_what_the_monitor_read_with_its_record() {
+    let scene = checked();
+    let (dump, events) = dropped(&scene);
+    let episode = &dump.episodes[0];
+    let mut out = Vec::new();
+    assert!(stream(episode, &mut out).expect("is written"));
+    let sensing = Sensing::try_new(&scene.sensors.sensing()).expect("valid");
+    let rows = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let mut seen = 0;
+    for (row, counts) in rows.zip(&episode.samples) {
+        let shown = row.expect("a row").positions;
+        let read = sensing.place(counts.expect("recorded").map(|it| Some(f32::from(it))));
+        let read = read.map(|it| it.expect("both channels").map(f64::from));
+        for (shown, read) in shown.into_iter().zip(read.concat()) {
+            assert!((shown - read).abs() < 1e-12, "{shown} {read}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 10_000, "{seen}");
+    assert!(episode.learnt.is_some());
+    assert_same("checked", &told(episode, events), &replayed(episode, &scene));
+}
+
+/// The export as COMTRADE: zero and gain of each channel, the skew not.
+#[test]
+fn channels_of_an_exported_record_are_displacements_along_their_axes() {
+    let scene = checked();
+    let (dump, _) = dropped(&scene);
+    let [cfg, _] = comtrade(&dump.episodes[0]).expect("a header");
+    let sensors = &scene.sensors;
+    for (channel, line) in cfg.lines().skip(2).take(4).enumerate() {
+        let field = |at: usize| -> f64 { line.split(',').nth(at).expect("a field").parse().expect("a number") };
+        for count in [1_000.0, 3_000.0] {
+            let reading = (count - sensors.zero_count()) * sensors.resolution();
+            let along = (reading - sensors.offset[channel]) / (1.0 + sensors.gain_error[channel]);
+            let shown = field(5) * count + field(6);
+            assert!((shown - 1e6 * along).abs() < 1e-3, "{line}: {shown} {along}");
+        }
     }
 }
 

@@ -22,14 +22,18 @@ pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
         fitted.len(),
         fitted.len()
     );
-    let um = f64::from(header.resolution) * 1e6;
+    let record = header.calibration.unwrap_or_default();
     for (number, &channel) in fitted.iter().enumerate() {
+        let plane = &record.planes[channel / 2];
+        let (zero, gain) = (plane.zero[channel % 2], plane.gain[channel % 2]);
+        let um = f64::from(header.resolution) * 1e6 / f64::from(gain);
+        let zero_um = f64::from(zero) * 1e6 / f64::from(gain);
         cfg += &format!(
             "{},{},,,um,{},{},0,0,{},1,1,P\r\n",
             number + 1,
             channel_name(channel as u8),
             um,
-            -um * f64::from(header.zero_count),
+            -um * f64::from(header.zero_count) - zero_um,
             header.full_scale
         );
     }

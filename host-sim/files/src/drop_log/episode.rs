@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::sample::{Edges, TACHOMETERS};
+use touchdown_core::fault::FaultKind;
+use touchdown_core::sample::{CHANNELS, Edges, TACHOMETERS};
+use touchdown_core::sensing::Sensing;
 use touchdown_protocol::log::ending::Ending;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
@@ -11,7 +13,7 @@ use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Wav
 
 use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
-use touchdown_scene::names::act_name;
+use touchdown_scene::names::{act_name, channel_name};
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -79,6 +81,17 @@ pub struct Event {
     pub declared_s: f64,
     /// Of an impact, m/s.
     pub normal_speed_m_s: f32,
+    /// Of a sensor fault.
+    pub fault: Option<LoggedFault>,
+}
+
+/// What was wrong with which channel.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LoggedFault {
+    /// As in `replay --json`.
+    pub channel: &'static str,
+    /// What.
+    pub kind: FaultKind,
 }
 
 impl Episode {
@@ -155,17 +168,28 @@ impl Episode {
         (sample as f64 * f64::from(header.decimation) - before) / f64::from(header.sample_rate)
     }
 
-    /// Displacement of a channel, m.
-    pub fn position(
-        &self,
-        header: &Header,
-        counts: &Option<Counts>,
-        channel: usize,
-    ) -> Option<f64> {
-        let count = counts.as_ref()?.get(channel).copied()?;
-        let there = count != NO_VALUE && header.fitted & (1 << channel) != 0;
-        let from_zero = f64::from(count) - f64::from(header.zero_count);
-        there.then_some(from_zero * f64::from(header.resolution))
+    /// Displacements in the scene's axes, m, as the monitor read them; NaN where there is none. On planes that have an
+    /// angle or a commissioning check one channel that is missing takes its plane.
+    pub fn positions(&self, header: &Header, counts: &Option<Counts>) -> [f64; CHANNELS] {
+        let mut places = [f64::NAN; CHANNELS];
+        let count = |channel: usize| {
+            let count = counts.as_ref()?.get(channel).copied()?;
+            (count != NO_VALUE && header.fitted & (1 << channel) != 0).then_some(count)
+        };
+        if header.is_plain() {
+            for (channel, place) in places.iter_mut().enumerate() {
+                if let Some(count) = count(channel) {
+                    let from_zero = f64::from(count) - f64::from(header.zero_count);
+                    *place = from_zero * f64::from(header.resolution);
+                }
+            }
+        } else if let Ok(sensing) = Sensing::try_new(&header.sensing()) {
+            let counts = std::array::from_fn(|channel| count(channel).map(f32::from));
+            for (to, place) in places.chunks_exact_mut(2).zip(sensing.place(counts)) {
+                to.copy_from_slice(&place.map_or([f64::NAN; 2], |it| it.map(f64::from)));
+            }
+        }
+        places
     }
 }
 
@@ -231,6 +255,11 @@ fn impossible(header: &Header) -> Vec<String> {
             f32::from(header.pulsed),
         ),
         (header.first <= header.trigger, "first", header.first as f32),
+        (
+            header.is_plain() || Sensing::try_new(&header.sensing()).is_ok(),
+            "calibration or mounting, of the day",
+            header.calibration.map_or(0.0, |it| it.date as f32),
+        ),
     ];
     let broken = rules.into_iter().filter(|(holds, ..)| !holds);
     broken
@@ -261,6 +290,10 @@ fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {
             onset_s: since(event.onset.samples()),
             declared_s: since(event.declared as f64),
             normal_speed_m_s: event.normal_speed,
+            fault: event.fault.map(|it| LoggedFault {
+                channel: channel_name(it.channel),
+                kind: it.kind,
+            }),
         }),
         _ => None,
     };

@@ -9,14 +9,14 @@ mod text;
 
 pub use comtrade::comtrade;
 pub use dump::{Dump, read};
-pub use episode::{Completeness, Episode, Event};
+pub use episode::{Completeness, Episode, Event, LoggedFault};
 pub use fetch::{Wanted, fetch};
 pub use text::{list, show};
 
 use std::io::Write;
 
 use touchdown_core::learnt::Learnt;
-use touchdown_core::sample::{CHANNELS, Edges};
+use touchdown_core::sample::Edges;
 
 use crate::stream::{Columns, Pulses, Row, StreamWriter, of_field};
 
@@ -44,17 +44,11 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
     let rate = f64::from(header.sample_rate);
     let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
     for (number, counts) in episode.samples.iter().enumerate() {
-        let mut positions = [f64::NAN; CHANNELS];
-        for (channel, position) in positions.iter_mut().enumerate() {
-            *position = episode
-                .position(header, counts, channel)
-                .unwrap_or(f64::NAN);
-        }
         let shown = episode.pulses.get(number).copied().flatten();
         let shown = shown.unwrap_or_default();
         writer.write(&Row {
             time: episode.time(header, number),
-            positions,
+            positions: episode.positions(header, counts),
             spin,
             levitated,
             edges: shown.map(|edges| {

@@ -155,8 +155,12 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         } else {
             "-".to_owned()
         };
+        let fault = event
+            .fault
+            .map(|it| format!("  {} {}", it.channel, it.kind.name()));
+        let fault = fault.unwrap_or_default();
         text += &format!(
-            "{:<16}{:>12.4}{:>14.4}{speed:>10}\n",
+            "{:<16}{:>12.4}{:>14.4}{speed:>10}{fault}\n",
             event_name(event.event),
             event.onset_s * 1e3,
             event.declared_s * 1e3,

@@ -125,6 +125,21 @@ pub fn to_sample(row: &Row, sensors: &SensorsConfig, rate: f64) -> Sample {
     sample
 }
 
+/// The readings that the record of `sensors` made these displacements of: the export of an episode has it applied.
+pub fn without_record(positions: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
+    let mut readings = *positions;
+    let record = sensors.calibration.unwrap_or_default();
+    let planes = sensors.mounting_angle.into_iter().zip(record.planes);
+    for (place, (angle, of)) in readings.chunks_exact_mut(2).zip(planes) {
+        let [first, _] = to_sensor_axes([place[0], place[1]], angle);
+        let [_, second] = to_sensor_axes([place[0], place[1]], angle + f64::from(of.skew));
+        let [u, v] = [(first, 0), (second, 1)]
+            .map(|(along, axis)| f64::from(of.zero[axis]) + f64::from(of.gain[axis]) * along);
+        place.copy_from_slice(&to_sensor_axes([u, v], -angle));
+    }
+    readings
+}
+
 /// The row that shows what the sensors read in `sample` at `rate` (Hz).
 pub fn to_row(time: f64, sample: &Sample, sensors: &SensorsConfig, rate: f64) -> Row {
     let mut positions = [f64::NAN; CHANNELS];

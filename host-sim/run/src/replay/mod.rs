@@ -22,7 +22,7 @@ use touchdown_base::input_error::InputError;
 use touchdown_base::progress::Progress;
 use touchdown_base::spectrogram::{Analyser, Spectrogram};
 use touchdown_files::recording::{Reading, Recording};
-use touchdown_files::stream::to_sample;
+use touchdown_files::stream::{to_sample, without_record};
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::SensorsConfig;
 
@@ -143,6 +143,7 @@ pub fn recording(
     let samples = Samples {
         sensors: &sensors,
         flaw: &mut flaw,
+        is_episode,
         progress: Progress::of_bytes("replay", recording.size),
         recording: &mut recording,
         envelope: &mut envelope,
@@ -200,6 +201,8 @@ struct Samples<'a> {
     recording: &'a mut Recording,
     sensors: &'a SensorsConfig,
     flaw: &'a mut Option<InputError>,
+    /// Displacements have the record applied.
+    is_episode: bool,
     progress: Progress,
     envelope: &'a mut Envelope,
     analyser: &'a mut Analyser,
@@ -211,13 +214,16 @@ impl Iterator for Samples<'_> {
 
     fn next(&mut self) -> Option<Sample> {
         match self.recording.next()? {
-            Ok(row) => {
+            Ok(mut row) => {
                 self.seen += 1;
                 self.progress
                     .passed(self.seen, || self.recording.bytes_read());
                 self.envelope.take(&row.positions);
                 let [x, y, ..] = row.positions;
                 self.analyser.take(row.time, Some([x, y]));
+                if self.is_episode && self.sensors.calibration.is_some() {
+                    row.positions = without_record(&row.positions, self.sensors);
+                }
                 Some(to_sample(&row, self.sensors, self.recording.rate))
             }
             Err(flaw) => {

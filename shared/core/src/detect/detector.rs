@@ -22,6 +22,7 @@ use crate::detect::release::{Release, ReleaseBank};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
+use crate::fault::SPEED;
 use crate::phase::Phase;
 use crate::sensing::{PLANES, Reading};
 use crate::vector::{direction, square, sum};
@@ -115,6 +116,9 @@ impl Detector {
             if let Some(found) = found {
                 writer.tell_fault(channel, found);
             }
+        }
+        if let Some(found) = signals.spin_fault {
+            writer.tell_fault(SPEED, found);
         }
         if reading.moved != [0.0; 2] {
             state.shift(reading.moved);

@@ -1,7 +1,7 @@
 //! What a tick says.
 
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
-use crate::fault::{Fault, Found};
+use crate::fault::{Fault, Found, SPEED};
 use crate::sensing::PLANES;
 
 /// A declared fall that is neither confirmed nor withdrawn.
@@ -76,7 +76,11 @@ impl EventWriter<'_> {
             kind: EventKind::SensorFault,
             onset: Moment::of_sample(self.sample).later(-age),
             declared: self.sample,
-            plane: if channel < 2 { Plane::A } else { Plane::B },
+            plane: match channel {
+                0 | 1 => Plane::A,
+                SPEED => Plane::Both,
+                _ => Plane::B,
+            },
             normal_speed: 0.0,
             motion: self.motion,
             fault: Some(Fault {

@@ -1,5 +1,6 @@
 //! What the detector is told besides the position.
 
+use crate::fault::Found;
 use crate::tachometer::Bore;
 
 /// What the rotor touches.
@@ -17,6 +18,8 @@ pub enum Retainer {
 pub struct Signals {
     /// Spin, counter-clockwise positive, rad/s, where measured.
     pub spin: Option<f32>,
+    /// What this sample showed to be wrong with the spin.
+    pub spin_fault: Option<Found>,
     /// What the rotor touches; without a measured spin its turning tells nothing of the slip.
     pub retainer: Retainer,
     /// Whether the magnetic bearings are commanded on, where that is wired.

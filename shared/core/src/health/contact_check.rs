@@ -62,12 +62,14 @@ impl ContactCheck {
         }
     }
 
-    /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot.
+    /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot. `rest` takes the mean
+    /// place, and those at its beginning and its end.
     pub(crate) fn take(
         &self,
         it: &mut ContactCheckState,
         position: [f32; 2],
         touches: bool,
+        rest: impl FnOnce([f32; 2], [[f32; 2]; 2]),
     ) -> Option<Place> {
         if it.looks == 0 {
             it.first = position;
@@ -91,6 +93,7 @@ impl ContactCheck {
         let count = f32::from(it.looks);
         let [x, y] = it.sum.map(|sum| sum / count);
         let mean = [x + it.first[0], y + it.first[1]];
+        rest(mean, [it.first, it.place]);
         let (touches, far) = (it.touches, it.far);
         *it = ContactCheckState::default();
         self.judge(mean, far, touches)

@@ -6,11 +6,13 @@
 //! | `plane_offset` | how one plane goes on without the other |
 //! | `orbit_sense` | a plane of a floating rotor: drift, and the sense of its orbit |
 //! | `contact_check` | a plane of a rotor on the wall: whether it rests where it can |
+//! | `wall_check` | the same against the commissioning check |
 
 mod channel;
 mod contact_check;
 mod orbit_sense;
 mod plane_offset;
+mod wall_check;
 
 pub use crate::fault::{Condition, Fault, FaultKind, Found};
 
@@ -18,10 +20,12 @@ use self::channel::{ChannelMonitorState, Look, Watch};
 use self::contact_check::{ContactCheck, ContactCheckState, Place};
 use self::orbit_sense::{OrbitSense, OrbitSenseState};
 use self::plane_offset::{PlaneOffset, PlaneOffsetState};
+use self::wall_check::{WallCheck, WallCheckState};
 use crate::config::DetectorConfig;
 use crate::phase::Phase;
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
+use crate::touch::TouchState;
 use touchdown_rotor::real::{ln, sqrt};
 
 /// Speed, m/s, that no impact is below of which spikes are told from: two such impacts a sample apart may be.
@@ -45,6 +49,7 @@ pub struct Health {
     pair: PlaneOffset,
     float: OrbitSense,
     lie: ContactCheck,
+    wall: WallCheck,
     /// Samples between two looks at the planes.
     look_every: u16,
     /// m.
@@ -57,6 +62,7 @@ pub struct Health {
 pub struct HealthState {
     pub(crate) channels: [ChannelMonitorState; CHANNELS],
     pub(crate) planes: PlanesState,
+    pub(crate) wall: [WallCheckState; PLANES],
 }
 
 /// What is known of the planes.
@@ -104,6 +110,7 @@ impl Health {
                 machine.gravity > 0.0 && machine.friction < STEEP,
                 looks as u16,
             ),
+            wall: WallCheck::new(machine.clearance, sensing.calibration.is_some()),
             look_every: every as u16,
             tolerance,
             spin: machine.spin,
@@ -117,6 +124,7 @@ impl Health {
         sensing: &Sensing,
         sample: &Sample,
         phases: [Phase; PLANES],
+        touches: &TouchState,
     ) -> Reading {
         let floats = phases == [Phase::Levitated; PLANES];
         let mut reading = Reading::default();
@@ -158,7 +166,7 @@ impl Health {
         state.planes.wait += 1;
         if state.planes.wait >= self.look_every {
             state.planes.wait = 0;
-            self.look(state, &mut reading, phases, sample.spin);
+            self.look(state, &mut reading, phases, sample.spin, touches);
         }
         reading.moved = self.pair.take(
             &mut state.planes.pairing,
@@ -215,6 +223,7 @@ impl Health {
         reading: &mut Reading,
         phases: [Phase; PLANES],
         spin: Option<f32>,
+        touches: &TouchState,
     ) {
         let planes = reading.planes;
         for (index, (plane, phase)) in planes.into_iter().zip(phases).enumerate() {
@@ -225,7 +234,11 @@ impl Health {
                 *it = ContactCheckState::default();
                 continue;
             };
-            let Some(place) = self.lie.take(it, position, phase.is_contact()) else {
+            let Some(wall) = state.wall.get_mut(index) else {
+                continue;
+            };
+            let rest = |mean, ends| self.wall.rest(wall, mean, ends);
+            let Some(place) = self.lie.take(it, position, phase.is_contact(), rest) else {
                 continue;
             };
             let (axis, kind) = match place {
@@ -239,6 +252,13 @@ impl Health {
             let [of_a, of_b] = state.spare();
             let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
+        }
+        let walls = state.wall.iter_mut().zip(touches.short());
+        for ((it, short), slot) in walls.zip(reading.found.iter_mut().step_by(2)) {
+            if slot.is_none() && self.wall.tell(it, short) {
+                let (kind, age) = (FaultKind::Moved, 0);
+                *slot = Some(Found { kind, age });
+            }
         }
         if phases != [Phase::Levitated; PLANES] {
             state.planes.floating = Default::default();

@@ -103,6 +103,8 @@ const HEADER: Header = Header {
     zero_count: 2_048.0,
     full_scale: 4_095,
     pulsed: 0,
+    mounting_angle: [0.0; 2],
+    calibration: None,
 };
 const ENDING: Ending = Ending {
     closing: Closing::Quiet,

@@ -18,8 +18,11 @@ pub mod waveform;
 
 use touchdown_core::checksum::CRC;
 
-/// Version of the format, in the header of an episode with pulses. All earlier ones are read as well.
-pub const FORMAT: u16 = 3;
+/// Version of the format, in the header of an episode whose planes have an angle or a commissioning check. All earlier
+/// ones are read as well.
+pub const FORMAT: u16 = 4;
+/// Version in the header of an episode with pulses, from which on they are there.
+pub const FORMAT_WITH_PULSES: u16 = 3;
 /// Version in the header of an episode without pulses. Version 1 has no [`block::Kind::Learnt`].
 pub const FORMAT_WITHOUT_PULSES: u16 = 2;
 

@@ -1,0 +1,66 @@
+//! Whether wall and zero of a plane are still where the commissioning check found them: rest and touches show it.
+//!
+//! A touch that goes beyond the wall tells nothing, since a retainer gives way. One that ends short of it does, where
+//! no magnet can have turned the rotor back so fast.
+
+use touchdown_rotor::real::sqrt;
+
+/// Part of the clearance by which the wall may seem off. The check's own errors, 2 % of zero and of gain at 95 %, add up
+/// to 3 %; sag of the retainer and temperature have the rest.
+const OFF: f32 = 0.05;
+/// Part of the clearance that is at the wall, at least: no rotor floats there.
+const AT_WALL: f32 = 0.7;
+/// Part of the clearance within which a rotor at rest begins and ends what its mean place is taken over.
+const STILL: f32 = 0.04;
+/// Such times in a row, 0.1 s each.
+const RESTS: u8 = 2;
+/// Touches in a row that end short.
+const TOUCHES: u8 = 3;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallCheck {
+    per_clearance: f32,
+    /// Only what has been checked can have moved.
+    is_on: bool,
+}
+
+/// Of a plane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallCheckState {
+    rests: u8,
+    told: bool,
+}
+
+impl WallCheck {
+    /// For a `clearance` (m).
+    pub(crate) fn new(clearance: f32, is_on: bool) -> Self {
+        Self {
+            per_clearance: 1.0 / clearance,
+            is_on,
+        }
+    }
+
+    /// Takes a mean place, and those at the beginning and the end of what it was taken over, m.
+    pub(crate) fn rest(&self, it: &mut WallCheckState, mean: [f32; 2], ends: [[f32; 2]; 2]) {
+        let far = |[x, y]: [f32; 2]| sqrt(x * x + y * y) * self.per_clearance;
+        let is_still = ends
+            .iter()
+            .all(|[x, y]| far([x - mean[0], y - mean[1]]) < STILL);
+        let distance = far(mean);
+        let is_off = is_still && distance > AT_WALL && (distance - 1.0).abs() > OFF;
+        it.rests = if is_off {
+            it.rests.saturating_add(1)
+        } else {
+            0
+        };
+    }
+
+    /// Whether it is to be told now, after so many touches in a row that ended `short`: once.
+    #[inline]
+    pub(crate) fn tell(&self, it: &mut WallCheckState, short: u8) -> bool {
+        let tells = self.is_on && !it.told && (it.rests >= RESTS || short >= TOUCHES);
+        it.told |= tells;
+        tells
+    }
+}
