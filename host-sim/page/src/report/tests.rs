@@ -43,6 +43,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     };
     let truth = Recorder::new(levitated).finish(end, 0.0);
     Outcome {
+        given_up: None,
         ledger: None,
         ring: None,
         rings: Vec::new(),
