@@ -224,13 +224,10 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
     };
     let pins = OutputPins::new(chip.GPIOC, &chip.RCC);
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
-    let (block, settings, mut found) = found_at_power_on(&chip.RCC);
+    let (block, settings, found) = found_at_power_on(&chip.RCC);
     journal::config(&settings.monitor);
     clocks::start(&chip.RCC, &chip.FLASH);
-    if !image::is_whole() {
-        error!("image damaged");
-        found = found.with(Fault::ImageDamaged);
-    }
+    let found = with_image(found);
     start_cycle_counter(core.DCB, core.DWT);
     let converter = Converter::new(
         chip.ADC1,
@@ -241,8 +238,7 @@ fn start(memory: &'static mut Memory) -> Option<Below> {
         &chip.RCC,
     );
     remote::wire(&chip.GPIOB, &chip.RCC);
-    let divider = (APB2_HZ / BAUD) as u16;
-    let line = Line::new(chip.USART1, chip.DMA2, divider, &chip.RCC);
+    let line = Line::new(chip.USART1, chip.DMA2, (APB2_HZ / BAUD) as u16, &chip.RCC);
     let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
     let (outbox, inbox) = memory.outbox.split();
     let told = block.told(&settings);
@@ -294,6 +290,15 @@ fn mount(spi: Spi) -> Option<ChipLog> {
         error!("no flash for the drop log");
     }
     log
+}
+
+/// What was wrong, and whether the image is.
+fn with_image(found: Faults) -> Faults {
+    if image::is_whole() {
+        return found;
+    }
+    error!("image damaged");
+    found.with(Fault::ImageDamaged)
 }
 
 /// The configuration, and what was wrong.

@@ -1,6 +1,6 @@
 //! The log for people.
 
-use touchdown_protocol::log::ending::Closing;
+use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::DamageKind;
 
 use super::dump::Dump;
@@ -131,17 +131,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         text += &format!("pulses incomplete: known of {known} of {all} samples\n");
     }
     if let Some(ending) = &episode.ending {
-        let why = match ending.closing {
-            Closing::Levitated => "floats again",
-            Closing::Withdrawn => "the fall was withdrawn",
-            Closing::Quiet => "nothing more happened",
-            Closing::Longest => "as long as an episode may be",
-        };
-        let off = match ending.latched {
-            Some(cause) => format!("outputs off: {}", cause_name(cause)),
-            None => "nothing latched".to_owned(),
-        };
-        text += &format!("ended: {why}; velocity index {:.2}; {off}\n", ending.index);
+        text += &ended(ending);
     }
     if !episode.events.is_empty() {
         text += &paint.bold(&format!(
@@ -172,4 +162,19 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
 fn orders(episode: &Episode) -> String {
     let orders = episode.orders.iter();
     orders.map(|it| format!("order: {it}\n")).collect()
+}
+
+fn ended(ending: &Ending) -> String {
+    let why = match ending.closing {
+        Closing::Levitated => "floats again",
+        Closing::Withdrawn => "the fall was withdrawn",
+        Closing::Quiet => "nothing more happened",
+        Closing::Longest => "as long as an episode may be",
+    };
+    let off = match ending.latched {
+        Some(cause) => format!("outputs off: {}", cause_name(cause)),
+        None => "nothing latched".to_owned(),
+    };
+    let index = ending.index;
+    format!("ended: {why}; velocity index {index:.2}; {off}\n")
 }
