@@ -6,7 +6,9 @@
 //! - [`Hertz`] gives each contact a force and a duration, and needs steps far shorter than it.
 //! - [`Support`] lets the ring move on a spring and turn in a ball bearing, by steps of its own scheme.
 //! - [`TwoPlane`] is a rotor that tilts in rings of their own axial places.
+//! - [`Coupled`] tilts and bends in such rings, each on a spring or in a ball bearing.
 
+mod coupled;
 mod crossing;
 mod hertz;
 mod hold;
@@ -16,6 +18,10 @@ mod support;
 mod two_plane;
 mod vector;
 
+pub use coupled::{
+    ActuatorConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, ModeConfig, RingEvent,
+    SeatConfig,
+};
 pub use hertz::{
     Compliance, Euler, Hertz, HertzConfig, HertzState, Line, Materials, Pairing, Point, Scheme,
     Shape, Verlet,

@@ -50,14 +50,14 @@ pub struct RaceConfig<R> {
 /// What turns SI into the model's units.
 #[derive(Clone, Copy, Debug)]
 pub struct Units<R> {
-    pub(super) mass: R,
+    pub(crate) mass: R,
     /// Of the rotor, m.
-    pub(super) radius: R,
+    pub(crate) radius: R,
     /// Of the retainer, m.
-    pub(super) bore: R,
+    pub(crate) bore: R,
     /// Length of a step, T.
-    pub(super) step: R,
-    pub(super) scales: Scales<R>,
+    pub(crate) step: R,
+    pub(crate) scales: Scales<R>,
 }
 
 impl<R: Real> MountConfig<R> {

@@ -9,13 +9,13 @@
 //! (`follow`, `strike`). What every impulse takes from the energy is booked (`ledger`). Equations,
 //! cut-offs and measured errors: docs/know/support.md.
 
-mod config;
+pub(crate) mod config;
 mod follow;
 mod ledger;
-mod mount;
+pub(crate) mod mount;
 mod passage;
 mod press;
-mod race;
+pub(crate) mod race;
 mod settle;
 mod state;
 mod strike;

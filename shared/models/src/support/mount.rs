@@ -30,11 +30,11 @@ mod sealed {
 /// How the ring goes through a stretch of time that nothing pushes it in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ride<R> {
-    pub(super) moved: Vector<R>,
+    pub(crate) moved: Vector<R>,
     /// Change of velocity.
-    pub(super) kick: Vector<R>,
+    pub(crate) kick: Vector<R>,
     /// Displacement by a push, which is an impulse times half the time.
-    pub(super) mobility: R,
+    pub(crate) mobility: R,
 }
 
 /// What the ring stands on.
@@ -160,7 +160,7 @@ pub struct SprungState<R> {
 }
 
 impl Sprung<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> Sprung<R> {
+    pub(crate) fn rounded<R: Real>(&self) -> Sprung<R> {
         Sprung {
             mass: R::lit(self.mass),
             stiffness: R::lit(self.stiffness),

@@ -30,9 +30,9 @@ pub enum Drag<R> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Turning<R> {
     /// Surface speed at the end, without friction.
-    pub(super) free: R,
+    pub(crate) free: R,
     /// Surface speed lost by an impulse of friction.
-    pub(super) mobility: R,
+    pub(crate) mobility: R,
 }
 
 /// The inner ring at one moment.
@@ -153,7 +153,7 @@ fn decay<R: Real>(z: R) -> (R, R) {
 }
 
 impl BallBearing<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> BallBearing<R> {
+    pub(crate) fn rounded<R: Real>(&self) -> BallBearing<R> {
         BallBearing {
             inertia: R::lit(self.inertia),
             dry: R::lit(self.dry),

@@ -1,0 +1,265 @@
+//! The machine, SI.
+
+use super::{Coupled, Magnet, Ring};
+use crate::support::config::Units;
+use crate::support::mount::{Mount, Sprung};
+use crate::support::race::{BallBearing, Race};
+use crate::two_plane::UnbalanceConfig;
+use crate::vector::Vector;
+use crate::{MountConfig, RaceConfig, RingConfig};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::{Scales, not_negative, positive};
+
+/// Most rings.
+const MOST_RINGS: usize = 4;
+/// Most bending modes.
+pub(super) const MODES: usize = 3;
+/// (h/2)^2 times the stiffness that pulls away, over mass; at 1 the step has no solution.
+const STIFFEST: f64 = 0.25;
+
+/// A retainer ring, what it stands on and what turns in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeatConfig<R> {
+    /// Place, gap and law.
+    pub ring: RingConfig<R>,
+    /// Spring and damper; a rigid seat without.
+    pub mount: Option<MountConfig<R>>,
+    /// Ball bearing; a bushing without.
+    pub race: Option<RaceConfig<R>>,
+    /// Each bending mode's displacement there.
+    pub shape: [R; MODES],
+}
+
+/// A magnetic bearing after the release.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ActuatorConfig<R> {
+    /// Axial place from the centre of mass, m.
+    pub place: R,
+    /// Force over displacement, N/m: positive pulls away from the centre, negative holds.
+    pub stiffness: R,
+    /// N s/m, 0 or more.
+    pub damping: R,
+    /// At the centre, N.
+    pub force: [R; 2],
+    /// Largest force, N.
+    pub limit: Option<R>,
+    /// Each bending mode's displacement there.
+    pub shape: [R; MODES],
+}
+
+/// A bending mode of the free rotor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModeConfig<R> {
+    /// rad/s.
+    pub speed: R,
+    /// Part of critical damping, in the frame that does not turn.
+    pub damping_ratio: R,
+    /// kg, for the shapes that are given.
+    pub mass: R,
+    /// Displacement at the centre of mass.
+    pub centre: R,
+}
+
+/// A rotor and all that holds it, SI; x right, y up, z along the axis, spin from x to y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledConfig<R, const N: usize> {
+    /// kg.
+    pub mass: R,
+    /// About the axis, kg m^2; up to twice the transverse one.
+    pub polar_inertia: R,
+    /// About the centre of mass across the axis, kg m^2.
+    pub transverse_inertia: R,
+    /// 1 to 4; clearance and radius of the first set the scales.
+    pub rings: [SeatConfig<R>; N],
+    /// Across the axis, m/s^2; 0 for a vertical machine.
+    pub gravity: [R; 2],
+    /// Typical speed, m/s: sets the scales where gravity is 0, else unused.
+    pub speed: R,
+    /// Unbalance.
+    pub unbalance: UnbalanceConfig<R>,
+    /// Two planes of magnets; all 0 without.
+    pub magnets: [ActuatorConfig<R>; 2],
+    /// Bending modes; those beyond the model's `Q` - 2 are left out, and must be none.
+    pub modes: [Option<ModeConfig<R>>; MODES],
+    /// Length of a step, s.
+    pub step: R,
+}
+
+fn finite<R: Real>(name: &'static str, values: &[R]) -> Result<(), ConfigError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(ConfigError::NotFinite(name))
+    }
+}
+
+impl<R: Precision, const N: usize> CoupledConfig<R, N> {
+    fn check(&self, modes: usize) -> Result<(), ConfigError> {
+        positive("mass", self.mass)?;
+        positive("transverse_inertia", self.transverse_inertia)?;
+        positive("polar_inertia", self.polar_inertia)?;
+        if self.polar_inertia > R::TWO * self.transverse_inertia {
+            let rule = "no more than twice the transverse inertia";
+            return Err(ConfigError::OutOfRange("polar_inertia", rule));
+        }
+        if N > MOST_RINGS {
+            return Err(ConfigError::OutOfRange("rings", "1 to 4"));
+        }
+        for seat in &self.rings {
+            let ring = &seat.ring;
+            finite("place", &[ring.place])?;
+            positive("clearance", ring.clearance)?;
+            positive("radius", ring.radius)?;
+            not_negative("friction", ring.friction)?;
+            not_negative("restitution", ring.restitution)?;
+            if ring.restitution > R::ONE {
+                return Err(ConfigError::OutOfRange("restitution", "0 to 1"));
+            }
+            finite("shape", &seat.shape)?;
+        }
+        finite("gravity", &self.gravity)?;
+        let unbalance = &self.unbalance;
+        finite("unbalance", &[unbalance.eccentricity, unbalance.angle])?;
+        finite("skew", &[unbalance.skew, unbalance.skew_angle])?;
+        for magnet in &self.magnets {
+            finite("magnets", &[magnet.place, magnet.stiffness])?;
+            finite("magnets", &magnet.force)?;
+            finite("shape", &magnet.shape)?;
+            not_negative("magnets", magnet.damping)?;
+            magnet.limit.map_or(Ok(()), |it| positive("limit", it))?;
+        }
+        if self.modes.iter().skip(modes).any(Option::is_some) {
+            return Err(ConfigError::OutOfRange("modes", "as many as the model has"));
+        }
+        for mode in self.modes.iter().flatten() {
+            positive("mode_frequency", mode.speed)?;
+            not_negative("mode_damping", mode.damping_ratio)?;
+            positive("mode_mass", mode.mass)?;
+            finite("shape", &[mode.centre])?;
+        }
+        positive("step", self.step)
+    }
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// Checks `config` and works out the coefficients.
+    pub fn try_new(config: &CoupledConfig<R, N>) -> Result<Self, ConfigError> {
+        if !(2..=2 + MODES).contains(&Q) {
+            return Err(ConfigError::OutOfRange("modes", "0 to 3"));
+        }
+        config.check(Q - 2)?;
+        let Some(first) = config.rings.first().map(|seat| seat.ring) else {
+            return Err(ConfigError::OutOfRange("rings", "1 to 4"));
+        };
+        let pull = Vector::new(config.gravity).length();
+        let scales = Scales::try_new(first.clearance, pull, first.radius, config.speed)?;
+        let arm = (config.transverse_inertia / config.mass).sqrt();
+        let ratio = config.polar_inertia / config.transverse_inertia;
+        let size = scales.length / first.radius;
+        let rate = scales.time * scales.time / scales.length;
+        let mut model = Self {
+            rings: [Ring::default(); N],
+            inertia_ratio: config.polar_inertia / config.mass / first.radius / first.radius,
+            gyration: ratio * size,
+            turn: size,
+            gravity: Vector::new(config.gravity).times(rate),
+            magnets: [Magnet::default(); 2],
+            frequency: [R::ZERO; Q],
+            decay: [R::ZERO; Q],
+            mode_scale: [R::ZERO; Q],
+            weight: [Vector::default(); Q],
+            step: config.step / scales.time,
+            tilt: scales.length / arm,
+            scales,
+        };
+        for (k, mode) in config.modes.iter().enumerate() {
+            if let (Some(mode), Some(scale)) = (mode, model.mode_scale.get_mut(k + 2)) {
+                *scale = (config.mass / mode.mass).sqrt();
+                model.frequency[k + 2] = mode.speed * scales.time;
+                model.decay[k + 2] = R::TWO * mode.damping_ratio * mode.speed * scales.time;
+            }
+        }
+        for (ring, seat) in model.rings.iter_mut().zip(&config.rings) {
+            *ring = Ring::try_new(seat, config, &first, &scales)?;
+        }
+        for k in 0..N {
+            model.rings[k].shape =
+                model.shape_at(config.rings[k].ring.place, config.rings[k].shape);
+        }
+        for k in 0..2 {
+            let magnet = &config.magnets[k];
+            model.magnets[k] = Magnet {
+                shape: model.shape_at(magnet.place, magnet.shape),
+                stiffness: magnet.stiffness / config.mass * scales.time * scales.time,
+                damping: magnet.damping / config.mass * scales.time,
+                force: Vector::new(magnet.force).times(rate / config.mass),
+                limit: magnet.limit.map(|limit| limit * rate / config.mass),
+            };
+        }
+        let offset = |size: R, angle: R| {
+            let (sin, cos) = angle.sin_cos();
+            Vector::new([size * cos, size * sin])
+        };
+        let unbalance = &config.unbalance;
+        let weight = offset(unbalance.eccentricity / scales.length, unbalance.angle);
+        let couple = (R::ONE - ratio) * unbalance.skew * arm / scales.length;
+        let centres = config.modes.map(|it| it.map_or(R::ZERO, |it| it.centre));
+        model.weight = model.shape_at(R::ZERO, centres).map(|b| weight.times(b));
+        model.weight[1] = offset(couple, unbalance.skew_angle);
+        model.checked()
+    }
+
+    /// What rounding or the scales make of the numbers.
+    fn checked(self) -> Result<Self, ConfigError> {
+        positive("step", self.step)?;
+        positive("inertia_ratio", self.inertia_ratio)?;
+        let mut pull = R::ZERO;
+        for magnet in &self.magnets {
+            let square = magnet.shape.iter().fold(R::ZERO, |sum, b| sum + *b * *b);
+            finite("magnets", &[magnet.stiffness * square])?;
+            pull += magnet.stiffness.most(R::ZERO) * square;
+        }
+        for ring in &self.rings {
+            let square = ring.shape.iter().fold(R::ZERO, |sum, b| sum + *b * *b);
+            finite("place", &[square])?;
+        }
+        if R::HALF * R::HALF * self.step * self.step * pull > R::lit(STIFFEST) {
+            let rule = "no more than 1 over the rate at which the magnets pull away";
+            return Err(ConfigError::OutOfRange("step", rule));
+        }
+        Ok(self)
+    }
+}
+
+impl<R: Precision, const Q: usize> Ring<R, Q> {
+    fn try_new<const N: usize>(
+        seat: &SeatConfig<R>,
+        config: &CoupledConfig<R, N>,
+        first: &RingConfig<R>,
+        scales: &Scales<R>,
+    ) -> Result<Self, ConfigError> {
+        let ring = &seat.ring;
+        let units = Units {
+            mass: config.mass,
+            radius: first.radius,
+            bore: ring.radius + ring.clearance,
+            step: config.step / scales.time,
+            scales: *scales,
+        };
+        let mount = seat.mount.as_ref();
+        let race = seat.race.as_ref();
+        Ok(Self {
+            shape: [R::ZERO; Q],
+            limit: ring.clearance / first.clearance,
+            surface: ring.radius / first.radius,
+            friction: ring.friction,
+            restitution: ring.restitution,
+            mount: mount.map(|it| Sprung::try_new(it, &units)).transpose()?,
+            race: race
+                .map(|it| BallBearing::try_new(it, &units))
+                .transpose()?,
+        })
+    }
+}

@@ -1,0 +1,311 @@
+//! A step: stretches without impact, and the impacts between them.
+//!
+//! A stretch is tried as long as it can be. Where the axis ends beyond a ring's wall, or a ring beyond its
+//! stop, the moment at which it got there follows from the square of the distance, a parabola through its
+//! value and slope before and its value after; the stretch is taken to there, and again from there, until
+//! the wall is met.
+
+use super::passage::Passage;
+use super::{Coupled, CoupledState, RingEvent, at};
+use crate::crossing::crossing;
+use crate::support::mount::Mount;
+use crate::support::race::Race;
+use crate::vector::Vector;
+use touchdown_rotor::kinematics::{Change, ModelEvent};
+use touchdown_rotor::precision::Precision;
+
+/// Stretches in a step, tried ones included; beyond, the rest of the step is left out. Chosen, because 20
+/// turns of whirl fit in.
+const MOST_STRETCHES: usize = 512;
+/// Impacts in a step; beyond, the rotor stays on the wall that it meets.
+const MOST_IMPACTS: usize = 16;
+/// Shortenings by the parabola in a row; then by halves.
+const MOST_CROSSINGS: usize = 4;
+/// Distance from a wall, in units of epsilon and its radius, that counts as on it.
+const ON_WALL: f64 = 64.0;
+
+/// Who arrived at which wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arrival {
+    Axis(usize),
+    Ring(usize),
+}
+
+/// The wall that a stretch goes beyond.
+#[derive(Clone, Copy, Debug)]
+struct Beyond<R> {
+    who: Arrival,
+    /// Part of the stretch until then.
+    share: R,
+    /// Whether it is there before the stretch begins.
+    now: bool,
+}
+
+/// What is free inside a wall during a stretch.
+struct Flyer<R> {
+    who: Arrival,
+    place: Vector<R>,
+    moved: Vector<R>,
+    velocity: Vector<R>,
+    /// Change of the velocity.
+    kick: Vector<R>,
+    radius: R,
+}
+
+impl<R: Precision> Flyer<R> {
+    fn beyond(&self, time: R) -> Option<Beyond<R>> {
+        let square = self.radius * self.radius;
+        let end = self.place + self.moved;
+        let over = end.square() - square;
+        let value = self.place.square() - square;
+        let near = R::lit(ON_WALL) * R::EPSILON * square;
+        let inward = end.dot(self.velocity + self.kick) <= R::ZERO;
+        if over <= R::ZERO || (inward && over <= value.most(R::ZERO) + near) {
+            return None;
+        }
+        let outward = self.place.dot(self.velocity);
+        Some(Beyond {
+            who: self.who,
+            share: crossing(value, R::TWO * time * outward, over),
+            now: value >= -near && outward > R::ZERO,
+        })
+    }
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// One step. Bounded; cannot fail.
+    pub fn step(&self, state: &mut CoupledState<R, N, Q>, on_event: impl FnMut(RingEvent<R>)) {
+        self.go(state, R::ONE, on_event);
+        state.tick += 1;
+    }
+
+    /// The last part of a run: `fraction` of a step, below 1.
+    pub fn part_step(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        fraction: R,
+        on_event: impl FnMut(RingEvent<R>),
+    ) {
+        self.go(state, fraction, on_event);
+    }
+
+    fn go(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        part: R,
+        mut on_event: impl FnMut(RingEvent<R>),
+    ) {
+        let whole = self.step * part;
+        let (mut left, mut longest, mut impacts, mut crossings) = (whole, whole, 0, 0);
+        for seat in &mut state.seats {
+            (seat.impulse, seat.struck) = (R::ZERO, false);
+        }
+        for stretch in 0..=MOST_STRETCHES {
+            if left <= R::ZERO {
+                break;
+            }
+            if stretch == MOST_STRETCHES {
+                state.shortened = state.shortened.saturating_add(1);
+                break;
+            }
+            let time = left.least(longest).least(self.reach(state));
+            let Some(passage) = self.pass(state, time) else {
+                longest = R::HALF * time;
+                continue;
+            };
+            match self.beyond(state, &passage) {
+                None => {
+                    left -= time;
+                    (longest, crossings) = (R::TWO * time, 0);
+                    self.accept(state, &passage, (whole - left) / self.step, &mut on_event);
+                }
+                Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
+                    let now = (whole - left) / self.step;
+                    let stays = impacts >= MOST_IMPACTS;
+                    self.meet(state, Some(beyond.who), stays, now, &mut on_event);
+                    impacts += 1;
+                    (longest, crossings) = (whole, 0);
+                }
+                Some(beyond) => {
+                    crossings += 1;
+                    longest = if crossings > MOST_CROSSINGS {
+                        time * beyond.share.least(R::HALF)
+                    } else {
+                        time * beyond.share
+                    };
+                }
+            }
+        }
+        for seat in &mut state.seats {
+            let load = &mut seat.load;
+            load.normal = seat.impulse / whole;
+            load.peak = load.peak.most(load.normal);
+            if seat.held.is_some() && !seat.struck {
+                load.held_peak = load.held_peak.most(load.normal);
+            }
+        }
+    }
+
+    /// The first wall that the stretch goes beyond.
+    fn beyond(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+    ) -> Option<Beyond<R>> {
+        let mut first: Option<Beyond<R>> = None;
+        for (i, ring) in self.rings.iter().enumerate() {
+            let (ring_moved, ring_kick) = (passage.ring_moved(i), passage.ring_kick(i));
+            let axis = (!state.is_held(i)).then(|| Flyer {
+                who: Arrival::Axis(i),
+                place: self.within(state, i),
+                moved: at(&ring.shape, &passage.moved) - ring_moved,
+                velocity: self.relative(state, i),
+                kick: at(&ring.shape, &passage.kick) - ring_kick,
+                radius: ring.limit,
+            });
+            let travel = ring.mount.and_then(|mount| mount.travel());
+            let travel = travel.filter(|_| !state.is_stopped(i));
+            let stop = travel.map(|radius| Flyer {
+                who: Arrival::Ring(i),
+                place: state.ring_place(i),
+                moved: ring_moved,
+                velocity: state.ring_velocity(i),
+                kick: ring_kick,
+                radius,
+            });
+            for flyer in [axis, stop].into_iter().flatten() {
+                let beyond = flyer.beyond(passage.time);
+                let earlier = |it: &Beyond<R>| first.is_none_or(|first| it.share < first.share);
+                first = beyond.filter(earlier).or(first);
+            }
+        }
+        first
+    }
+
+    fn accept(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+        part: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) {
+        let before = *state;
+        let time = passage.time;
+        self.book(state, passage);
+        for k in 0..Q {
+            state.place[k].add(passage.moved[k]);
+            state.velocity[k].add(passage.kick[k]);
+        }
+        let spin = before.spin.value() + R::HALF * passage.spun;
+        state.spin.add(passage.spun);
+        state.angle.add(self.turn * spin * time);
+        for i in 0..N {
+            self.advance_ring(state, passage, i, spin);
+        }
+        self.calm(&before, state);
+        if !passage.rubs {
+            self.rub_in_turn(state, passage);
+        }
+        for i in 0..N {
+            let place = self.within(&before, i);
+            let end = self.within(state, i);
+            let seat = &mut state.seats[i];
+            let Some(held) = &mut seat.held else {
+                continue;
+            };
+            let Some(press) = &passage.presses[i] else {
+                seat.held = None;
+                self.tell(state, i, part, Change::LiftsOff, R::ZERO, on_event);
+                continue;
+            };
+            held.turns.add(place.cross(end).atan2(place.dot(end)));
+            let rolled = core::mem::replace(&mut held.rolling, press.stuck);
+            let change = match (rolled, press.stuck) {
+                (false, true) => Change::RollingStarts,
+                (true, false) => Change::SlidingStarts,
+                _ => continue,
+            };
+            self.tell(state, i, part, change, R::ZERO, on_event);
+        }
+        self.seat(state);
+    }
+
+    /// The work of unbalance, magnets and damping.
+    fn book(&self, state: &mut CoupledState<R, N, Q>, passage: &Passage<R, N, Q>) {
+        let books = &mut state.books;
+        for (force, moved) in passage.unbalance.iter().zip(&passage.moved) {
+            books.driven.add(force.dot(*moved));
+        }
+        let rate = R::ONE / passage.time;
+        for (decay, moved) in self.decay.iter().zip(&passage.moved) {
+            books.damped.add(*decay * rate * moved.square());
+        }
+        let places = state.place.map(|sums| sums.value());
+        for (magnet, share) in self.magnets.iter().zip(passage.shares) {
+            let moved = at(&magnet.shape, &passage.moved);
+            let middle = at(&magnet.shape, &places) + moved.times(R::HALF);
+            let pull = middle.times(magnet.stiffness) + magnet.force;
+            let loss = share * magnet.damping * rate * moved.square();
+            let cut = (R::ONE - share) * pull.dot(moved);
+            state.books.damped.add(loss + cut);
+        }
+    }
+
+    /// Ring and inner ring, and the work of their contact; `spin` is the mean.
+    fn advance_ring(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+        i: usize,
+        spin: R,
+    ) {
+        let (ring, time) = (&self.rings[i], passage.time);
+        let moved = at(&ring.shape, &passage.moved) - passage.ring_moved(i);
+        let seat = &mut state.seats[i];
+        if let Some(mount) = &ring.mount {
+            mount.advance(&mut seat.mount, &passage.rides[i], time, passage.pushed[i]);
+            if !passage.stopped[i] {
+                mount.release(&mut seat.mount);
+            }
+        }
+        let rub = passage.rub(i);
+        let (mut turned, mut race_spin) = (R::ZERO, R::ZERO);
+        if let Some(race) = &ring.race {
+            turned = race.turned(&seat.race, time, passage.drags[i], rub);
+            race_spin = crate::BallBearing::surface(&seat.race) + R::HALF * turned;
+        }
+        let mut heat = R::ZERO;
+        if let Some(press) = &passage.presses[i] {
+            let speed = moved.times(R::ONE / time);
+            let slip = press.normal.cross(speed) + ring.surface * spin - race_spin;
+            let impulse = R::TWO * press.pressed / time;
+            heat = -(rub * slip);
+            state.books.heat.add(heat);
+            state.books.lost.add(impulse * press.normal.dot(speed));
+            seat.impulse += impulse;
+        }
+        if let Some(race) = &ring.race {
+            race.advance(&mut seat.race, time, turned, rub, heat);
+        }
+    }
+
+    pub(super) fn tell(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        ring: usize,
+        part: R,
+        change: Change<R>,
+        impulse: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) {
+        on_event(RingEvent {
+            ring,
+            event: ModelEvent {
+                at: state.in_step(part),
+                change,
+                after: self.kinematics_at(state, ring),
+            },
+            impulse,
+        });
+    }
+}

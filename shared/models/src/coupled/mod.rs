@@ -1,0 +1,177 @@
+//! Rung `coupled`: a rotor that moves across its axis, tilts and bends, in rings of their own axial places,
+//! each rigid or on a spring and a damper, each a bushing or a ball bearing.
+//!
+//! The axis at z is at p + z a + sum of phi_k(z) eta_k. In units of the model every one of these
+//! coordinates has the rotor's mass, so that a place on the axis is a row of numbers b, its shape: its
+//! displacement is b . X, and an impulse there moves another place by b . b'. `Q` coordinates: 2 of the
+//! rigid rotor and one for each bending mode. What a ring has not is not computed.
+//!
+//! Solved by time-stepping: the midpoint rule for all that is smooth, with the walls that are in permanent
+//! contact in it (`passage`); impacts at the moments that a step shows (`follow`, `strike`); all walls that
+//! touch at once together (`links`). Equations and limits: docs/model/coupled.md.
+
+mod config;
+mod energy;
+mod follow;
+mod links;
+mod passage;
+mod settle;
+mod state;
+mod strike;
+
+pub use config::{ActuatorConfig, CoupledConfig, ModeConfig, SeatConfig};
+pub use energy::CoupledEnergy;
+pub use state::{CoupledState, RingEvent};
+
+use crate::support::mount::Sprung;
+use crate::support::race::BallBearing;
+use crate::vector::Vector;
+use config::MODES;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::Scales;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ring<R, const Q: usize> {
+    shape: [R; Q],
+    /// Clearance, of the first ring's.
+    limit: R,
+    /// Rotor radius, of the first ring's.
+    surface: R,
+    friction: R,
+    restitution: R,
+    mount: Option<Sprung<R>>,
+    race: Option<BallBearing<R>>,
+}
+
+impl<R: Real, const Q: usize> Default for Ring<R, Q> {
+    fn default() -> Self {
+        Self {
+            shape: [R::ZERO; Q],
+            limit: R::ONE,
+            surface: R::ONE,
+            friction: R::ZERO,
+            restitution: R::ZERO,
+            mount: None,
+            race: None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Magnet<R, const Q: usize> {
+    shape: [R; Q],
+    stiffness: R,
+    damping: R,
+    force: Vector<R>,
+    limit: Option<R>,
+}
+
+impl<R: Real, const Q: usize> Default for Magnet<R, Q> {
+    fn default() -> Self {
+        Self {
+            shape: [R::ZERO; Q],
+            stiffness: R::ZERO,
+            damping: R::ZERO,
+            force: Vector::default(),
+            limit: None,
+        }
+    }
+}
+
+/// Coefficients of the model; `N` rings, `Q` - 2 bending modes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coupled<R, const N: usize, const Q: usize> {
+    rings: [Ring<R, Q>; N],
+    /// J_p/(m r^2) at the first ring.
+    inertia_ratio: R,
+    /// Rate of nutation for a spin of 1.
+    gyration: R,
+    /// Angular speed of a spin of 1.
+    turn: R,
+    gravity: Vector<R>,
+    magnets: [Magnet<R, Q>; 2],
+    /// Of each coordinate by itself: a bending mode's frequency and damping.
+    frequency: [R; Q],
+    decay: [R; Q],
+    /// Shape of a mode in the model over that in the configuration.
+    mode_scale: [R; Q],
+    /// Unbalance in each coordinate, on the rotor.
+    weight: [Vector<R>; Q],
+    /// Length of a step, T.
+    step: R,
+    /// Tilt of 1, rad.
+    tilt: R,
+    scales: Scales<R>,
+}
+
+/// Displacement of a place from the coordinates.
+fn at<R: Real, const Q: usize>(shape: &[R; Q], of: &[Vector<R>; Q]) -> Vector<R> {
+    let terms = shape.iter().zip(of);
+    terms.fold(Vector::default(), |sum, (b, x)| sum + x.times(*b))
+}
+
+fn product<R: Real, const Q: usize>(a: &[R; Q], b: &[R; Q]) -> R {
+    a.iter().zip(b).fold(R::ZERO, |sum, (a, b)| sum + *a * *b)
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// The model's units, those of the first ring.
+    pub fn scales(&self) -> &Scales<R> {
+        &self.scales
+    }
+
+    /// Unit of the tilt, rad: the tilt that displaces the axis by a clearance at the radius of gyration.
+    pub fn tilt_scale(&self) -> R {
+        self.tilt
+    }
+
+    /// A place on the axis, m from the centre of mass, with each mode's displacement there.
+    pub fn shape_at(&self, place: R, modes: [R; MODES]) -> [R; Q] {
+        let mut shape = self.mode_scale;
+        for (b, mode) in shape.iter_mut().skip(2).zip(modes) {
+            *b = *b * mode;
+        }
+        let zeta = place * self.tilt / self.scales.length;
+        for (b, rigid) in shape.iter_mut().zip([R::ONE, zeta]) {
+            *b = rigid;
+        }
+        shape
+    }
+}
+
+impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
+    /// The same model with every coefficient rounded once.
+    pub fn rounded<R: Real>(&self) -> Coupled<R, N, Q> {
+        let vector = |v: Vector<f64>| Vector::new(v.parts().map(R::lit));
+        Coupled {
+            rings: self.rings.map(|ring| Ring {
+                shape: ring.shape.map(R::lit),
+                limit: R::lit(ring.limit),
+                surface: R::lit(ring.surface),
+                friction: R::lit(ring.friction),
+                restitution: R::lit(ring.restitution),
+                mount: ring.mount.map(|mount| mount.rounded()),
+                race: ring.race.map(|race| race.rounded()),
+            }),
+            inertia_ratio: R::lit(self.inertia_ratio),
+            gyration: R::lit(self.gyration),
+            turn: R::lit(self.turn),
+            gravity: vector(self.gravity),
+            magnets: self.magnets.map(|magnet| Magnet {
+                shape: magnet.shape.map(R::lit),
+                stiffness: R::lit(magnet.stiffness),
+                damping: R::lit(magnet.damping),
+                force: vector(magnet.force),
+                limit: magnet.limit.map(R::lit),
+            }),
+            frequency: self.frequency.map(R::lit),
+            decay: self.decay.map(R::lit),
+            mode_scale: self.mode_scale.map(R::lit),
+            weight: self.weight.map(vector),
+            step: R::lit(self.step),
+            tilt: R::lit(self.tilt),
+            scales: self.scales.rounded(),
+        }
+    }
+}

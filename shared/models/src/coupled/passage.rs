@@ -1,0 +1,468 @@
+//! A stretch of time without impact, by the midpoint rule: x+ = x + h (v + v+)/2 and all forces at the middle.
+//!
+//! In v+ - v all of it is linear; the gyroscopic moment makes the matrix complex, modes and magnets couple
+//! its rows. Walls act along the middle of the places before and after, so that they do no work; that
+//! normal is found by repetition.
+
+use super::links::{Grip, Link, Links};
+use super::{Coupled, CoupledState, at, product};
+use crate::support::mount::{Mount, Ride};
+use crate::support::race::{Drag, Race, Turning};
+use crate::vector::Vector;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+
+/// Repetitions for the normals; each gains the angle of the stretch.
+const NORMALS: usize = 20;
+/// Repetitions for the magnets that are at their limit.
+const LIMITED: usize = 6;
+/// Values of the drags: against the turning, none, against the new turning.
+const DRAGS: usize = 3;
+/// How far round a wall in a stretch, rad.
+const REACH: f64 = 0.25;
+/// Heat below 0, in friction times speed, from which walls jam. Chosen, because a ring that rolls a quarter of
+/// a radian in a stretch slips by less in its mean.
+const MOST_GAINED: f64 = 0.01;
+
+/// A contact in a stretch; impulses as the displacement that they give a rotor free to move: times half the
+/// stretch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Press<R> {
+    pub(super) pressed: R,
+    pub(super) rubbed: R,
+    /// Outward normal in the middle.
+    pub(super) normal: Vector<R>,
+    pub(super) stuck: bool,
+}
+
+/// A stretch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passage<R, const N: usize, const Q: usize> {
+    pub(super) time: R,
+    pub(super) moved: [Vector<R>; Q],
+    pub(super) kick: [Vector<R>; Q],
+    pub(super) rides: [Ride<R>; N],
+    pub(super) presses: [Option<Press<R>>; N],
+    /// Displacement of the rings by rotor and stop.
+    pub(super) pushed: [[Vector<R>; 2]; N],
+    pub(super) stopped: [bool; N],
+    pub(super) drags: [Drag<R>; N],
+    /// Of the spin.
+    pub(super) spun: R,
+    /// Of the unbalance, mean.
+    pub(super) unbalance: [Vector<R>; Q],
+    /// Part of the magnets' force that their limit leaves.
+    pub(super) shares: [R; 2],
+    /// Whether friction is in it.
+    pub(super) rubs: bool,
+    inverse: [[Vector<R>; Q]; Q],
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
+    pub(super) fn ring_moved(&self, ring: usize) -> Vector<R> {
+        self.rides[ring].moved + self.pushed[ring][0] + self.pushed[ring][1]
+    }
+
+    pub(super) fn ring_kick(&self, ring: usize) -> Vector<R> {
+        let pushed = self.pushed[ring][0] + self.pushed[ring][1];
+        self.rides[ring].kick + pushed.times(R::TWO / self.time)
+    }
+
+    /// Friction on the rotor, as an impulse.
+    pub(super) fn rub(&self, ring: usize) -> R {
+        self.presses[ring].map_or(R::ZERO, |press| R::TWO * press.rubbed / self.time)
+    }
+}
+
+/// Links and whose they are.
+struct Walls<R, const N: usize> {
+    time: R,
+    links: Links<R>,
+    contacts: [Option<usize>; N],
+    stops: [Option<usize>; N],
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// The next `time`; none where the walls cannot be solved for in it.
+    pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Option<Passage<R, N, Q>> {
+        let mut drags = [Drag::Runs(R::ZERO); N];
+        for ((drag, ring), seat) in drags.iter_mut().zip(&self.rings).zip(&state.seats) {
+            if let Some(race) = &ring.race {
+                *drag = race.guess(&seat.race);
+            }
+        }
+        let free = self.free(state, time, drags);
+        let mut passage = self.press(state, free)?;
+        for _ in 1..DRAGS {
+            let mut changed = false;
+            for (i, ring) in self.rings.iter().enumerate() {
+                let Some(race) = &ring.race else {
+                    continue;
+                };
+                let rub = passage.rub(i);
+                let other = race.corrected(&state.seats[i].race, time, drags[i], rub);
+                if let Some(other) = other {
+                    (drags[i], changed) = (other, true);
+                }
+            }
+            if !changed {
+                break;
+            }
+            passage = self.press(state, Passage { drags, ..free })?;
+        }
+        Some(passage)
+    }
+
+    /// Without any wall.
+    fn free(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        time: R,
+        drags: [Drag<R>; N],
+    ) -> Passage<R, N, Q> {
+        let mut rides = [Ride::default(); N];
+        for ((ride, ring), seat) in rides.iter_mut().zip(&self.rings).zip(&state.seats) {
+            if let Some(mount) = &ring.mount {
+                *ride = mount.ride(&seat.mount, time);
+            }
+        }
+        let mut passage = Passage {
+            time,
+            moved: [Vector::default(); Q],
+            kick: [Vector::default(); Q],
+            rides,
+            presses: [None; N],
+            pushed: [[Vector::default(); 2]; N],
+            stopped: [false; N],
+            drags,
+            spun: R::ZERO,
+            unbalance: self.unbalance(state, time),
+            shares: [R::ONE; 2],
+            rubs: true,
+            inverse: [[Vector::default(); Q]; Q],
+        };
+        for _ in 0..LIMITED {
+            self.go_free(state, &mut passage);
+            let before = passage.shares;
+            for (share, magnet) in passage.shares.iter_mut().zip(&self.magnets) {
+                if let Some(limit) = magnet.limit {
+                    let places = state.places();
+                    let middle = at(&magnet.shape, &places)
+                        + at(&magnet.shape, &passage.moved).times(R::HALF);
+                    let rate = at(&magnet.shape, &passage.moved).times(R::ONE / time);
+                    let force =
+                        middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);
+                    *share = (limit / force.length().most(limit)).least(R::ONE);
+                }
+            }
+            if passage.shares == before {
+                break;
+            }
+        }
+        passage
+    }
+
+    fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+        let (time, half) = (passage.time, R::HALF * passage.time);
+        let (places, velocities) = (state.places(), state.velocities());
+        let nutation = self.gyration * state.spin.value();
+        let mut matrix = [[Vector::default(); Q]; Q];
+        let mut force = passage.unbalance;
+        force[0] = force[0] + self.gravity;
+        force[1] = force[1] + velocities[1].turned().times(nutation);
+        for k in 0..Q {
+            let stiffness = self.frequency[k] * self.frequency[k];
+            let middle = places[k] + velocities[k].times(half);
+            force[k] = force[k] - middle.times(stiffness) - velocities[k].times(self.decay[k]);
+            matrix[k][k] = Vector::real(R::ONE + half * (self.decay[k] + half * stiffness));
+        }
+        matrix[1][1].y = -(half * nutation);
+        for (magnet, share) in self.magnets.iter().zip(passage.shares) {
+            let rate = at(&magnet.shape, &velocities);
+            let middle = at(&magnet.shape, &places) + rate.times(half);
+            let pull = middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);
+            let implicit = share * half * (magnet.damping - half * magnet.stiffness);
+            for k in 0..Q {
+                force[k] = force[k] + pull.times(share * magnet.shape[k]);
+                for l in 0..Q {
+                    matrix[k][l].x += implicit * magnet.shape[k] * magnet.shape[l];
+                }
+            }
+        }
+        passage.inverse = inverse(matrix);
+        for k in 0..Q {
+            let kick = (0..Q).fold(Vector::default(), |sum, l| {
+                sum + passage.inverse[k][l] * force[l].times(time)
+            });
+            passage.kick[k] = kick;
+            passage.moved[k] = (velocities[k] + kick.times(R::HALF)).times(time);
+        }
+    }
+
+    /// Force of the unbalance, in the mean of the next `time`.
+    fn unbalance(&self, state: &CoupledState<R, N, Q>, time: R) -> [Vector<R>; Q] {
+        if self.weight.iter().all(|weight| weight.square() <= R::ZERO) {
+            return [Vector::default(); Q];
+        }
+        let speed = self.turn * state.spin.value();
+        let half = R::HALF * speed * time;
+        let (sin, cos) = (state.angle.parts().1 + half).sin_cos();
+        let mean = if half.abs() > R::EPSILON {
+            half.sin_cos().0 / half
+        } else {
+            R::ONE
+        };
+        let force = Vector::new([cos, sin]).times(mean * speed * speed);
+        self.weight.map(|weight| force * weight)
+    }
+
+    /// With the walls that hold.
+    fn press(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        free: Passage<R, N, Q>,
+    ) -> Option<Passage<R, N, Q>> {
+        let mut walls = self.walls(state, &free);
+        if walls.links.is_empty() {
+            return Some(free);
+        }
+        let smooth = match self.settle(state, &mut walls) {
+            true => self.gains(state, &walls, free.time),
+            false => true,
+        };
+        if smooth {
+            walls = self.walls(state, &free);
+            walls.links.smooth();
+            if !self.settle(state, &mut walls) {
+                return None;
+            }
+        }
+        let mut passage = free;
+        passage.rubs = !smooth;
+        let rate = R::TWO / free.time;
+        let mut pushes = [Vector::default(); Q];
+        for (i, ring) in self.rings.iter().enumerate() {
+            let mobility = free.rides[i].mobility;
+            if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
+                && link.grip != Grip::Open
+            {
+                let push = link.push();
+                passage.presses[i] = Some(Press {
+                    pressed: link.pressed,
+                    rubbed: link.rubbed,
+                    normal: link.normal,
+                    stuck: link.grip == Grip::Sticks,
+                });
+                for (sum, b) in pushes.iter_mut().zip(&ring.shape) {
+                    *sum = *sum + push.times(*b);
+                }
+                passage.pushed[i][0] = push.times(-mobility);
+                passage.spun += rate * ring.surface * link.rubbed / self.inertia_ratio;
+            }
+            if let Some(link) = walls.stops[i].and_then(|it| walls.links.get(it))
+                && link.grip != Grip::Open
+            {
+                passage.pushed[i][1] = link.push().times(mobility);
+                passage.stopped[i] = true;
+            }
+        }
+        for k in 0..Q {
+            let more = (0..Q).fold(Vector::default(), |sum, l| {
+                sum + free.inverse[k][l] * pushes[l]
+            });
+            passage.moved[k] = passage.moved[k] + more;
+            passage.kick[k] = passage.kick[k] + more.times(rate);
+        }
+        Some(passage)
+    }
+
+    /// The walls that hold at the start, with what moves in them.
+    fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Walls<R, N> {
+        let half = R::HALF * free.time;
+        let mut walls = Walls {
+            time: free.time,
+            links: Links::new(),
+            contacts: [None; N],
+            stops: [None; N],
+        };
+        let mut turnings = [Turning::default(); N];
+        for (i, ring) in self.rings.iter().enumerate() {
+            if let Some(race) = &ring.race {
+                turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
+            }
+            if let Some(held) = state.seats[i].held {
+                let place = self.within(state, i);
+                let velocity = self.relative(state, i);
+                let normal = place.times(R::ONE / place.length());
+                let slip = normal.cross(velocity) + self.surface(state, i);
+                let moved = at(&ring.shape, &free.moved) - free.rides[i].moved;
+                let mut link = Link::new(normal, moved);
+                link.surface = half * (ring.surface * state.spin.value() - turnings[i].free);
+                link.friction = ring.friction;
+                link.grip = if held.rolling {
+                    Grip::Sticks
+                } else {
+                    Link::sliding(ring.friction, slip)
+                };
+                walls.contacts[i] = Some(walls.links.add(link));
+            }
+            if state.is_stopped(i) {
+                let place = state.ring_place(i);
+                let normal = place.times(R::ONE / place.length());
+                let link = Link::new(normal, free.rides[i].moved);
+                walls.stops[i] = Some(walls.links.add(link));
+            }
+        }
+        for (i, ring) in self.rings.iter().enumerate() {
+            let mobility = Vector::real(free.rides[i].mobility);
+            let back = Vector::default() - mobility;
+            for (j, other) in self.rings.iter().enumerate() {
+                let (Some(to), Some(from)) = (walls.contacts[i], walls.contacts[j]) else {
+                    continue;
+                };
+                let mut motion = Vector::default();
+                for (k, b) in ring.shape.iter().enumerate() {
+                    motion = motion + at(&other.shape, &free.inverse[k]).times(*b);
+                }
+                let mut spin = ring.surface * other.surface / self.inertia_ratio;
+                if i == j {
+                    motion = motion + mobility;
+                    spin += turnings[i].mobility;
+                }
+                walls.links.respond(to, from, motion, spin);
+            }
+            if let Some(stop) = walls.stops[i] {
+                walls.links.respond(stop, stop, mobility, R::ZERO);
+                if let Some(contact) = walls.contacts[i] {
+                    walls.links.respond(stop, contact, back, R::ZERO);
+                    walls.links.respond(contact, stop, back, R::ZERO);
+                }
+            }
+        }
+        walls
+    }
+
+    /// Finds impulses and normals; false where there are none, or a wall is gone round too far.
+    fn settle(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> bool {
+        let half_velocity = |i: usize, normal: Vector<R>, time: R| {
+            normal.cross(self.relative(state, i)) * R::HALF * time
+        };
+        let time = walls.time;
+        let surfaces: [R; N] = core::array::from_fn(|i| {
+            let link = walls.contacts[i].and_then(|it| walls.links.get(it));
+            link.map_or(R::ZERO, |link| link.surface)
+        });
+        let mut changed = R::INFINITY;
+        for _ in 0..NORMALS {
+            for i in 0..N {
+                if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get_mut(it)) {
+                    // Friction is for the slip at the end: twice the mean less that at the start.
+                    link.surface = surfaces[i] - half_velocity(i, link.normal, time);
+                }
+            }
+            if !walls.links.solve() {
+                return false;
+            }
+            changed = R::ZERO;
+            for i in 0..N {
+                let of = [
+                    (
+                        walls.contacts[i],
+                        self.within(state, i),
+                        self.rings[i].limit,
+                    ),
+                    (
+                        walls.stops[i],
+                        state.ring_place(i),
+                        state.ring_place(i).length(),
+                    ),
+                ];
+                for (place, from, limit) in of {
+                    let Some(place) = place else {
+                        continue;
+                    };
+                    let moved = walls.links.motion(place);
+                    if moved.length() > R::TWO * R::lit(REACH) * limit {
+                        return false;
+                    }
+                    let sum = from.times(R::TWO) + moved;
+                    let normal = sum.times(R::ONE / sum.length());
+                    if let Some(link) = walls.links.get_mut(place) {
+                        changed = changed.most((normal - link.normal).length());
+                        link.normal = normal;
+                    }
+                }
+            }
+            if changed <= R::TWO * R::EPSILON {
+                return true;
+            }
+        }
+        changed * changed <= R::EPSILON
+    }
+
+    /// Whether friction gives more than what its sticking is uncertain by.
+    fn gains(&self, state: &CoupledState<R, N, Q>, walls: &Walls<R, N>, time: R) -> bool {
+        let (mut heat, mut size) = (R::ZERO, R::ZERO);
+        for i in 0..N {
+            let Some(place) = walls.contacts[i] else {
+                continue;
+            };
+            let Some(link) = walls.links.get(place) else {
+                continue;
+            };
+            let moved = walls.links.motion(place);
+            let velocity = self.relative(state, i);
+            let start = R::HALF * time * self.surface(state, i);
+            // What the link knows is the surface at the end less half of the velocity before.
+            let end = walls.links.surface(place) + R::HALF * time * link.normal.cross(velocity);
+            let slip = link.normal.cross(moved) + start + end;
+            heat += -(link.rubbed * slip);
+            let least = R::EPSILON.sqrt() * start.abs();
+            size += link.rubbed.abs() * (R::lit(MOST_GAINED) * moved.length() + least);
+        }
+        heat < -size
+    }
+
+    /// Longest stretch in which no held ring goes too far round its wall.
+    pub(super) fn reach(&self, state: &CoupledState<R, N, Q>) -> R {
+        let mut reach = R::INFINITY;
+        for (i, ring) in self.rings.iter().enumerate() {
+            let speed = self.relative(state, i).length();
+            if state.is_held(i) && speed > R::ZERO {
+                reach = reach.least(R::lit(REACH) * ring.limit / speed);
+            }
+        }
+        reach
+    }
+
+    /// Velocity at one ring by an impulse at another, in an impact.
+    pub(super) fn mobility(&self, to: usize, from: usize) -> R {
+        product(&self.rings[to].shape, &self.rings[from].shape)
+    }
+}
+
+/// Of a matrix near the unit matrix, whose real part is positive definite: no row need be exchanged.
+fn inverse<R: Real, const Q: usize>(mut matrix: [[Vector<R>; Q]; Q]) -> [[Vector<R>; Q]; Q] {
+    let mut inverse = [[Vector::default(); Q]; Q];
+    for k in 0..Q {
+        inverse[k][k] = Vector::real(R::ONE);
+    }
+    for k in 0..Q {
+        let one = Vector::real(R::ONE).over(matrix[k][k]);
+        for l in 0..Q {
+            matrix[k][l] = matrix[k][l] * one;
+            inverse[k][l] = inverse[k][l] * one;
+        }
+        for row in 0..Q {
+            let factor = matrix[row][k];
+            if row == k || factor.square() == R::ZERO {
+                continue;
+            }
+            for l in 0..Q {
+                matrix[row][l] = matrix[row][l] - factor * matrix[k][l];
+                inverse[row][l] = inverse[row][l] - factor * inverse[k][l];
+            }
+        }
+    }
+    inverse
+}

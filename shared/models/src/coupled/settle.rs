@@ -1,0 +1,181 @@
+//! Keeps held rings on their walls, in place and in speed, and lets friction follow where walls jam.
+//!
+//! The mean of two velocities along a wall does not turn with it: what is missing, of the square of the
+//! step, is put into one stretch and taken from the next, and friction lets that swing grow. The mean of the
+//! speeds across the wall before and after a stretch has no swing.
+
+use super::links::{Link, Links};
+use super::passage::Passage;
+use super::{Coupled, CoupledState};
+use crate::support::mount::Mount;
+use crate::support::race::Race;
+use crate::vector::Vector;
+use touchdown_rotor::precision::Precision;
+
+/// Distance from the wall, in units of epsilon and the clearance, from which a held ring is put back.
+/// Chosen, because rounding needs thousands of steps to go so far.
+const OFF: f64 = 64.0;
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// Links of the held rings; each is to change by `wanted` along its normal, and rings move by `yields`.
+    fn held(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        motion: impl Fn(usize) -> Vector<R>,
+        yields: impl Fn(usize) -> R,
+    ) -> (Links<R>, [Option<usize>; N]) {
+        let mut links = Links::new();
+        let mut places = [None; N];
+        for (i, place) in places.iter_mut().enumerate() {
+            if state.is_held(i) {
+                let within = self.within(state, i);
+                let normal = within.times(R::ONE / within.length());
+                *place = Some(links.add(Link::new(normal, motion(i))));
+            }
+        }
+        for i in 0..N {
+            for j in 0..N {
+                if let (Some(to), Some(from)) = (places[i], places[j]) {
+                    let own = if i == j { yields(i) } else { R::ZERO };
+                    let mobility = self.mobility(i, j) + own;
+                    links.respond(to, from, Vector::real(mobility), R::ZERO);
+                }
+            }
+        }
+        (links, places)
+    }
+
+    /// Velocity of a ring by an impulse.
+    fn ring_mobility(&self, ring: usize) -> R {
+        self.rings[ring].mount.map_or(R::ZERO, |it| it.mobility())
+    }
+
+    /// Takes the swing across the walls from the velocities, after a stretch.
+    pub(super) fn calm(&self, before: &CoupledState<R, N, Q>, state: &mut CoupledState<R, N, Q>) {
+        let (mut links, places) = self.held(
+            state,
+            |i| self.relative(state, i),
+            |i| self.ring_mobility(i),
+        );
+        if links.is_empty() {
+            return;
+        }
+        for (i, place) in places.iter().enumerate() {
+            if let Some(link) = place.and_then(|place| links.get_mut(place)) {
+                let within = self.within(before, i);
+                let speed = within.dot(self.relative(before, i)) / within.length();
+                link.wanted = R::HALF * (speed + link.normal.dot(link.free));
+            }
+        }
+        links.solve_linear();
+        state.books.lost.add(-links.gained());
+        for (i, place) in places.iter().enumerate() {
+            if let Some(link) = place.and_then(|place| links.get(place)) {
+                self.give(state, i, link.push());
+            }
+        }
+    }
+
+    /// Gives an impulse to the rotor at a ring, and its counterpart to the ring.
+    fn give(&self, state: &mut CoupledState<R, N, Q>, ring: usize, push: Vector<R>) {
+        state.kick(&self.rings[ring].shape, push);
+        if let Some(mount) = &self.rings[ring].mount {
+            let back = Vector::default() - push;
+            mount.kick(&mut state.seats[ring].mount, back);
+        }
+    }
+
+    /// Puts the axis onto the walls of held rings, where it is not but for rounding.
+    pub(super) fn seat(&self, state: &mut CoupledState<R, N, Q>) {
+        let off = self.off(state);
+        if off <= R::lit(OFF) * R::EPSILON {
+            return;
+        }
+        let (mut links, places) = self.held(state, |_| Vector::default(), |_| R::ZERO);
+        for (i, place) in places.iter().enumerate() {
+            if let Some(link) = place.and_then(|place| links.get_mut(place)) {
+                link.wanted = self.rings[i].limit - link.normal.dot(self.within(state, i));
+            }
+        }
+        links.solve_linear();
+        let mut seated = *state;
+        for (i, place) in places.iter().enumerate() {
+            if let Some(link) = place.and_then(|place| links.get(place)) {
+                for (sums, b) in seated.place.iter_mut().zip(&self.rings[i].shape) {
+                    sums.add(link.push().times(*b));
+                }
+            }
+        }
+        // More rings than the rotor can lie on at once.
+        if self.off(&seated) > off {
+            return;
+        }
+        let (before, after) = (self.energy(state), self.energy(&seated));
+        *state = seated;
+        for part in [
+            before.height - after.height,
+            before.magnets - after.magnets,
+            before.bending - after.bending,
+        ] {
+            state.books.lost.add(part);
+        }
+    }
+
+    /// Farthest from its wall of any held ring, of its clearance.
+    fn off(&self, state: &CoupledState<R, N, Q>) -> R {
+        (0..N)
+            .filter(|i| state.is_held(*i))
+            .fold(R::ZERO, |off, i| {
+                off.most((self.reach_at(state, i) - R::ONE).abs())
+            })
+    }
+
+    /// Friction of a stretch that was gone without it, limited by the normal impulses there.
+    pub(super) fn rub_in_turn(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+    ) {
+        for (i, press) in passage.presses.iter().enumerate() {
+            if let Some(press) = press {
+                self.rub(state, i, R::TWO * press.pressed / passage.time);
+            }
+        }
+    }
+
+    /// Friction by a normal impulse that is past; whether it stopped the slip. A ring at its stop is taken to
+    /// be held by it.
+    pub(super) fn rub(&self, state: &mut CoupledState<R, N, Q>, i: usize, impulse: R) -> bool {
+        let ring = &self.rings[i];
+        let within = self.within(state, i);
+        let normal = within.times(R::ONE / within.length());
+        let stands = state.is_stopped(i) || ring.mount.is_none();
+        let velocity = if stands {
+            self.relative(state, i) + state.ring_velocity(i)
+        } else {
+            self.relative(state, i)
+        };
+        let slip = normal.cross(velocity) + self.surface(state, i);
+        let mut mobility = self.mobility(i, i) + ring.surface * ring.surface / self.inertia_ratio;
+        mobility += ring.race.map_or(R::ZERO, |race| race.mobility());
+        if !stands {
+            mobility += self.ring_mobility(i);
+        }
+        let stick = -slip / mobility;
+        let most = ring.friction * impulse;
+        let rub = stick.within(most);
+        let heat = -(rub * (slip + R::HALF * mobility * rub));
+        let push = normal.turned().times(rub);
+        if stands {
+            state.kick(&ring.shape, push);
+        } else {
+            self.give(state, i, push);
+        }
+        state.spin.add(ring.surface * rub / self.inertia_ratio);
+        if let Some(race) = &ring.race {
+            race.strike(&mut state.seats[i].race, rub, heat);
+        }
+        state.books.heat.add(heat);
+        stick.abs() <= most
+    }
+}

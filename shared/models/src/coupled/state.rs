@@ -1,0 +1,247 @@
+//! The state: the rotor's coordinates, its spin, and each ring's motion.
+
+use super::{Coupled, at};
+use crate::support::mount::{Mount, Sprung, SprungState};
+use crate::support::race::{BallBearing, BallBearingState, Race};
+use crate::vector::{Sums, Vector};
+use crate::{Load, Placement, RingMotion};
+use touchdown_rotor::clock::Instant;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::sum::Sum;
+use touchdown_rotor::turns::Turns;
+
+/// Something that happened in a ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingEvent<R> {
+    /// Its index.
+    pub ring: usize,
+    /// What; the place is that of the axis at the ring, the spin surface speed there.
+    pub event: ModelEvent<R>,
+    /// Normal impulse of an impact over the rotor's mass, V; else 0.
+    pub impulse: R,
+}
+
+/// Permanent contact in a ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Held<R> {
+    pub(super) rolling: bool,
+    pub(super) turns: Turns<R>,
+}
+
+/// A ring's part of the state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seat<R> {
+    pub(super) held: Option<Held<R>>,
+    pub(super) mount: SprungState<R>,
+    pub(super) race: BallBearingState<R>,
+    pub(super) load: Load<R>,
+    /// Normal impulse in this step so far.
+    pub(super) impulse: R,
+    /// Whether it has an impact.
+    pub(super) struck: bool,
+}
+
+/// What was done to the energy so far, per mass, V^2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Books<R> {
+    pub(super) heat: Sum<R>,
+    pub(super) lost: Sum<R>,
+    /// Taken by the damping of modes and magnets.
+    pub(super) damped: Sum<R>,
+    pub(super) driven: Sum<R>,
+}
+
+/// The state of rotor and rings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledState<R, const N: usize, const Q: usize> {
+    pub(super) tick: u64,
+    pub(super) place: [Sums<R>; Q],
+    pub(super) velocity: [Sums<R>; Q],
+    /// As surface speed at the first ring.
+    pub(super) spin: Sum<R>,
+    pub(super) angle: Turns<R>,
+    pub(super) seats: [Seat<R>; N],
+    pub(super) books: Books<R>,
+    pub(super) shortened: u32,
+}
+
+impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
+    /// Steps of which a part was left out, because contacts were too many.
+    pub fn shortened(&self) -> u32 {
+        self.shortened
+    }
+
+    /// Spin as surface speed at the first ring, V.
+    pub fn spin(&self) -> R {
+        self.spin.value()
+    }
+
+    /// Displacement and velocity of the centre of mass, rho0 and V.
+    pub fn centre(&self) -> ([R; 2], [R; 2]) {
+        (self.places()[0].parts(), self.velocities()[0].parts())
+    }
+
+    /// Displacement and velocity of each coordinate: centre, tilt, modes; of the rotor's mass each.
+    pub fn coordinate(&self, index: usize) -> ([R; 2], [R; 2]) {
+        let of = |sums: &[Sums<R>; Q]| {
+            sums.get(index)
+                .map_or([R::ZERO; 2], |it| it.value().parts())
+        };
+        (of(&self.place), of(&self.velocity))
+    }
+
+    /// Displacement and velocity of the axis at a place of this shape, [`Coupled::shape_at`].
+    pub fn axis_at(&self, shape: &[R; Q]) -> ([R; 2], [R; 2]) {
+        (
+            at(shape, &self.places()).parts(),
+            at(shape, &self.velocities()).parts(),
+        )
+    }
+
+    pub(super) fn places(&self) -> [Vector<R>; Q] {
+        self.place.map(|sums| sums.value())
+    }
+
+    pub(super) fn velocities(&self) -> [Vector<R>; Q] {
+        self.velocity.map(|sums| sums.value())
+    }
+
+    pub(super) fn ring_place(&self, ring: usize) -> Vector<R> {
+        Sprung::place(&self.seats[ring].mount)
+    }
+
+    pub(super) fn ring_velocity(&self, ring: usize) -> Vector<R> {
+        Sprung::velocity(&self.seats[ring].mount)
+    }
+
+    pub(super) fn is_held(&self, ring: usize) -> bool {
+        self.seats[ring].held.is_some()
+    }
+
+    /// Whether a hard stop holds the ring.
+    pub(super) fn is_stopped(&self, ring: usize) -> bool {
+        Sprung::is_stopped(&self.seats[ring].mount)
+    }
+
+    pub(super) fn in_step(&self, part: R) -> Instant<R> {
+        Instant {
+            tick: self.tick,
+            fraction: part,
+        }
+    }
+
+    /// Gives an impulse at a place of this shape.
+    pub(super) fn kick(&mut self, shape: &[R; Q], push: Vector<R>) {
+        for (sums, b) in self.velocity.iter_mut().zip(shape) {
+            sums.add(push.times(*b));
+        }
+    }
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// The state at time 0, and what happens there; `spin` is the surface speed at the first ring. Rings
+    /// and inner rings are at rest, and nothing is bent.
+    pub fn start(
+        &self,
+        start: &Placement<R>,
+        spin: R,
+        mut on_event: impl FnMut(RingEvent<R>),
+    ) -> Result<CoupledState<R, N, Q>, ConfigError> {
+        if !spin.is_finite() {
+            return Err(ConfigError::NotFinite("spin"));
+        }
+        let numbers = [start.position, start.velocity, start.tilt, start.tilt_rate];
+        if numbers.as_flattened().iter().any(|x| !x.is_finite()) {
+            return Err(ConfigError::NotFinite("start"));
+        }
+        let seat = Seat {
+            held: None,
+            mount: SprungState::default(),
+            race: BallBearingState::default(),
+            load: Load::default(),
+            impulse: R::ZERO,
+            struck: false,
+        };
+        let mut state = CoupledState {
+            tick: 0,
+            place: [Sums::default(); Q],
+            velocity: [Sums::default(); Q],
+            spin: Sum::new(spin),
+            angle: Turns::default(),
+            seats: [seat; N],
+            books: Books::default(),
+            shortened: 0,
+        };
+        for (sums, x) in state.place.iter_mut().zip([start.position, start.tilt]) {
+            *sums = Sums::new(x);
+        }
+        let rates = [start.velocity, start.tilt_rate];
+        for (sums, v) in state.velocity.iter_mut().zip(rates) {
+            *sums = Sums::new(v);
+        }
+        for (i, ring) in self.rings.iter().enumerate() {
+            if self.within(&state, i).length() > ring.limit * (R::ONE + Self::together()) {
+                let rule = "inside the clearance at every ring";
+                return Err(ConfigError::OutOfRange("start", rule));
+            }
+        }
+        self.meet(&mut state, None, false, R::ZERO, &mut on_event);
+        Ok(state)
+    }
+
+    /// Displacement of the axis in a ring.
+    pub(super) fn within(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Vector<R> {
+        at(&self.rings[ring].shape, &state.places()) - state.ring_place(ring)
+    }
+
+    /// Velocity of the axis in a ring.
+    pub(super) fn relative(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Vector<R> {
+        at(&self.rings[ring].shape, &state.velocities()) - state.ring_velocity(ring)
+    }
+
+    /// Surface speed of the rotor against what it rubs on.
+    pub(super) fn surface(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
+        let race = BallBearing::surface(&state.seats[ring].race);
+        self.rings[ring].surface * state.spin.value() - race
+    }
+
+    /// The axis at a ring, spin as surface speed there.
+    pub fn kinematics_at(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Kinematics<R> {
+        let held = state.seats[ring].held;
+        let (position, velocity) = state.axis_at(&self.rings[ring].shape);
+        Kinematics {
+            position,
+            velocity,
+            spin: self.rings[ring].surface * state.spin.value(),
+            touch: match held {
+                None => Touch::None,
+                Some(held) if held.rolling => Touch::Rolling,
+                Some(_) => Touch::Sliding,
+            },
+            turns: held.map_or((0, R::ZERO), |held| held.turns.parts()),
+        }
+    }
+
+    /// Distance of the axis from a ring's centre, of the ring's clearance.
+    pub fn reach_at(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
+        self.within(state, ring).length() / self.rings[ring].limit
+    }
+
+    /// A ring and its inner ring now.
+    pub fn ring(&self, state: &CoupledState<R, N, Q>, ring: usize) -> RingMotion<R> {
+        let race = self.rings[ring].race;
+        RingMotion {
+            position: state.ring_place(ring).parts(),
+            velocity: state.ring_velocity(ring).parts(),
+            stopped: state.is_stopped(ring),
+            race: race.and_then(|it| it.motion(&state.seats[ring].race)),
+        }
+    }
+
+    /// Normal force in a ring.
+    pub fn load(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Load<R> {
+        state.seats[ring].load
+    }
+}

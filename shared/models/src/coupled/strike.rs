@@ -1,0 +1,290 @@
+//! Impacts: all rings that the axis touches at one moment, and all stops that rings touch, together.
+//!
+//! Each ring follows restitution and Coulomb's law. One that is held, or left, and a stop, take what is driven
+//! into them without giving it back. Where friction would gain energy it follows the normal impulses; where
+//! unlike restitutions would, there is none.
+
+use super::follow::Arrival;
+use super::links::{Grip, Link, Links};
+use super::{Coupled, CoupledState, RingEvent};
+use crate::support::mount::Mount;
+use crate::support::race::Race;
+use crate::vector::Vector;
+use touchdown_rotor::kinematics::Change;
+use touchdown_rotor::precision::Precision;
+
+/// What an impact may gain, in units of epsilon and the energy of the motion into the walls.
+const CLOSE: f64 = 64.0;
+
+/// A ring in an impact.
+#[derive(Clone, Copy, Debug, Default)]
+struct Meeting<R> {
+    /// Whether the axis is at its wall, and the ring at its stop.
+    touches: bool,
+    stops: bool,
+    /// Whether the axis arrives, or lies, on a wall that does not hold it yet.
+    new: bool,
+    /// Speed into the wall.
+    outward: R,
+    restitution: R,
+    impulse: R,
+    stuck: bool,
+}
+
+impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
+    /// Distance from the wall, in clearances, at which a ring takes part in an impact of another: half
+    /// the digits.
+    pub(super) fn together() -> R {
+        R::EPSILON.sqrt()
+    }
+
+    /// The impact of all that touch, `part` of a step after the step's start; `arrived` is at its wall
+    /// whatever its place. With `stays` no ring is left again.
+    pub(super) fn meet(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        arrived: Option<Arrival>,
+        stays: bool,
+        part: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) {
+        let mut meetings: [Meeting<R>; N] =
+            core::array::from_fn(|i| self.meeting(state, i, arrived));
+        if !meetings.iter().any(|it| it.new || it.stops) {
+            return;
+        }
+        let mut after = *state;
+        self.strike(&mut after, &mut meetings);
+        let mut returns = meetings.map(|meeting| meeting.new && stays);
+        if !stays {
+            self.find_returns(&after, &meetings, &mut returns);
+        }
+        if returns.contains(&true) {
+            for (meeting, returns) in meetings.iter_mut().zip(returns) {
+                if returns {
+                    meeting.restitution = R::ZERO;
+                }
+            }
+            after = *state;
+            self.strike(&mut after, &mut meetings);
+        }
+        *state = after;
+        for (i, meeting) in meetings.iter().enumerate() {
+            state.seats[i].impulse += meeting.impulse;
+            state.seats[i].struck |= meeting.impulse > R::ZERO;
+            if meeting.new && meeting.outward > R::CUTOFF_SPEED {
+                state.seats[i].struck = true;
+                let change = Change::Impact(meeting.outward);
+                self.tell(state, i, part, change, meeting.impulse, on_event);
+            }
+            if meeting.stops
+                && let Some(mount) = &self.rings[i].mount
+            {
+                mount.seat(&mut state.seats[i].mount);
+            }
+            if returns[i] {
+                state.seats[i].held = Some(super::state::Held {
+                    rolling: meeting.stuck,
+                    ..Default::default()
+                });
+            }
+        }
+        self.seat(state);
+        for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
+            self.tell(state, i, part, Change::ContactStarts, R::ZERO, on_event);
+        }
+    }
+
+    fn meeting(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        i: usize,
+        arrived: Option<Arrival>,
+    ) -> Meeting<R> {
+        let near = R::ONE - Self::together();
+        let ring = &self.rings[i];
+        let within = self.within(state, i);
+        let held = state.is_held(i);
+        let arrives = arrived == Some(Arrival::Axis(i));
+        let touches = held || arrives || within.length() >= near * ring.limit;
+        let outward = if touches {
+            within.dot(self.relative(state, i)) / within.length()
+        } else {
+            R::ZERO
+        };
+        let travel = ring.mount.and_then(|mount| mount.travel());
+        let at_stop = travel.is_some_and(|it| state.ring_place(i).length() >= near * it);
+        Meeting {
+            touches,
+            stops: at_stop || state.is_stopped(i) || arrived == Some(Arrival::Ring(i)),
+            new: touches && !held && (arrives || outward >= R::ZERO),
+            outward,
+            restitution: if held { R::ZERO } else { ring.restitution },
+            ..Meeting::default()
+        }
+    }
+
+    fn strike(&self, state: &mut CoupledState<R, N, Q>, meetings: &mut [Meeting<R>; N]) {
+        for (i, meeting) in meetings.iter().enumerate() {
+            if (meeting.touches || meeting.stops)
+                && let Some(mount) = &self.rings[i].mount
+            {
+                mount.brace(&mut state.seats[i].mount);
+            }
+        }
+        let (links, places, stops) = self.links(state, meetings);
+        let mut solved = links;
+        let most = R::lit(CLOSE) * R::EPSILON * self.size(&links, &places);
+        let mut smooth = !solved.solve() || solved.gained() > most;
+        if smooth {
+            solved = links;
+            solved.smooth();
+            if !solved.solve() || solved.gained() > most {
+                for link in solved.all() {
+                    link.wanted = R::ZERO;
+                }
+                if !solved.solve() || solved.gained() > most {
+                    solved.take_in_turn();
+                }
+            }
+        } else {
+            smooth = false;
+        }
+        self.take(state, meetings, &solved, [&places, &stops]);
+        for i in 0..N {
+            if smooth && meetings[i].impulse > R::ZERO {
+                meetings[i].stuck = self.rub(state, i, meetings[i].impulse);
+            }
+        }
+    }
+
+    /// Size of the energy that the impact is about.
+    fn size(&self, links: &Links<R>, places: &[Option<usize>; N]) -> R {
+        let all = places.iter().flatten().filter_map(|it| links.get(*it));
+        all.fold(R::ZERO, |sum, link| sum + link.free.square())
+    }
+
+    /// The walls that take part, with velocities in them.
+    #[allow(clippy::type_complexity)]
+    fn links(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        meetings: &[Meeting<R>; N],
+    ) -> (Links<R>, [Option<usize>; N], [Option<usize>; N]) {
+        let mut links = Links::new();
+        let (mut places, mut stops) = ([None; N], [None; N]);
+        for (i, meeting) in meetings.iter().enumerate() {
+            if meeting.touches {
+                let within = self.within(state, i);
+                let normal = within.times(R::ONE / within.length());
+                let mut link = Link::new(normal, self.relative(state, i));
+                let outward = normal.dot(link.free);
+                link.wanted = -(meeting.restitution * outward.most(R::ZERO));
+                link.surface = self.surface(state, i);
+                link.friction = self.rings[i].friction;
+                let slip = normal.cross(link.free) + link.surface;
+                link.grip = if outward < R::ZERO {
+                    Grip::Open
+                } else {
+                    Link::sliding(link.friction, slip)
+                };
+                places[i] = Some(links.add(link));
+            }
+            if meeting.stops {
+                let place = state.ring_place(i);
+                let normal = place.times(R::ONE / place.length());
+                stops[i] = Some(links.add(Link::new(normal, state.ring_velocity(i))));
+            }
+        }
+        for (i, ring) in self.rings.iter().enumerate() {
+            let yielding = ring.mount.map_or(R::ZERO, |mount| mount.yielding());
+            let own = Vector::real(yielding);
+            for (j, other) in self.rings.iter().enumerate() {
+                if let (Some(to), Some(from)) = (places[i], places[j]) {
+                    let mut motion = Vector::real(self.mobility(i, j));
+                    let mut spin = ring.surface * other.surface / self.inertia_ratio;
+                    if i == j {
+                        motion = motion + own;
+                        spin += ring.race.map_or(R::ZERO, |race| race.mobility());
+                    }
+                    links.respond(to, from, motion, spin);
+                }
+            }
+            if let Some(stop) = stops[i] {
+                links.respond(stop, stop, own, R::ZERO);
+                if let Some(contact) = places[i] {
+                    links.respond(stop, contact, Vector::default() - own, R::ZERO);
+                    links.respond(contact, stop, Vector::default() - own, R::ZERO);
+                }
+            }
+        }
+        (links, places, stops)
+    }
+
+    /// Gives the impulses, and books their work: impulse times mean velocity.
+    fn take(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        meetings: &mut [Meeting<R>; N],
+        links: &Links<R>,
+        [places, stops]: [&[Option<usize>; N]; 2],
+    ) {
+        for (i, ring) in self.rings.iter().enumerate() {
+            let contact = places[i].and_then(|place| Some((place, links.get(place)?)));
+            let stop = stops[i].and_then(|place| links.get(place));
+            let by_stop = stop.map_or(Vector::default(), Link::push);
+            let mut push = Vector::default();
+            if let Some((place, link)) = contact {
+                push = link.push();
+                let mean = (link.free + links.motion(place)).times(R::HALF);
+                let surface = R::HALF * (link.surface + links.surface(place));
+                let heat = -(link.rubbed * (link.normal.cross(mean) + surface));
+                state.books.heat.add(heat);
+                let lost = link.pressed * link.normal.dot(mean);
+                state.books.lost.add(lost);
+                state.kick(&ring.shape, push);
+                let turned = ring.surface * link.rubbed / self.inertia_ratio;
+                state.spin.add(turned);
+                if let Some(race) = &ring.race {
+                    race.strike(&mut state.seats[i].race, link.rubbed, heat);
+                }
+                meetings[i].impulse = link.pressed;
+                meetings[i].stuck = link.grip == Grip::Sticks;
+            }
+            if let Some(mount) = &ring.mount {
+                let back = Vector::default() - push;
+                mount.strike(&mut state.seats[i].mount, back, by_stop);
+            }
+        }
+    }
+
+    /// Rings whose next bounce would be no longer than a step: by a step without them.
+    fn find_returns(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        meetings: &[Meeting<R>; N],
+        returns: &mut [bool; N],
+    ) {
+        if !meetings.iter().any(|meeting| meeting.new) {
+            return;
+        }
+        let time = self.step.least(self.reach(state));
+        let Some(passage) = self.pass(state, time) else {
+            return;
+        };
+        for (i, ring) in self.rings.iter().enumerate() {
+            if !meetings[i].new {
+                continue;
+            }
+            let within = self.within(state, i);
+            let normal = within.times(R::ONE / within.length());
+            let velocity = self.relative(state, i);
+            let moved = super::at(&ring.shape, &passage.moved) - passage.ring_moved(i);
+            let bent = moved - velocity.times(time);
+            let round = normal.cross(moved);
+            let into = R::TWO * normal.dot(bent) + round * round / ring.limit;
+            let launch = -normal.dot(velocity);
+            returns[i] = into > R::ZERO && R::TWO * launch * time * time <= into * self.step;
+        }
+    }
+}
