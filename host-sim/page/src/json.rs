@@ -81,6 +81,9 @@ struct StateJson {
 struct RingJson<'a> {
     name: &'a str,
     z_m: f64,
+    /// Where rings move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring: Option<RingEndJson>,
     #[serde(flatten)]
     history: HistoryJson<'a>,
 }
@@ -254,9 +257,11 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
     let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
     let rings = rings.zip(&outcome.rings);
     rings
-        .map(|(ring, [model, _])| RingJson {
+        .enumerate()
+        .map(|(index, (ring, [model, _]))| RingJson {
             name: &ring.name,
             z_m: ring.place,
+            ring: outcome.seats.get(index).map(ring_end),
             history: history(model),
         })
         .collect()

@@ -34,6 +34,7 @@ pub fn run<W: Write>(
         histories,
         ledger,
         ring,
+        seats,
     } = model::run(scene).map_err(refused)?;
     let mut feed = SampleSource::new(scene, stream).map_err(refused)?;
     let procedure = Procedure {
@@ -51,6 +52,7 @@ pub fn run<W: Write>(
         given_up,
         ledger,
         ring,
+        seats,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         spectrogram,

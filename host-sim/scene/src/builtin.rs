@@ -29,4 +29,5 @@ pub const BUILT_IN: &[BuiltIn] = built_in![
     "soft-support",
     "two-plane",
     "vertical",
+    "compressor",
 ];

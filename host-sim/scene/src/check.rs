@@ -14,7 +14,8 @@ use super::machine::{retainer, rotor, start};
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
 use super::support::{BallBearingTable, SupportTable};
 use super::{
-    Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start, TwoPlane, limits,
+    BallBearing, Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start,
+    Support, TwoPlane, limits,
 };
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
@@ -32,9 +33,12 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let support = file.support.as_ref().map(SupportTable::check).transpose()?;
     let ball_bearing = file.ball_bearing.as_ref();
     let ball_bearing = ball_bearing.map(BallBearingTable::check).transpose()?;
-    let tachometers = ball_bearing.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
-    let two_plane = two_plane(&file, &rotor, &retainer, &start)?;
-    let needed = needed(&file)?;
+    // Marks are seen on the ring of one plane only.
+    let plane = ball_bearing.filter(|_| file.two_plane.is_none());
+    let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
+    let seat = (support, ball_bearing);
+    let two_plane = two_plane(&file, &rotor, &retainer, &start, seat)?;
+    let needed = needed(&file, two_plane.as_ref());
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
     let materials = materials(file.materials.as_ref())?;
@@ -129,20 +133,12 @@ pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
 }
 
 /// The lowest rung that has all parts of the machine.
-fn needed(file: &SceneFile) -> Result<Fidelity, Diagnostic> {
-    let gives_way = [
-        ("support", file.support.is_some()),
-        ("ball_bearing", file.ball_bearing.is_some()),
-    ];
-    let gives_way = gives_way.iter().find(|(_, given)| *given);
-    match (gives_way, file.two_plane.is_some()) {
-        (Some((table, _)), true) => {
-            let rule = format!("no rung has both [{table}] and [two_plane]: leave one out");
-            Err(Diagnostic::new(table, "", rule))
-        }
-        (Some(_), false) => Ok(Fidelity::Support),
-        (None, true) => Ok(Fidelity::TwoPlane),
-        (None, false) => Ok(Fidelity::Rigid),
+fn needed(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Fidelity {
+    match two_plane {
+        Some(machine) if machine.is_coupled() => Fidelity::Coupled,
+        Some(_) => Fidelity::TwoPlane,
+        None if file.support.is_some() || file.ball_bearing.is_some() => Fidelity::Support,
+        None => Fidelity::Rigid,
     }
 }
 
@@ -151,18 +147,28 @@ fn two_plane(
     rotor: &Rotor,
     retainer: &Retainer,
     start: &Start,
+    (support, ball_bearing): (Option<Support>, Option<BallBearing>),
 ) -> Result<Option<TwoPlane>, Diagnostic> {
     let Some(table) = &file.two_plane else {
-        let without = [("ring", file.ring.len()), ("magnet", file.magnet.len())];
-        return match without.iter().find(|(_, count)| *count > 0) {
-            Some((table, _)) => {
+        let without = [
+            ("ring", "z_mm", file.ring.len()),
+            ("magnet", "z_mm", file.magnet.len()),
+            ("mode", "frequency_hz", file.mode.len()),
+        ];
+        return match without.iter().find(|(_, _, count)| *count > 0) {
+            Some((table, key, _)) => {
                 let rule = format!("[[{table}]] needs [two_plane]");
-                Err(Diagnostic::new(table, "z_mm", rule))
+                Err(Diagnostic::new(table, key, rule))
             }
             None => Ok(None),
         };
     };
-    let two_plane = table.check(rotor, retainer, &file.ring, &file.magnet)?;
+    let (rings, magnets, modes) = (&file.ring, &file.magnet, &file.mode);
+    let mut two_plane = table.check(rotor, retainer, rings, magnets, modes)?;
+    for ring in &mut two_plane.rings {
+        ring.support = ring.support.or(support);
+        ring.ball_bearing = ring.ball_bearing.or(ball_bearing);
+    }
     two_plane.check_start(start)?;
     Ok(Some(two_plane))
 }
@@ -175,9 +181,17 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let parts = match rung {
         Fidelity::Support => "[support] or [ball_bearing]",
         Fidelity::TwoPlane => "[two_plane] and [[ring]]",
+        Fidelity::Coupled => "[two_plane] and [[ring]]",
         Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
     };
-    if !parts.is_empty() && needed != rung {
+    // The coupled rung has all that rigid rings have.
+    let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
+    let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
+    if less {
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping or limit: leave them out, or rung";
+        return Err(Diagnostic::new("model", "rung", rule));
+    }
+    if !parts.is_empty() && needed != rung && !more {
         let rule = format!("rung = \"{}\" needs {parts}", rung.name());
         return Err(Diagnostic::new("model", "rung", rule));
     }

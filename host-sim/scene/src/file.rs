@@ -9,6 +9,7 @@ use super::calibration::CalibrationTable;
 use super::diagnostic;
 use super::faults::FaultTable;
 use super::list;
+use super::mode::ModeTable;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
 use touchdown_base::input_error::InputError;
@@ -51,6 +52,8 @@ pub(super) struct SceneFile {
     pub ring: Vec<RingTable>,
     #[serde(default)]
     pub magnet: Vec<MagnetTable>,
+    #[serde(default)]
+    pub mode: Vec<ModeTable>,
     #[serde(default)]
     pub start: StartTable,
     pub run: RunTable,

@@ -13,6 +13,7 @@ pub mod limits;
 pub mod list;
 pub mod machine;
 mod materials;
+mod mode;
 mod model;
 pub mod names;
 mod outputs;
@@ -25,6 +26,7 @@ mod two_plane;
 
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use materials::{Contact, Materials};
+pub use mode::{MODES, Mode};
 pub use model::{Fidelity, Math, Model, Precision, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
 pub use support::{BallBearing, Support};

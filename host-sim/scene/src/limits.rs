@@ -60,7 +60,7 @@ pub const SKEW_MRAD: RangeInclusive<f64> = 0.0..=100.0;
 pub const FORCE_N: RangeInclusive<f64> = -1e9..=1e9;
 /// Slope of the rotor's axis, mrad, and its rate, rad/s.
 pub const TILT: RangeInclusive<f64> = -1e4..=1e4;
-/// First bending mode, Hz.
+/// A bending mode, Hz.
 pub const ELASTIC_MODE_HZ: RangeInclusive<f64> = 1.0..=1e6;
 /// Rotor's axis above the horizontal, deg.
 pub const INCLINATION_DEG: RangeInclusive<f64> = -90.0..=90.0;

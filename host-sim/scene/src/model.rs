@@ -16,6 +16,8 @@ pub enum Fidelity {
     Support,
     /// A rotor that tilts, in several rings.
     TwoPlane,
+    /// A rotor that tilts and bends, in rings that give way and turn.
+    Coupled,
 }
 
 /// How a rung goes through time.
@@ -24,7 +26,8 @@ pub enum Fidelity {
 pub enum Scheme {
     /// From the launch to the next change, in closed form or by series. Rung `rigid`.
     Launch,
-    /// Impact laws at the middle of each step (Moreau, Jean). Rungs `moreau`, `support`, `two-plane`.
+    /// Impact laws at the middle of each step (Moreau, Jean). Rungs `moreau`, `support`, `two-plane`,
+    /// `coupled`.
     Midpoint,
     /// Semi-implicit Euler. Rung `hertz`.
     Euler,
@@ -74,12 +77,13 @@ pub struct Model {
 
 impl Fidelity {
     /// All, by rising cost.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Rigid,
         Self::Moreau,
         Self::Hertz,
         Self::Support,
         Self::TwoPlane,
+        Self::Coupled,
     ];
 
     /// As in a scene file.
@@ -90,6 +94,7 @@ impl Fidelity {
             Self::Hertz => "hertz",
             Self::Support => "support",
             Self::TwoPlane => "two-plane",
+            Self::Coupled => "coupled",
         }
     }
 
@@ -97,7 +102,7 @@ impl Fidelity {
     pub fn schemes(self) -> &'static [Scheme] {
         match self {
             Self::Rigid => &[Scheme::Launch],
-            Self::Moreau | Self::Support | Self::TwoPlane => &[Scheme::Midpoint],
+            Self::Moreau | Self::Support | Self::TwoPlane | Self::Coupled => &[Scheme::Midpoint],
             Self::Hertz => &[Scheme::Euler, Scheme::Verlet],
         }
     }

@@ -21,8 +21,11 @@ pub const SPRING: &str = "retainer's mass, spring, damper";
 /// All parts, in the order of the ladder.
 pub fn parts(scene: &Scene) -> Vec<Part> {
     let rung = scene.model.rung;
-    let support = scene.support.as_ref();
-    let bearing = scene.ball_bearing.as_ref();
+    let rings = || scene.two_plane.iter().flat_map(|it| &it.rings);
+    let support = rings().find_map(|it| it.support.as_ref());
+    let support = scene.support.as_ref().or(support);
+    let bearing = rings().find_map(|it| it.ball_bearing.as_ref());
+    let bearing = scene.ball_bearing.as_ref().or(bearing);
     let two_plane = scene.two_plane.as_ref();
     let laws = match rung {
         Fidelity::Hertz => "as losses of a contact that takes time",
@@ -47,11 +50,12 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         },
     ];
     let mut part = |name, asked: bool, needs: Fidelity, given, absent| {
-        let modelled = asked && rung == needs;
+        let modelled = asked && (rung == needs || rung == Fidelity::Coupled);
         let reason = match (asked, modelled) {
             (_, true) => given,
             (true, false) => match needs {
                 Fidelity::Support => "given, but only rung support has it",
+                Fidelity::Coupled => "given, but only rung coupled has it",
                 _ => "given, but only rung two-plane has it",
             },
             (false, _) => absent,
@@ -107,11 +111,19 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         "[[magnet]] is given",
         "no [[magnet]]",
     );
+    let c = Fidelity::Coupled;
+    part(
+        "bending of the shaft",
+        two_plane.is_some_and(|it| !it.modes.is_empty()),
+        c,
+        "[[mode]] is given",
+        "no [[mode]]",
+    );
     parts.push(Part {
-        name: "bending of the shaft, wear",
+        name: "wear",
         modelled: false,
         asked: false,
-        reason: "no rung has them",
+        reason: "no rung has it",
     });
     parts
 }
@@ -122,6 +134,10 @@ pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
     match scene.model.rung {
         Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => (3, "x, y, spin"),
         Fidelity::TwoPlane => (5, "x, y, two tilts, spin"),
+        Fidelity::Coupled => (
+            coupled(scene),
+            "x, y, two tilts, spin; x, y of modes and rings; inner rings' spin",
+        ),
         Fidelity::Support => match (ring, race) {
             (false, false) => (3, "x, y, spin"),
             (true, false) => (5, "x, y, spin; ring x, y"),
@@ -129,4 +145,13 @@ pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
             (true, true) => (6, "x, y, spin; ring x, y; inner ring's spin"),
         },
     }
+}
+
+fn coupled(scene: &Scene) -> usize {
+    scene.two_plane.as_ref().map_or(5, |machine| {
+        let ring = |ring: &super::Ring| {
+            2 * usize::from(ring.support.is_some()) + usize::from(ring.ball_bearing.is_some())
+        };
+        5 + 2 * machine.modes.len() + machine.rings.iter().map(ring).sum::<usize>()
+    })
 }

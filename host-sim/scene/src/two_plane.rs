@@ -3,7 +3,9 @@
 use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
+use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{MILLI, ON_THE_WALL, above_zero, between};
+use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
 use super::{Retainer, Rotor, Start, limits, list};
 use touchdown_base::plain::Number;
 
@@ -35,6 +37,8 @@ pub struct TwoPlane {
     pub rings: Vec<Ring>,
     /// None to two.
     pub magnets: Vec<Magnet>,
+    /// Bending modes of the free rotor, none to three.
+    pub modes: Vec<Mode>,
 }
 
 /// A retainer ring.
@@ -48,6 +52,10 @@ pub struct Ring {
     pub radius: f64,
     /// Its gap and law.
     pub retainer: Retainer,
+    /// What it stands on, where that gives way.
+    pub support: Option<Support>,
+    /// Its ball bearing, where it has one.
+    pub ball_bearing: Option<BallBearing>,
 }
 
 /// What is left of a magnetic bearing.
@@ -57,8 +65,12 @@ pub struct Magnet {
     pub place: f64,
     /// Force per displacement, along it where positive: the negative stiffness of permanent flux, N/m.
     pub stiffness: f64,
+    /// Force against the velocity, N s/m.
+    pub damping: f64,
     /// N.
     pub force: [f64; 2],
+    /// Largest force, N.
+    pub limit: Option<f64>,
 }
 
 impl TwoPlane {
@@ -66,6 +78,16 @@ impl TwoPlane {
     /// (or the velocities instead of all of these).
     pub fn at(centre: [f64; 2], tilt: [f64; 2], place: f64) -> [f64; 2] {
         [centre[0] + place * tilt[0], centre[1] + place * tilt[1]]
+    }
+
+    /// Whether it has what only rigid rings and a rigid rotor lack.
+    pub fn is_coupled(&self) -> bool {
+        let seats = self.rings.iter();
+        let mut seats = seats.map(|ring| ring.support.is_some() || ring.ball_bearing.is_some());
+        let mut magnets = self.magnets.iter();
+        seats.any(|gives_way| gives_way)
+            || magnets.any(|magnet| magnet.damping > 0.0 || magnet.limit.is_some())
+            || !self.modes.is_empty()
     }
 
     /// The start must be within every ring.
@@ -119,6 +141,8 @@ pub(super) struct RingTable {
     clearance_mm: Option<f64>,
     friction: Option<f64>,
     restitution: Option<f64>,
+    support: Option<SupportTable>,
+    ball_bearing: Option<BallBearingTable>,
 }
 
 #[derive(Deserialize)]
@@ -127,6 +151,9 @@ pub(super) struct MagnetTable {
     z_mm: f64,
     #[serde(default)]
     stiffness_n_m: f64,
+    #[serde(default)]
+    damping_n_s_m: f64,
+    limit_n: Option<f64>,
     #[serde(default, deserialize_with = "list::exactly")]
     force_n: [f64; 2],
 }
@@ -140,6 +167,7 @@ impl TwoPlaneTable {
         retainer: &Retainer,
         rings: &[RingTable],
         magnets: &[MagnetTable],
+        modes: &[ModeTable],
     ) -> Result<TwoPlane, Diagnostic> {
         let rings = all_rings(rotor, retainer, rings)?;
         let ends = rings.iter().map(|ring| ring.place);
@@ -195,6 +223,7 @@ impl TwoPlaneTable {
             sensors,
             rings,
             magnets: all_magnets(magnets)?,
+            modes: all_modes(modes, rotor.mass, self.rotor_length_mm)?,
         })
     }
 
@@ -264,6 +293,13 @@ fn all_rings(
         .collect()
 }
 
+/// A flaw of a table in a ring's row stands at that table.
+fn in_ring<T, U>(
+    check: impl Fn(&T) -> Result<U, Diagnostic>,
+) -> impl Fn(&T) -> Result<U, Diagnostic> {
+    move |table| check(table).map_err(|flaw| Diagnostic::new("ring", flaw.table, flaw.rule))
+}
+
 impl RingTable {
     fn check(&self, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Diagnostic> {
         const TABLE: &str = "ring";
@@ -304,6 +340,16 @@ impl RingTable {
                     0.0..=1.0,
                 )?,
             },
+            support: self
+                .support
+                .as_ref()
+                .map(in_ring(SupportTable::check))
+                .transpose()?,
+            ball_bearing: self
+                .ball_bearing
+                .as_ref()
+                .map(in_ring(BallBearingTable::check))
+                .transpose()?,
         })
     }
 }
@@ -337,6 +383,19 @@ fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
                     place: MILLI * between(TABLE, "z_mm", table.z_mm, limits::PLACE_MM)?,
                     stiffness,
                     force: table.force_n,
+                    damping: between(
+                        TABLE,
+                        "damping_n_s_m",
+                        table.damping_n_s_m,
+                        limits::DAMPING_N_S_M,
+                    )?,
+                    limit: table
+                        .limit_n
+                        .map(|limit| {
+                            let limit = above_zero(TABLE, "limit_n", limit)?;
+                            between(TABLE, "limit_n", limit, limits::FORCE_N)
+                        })
+                        .transpose()?,
                 })
             };
             check().map_err(|flaw: Diagnostic| flaw.in_row(index))

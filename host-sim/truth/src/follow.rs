@@ -50,6 +50,8 @@ enum Source {
     Planar(Box<Reference>),
     Support(Box<SupportReference>),
     TwoPlane(Box<TwoPlaneReference>),
+    /// No reference has all parts of the machine; whether it was asked for.
+    None(bool),
 }
 
 /// A drop of a scene's machine, followed from its release.
@@ -82,6 +84,11 @@ impl<'a> Truth<'a> {
             return held(self.scene, time);
         }
         let (rotor, sensed, moving) = match &mut self.source {
+            Source::None(asked) => {
+                *asked = true;
+                let held = held(self.scene, 0.0);
+                (held.rotor, held.sensed, held.moving)
+            }
             Source::Planar(reference) => {
                 let whole = &mut self.whole;
                 let state = reference.advance(time, &mut |happening| whole.take(happening));
@@ -120,6 +127,7 @@ impl<'a> Truth<'a> {
     pub fn given_up(&self) -> Option<f64> {
         match &self.source {
             Source::Planar(_) => None,
+            Source::None(asked) => asked.then_some(0.0),
             Source::Support(reference) => reference.given_up(),
             Source::TwoPlane(reference) => reference.given_up(),
         }
@@ -147,6 +155,7 @@ impl<'a> Truth<'a> {
                     })
                     .collect()
             }
+            (Source::None(_), Some(machine)) => vec![end; machine.rings.len()],
             _ => Vec::new(),
         };
         let rings = self.rings.into_iter().zip(ends);
@@ -159,6 +168,9 @@ impl<'a> Truth<'a> {
 
 fn source(scene: &Scene) -> Source {
     let spin = scene.rotor.spin;
+    if scene.two_plane.as_ref().is_some_and(TwoPlane::is_coupled) {
+        return Source::None(false);
+    }
     if let Some(machine) = &scene.two_plane {
         return Source::TwoPlane(Box::new(two_plane(scene, machine)));
     }

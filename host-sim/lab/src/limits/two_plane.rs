@@ -96,7 +96,9 @@ fn magnets(stiffness: f64) -> Vec<Magnet> {
     let magnet = |place| Magnet {
         place,
         stiffness: 0.5 * stiffness,
+        damping: 0.0,
         force: [0.0; 2],
+        limit: None,
     };
     vec![magnet(-0.1), magnet(0.1)]
 }

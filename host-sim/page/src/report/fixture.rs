@@ -97,6 +97,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
     Outcome {
         rings: Vec::new(),
         ledger: None,
+        seats: Vec::new(),
         ring: None,
         given_up: None,
         model: truth.clone(),

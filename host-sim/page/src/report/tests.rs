@@ -45,6 +45,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     Outcome {
         given_up: None,
         ledger: None,
+        seats: Vec::new(),
         ring: None,
         rings: Vec::new(),
         model: truth.clone(),

@@ -1,5 +1,6 @@
 //! The model under test over a scene.
 
+pub mod coupled;
 mod once;
 mod seen;
 mod simulate;
@@ -108,6 +109,7 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
         },
         Fidelity::Support => support::with_parts::<R, U>(scene, what),
         Fidelity::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
+        Fidelity::Coupled => coupled::with_rings::<R, U>(scene, what),
     }
 }
 

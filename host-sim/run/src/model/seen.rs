@@ -20,6 +20,8 @@ pub struct ModelRun {
     pub ledger: Option<Ledger>,
     /// The retainer ring at the end, where it moves or turns.
     pub ring: Option<RingEnd>,
+    /// Each ring of a rotor that tilts, where the rung lets them move.
+    pub seats: Vec<RingEnd>,
 }
 
 /// A retainer ring at the end of a run, SI.

@@ -89,7 +89,7 @@ where
     what.with(subject(scene, model.rounded::<R>(), *model.scales()))
 }
 
-fn mount(support: &touchdown_scene::Support) -> MountConfig<f64> {
+pub(super) fn mount(support: &touchdown_scene::Support) -> MountConfig<f64> {
     MountConfig {
         mass: support.mass,
         stiffness: support.stiffness,
@@ -98,7 +98,7 @@ fn mount(support: &touchdown_scene::Support) -> MountConfig<f64> {
     }
 }
 
-fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
+pub(super) fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
     RaceConfig {
         inertia: bearing.inertia,
         dry_drag: bearing.dry_drag,
@@ -199,6 +199,7 @@ impl UseSupport for Run<'_> {
                 held_peak: state.load().held_peak.to_f64() * unit / scales.length,
                 race,
             }),
+            seats: Vec::new(),
         })
     }
 }

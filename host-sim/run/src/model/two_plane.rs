@@ -50,7 +50,7 @@ fn with<R: Precision, U: Use, const N: usize>(
     })
 }
 
-fn machine(scene: &Scene) -> Result<&touchdown_scene::TwoPlane, ConfigError> {
+pub(super) fn machine(scene: &Scene) -> Result<&touchdown_scene::TwoPlane, ConfigError> {
     let rule = ConfigError::OutOfRange("rings", "1 to 4");
     scene.two_plane.as_ref().ok_or(rule)
 }
@@ -209,6 +209,7 @@ fn in_rings<R: Precision, const N: usize>(
     let unit = scene.rotor.mass * scales.speed * scales.speed;
     Ok(ModelRun {
         ring: None,
+        seats: Vec::new(),
         ledger: Some(ledger(unit, &begun, &model.energy(&state).to_f64())),
         histories: Histories {
             whole: whole.finish(end, still),

@@ -10,6 +10,9 @@
 //! contact in it (`passage`); impacts at the moments that a step shows (`follow`, `strike`); all walls that
 //! touch at once together (`links`). Equations and limits: docs/model/coupled.md.
 
+// Coordinates and rings are counted alike in several arrays.
+#![allow(clippy::needless_range_loop)]
+
 mod config;
 mod energy;
 mod follow;
@@ -130,7 +133,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     pub fn shape_at(&self, place: R, modes: [R; MODES]) -> [R; Q] {
         let mut shape = self.mode_scale;
         for (b, mode) in shape.iter_mut().skip(2).zip(modes) {
-            *b = *b * mode;
+            *b *= mode;
         }
         let zeta = place * self.tilt / self.scales.length;
         for (b, rigid) in shape.iter_mut().zip([R::ONE, zeta]) {
