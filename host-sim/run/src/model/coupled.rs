@@ -41,15 +41,18 @@ impl<R: Precision, const N: usize> Stepper<R> for Whole<R, N> {
         spin: R,
         mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError> {
-        self.model.start(&self.start, spin, |it| on_event(it.event))
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.start(&self.start, spin, pointer(&mut sink))
     }
 
     fn step(&self, state: &mut Self::State, mut on_event: impl FnMut(ModelEvent<R>)) {
-        self.model.step(state, |it| on_event(it.event));
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.step(state, pointer(&mut sink));
     }
 
     fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        self.model.part_step(state, part, |it| on_event(it.event));
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.part_step(state, part, pointer(&mut sink));
     }
 
     /// Of the centre of mass; turns are those of the ring that has most.
@@ -72,6 +75,11 @@ impl<R: Precision, const N: usize> Stepper<R> for Whole<R, N> {
             turns,
         }
     }
+}
+
+/// The model's code is built once, whatever is done with its events.
+fn pointer<R>(on_event: &mut impl FnMut(RingEvent<R>)) -> &mut dyn FnMut(RingEvent<R>) {
+    on_event
 }
 
 /// Builds the model with the scene's rings for `what`.
@@ -254,11 +262,11 @@ fn in_rings<R: Precision, const N: usize>(
         }
     };
     let spin = R::lit(scene.rotor.spin / scales.spin);
-    let mut state = model.start(&whole_model.start, spin, &mut take)?;
+    let mut state = model.start(&whole_model.start, spin, pointer(&mut take))?;
     let begun = model.energy(&state).to_f64();
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
-        model.step(&mut state, &mut take);
+        model.step(&mut state, pointer(&mut take));
         let reach = (0..N).map(|ring| model.reach_at(&state, ring).to_f64() - 1.0);
         each(StepView {
             beyond: reach.fold(-1.0, |worst, it| if it <= worst { worst } else { it }),
@@ -266,7 +274,7 @@ fn in_rings<R: Precision, const N: usize>(
         });
     }
     if fraction > 0.0 {
-        model.part_step(&mut state, R::lit(fraction), &mut take);
+        model.part_step(&mut state, R::lit(fraction), pointer(&mut take));
     }
     let duration = scene.run.duration;
     let ends: Vec<RotorState> = (0..N)

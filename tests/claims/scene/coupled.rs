@@ -1,0 +1,65 @@
+//! Scenes of the rung `coupled`: which have it, what a ring's row overrides, modes, and broken rules.
+
+use touchdown_scene::{Fidelity, Scene};
+
+fn compressor(change: impl Fn(String) -> String) -> Result<Scene, String> {
+    let text = Scene::text("compressor").expect("built in").into_owned();
+    Scene::parse("c.toml", &change(text)).map_err(|error| error.to_string())
+}
+
+#[test]
+fn the_combination_chooses_the_rung() {
+    let scene = compressor(|text| text).expect("valid");
+    assert_eq!(scene.model.rung, Fidelity::Coupled);
+    assert!(scene.warnings().is_empty(), "{:?}", scene.warnings());
+    let plain = Scene::load("two-plane").expect("built in");
+    assert_eq!(plain.model.rung, Fidelity::TwoPlane);
+    let damped = compressor(|_| {
+        let text = Scene::text("two-plane").expect("built in").into_owned();
+        text + "\n[[magnet]]\nz_mm = 0.0\ndamping_n_s_m = 10.0\n"
+    });
+    assert_eq!(damped.expect("valid").model.rung, Fidelity::Coupled);
+}
+
+#[test]
+fn a_row_overrides_what_holds_for_all_rings() {
+    let own = "z_mm = 190.0\nsupport = { mass_kg = 0.3, stiffness_n_m = 1e6 }\n";
+    let scene = compressor(|text| text.replace("z_mm = 190.0", own)).expect("valid");
+    let rings = &scene.two_plane.expect("rings").rings;
+    let masses: Vec<_> = rings.iter().map(|it| it.support.expect("mount").mass).collect();
+    assert_eq!(masses, [0.6, 0.3]);
+    assert!(rings.iter().all(|it| it.ball_bearing.is_some()));
+}
+
+/// The mean square of a free-free mode is 1, and its ends move by 2.
+#[test]
+fn a_beam_has_its_modes() {
+    let beam = |text: String| {
+        let at = text.find("at_mm").expect("shape");
+        let end = text.find("[start]").expect("start");
+        let text = format!("{}beam = true\n\n{}", &text[..at], &text[end..]);
+        text.replace("transverse_inertia_kg_m2 = 1.5", "rotor_length_mm = 580.0")
+    };
+    let scene = compressor(beam).expect("valid");
+    let modes = scene.two_plane.expect("modes").modes;
+    let points = 2000;
+    let square = (0..points).map(|k| 0.58 * ((f64::from(k) + 0.5) / f64::from(points) - 0.5));
+    let mean = square.map(|z| modes[0].at(z).powi(2)).sum::<f64>() / f64::from(points);
+    assert!((mean - 1.0).abs() < 1e-4, "{mean}");
+    assert!((modes[0].at(0.29) - 2.0).abs() < 1e-9);
+    assert!((modes[0].at(0.0) + 1.2157).abs() < 1e-3);
+}
+
+#[test]
+fn broken_rules_name_their_line() {
+    for (from, to, rule) in [
+        ("shape = [2.0,", "shape = [", "shape and at_mm must have the same length"),
+        ("at_mm = [-280.0", "at_mm = [-80.0", "at_mm must rise"),
+        ("damping_ratio = 0.005", "damping_ratio = 2.0", "damping_ratio must be 0 to 1"),
+        ("[start]", "[model]\nrung = \"two-plane\"\n[start]", "rung = \"two-plane\" has no support"),
+    ] {
+        let error = compressor(|text| text.replacen(from, to, 1)).expect_err(rule);
+        assert!(error.contains(rule), "{error}");
+        assert!(error.starts_with("c.toml:"), "{error}");
+    }
+}
