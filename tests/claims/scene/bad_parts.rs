@@ -254,8 +254,8 @@ fn rows_are_told_apart() {
 fn tables_that_do_not_go_together() {
     for (parts, rule) in [
         (
-            format!("{GIVES_WAY}{TILTS}"),
-            "no rung has both [support] and [two_plane]",
+            format!("{GIVES_WAY}[[mode]]\nfrequency_hz = 900\n"),
+            "[[mode]] needs [two_plane]",
         ),
         (
             "[[ring]]\nz_mm = 1\n".to_owned(),
