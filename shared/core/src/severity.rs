@@ -55,6 +55,8 @@ pub(crate) struct SeverityState {
     speeds: f32,
     was_released: bool,
     was_in_contact: bool,
+    /// Samples that are in the dwell of no end.
+    uncounted: u32,
 }
 
 impl SeverityModel {
@@ -73,12 +75,15 @@ impl SeverityModel {
     /// After a tick that gave `notices`.
     pub(crate) fn take(&self, state: &mut SeverityState, strain: &Exposure, notices: &[Notice]) {
         if strain.is_released && !state.was_released {
-            *state = SeverityState::default();
+            *state = SeverityState {
+                uncounted: u32::MAX,
+                ..SeverityState::default()
+            };
         }
         state.was_released = strain.is_released;
         for notice in notices {
             if let Notice::Declared(event) = notice {
-                self.event(state, event, strain.restitution);
+                self.event(state, event, strain);
             }
         }
         self.contact(state, strain);
@@ -96,28 +101,33 @@ impl SeverityModel {
         }
     }
 
-    fn event(&self, state: &mut SeverityState, event: &Event, restitution: f32) {
+    fn event(&self, state: &mut SeverityState, event: &Event, strain: &Exposure) {
         let so_far = &mut state.so_far;
         match event.kind {
             EventKind::Impact => {
                 state.speeds += event.normal_speed;
                 so_far.impacts = so_far.impacts.saturating_add(1);
                 so_far.impact_speed = so_far.impact_speed.max(event.normal_speed);
-                self.impulses(state, restitution);
+                self.impulses(state, strain.restitution);
             }
             EventKind::LiftOff => {
-                // It was over before it was declared.
+                // It was over before it was declared; another end may have been in contact since then.
                 let late = Moment::of_sample(event.declared).since(event.onset);
+                let late = (late - strain.contact_age.unwrap_or(0) as f32).max(0.0);
                 so_far.dwell = (so_far.dwell - late * self.period).max(0.0);
+                state.uncounted = late as u32;
             }
             _ => {}
         }
     }
 
     fn contact(&self, state: &mut SeverityState, strain: &Exposure) {
+        state.uncounted = state.uncounted.saturating_add(1);
         if let Some(age) = strain.contact_age {
-            // It began before it was declared.
+            // It began before it was declared; another end may have been in contact then.
             let samples = if state.was_in_contact { 1 } else { age };
+            let samples = samples.min(state.uncounted);
+            state.uncounted = 0;
             state.so_far.dwell += samples as f32 * self.period;
             if !state.was_in_contact {
                 state.speeds += strain.ahead;
