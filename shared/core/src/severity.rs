@@ -54,9 +54,8 @@ pub(crate) struct SeverityState {
     /// Sum of the speeds into the wall, m/s.
     speeds: f32,
     was_released: bool,
-    was_in_contact: bool,
-    /// Samples that are in the dwell of no end.
-    uncounted: u32,
+    /// Samples since those that the dwell counts; 0 in contact.
+    uncounted: u16,
 }
 
 impl SeverityModel {
@@ -76,7 +75,7 @@ impl SeverityModel {
     pub(crate) fn take(&self, state: &mut SeverityState, strain: &Exposure, notices: &[Notice]) {
         if strain.is_released && !state.was_released {
             *state = SeverityState {
-                uncounted: u32::MAX,
+                uncounted: u16::MAX,
                 ..SeverityState::default()
             };
         }
@@ -86,7 +85,9 @@ impl SeverityModel {
                 self.event(state, event, strain);
             }
         }
-        self.contact(state, strain);
+        if strain.is_released {
+            self.contact(state, strain);
+        }
         let so_far = &mut state.so_far;
         if strain.speed_error < WELL_KNOWN * self.unit {
             so_far.velocity_index = so_far.velocity_index.max(strain.speed / self.unit);
@@ -115,7 +116,9 @@ impl SeverityModel {
                 let late = Moment::of_sample(event.declared).since(event.onset);
                 let late = (late - strain.contact_age.unwrap_or(0) as f32).max(0.0);
                 so_far.dwell = (so_far.dwell - late * self.period).max(0.0);
-                state.uncounted = late as u32;
+                if strain.contact_age.is_none() {
+                    state.uncounted = late as u16;
+                }
             }
             _ => {}
         }
@@ -125,16 +128,14 @@ impl SeverityModel {
         state.uncounted = state.uncounted.saturating_add(1);
         if let Some(age) = strain.contact_age {
             // It began before it was declared; another end may have been in contact then.
-            let samples = if state.was_in_contact { 1 } else { age };
-            let samples = samples.min(state.uncounted);
-            state.uncounted = 0;
+            let samples = age.min(u32::from(state.uncounted));
             state.so_far.dwell += samples as f32 * self.period;
-            if !state.was_in_contact {
+            if state.uncounted > 1 {
                 state.speeds += strain.ahead;
                 self.impulses(state, strain.restitution);
             }
+            state.uncounted = 0;
         }
-        state.was_in_contact = strain.contact_age.is_some();
     }
 
     fn impulses(&self, state: &mut SeverityState, restitution: f32) {
