@@ -4,10 +4,10 @@
 //! a = (theta_y, -theta_x). Free tilt turns as a'' = i g w a', g = J_p/J_t, x + iy: forward nutation.
 //! Small tilt; unbalance does not act on the spin.
 
-use super::jet::Jet;
+use super::jet::{Jet, constants};
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
-use super::system::{Hold, Law, Link, SIZE, System};
+use super::system::{Hold, Law, Link, System};
 use touchdown_base::history::ModelEvent;
 
 /// A ring that does not move.
@@ -158,15 +158,14 @@ struct TwoPlane {
 }
 
 impl Law for TwoPlane {
-    fn forces(&self, place: &[Jet; SIZE], speed: &[Jet; SIZE]) -> [Jet; SIZE] {
+    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
         let spin = speed[4];
         let gyroscopic = spin * self.polar_inertia;
-        let mut forces = [
+        let mut forces = vec![
             Jet::constant(self.weight[0]),
             Jet::constant(self.weight[1]),
             -(gyroscopic * speed[3]),
             gyroscopic * speed[2],
-            Jet::ZERO,
             Jet::ZERO,
         ];
         for (first, (size, angle)) in [(0, self.static_unbalance), (2, self.couple_unbalance)] {
@@ -188,7 +187,7 @@ impl Law for TwoPlane {
         forces
     }
 
-    fn potential(&self, place: &[f64; SIZE]) -> f64 {
+    fn potential(&self, place: &[f64]) -> f64 {
         let height = |axis: usize| -self.weight[axis] * place[axis];
         let held = |magnet: &Magnet| {
             let held = |axis: usize| {
@@ -223,27 +222,26 @@ impl TwoPlaneReference {
             magnets: machine.magnets.clone(),
         };
         let link = |ring: &Ring| Link {
-            shares: [1.0, ring.place],
-            arms: [ring.radius, 0.0],
+            shares: vec![1.0, ring.place],
+            arms: vec![ring.radius],
             hold: Hold::Wall {
                 clearance: ring.clearance,
                 friction: ring.friction,
                 restitution: ring.restitution,
             },
-            told: [1.0, ring.place],
+            told: vec![1.0, ring.place],
         };
         let (body, tilting) = (1.0 / machine.mass, 1.0 / machine.transverse_inertia);
         let polar = 1.0 / machine.polar_inertia;
         let system = System {
-            mobility: [body, body, tilting, tilting, polar, 0.0],
-            size: [length, length, tilt, tilt, 1.0, 1.0],
+            mobility: vec![body, body, tilting, tilting, polar],
+            size: vec![length, length, tilt, tilt, 1.0],
             links: machine.rings.iter().map(link).collect(),
         };
-        let place = [start.position, start.tilt, [0.0; 2]].concat();
-        let speed = [start.velocity, start.tilt_rate, [spin, 0.0]].concat();
-        let coordinates = |of: Vec<f64>| std::array::from_fn(|i| of[i]);
-        let (place, speed): ([f64; SIZE], [f64; SIZE]) = (coordinates(place), coordinates(speed));
-        let pulled = law.forces(&place.map(Jet::constant), &speed.map(Jet::constant));
+        let coordinates = |[a, b]: [f64; 2], [c, d]: [f64; 2], last| vec![a, b, c, d, last];
+        let place = coordinates(start.position, start.tilt, 0.0);
+        let speed = coordinates(start.velocity, start.tilt_rate, spin);
+        let pulled = law.forces(&constants(&place), &constants(&speed));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
         let moving = |ring: &Ring| {
             let rate = |k: usize| speed[k] + ring.place * speed[2 + k];
@@ -276,15 +274,16 @@ impl TwoPlaneReference {
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) -> TwoPlaneState {
         let moment = self.motion.advance(time, on_event);
-        let ([x, y, a, b, spin_angle, _], [vx, vy, da, db, spin, _]) = (moment.place, moment.speed);
+        let pair = |of: &[f64], first: usize| [of[first], of[first + 1]];
+        let (place, speed) = (&moment.place, &moment.speed);
         TwoPlaneState {
             time: moment.time,
-            position: [x, y],
-            velocity: [vx, vy],
-            tilt: [a, b],
-            tilt_rate: [da, db],
-            spin,
-            spin_angle,
+            position: pair(place, 0),
+            velocity: pair(speed, 0),
+            tilt: pair(place, 2),
+            tilt_rate: pair(speed, 2),
+            spin: speed[4],
+            spin_angle: place[4],
             modes: moment.modes.clone(),
             normal_forces: moment.normal.clone(),
             turns_in_contact: moment.turns.clone(),
