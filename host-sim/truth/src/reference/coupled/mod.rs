@@ -27,6 +27,7 @@ mod fall;
 mod forces;
 mod impact;
 mod jet;
+mod machine;
 mod mode;
 mod motion;
 mod step;
@@ -34,6 +35,9 @@ mod support;
 mod system;
 mod two_plane;
 
+pub use machine::{
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, RingState,
+};
 pub use mode::Mode;
 pub use support::{Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState};
 pub use two_plane::{
