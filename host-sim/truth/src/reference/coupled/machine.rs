@@ -8,11 +8,12 @@
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
 //! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
 
-use super::jet::{Jet, constants};
+use super::jet::constants;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
 use super::support::{Mount, Race};
-use super::system::{Hold, Law, Link, System, shared};
+use super::surroundings::{Body, Surroundings};
+use super::system::{Hold, Law, Link, System};
 use super::two_plane::{Magnet, Ring, Unbalance};
 use touchdown_base::history::ModelEvent;
 
@@ -153,83 +154,6 @@ pub struct CoupledReference {
     /// Displacements in the rings.
     rings: Vec<Link>,
     bending: usize,
-}
-
-/// What acts on a body by itself.
-#[derive(Clone, Copy, Debug, Default)]
-struct Body {
-    weight: [f64; 2],
-    stiffness: f64,
-    damping: f64,
-    /// Unbalance: force over the spin squared, and its direction.
-    turning: (f64, f64),
-}
-
-/// Bodies: rotor, tilt, modes, rings. Spins: rotor, inner rings.
-#[derive(Clone, Debug)]
-struct Surroundings {
-    polar_inertia: f64,
-    bodies: Vec<Body>,
-    /// With the parts of the bodies in their displacements.
-    magnets: Vec<(Vec<f64>, Magnet, f64)>,
-    viscous_drags: Vec<f64>,
-}
-
-impl Law for Surroundings {
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
-        let spins = 2 * self.bodies.len();
-        let mut forces = Vec::with_capacity(place.len());
-        for (k, body) in self.bodies.iter().enumerate() {
-            for (axis, i) in [2 * k, 2 * k + 1].into_iter().enumerate() {
-                let sprung = place[i] * body.stiffness + speed[i] * body.damping;
-                forces.push(Jet::constant(body.weight[axis]) - sprung);
-            }
-            if body.turning.0 != 0.0 {
-                let (size, angle) = body.turning;
-                let (sine, cosine) = (place[spins] + Jet::constant(angle)).sin_cos();
-                let force = speed[spins] * speed[spins] * size;
-                forces[2 * k] = forces[2 * k] + force * cosine;
-                forces[2 * k + 1] = forces[2 * k + 1] + force * sine;
-            }
-        }
-        let gyroscopic = speed[spins] * self.polar_inertia;
-        forces[2] = forces[2] - gyroscopic * speed[3];
-        forces[3] = forces[3] + gyroscopic * speed[2];
-        for (shares, magnet, damping) in &self.magnets {
-            let (at, rate) = (shared(shares, place), shared(shares, speed));
-            for axis in 0..2 {
-                let held = at[axis] * magnet.stiffness - rate[axis] * *damping;
-                let force = held + Jet::constant(magnet.force[axis]);
-                for (k, share) in shares
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, share)| **share != 0.0)
-                {
-                    forces[2 * k + axis] = forces[2 * k + axis] + force * *share;
-                }
-            }
-        }
-        let drags = self.viscous_drags.iter().zip(&speed[spins..]);
-        forces.extend(drags.map(|(drag, spin)| *spin * -drag));
-        forces
-    }
-
-    fn potential(&self, place: &[f64]) -> f64 {
-        let of_body = |(k, body): (usize, &Body)| {
-            let of_axis = |axis: usize| {
-                let x = place[2 * k + axis];
-                x * (0.5 * body.stiffness * x - body.weight[axis])
-            };
-            of_axis(0) + of_axis(1)
-        };
-        let held = |(shares, magnet, _): &(Vec<f64>, Magnet, f64)| {
-            let at = shared(shares, place);
-            let held = |k: usize| -at[k] * (0.5 * magnet.stiffness * at[k] + magnet.force[k]);
-            held(0) + held(1)
-        };
-        let bodies: f64 = self.bodies.iter().enumerate().map(of_body).sum();
-        bodies + self.magnets.iter().map(held).sum::<f64>()
-    }
 }
 
 impl CoupledMachine {

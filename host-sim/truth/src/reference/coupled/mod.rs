@@ -32,6 +32,7 @@ mod mode;
 mod motion;
 mod step;
 mod support;
+mod surroundings;
 mod system;
 mod two_plane;
 

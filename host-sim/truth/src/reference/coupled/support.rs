@@ -1,9 +1,9 @@
 //! A rotor in a retainer ring on a spring and a damper, with an inner ring that turns.
 
-use super::jet::Jet;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
-use super::system::{Hold, Law, Link, System};
+use super::surroundings::{Body, Surroundings};
+use super::system::{Hold, Link, System};
 use crate::reference::scale::Scale;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::{Machine, Start};
@@ -118,34 +118,7 @@ impl SupportState {
 /// space; those of contact 1 are the ring's at its stop, told with the ring's position.
 #[derive(Clone, Debug)]
 pub struct SupportReference {
-    motion: Motion<Support>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Support {
-    weight: f64,
-    stiffness: f64,
-    damping: f64,
-    viscous_drag: f64,
-}
-
-impl Law for Support {
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
-        let sprung = |i: usize| -(place[i] * self.stiffness + speed[i] * self.damping);
-        vec![
-            Jet::ZERO,
-            Jet::constant(-self.weight),
-            sprung(2),
-            sprung(3),
-            Jet::ZERO,
-            speed[5] * -self.viscous_drag,
-        ]
-    }
-
-    fn potential(&self, place: &[f64]) -> f64 {
-        let square = place[2] * place[2] + place[3] * place[3];
-        self.weight * place[1] + 0.5 * self.stiffness * square
-    }
+    motion: Motion<Surroundings>,
 }
 
 impl SupportReference {
@@ -204,11 +177,21 @@ impl SupportReference {
             ],
             links,
         };
-        let law = Support {
-            weight: rotor.mass * rotor.gravity,
-            stiffness: mount.map_or(0.0, |mount| mount.stiffness),
-            damping: mount.map_or(0.0, |mount| mount.damping),
-            viscous_drag: race.map_or(0.0, |race| race.viscous_drag),
+        let law = Surroundings {
+            polar_inertia: 0.0,
+            bodies: vec![
+                Body {
+                    weight: [0.0, -rotor.mass * rotor.gravity],
+                    ..Body::default()
+                },
+                Body {
+                    stiffness: mount.map_or(0.0, |mount| mount.stiffness),
+                    damping: mount.map_or(0.0, |mount| mount.damping),
+                    ..Body::default()
+                },
+            ],
+            magnets: Vec::new(),
+            viscous_drags: vec![0.0, race.map_or(0.0, |race| race.viscous_drag)],
         };
         let motion = Motion::new(
             system,

@@ -4,9 +4,10 @@
 //! a = (theta_y, -theta_x). Free tilt turns as a'' = i g w a', g = J_p/J_t, x + iy: forward nutation.
 //! Small tilt; unbalance does not act on the spin.
 
-use super::jet::{Jet, constants};
+use super::jet::constants;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
+use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Law, Link, System};
 use touchdown_base::history::ModelEvent;
 
@@ -144,60 +145,7 @@ impl TwoPlaneState {
 /// A drop into several rings, followed from its release.
 #[derive(Clone, Debug)]
 pub struct TwoPlaneReference {
-    motion: Motion<TwoPlane>,
-}
-
-#[derive(Clone, Debug)]
-struct TwoPlane {
-    weight: [f64; 2],
-    polar_inertia: f64,
-    /// Force and moment over the spin squared, and their directions.
-    static_unbalance: (f64, f64),
-    couple_unbalance: (f64, f64),
-    magnets: Vec<Magnet>,
-}
-
-impl Law for TwoPlane {
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
-        let spin = speed[4];
-        let gyroscopic = spin * self.polar_inertia;
-        let mut forces = vec![
-            Jet::constant(self.weight[0]),
-            Jet::constant(self.weight[1]),
-            -(gyroscopic * speed[3]),
-            gyroscopic * speed[2],
-            Jet::ZERO,
-        ];
-        for (first, (size, angle)) in [(0, self.static_unbalance), (2, self.couple_unbalance)] {
-            if size != 0.0 {
-                let (sine, cosine) = (place[4] + Jet::constant(angle)).sin_cos();
-                let force = spin * spin * size;
-                forces[first] = forces[first] + force * cosine;
-                forces[first + 1] = forces[first + 1] + force * sine;
-            }
-        }
-        for magnet in &self.magnets {
-            for axis in 0..2 {
-                let displacement = place[axis] + place[2 + axis] * magnet.place;
-                let force = displacement * magnet.stiffness + Jet::constant(magnet.force[axis]);
-                forces[axis] = forces[axis] + force;
-                forces[2 + axis] = forces[2 + axis] + force * magnet.place;
-            }
-        }
-        forces
-    }
-
-    fn potential(&self, place: &[f64]) -> f64 {
-        let height = |axis: usize| -self.weight[axis] * place[axis];
-        let held = |magnet: &Magnet| {
-            let held = |axis: usize| {
-                let displacement = place[axis] + place[2 + axis] * magnet.place;
-                -displacement * (0.5 * magnet.stiffness * displacement + magnet.force[axis])
-            };
-            held(0) + held(1)
-        };
-        height(0) + height(1) + self.magnets.iter().map(held).sum::<f64>()
-    }
+    motion: Motion<Surroundings>,
 }
 
 impl TwoPlaneReference {
@@ -208,18 +156,32 @@ impl TwoPlaneReference {
         let length = least(&|ring| ring.clearance);
         let tilt = least(&|ring| ring.clearance / ring.place.abs());
         let tilt = if tilt.is_finite() { tilt } else { 1.0 };
-        let law = TwoPlane {
-            weight: machine.gravity.map(|g| machine.mass * g),
+        let Unbalance {
+            eccentricity,
+            angle,
+            skew,
+            skew_angle,
+        } = machine.unbalance;
+        let couple = (machine.transverse_inertia - machine.polar_inertia) * skew;
+        let law = Surroundings {
             polar_inertia: machine.polar_inertia,
-            static_unbalance: (
-                machine.mass * machine.unbalance.eccentricity,
-                machine.unbalance.angle,
-            ),
-            couple_unbalance: (
-                (machine.transverse_inertia - machine.polar_inertia) * machine.unbalance.skew,
-                machine.unbalance.skew_angle,
-            ),
-            magnets: machine.magnets.clone(),
+            bodies: vec![
+                Body {
+                    weight: machine.gravity.map(|g| machine.mass * g),
+                    turning: (machine.mass * eccentricity, angle),
+                    ..Body::default()
+                },
+                Body {
+                    turning: (couple, skew_angle),
+                    ..Body::default()
+                },
+            ],
+            magnets: machine
+                .magnets
+                .iter()
+                .map(|magnet| (vec![1.0, magnet.place], *magnet, 0.0))
+                .collect(),
+            viscous_drags: vec![0.0],
         };
         let link = |ring: &Ring| Link {
             shares: vec![1.0, ring.place],
