@@ -188,7 +188,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping or limit: leave them out, or rung";
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping: leave them out, or rung";
         return Err(Diagnostic::new("model", "rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {

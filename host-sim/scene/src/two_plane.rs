@@ -69,8 +69,6 @@ pub struct Magnet {
     pub damping: f64,
     /// N.
     pub force: [f64; 2],
-    /// Largest force, N.
-    pub limit: Option<f64>,
 }
 
 impl TwoPlane {
@@ -86,7 +84,7 @@ impl TwoPlane {
         let mut seats = seats.map(|ring| ring.support.is_some() || ring.ball_bearing.is_some());
         let mut magnets = self.magnets.iter();
         seats.any(|gives_way| gives_way)
-            || magnets.any(|magnet| magnet.damping > 0.0 || magnet.limit.is_some())
+            || magnets.any(|magnet| magnet.damping > 0.0)
             || !self.modes.is_empty()
     }
 
@@ -153,7 +151,6 @@ pub(super) struct MagnetTable {
     stiffness_n_m: f64,
     #[serde(default)]
     damping_n_s_m: f64,
-    limit_n: Option<f64>,
     #[serde(default, deserialize_with = "list::exactly")]
     force_n: [f64; 2],
 }
@@ -389,13 +386,6 @@ fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
                         table.damping_n_s_m,
                         limits::DAMPING_N_S_M,
                     )?,
-                    limit: table
-                        .limit_n
-                        .map(|limit| {
-                            let limit = above_zero(TABLE, "limit_n", limit)?;
-                            between(TABLE, "limit_n", limit, limits::FORCE_N)
-                        })
-                        .transpose()?,
                 })
             };
             check().map_err(|flaw: Diagnostic| flaw.in_row(index))

@@ -5,8 +5,9 @@ use touchdown_scene::sensors::PLANES;
 use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Magnet, Mount, Race, Ring, SupportMachine, SupportReference, SupportStart, SupportState,
-    TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mount, Race,
+    Retainer, Ring, SupportMachine, SupportReference, SupportStart, SupportState, TwoPlaneMachine,
+    TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
@@ -50,8 +51,7 @@ enum Source {
     Planar(Box<Reference>),
     Support(Box<SupportReference>),
     TwoPlane(Box<TwoPlaneReference>),
-    /// No reference has all parts of the machine; whether it was asked for.
-    None(bool),
+    Coupled(Box<CoupledReference>),
 }
 
 /// A drop of a scene's machine, followed from its release.
@@ -84,11 +84,6 @@ impl<'a> Truth<'a> {
             return held(self.scene, time);
         }
         let (rotor, sensed, moving) = match &mut self.source {
-            Source::None(asked) => {
-                *asked = true;
-                let held = held(self.scene, 0.0);
-                (held.rotor, held.sensed, held.moving)
-            }
             Source::Planar(reference) => {
                 let whole = &mut self.whole;
                 let state = reference.advance(time, &mut |happening| whole.take(happening));
@@ -114,6 +109,20 @@ impl<'a> Truth<'a> {
                 });
                 of_ends(self.scene.two_plane.as_ref(), &state)
             }
+            Source::Coupled(reference) => {
+                let (whole, rings, merge) = (&mut self.whole, &mut self.rings, &mut self.merge);
+                let state = reference.advance(time, &mut |contact, happening: ModelEvent| {
+                    // A ring at its stop is no matter of the rotor.
+                    let Some(ring) = rings.get_mut(contact) else {
+                        return;
+                    };
+                    ring.take(happening);
+                    if let Some(happening) = merge.take(contact, happening) {
+                        whole.take(happening);
+                    }
+                });
+                of_machine(self.scene.two_plane.as_ref(), &state)
+            }
         };
         TrueState {
             rotor,
@@ -127,9 +136,9 @@ impl<'a> Truth<'a> {
     pub fn given_up(&self) -> Option<f64> {
         match &self.source {
             Source::Planar(_) => None,
-            Source::None(asked) => asked.then_some(0.0),
             Source::Support(reference) => reference.given_up(),
             Source::TwoPlane(reference) => reference.given_up(),
+            Source::Coupled(reference) => reference.given_up(),
         }
     }
 
@@ -155,7 +164,19 @@ impl<'a> Truth<'a> {
                     })
                     .collect()
             }
-            (Source::None(_), Some(machine)) => vec![end; machine.rings.len()],
+            (Source::Coupled(reference), Some(_)) => {
+                let state = reference.advance(duration, &mut |_, _| ());
+                let rings = state.rings.iter().zip(&state.turns_in_contact);
+                rings
+                    .map(|(ring, turns)| RotorState {
+                        time: duration,
+                        position: ring.displacement,
+                        velocity: ring.displacement_rate,
+                        spin: state.spin,
+                        turns_in_contact: *turns,
+                    })
+                    .collect()
+            }
             _ => Vec::new(),
         };
         let rings = self.rings.into_iter().zip(ends);
@@ -168,11 +189,12 @@ impl<'a> Truth<'a> {
 
 fn source(scene: &Scene) -> Source {
     let spin = scene.rotor.spin;
-    if scene.two_plane.as_ref().is_some_and(TwoPlane::is_coupled) {
-        return Source::None(false);
-    }
     if let Some(machine) = &scene.two_plane {
-        return Source::TwoPlane(Box::new(two_plane(scene, machine)));
+        return if machine.is_coupled() {
+            Source::Coupled(Box::new(coupled(scene, machine)))
+        } else {
+            Source::TwoPlane(Box::new(two_plane(scene, machine)))
+        };
     }
     if scene.support.is_none() && scene.ball_bearing.is_none() {
         let reference = Reference::new(&scene.machine(), &scene.start, spin);
@@ -180,54 +202,81 @@ fn source(scene: &Scene) -> Source {
     }
     let machine = SupportMachine {
         rotor: scene.machine(),
-        mount: scene.support.map(|support| Mount {
-            mass: support.mass,
-            stiffness: support.stiffness,
-            damping: support.damping,
-            travel: support.travel,
-        }),
-        race: scene.ball_bearing.map(|bearing| Race {
-            inertia: bearing.inertia,
-            dry_drag: bearing.dry_drag,
-            viscous_drag: bearing.viscous_drag,
-        }),
+        mount: scene.support.as_ref().map(mount),
+        race: scene.ball_bearing.as_ref().map(race),
     };
     let start = SupportStart::new(scene.start, spin);
     Source::Support(Box::new(SupportReference::new(&machine, &start)))
 }
 
-fn two_plane(scene: &Scene, machine: &TwoPlane) -> TwoPlaneReference {
-    let (sin, cos) = machine.gravity_angle.sin_cos();
-    let ring = |ring: &touchdown_scene::Ring| Ring {
+fn mount(support: &touchdown_scene::Support) -> Mount {
+    Mount {
+        mass: support.mass,
+        stiffness: support.stiffness,
+        damping: support.damping,
+        travel: support.travel,
+    }
+}
+
+fn race(bearing: &touchdown_scene::BallBearing) -> Race {
+    Race {
+        inertia: bearing.inertia,
+        dry_drag: bearing.dry_drag,
+        viscous_drag: bearing.viscous_drag,
+    }
+}
+
+fn ring(ring: &touchdown_scene::Ring) -> Ring {
+    Ring {
         place: ring.place,
         radius: ring.radius,
         clearance: ring.retainer.clearance,
         friction: ring.retainer.friction,
         restitution: ring.retainer.restitution,
-    };
-    let magnet = |magnet: &touchdown_scene::Magnet| Magnet {
+    }
+}
+
+fn magnet(magnet: &touchdown_scene::Magnet) -> Magnet {
+    Magnet {
         place: magnet.place,
         stiffness: magnet.stiffness,
         force: magnet.force,
-    };
-    let (position, velocity) = match scene.start {
-        Start::Free { position, velocity } => (position, velocity),
+    }
+}
+
+fn gravity(scene: &Scene, machine: &TwoPlane) -> [f64; 2] {
+    let (sin, cos) = machine.gravity_angle.sin_cos();
+    [scene.run.gravity * sin, -scene.run.gravity * cos]
+}
+
+fn unbalance(scene: &Scene, machine: &TwoPlane) -> Unbalance {
+    Unbalance {
+        eccentricity: machine.unbalance[0] / scene.rotor.mass,
+        angle: machine.unbalance[1],
+        skew: machine.skew[0],
+        skew_angle: machine.skew[1],
+    }
+}
+
+/// Position and velocity of the centre of mass.
+fn centre(scene: &Scene) -> [[f64; 2]; 2] {
+    match scene.start {
+        Start::Free { position, velocity } => [position, velocity],
         // No valid scene of a rotor that tilts starts so.
-        Start::Wall { .. } => ([0.0; 2], [0.0; 2]),
-    };
+        Start::Wall { .. } => [[0.0; 2]; 2],
+    }
+}
+
+fn two_plane(scene: &Scene, machine: &TwoPlane) -> TwoPlaneReference {
+    let [position, velocity] = centre(scene);
     TwoPlaneReference::new(
         &TwoPlaneMachine {
             mass: scene.rotor.mass,
             polar_inertia: scene.rotor.polar_inertia,
             transverse_inertia: machine.transverse_inertia,
-            gravity: [scene.run.gravity * sin, -scene.run.gravity * cos],
+            gravity: gravity(scene, machine),
             rings: machine.rings.iter().map(ring).collect(),
-            unbalance: Unbalance {
-                eccentricity: machine.unbalance[0] / scene.rotor.mass,
-                angle: machine.unbalance[1],
-                skew: machine.skew[0],
-                skew_angle: machine.skew[1],
-            },
+            unbalance: unbalance(scene, machine),
             magnets: machine.magnets.iter().map(magnet).collect(),
         },
         &TwoPlaneStart {
@@ -235,6 +284,44 @@ fn two_plane(scene: &Scene, machine: &TwoPlane) -> TwoPlaneReference {
             velocity,
             tilt: machine.tilt,
             tilt_rate: machine.tilt_rate,
+        },
+        scene.rotor.spin,
+    )
+}
+
+fn coupled(scene: &Scene, machine: &TwoPlane) -> CoupledReference {
+    let [position, velocity] = centre(scene);
+    let retainer = |it: &touchdown_scene::Ring| Retainer {
+        ring: ring(it),
+        mount: it.support.as_ref().map(mount),
+        race: it.ball_bearing.as_ref().map(race),
+    };
+    let bending = |mode: &touchdown_scene::Mode| Bending {
+        rate: mode.speed,
+        damping_ratio: mode.damping_ratio,
+        modal_mass: mode.mass,
+        at_rings: machine.rings.iter().map(|it| mode.at(it.place)).collect(),
+        at_magnets: machine.magnets.iter().map(|it| mode.at(it.place)).collect(),
+        at_centre: mode.at(0.0),
+    };
+    let magnets = machine.magnets.iter().map(|it| (magnet(it), it.damping));
+    CoupledReference::new(
+        &CoupledMachine {
+            mass: scene.rotor.mass,
+            polar_inertia: scene.rotor.polar_inertia,
+            transverse_inertia: machine.transverse_inertia,
+            gravity: gravity(scene, machine),
+            retainers: machine.rings.iter().map(retainer).collect(),
+            unbalance: unbalance(scene, machine),
+            magnets: magnets.collect(),
+            bending: machine.modes.iter().map(bending).collect(),
+        },
+        &CoupledStart {
+            position,
+            velocity,
+            tilt: machine.tilt,
+            tilt_rate: machine.tilt_rate,
+            ..CoupledStart::default()
         },
         scene.rotor.spin,
     )
@@ -299,6 +386,33 @@ fn of_ends(
         machine.sensors.map(at),
         Moving::Ends(in_rings(machine, at)),
     )
+}
+
+fn of_machine(
+    machine: Option<&TwoPlane>,
+    state: &CoupledState,
+) -> (RotorState, [[f64; 2]; PLANES], Moving) {
+    let rings = state.rings.len();
+    let most = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
+    let turns = state.turns_in_contact.iter().take(rings).fold(0.0, most);
+    let rotor = RotorState {
+        time: state.time,
+        position: state.position,
+        velocity: state.velocity,
+        spin: state.spin,
+        turns_in_contact: turns,
+    };
+    let sensed = machine.map_or([state.position; PLANES], |machine| {
+        machine.sensors.map(|place| {
+            let shapes: Vec<f64> = machine.modes.iter().map(|mode| mode.at(place)).collect();
+            state.displacement(place, &shapes)
+        })
+    });
+    let mut ends = [[0.0; 2]; RINGS];
+    for (end, ring) in ends.iter_mut().zip(&state.rings) {
+        *end = ring.displacement;
+    }
+    (rotor, sensed, Moving::Ends(ends))
 }
 
 fn of_support(state: &SupportState) -> (RotorState, [[f64; 2]; PLANES], Moving) {

@@ -59,13 +59,7 @@ pub(super) fn model(scene: &Scene) -> Vec<Row> {
     }
     rows.push((
         "truth",
-        match &scene.two_plane {
-            Some(machine) if machine.is_coupled() => {
-                "none: no reference has all parts; the sensors' stream ends at the release"
-            }
-            _ => "independent event-located solution in f64",
-        }
-        .to_owned(),
+        "independent event-located solution in f64".to_owned(),
     ));
     rows
 }

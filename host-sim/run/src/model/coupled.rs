@@ -11,9 +11,9 @@ use touchdown_rotor::{Kinematics, ModelEvent, Precision, Start, Stepper, Touch};
 use super::once::Once;
 use super::seen::{ModelRun, RingEnd, STILL, Seen, steps_of_run};
 use super::support::{mount, race};
-use super::two_plane::{effective_mass, machine};
+use super::two_plane::machine;
 use super::{InNumbers, Subject, Use, in_numbers};
-use touchdown_base::history::{ModelEvent as Happening, Recorder, RotorState};
+use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::ledger::{Ledger, entries};
 use touchdown_base::rings::{Histories, Merge};
 use touchdown_scene::scales::start_speed;
@@ -144,7 +144,6 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
             stiffness: from.stiffness,
             damping: from.damping,
             force: from.force,
-            limit: from.limit,
             shape: shape(from.place),
         };
     }
@@ -249,13 +248,9 @@ fn in_rings<R: Precision, const N: usize>(
         let seen = Seen {
             scales: at_ring(it.ring),
             step: scene.model.step,
-            mass: effective_mass(scene, machine, it.ring),
-            restitution: machine.rings[it.ring].retainer.restitution,
+            mass: scene.rotor.mass,
         };
-        let mut happening = seen.happening(&it.event);
-        if let Happening::Impact(impact) = &mut happening {
-            impact.normal_impulse = it.impulse.to_f64() * scene.rotor.mass * scales.speed;
-        }
+        let happening = seen.happening(&it.event);
         rings[it.ring].take(happening);
         if let Some(happening) = merge.take(it.ring, happening) {
             whole.take(happening);

@@ -43,8 +43,6 @@ pub struct ActuatorConfig<R> {
     pub damping: R,
     /// At the centre, N.
     pub force: [R; 2],
-    /// Largest force, N.
-    pub limit: Option<R>,
     /// Each bending mode's displacement there.
     pub shape: [R; MODES],
 }
@@ -128,7 +126,6 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             finite("magnets", &magnet.force)?;
             finite("shape", &magnet.shape)?;
             not_negative("magnets", magnet.damping)?;
-            magnet.limit.map_or(Ok(()), |it| positive("limit", it))?;
         }
         if self.modes.iter().skip(modes).any(Option::is_some) {
             return Err(ConfigError::OutOfRange("modes", "as many as the model has"));
@@ -195,7 +192,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 stiffness: magnet.stiffness / config.mass * scales.time * scales.time,
                 damping: magnet.damping / config.mass * scales.time,
                 force: Vector::new(magnet.force).times(rate / config.mass),
-                limit: magnet.limit.map(|limit| limit * rate / config.mass),
             };
         }
         let offset = |size: R, angle: R| {

@@ -16,7 +16,7 @@ pub struct CoupledEnergy<R> {
     pub spin: R,
     /// Against gravity, from the centre.
     pub height: R,
-    /// In the magnets' force, as if it had no limit.
+    /// In the magnets' force.
     pub magnets: R,
     /// In the bent rotor.
     pub bending: R,
@@ -36,7 +36,7 @@ pub struct CoupledEnergy<R> {
     pub stops: R,
     /// Taken by the drag of the ball bearings so far.
     pub drag: R,
-    /// Taken so far by the damping of modes and magnets, and by what the magnets' limit keeps them from.
+    /// Taken so far by the damping of modes and magnets.
     pub damped: R,
     /// Given by the drive that keeps an unbalanced rotor's spin, so far.
     pub driven: R,

@@ -98,7 +98,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let whole = self.step * part;
         let (mut left, mut longest, mut impacts, mut crossings) = (whole, whole, 0, 0);
         for seat in &mut state.seats {
-            (seat.impulse, seat.struck) = (R::ZERO, false);
+            (seat.impulse, seat.held_impulse) = (R::ZERO, R::ZERO);
         }
         for stretch in 0..=MOST_STRETCHES {
             if left <= R::ZERO {
@@ -140,9 +140,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let load = &mut seat.load;
             load.normal = seat.impulse / whole;
             load.peak = load.peak.most(load.normal);
-            if seat.held.is_some() && !seat.struck {
-                load.held_peak = load.held_peak.most(load.normal);
-            }
+            load.held_peak = load.held_peak.most(seat.held_impulse / whole);
         }
     }
 
@@ -215,7 +213,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             };
             let Some(press) = &passage.presses[i] else {
                 seat.held = None;
-                self.tell(state, i, part, Change::LiftsOff, R::ZERO, on_event);
+                self.tell(state, i, part, Change::LiftsOff, on_event);
                 continue;
             };
             held.turns.add(place.cross(end).atan2(place.dot(end)));
@@ -225,7 +223,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 (true, false) => Change::SlidingStarts,
                 _ => continue,
             };
-            self.tell(state, i, part, change, R::ZERO, on_event);
+            self.tell(state, i, part, change, on_event);
         }
         self.seat(state);
     }
@@ -240,14 +238,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {
             books.damped.add(*decay * rate * moved.square());
         }
-        let places = state.place.map(|sums| sums.value());
-        for (magnet, share) in self.magnets.iter().zip(passage.shares) {
+        for magnet in &self.magnets {
             let moved = at(&magnet.shape, &passage.moved);
-            let middle = at(&magnet.shape, &places) + moved.times(R::HALF);
-            let pull = middle.times(magnet.stiffness) + magnet.force;
-            let loss = share * magnet.damping * rate * moved.square();
-            let cut = (R::ONE - share) * pull.dot(moved);
-            state.books.damped.add(loss + cut);
+            books.damped.add(magnet.damping * rate * moved.square());
         }
     }
 
@@ -283,6 +276,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             state.books.heat.add(heat);
             state.books.lost.add(impulse * press.normal.dot(speed));
             seat.impulse += impulse;
+            seat.held_impulse += impulse;
         }
         if let Some(race) = &ring.race {
             race.advance(&mut seat.race, time, turned, rub, heat);
@@ -295,7 +289,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         ring: usize,
         part: R,
         change: Change<R>,
-        impulse: R,
         on_event: &mut impl FnMut(RingEvent<R>),
     ) {
         on_event(RingEvent {
@@ -305,7 +298,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 change,
                 after: self.kinematics_at(state, ring),
             },
-            impulse,
         });
     }
 }

@@ -67,7 +67,6 @@ struct Magnet<R, const Q: usize> {
     stiffness: R,
     damping: R,
     force: Vector<R>,
-    limit: Option<R>,
 }
 
 impl<R: Real, const Q: usize> Default for Magnet<R, Q> {
@@ -77,7 +76,6 @@ impl<R: Real, const Q: usize> Default for Magnet<R, Q> {
             stiffness: R::ZERO,
             damping: R::ZERO,
             force: Vector::default(),
-            limit: None,
         }
     }
 }
@@ -166,7 +164,6 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                 stiffness: R::lit(magnet.stiffness),
                 damping: R::lit(magnet.damping),
                 force: vector(magnet.force),
-                limit: magnet.limit.map(R::lit),
             }),
             frequency: self.frequency.map(R::lit),
             decay: self.decay.map(R::lit),

@@ -14,8 +14,6 @@ use touchdown_rotor::real::Real;
 
 /// Repetitions for the normals; each gains the angle of the stretch.
 const NORMALS: usize = 20;
-/// Repetitions for the magnets that are at their limit.
-const LIMITED: usize = 6;
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
 /// How far round a wall in a stretch, rad.
@@ -51,8 +49,6 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) spun: R,
     /// Of the unbalance, mean.
     pub(super) unbalance: [Vector<R>; Q],
-    /// Part of the magnets' force that their limit leaves.
-    pub(super) shares: [R; 2],
     /// Whether friction is in it.
     pub(super) rubs: bool,
     inverse: [[Vector<R>; Q]; Q],
@@ -137,28 +133,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             drags,
             spun: R::ZERO,
             unbalance: self.unbalance(state, time),
-            shares: [R::ONE; 2],
             rubs: true,
             inverse: [[Vector::default(); Q]; Q],
         };
-        for _ in 0..LIMITED {
-            self.go_free(state, &mut passage);
-            let before = passage.shares;
-            for (share, magnet) in passage.shares.iter_mut().zip(&self.magnets) {
-                if let Some(limit) = magnet.limit {
-                    let places = state.places();
-                    let middle = at(&magnet.shape, &places)
-                        + at(&magnet.shape, &passage.moved).times(R::HALF);
-                    let rate = at(&magnet.shape, &passage.moved).times(R::ONE / time);
-                    let force =
-                        middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);
-                    *share = (limit / force.length().most(limit)).least(R::ONE);
-                }
-            }
-            if passage.shares == before {
-                break;
-            }
-        }
+        self.go_free(state, &mut passage);
         passage
     }
 
@@ -177,13 +155,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             matrix[k][k] = Vector::real(R::ONE + half * (self.decay[k] + half * stiffness));
         }
         matrix[1][1].y = -(half * nutation);
-        for (magnet, share) in self.magnets.iter().zip(passage.shares) {
+        for magnet in &self.magnets {
             let rate = at(&magnet.shape, &velocities);
             let middle = at(&magnet.shape, &places) + rate.times(half);
             let pull = middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);
-            let implicit = share * half * (magnet.damping - half * magnet.stiffness);
+            let implicit = half * (magnet.damping - half * magnet.stiffness);
             for k in 0..Q {
-                force[k] = force[k] + pull.times(share * magnet.shape[k]);
+                force[k] = force[k] + pull.times(magnet.shape[k]);
                 for l in 0..Q {
                     matrix[k][l].x += implicit * magnet.shape[k] * magnet.shape[l];
                 }

@@ -19,8 +19,6 @@ pub struct RingEvent<R> {
     pub ring: usize,
     /// What; the place is that of the axis at the ring, the spin surface speed there.
     pub event: ModelEvent<R>,
-    /// Normal impulse of an impact over the rotor's mass, V; else 0.
-    pub impulse: R,
 }
 
 /// Permanent contact in a ring.
@@ -39,8 +37,8 @@ pub(super) struct Seat<R> {
     pub(super) load: Load<R>,
     /// Normal impulse in this step so far.
     pub(super) impulse: R,
-    /// Whether it has an impact.
-    pub(super) struck: bool,
+    /// Part of it without impacts.
+    pub(super) held_impulse: R,
 }
 
 /// What was done to the energy so far, per mass, V^2.
@@ -162,7 +160,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             race: BallBearingState::default(),
             load: Load::default(),
             impulse: R::ZERO,
-            struck: false,
+            held_impulse: R::ZERO,
         };
         let mut state = CoupledState {
             tick: 0,

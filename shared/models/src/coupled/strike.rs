@@ -71,11 +71,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         *state = after;
         for (i, meeting) in meetings.iter().enumerate() {
             state.seats[i].impulse += meeting.impulse;
-            state.seats[i].struck |= meeting.impulse > R::ZERO;
             if meeting.new && meeting.outward > R::CUTOFF_SPEED {
-                state.seats[i].struck = true;
-                let change = Change::Impact(meeting.outward);
-                self.tell(state, i, part, change, meeting.impulse, on_event);
+                let change = Change::Impact {
+                    speed: meeting.outward,
+                    impulse: meeting.impulse,
+                };
+                self.tell(state, i, part, change, on_event);
             }
             if meeting.stops
                 && let Some(mount) = &self.rings[i].mount
@@ -91,7 +92,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         self.seat(state);
         for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
-            self.tell(state, i, part, Change::ContactStarts, R::ZERO, on_event);
+            self.tell(state, i, part, Change::ContactStarts, on_event);
         }
     }
 
