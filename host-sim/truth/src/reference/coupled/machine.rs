@@ -12,9 +12,9 @@ use super::jet::constants;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
 use super::support::{Mount, Race};
-use super::surroundings::{Body, Surroundings};
+use super::surroundings::{Body, Magnet, Surroundings};
 use super::system::{Hold, Law, Link, System};
-use super::two_plane::{Magnet, Ring, Unbalance};
+use super::two_plane::{Ring, Unbalance};
 use touchdown_base::history::ModelEvent;
 
 /// A ring and what holds it; without mount it is fixed, without race it doesn't turn.

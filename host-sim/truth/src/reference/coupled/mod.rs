@@ -41,6 +41,7 @@ pub use machine::{
 };
 pub use mode::Mode;
 pub use support::{Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState};
+pub use surroundings::Magnet;
 pub use two_plane::{
-    Magnet, Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
+    Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
 };

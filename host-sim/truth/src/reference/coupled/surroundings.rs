@@ -3,7 +3,18 @@
 
 use super::jet::Jet;
 use super::system::{Law, shared};
-use super::two_plane::Magnet;
+
+/// What is left of a magnetic bearing: a force on the axis, and one that grows with its
+/// displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Magnet {
+    /// Along the axis from the centre of mass, m.
+    pub place: f64,
+    /// Outward force over displacement, N/m: negative holds the rotor.
+    pub stiffness: f64,
+    /// N.
+    pub force: [f64; 2],
+}
 
 /// What acts on a body by itself.
 #[derive(Clone, Copy, Debug, Default)]

@@ -7,7 +7,7 @@
 use super::jet::constants;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
-use super::surroundings::{Body, Surroundings};
+use super::surroundings::{Body, Magnet, Surroundings};
 use super::system::{Hold, Law, Link, System};
 use touchdown_base::history::ModelEvent;
 
@@ -24,18 +24,6 @@ pub struct Ring {
     pub friction: f64,
     /// Coefficient of restitution, 0 to 1.
     pub restitution: f64,
-}
-
-/// What is left of a magnetic bearing: a force on the axis, and one that grows with its
-/// displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnet {
-    /// Along the axis from the centre of mass, m.
-    pub place: f64,
-    /// Outward force over displacement, N/m: negative holds the rotor.
-    pub stiffness: f64,
-    /// N.
-    pub force: [f64; 2],
 }
 
 /// Directions are those at spin angle 0, counter-clockwise from x.
