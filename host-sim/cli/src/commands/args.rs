@@ -401,6 +401,13 @@ pub(super) struct PaperArgs {
 
 #[derive(Args, Clone, Debug)]
 pub(super) struct LimitsArgs {
+    /// Random machines of fidelity `coupled`, in equal numbers of each combination of parts
+    #[arg(long, value_name = "N", default_value_t = 320,
+          value_parser = clap::value_parser!(u64).range(..=10_000_000))]
+    pub machines: u64,
+    /// Print the scene file of one of them, and run nothing
+    #[arg(long, value_name = "NUMBER", conflicts_with_all = ["machines", "json"])]
+    pub machine: Option<u64>,
     /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,

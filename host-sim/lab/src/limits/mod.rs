@@ -11,6 +11,7 @@ mod compliant;
 mod coupled;
 mod extreme;
 mod glance;
+mod machines;
 mod press;
 mod refusal;
 mod row;
@@ -27,6 +28,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use touchdown_rotor::error::ConfigError;
 
+pub use machines::text as machine;
 pub use row::{Row, all_hold};
 pub use table::table;
 
@@ -42,11 +44,11 @@ use truth::Truth;
 /// f64 first: what breaks there is no matter of rounding.
 const PRECISIONS: [Precision; 2] = [Precision::F64, Precision::F32];
 
-/// Runs every extreme in both precisions.
-pub fn run() -> Result<Vec<Row>, Failure> {
+/// Runs every extreme in both precisions, and that many random machines.
+pub fn run(machines: u64) -> Result<Vec<Row>, Failure> {
     let extremes = extreme::extremes()?;
     let closed_forms = closed_form::closed_forms()?;
-    let jobs = (2 * extremes.len() + closed_forms.len()) as u64 + clock::JOBS;
+    let jobs = (2 * extremes.len() + closed_forms.len()) as u64 + clock::JOBS + machines::JOBS;
     let mut progress = Progress::of_jobs("limits", jobs);
     let mut rows = Vec::new();
     for extreme in &extremes {
@@ -67,6 +69,7 @@ pub fn run() -> Result<Vec<Row>, Failure> {
     rows.extend(clock::rows(&mut progress).map_err(refused)?);
     rows.extend(refusal::rows().map_err(refused)?);
     rows.extend(coupled::rows()?);
+    rows.extend(machines::rows(machines, &mut progress)?);
     Ok(rows)
 }
 

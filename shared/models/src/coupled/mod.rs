@@ -8,7 +8,7 @@
 //!
 //! Solved by time-stepping: the midpoint rule for all that is smooth, with the walls that are in permanent
 //! contact in it (`passage`); impacts at the moments that a step shows (`follow`, `strike`); all walls that
-//! touch at once together (`links`). Equations and limits: docs/model/coupled.md.
+//! touch at once together (`links`). Equations and limits: docs/know/coupled.md.
 
 // Coordinates and rings are counted alike in several arrays.
 #![allow(clippy::needless_range_loop)]

@@ -1,0 +1,200 @@
+//! Random machines of the rung `coupled`: every combination of its parts, each with numbers from end to
+//! end of what such a machine may have.
+
+use std::fmt::Write as _;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use touchdown_rotor::error::ConfigError;
+
+use super::coupled::{Seen, rotor_lever};
+use super::glance::Glance;
+use super::row::Row;
+use super::{PRECISIONS, refused};
+use touchdown_base::failure::Failure;
+use touchdown_base::progress::Progress;
+use touchdown_run::model::ModelRun;
+use touchdown_run::model::coupled::watch;
+use touchdown_scene::{Ring, Scene, TwoPlane};
+
+/// Parts, by the bits of a combination.
+const PARTS: [&str; 4] = ["soft mounts", "ball bearings", "bending modes", "magnets"];
+/// Of the progress.
+pub const JOBS: u64 = 1 << PARTS.len();
+/// Steps of a run at most: its duration is cut.
+const STEPS: f64 = 8_000.0;
+
+/// All measures of `machines` random machines, in equal numbers of each combination. What does not hold
+/// stands in rows of its own, with the machine.
+pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure> {
+    let mut rows = Vec::new();
+    for parts in 0..JOBS {
+        let seeds = (0..machines).filter(|seed| seed % JOBS == parts);
+        let seeds: Vec<u64> = seeds.collect();
+        if seeds.is_empty() {
+            continue;
+        }
+        let name = format!("coupled: {} machines with {}", seeds.len(), named(parts));
+        for precision in PRECISIONS {
+            let seen = seeds.par_iter().map(|seed| {
+                let mut scene = Scene::parse(&format!("machine {seed}"), &text(*seed))?;
+                scene.model.precision = precision;
+                let mut seen = Seen::default();
+                seen.watch(&scene, run).map_err(refused)?;
+                Ok((*seed, seen))
+            });
+            let seen: Vec<(u64, Seen)> = seen.collect::<Result<_, Failure>>()?;
+            for (seed, seen) in &seen {
+                let own = seen.rows(&format!("coupled: machine {seed}"), precision);
+                rows.extend(own.into_iter().filter(|row| !row.holds));
+            }
+            let all = seen.into_iter().map(|(_, seen)| seen);
+            rows.extend(
+                all.fold(Seen::default(), Seen::worse)
+                    .rows(&name, precision),
+            );
+        }
+        progress.advance();
+    }
+    Ok(rows)
+}
+
+fn named(parts: u64) -> String {
+    let there = PARTS
+        .iter()
+        .enumerate()
+        .filter(|(bit, _)| parts >> bit & 1 == 1);
+    let names: Vec<&str> = there.map(|(_, name)| *name).collect();
+    if names.is_empty() {
+        return "rigid ends".to_owned();
+    }
+    names.join(", ")
+}
+
+/// The scene file of a random machine; its parts are the seed's lowest bits.
+pub fn text(seed: u64) -> String {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let has = |part: u64| seed >> part & 1 == 1;
+    let mass = decades(&mut random, -1.0, 3.0);
+    let clearance = decades(&mut random, -1.3, 0.3);
+    // Cylinder of steel, 4 to 30 times as long as its radius.
+    let slender: f64 = random.random_range(4.0..30.0);
+    let radius = 1e3 * (mass / (7850.0 * std::f64::consts::PI * slender)).cbrt();
+    let length = slender * radius;
+    let polar = 0.5e-6 * mass * radius * radius * random.random_range(0.5..5.0);
+    let speed = random.random_range(-1.0..1.0) * 6e6 / radius;
+    let friction = random.random_range(0.0..0.5);
+    let restitution = random.random_range(0.0..1.0);
+    let mut text = format!(
+        "[rotor]\nmass_kg = {mass}\nradius_mm = {radius}\npolar_inertia_kg_m2 = {polar}\nspeed_rpm = {speed}\n\
+         [retainer]\nclearance_mm = {clearance}\nfriction = {friction}\nrestitution = {restitution}\n"
+    );
+    let ends = [-0.45, 0.45].map(|at| at * length * random.random_range(0.3..1.0));
+    // Unbalance of the grades G 0.1 to G 6.3.
+    let grade = decades(&mut random, -1.0, 0.8);
+    let unbalance = 1e3 * mass * grade / (speed.abs() * std::f64::consts::TAU / 60.0).max(10.0);
+    let _ = write!(
+        text,
+        "[two_plane]\nrotor_length_mm = {length}\nunbalance_g_mm = {unbalance}\n"
+    );
+    for at in ends {
+        let _ = writeln!(text, "[[ring]]\nz_mm = {at}");
+    }
+    if has(0) {
+        text += &support(&mut random, mass, clearance);
+    }
+    if has(1) {
+        let inertia = polar * decades(&mut random, -4.0, -0.5);
+        let _ = writeln!(text, "[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}");
+    }
+    if has(2) {
+        text += &modes(&mut random);
+    }
+    if has(3) {
+        for at in ends {
+            // What is left of a magnet that held half the rotor at 15 to 100 Hz.
+            let held =
+                0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
+            let stiffness = held * random.random_range(-1.0..0.3);
+            let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
+            let _ = write!(
+                text,
+                "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
+            );
+        }
+    }
+    let [x, y] = [(); 2].map(|()| clearance * random.random_range(-0.2..0.2));
+    let step = decades(&mut random, 0.0, 300_f64.log10());
+    let duration = (STEPS * 1e-6 * step).min(0.05);
+    let _ = write!(
+        text,
+        "[start]\nx_mm = {x}\ny_mm = {y}\n[run]\nduration_s = {duration}\n[model]\nrung = \"coupled\"\nstep_us = {step}\n"
+    );
+    text
+}
+
+/// 1e4 to 1e10 N/m, rings from 1e-4 of the rotor, and a stop in one of two.
+fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
+    let ring = mass * decades(random, -4.0, 0.0);
+    let stiffness = decades(random, 4.0, 10.0);
+    let damping = 2.0 * (stiffness * ring).sqrt() * decades(random, -3.0, 1.0);
+    let mut text = format!(
+        "[support]\nmass_kg = {ring}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
+    );
+    if random.random() {
+        let travel = (clearance * decades(random, -2.0, 0.5)).max(0.001);
+        let _ = writeln!(text, "travel_mm = {travel}");
+    }
+    text
+}
+
+/// One to three of a uniform beam.
+fn modes(random: &mut ChaCha8Rng) -> String {
+    let first = decades(random, 1.0, 3.3);
+    let mut text = String::new();
+    // Squares of the roots of the free-free beam, over the first.
+    let ratios = [1.0, 2.757, 5.404];
+    for ratio in ratios.iter().take(random.random_range(1..=3)) {
+        let (frequency, damping) = (first * ratio, decades(random, -4.0, -1.0));
+        let _ = writeln!(
+            text,
+            "[[mode]]\nfrequency_hz = {frequency}\ndamping_ratio = {damping}\nbeam = true"
+        );
+    }
+    text
+}
+
+/// Runs a scene, watched after each step.
+fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
+    let lever = scene.two_plane.as_ref().map_or(1.0, |it| lever(scene, it));
+    watch(scene, &mut |sight| {
+        let energy = sight.energy;
+        each(Glance {
+            beyond: sight.beyond,
+            motion: energy.motion + energy.rings,
+            lever,
+            gone: energy.heat + energy.lost + energy.stops,
+            total: energy.total(),
+            parts: [
+                energy.spin + energy.races,
+                energy.motion + energy.rings,
+                energy.bending + energy.springs,
+                energy.magnets.abs() + energy.driven.abs() + energy.height.abs(),
+            ],
+        });
+    })
+}
+
+/// Greatest speed at a wall over that of all motion.
+fn lever(scene: &Scene, machine: &TwoPlane) -> f64 {
+    let of = |ring: &Ring| {
+        let mount = ring.support.map_or(0.0, |it| scene.rotor.mass / it.mass);
+        rotor_lever(scene, machine, ring).hypot(mount.sqrt())
+    };
+    machine.rings.iter().map(of).fold(0.0, f64::max)
+}
+
+fn decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
+    10_f64.powf(random.random_range(low..high))
+}
