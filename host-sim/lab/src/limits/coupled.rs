@@ -176,7 +176,7 @@ fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, Conf
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    let mut turned_round = 0.0;
+    let (mut turned_round, mut rolled) = (0.0, 0.0_f64);
     let (mut fastest, step) = (0.0_f64, scene.model.step / Units::of(scene).time);
     let run = run(scene, &mut |glance| {
         let numbers = [glance.beyond, glance.total, glance.gone];
@@ -186,6 +186,7 @@ fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, Conf
         made = made.max(most_gone - glance.gone);
         fastest = fastest.max((2.0 * glance.motion).sqrt());
         turned_round += glance.motion;
+        rolled = rolled.max(glance.rolled);
         let path = step * (fastest + step) * glance.lever + ROUNDED * epsilon;
         farthest = farthest.max(glance.beyond / path);
         missing = missing.max((glance.total - *start.get_or_insert(glance.total)).abs());
@@ -200,8 +201,10 @@ fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, Conf
     seen.beyond.take(farthest, 1.0);
     // Slip is stopped at the end of a step, not in its mean: off by the square of the angle that it turns.
     let turned = step * fastest;
-    seen.made
-        .take(made, rounding + 0.25 * turned * turned * fastest * fastest);
+    seen.made.take(
+        made,
+        rounding + 0.25 * turned * turned * (fastest * fastest + 2.0 * rolled),
+    );
     seen.missing.take(missing, rounding);
     Ok(run.histories.whole.impacts.into_iter().next())
 }

@@ -7,6 +7,8 @@ pub struct Glance {
     pub beyond: f64,
     /// Energy of motion, m V^2.
     pub motion: f64,
+    /// Energy of the inner rings that the rotor rolls in, m V^2.
+    pub rolled: f64,
     /// Greatest speed at a wall over that of all motion, in its clearances.
     pub lever: f64,
     /// Energy taken by contacts so far, m V^2.

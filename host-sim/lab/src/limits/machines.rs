@@ -173,6 +173,7 @@ fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigEr
         each(Glance {
             beyond: sight.beyond,
             motion: energy.motion + energy.rings,
+            rolled: energy.races,
             lever,
             gone: energy.heat + energy.lost + energy.stops,
             total: energy.total(),

@@ -120,6 +120,7 @@ pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, Conf
         each(Glance {
             beyond: sight.beyond.max(sight.stop),
             motion: energy.motion + energy.ring,
+            rolled: energy.race,
             lever,
             gone: energy.dissipated(),
             total: sight.total,

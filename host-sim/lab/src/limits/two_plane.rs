@@ -132,6 +132,7 @@ pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, Conf
         each(Glance {
             beyond: sight.beyond,
             motion: energy.motion,
+            rolled: 0.0,
             lever,
             gone: energy.heat + energy.lost,
             total: sight.total,
