@@ -1,0 +1,84 @@
+//! The coupled model against the reference, which shares no code with it: random machines of every
+//! combination of parts, in their bounces.
+
+use touchdown_lab::limits::machine;
+use touchdown_run::model;
+use touchdown_scene::{Scene, TwoPlane};
+use touchdown_tests::growth::{apart, growth};
+
+/// Of the model, s.
+const STEP: f64 = 1e-6;
+/// Impacts of each machine that are looked at.
+const FIRST: usize = 5;
+/// Growth of a change at the start, up to which an impact is well-conditioned.
+const TAME: f64 = 100.0;
+
+/// The fastest of spin, modes, mounts and their damping, rad/s.
+fn fastest(scene: &Scene, machine: &TwoPlane) -> f64 {
+    let modes = machine.modes.iter().map(|it| it.speed);
+    let mounts = machine.rings.iter().filter_map(|it| it.support);
+    let mounts = mounts.map(|it| (it.stiffness / it.mass).sqrt().max(it.damping / it.mass));
+    modes.chain(mounts).fold(scene.rotor.spin.abs(), f64::max)
+}
+
+/// Where a rotor meets a ring that reaches its stop within a microsecond, the least change decides.
+fn without_stops(number: u64) -> Scene {
+    let mut scene = Scene::parse("machine", &machine(number)).expect("a valid scene");
+    scene.model.step = STEP;
+    scene.run.duration = 0.02;
+    let rings = scene.two_plane.iter_mut().flat_map(|it| &mut it.rings);
+    for mount in rings.filter_map(|it| it.support.as_mut()) {
+        mount.travel = None;
+    }
+    scene
+}
+
+/// Until the fifth impact, or the first contact: a step ends a series of bounces that are shorter.
+fn cut(scene: &mut Scene) -> usize {
+    let history = model::run(scene).expect("a valid scene").histories;
+    let starts = history.rings.iter().flat_map(|it| &it.contact_starts);
+    let contact = starts.copied().fold(f64::INFINITY, f64::min);
+    let impacts = history.whole.impacts.iter();
+    let before = impacts.take_while(|it| it.state.time < contact).count().min(FIRST);
+    if before > 0 {
+        scene.run.duration = history.whole.impacts[before - 1].state.time + STEP;
+    }
+    before
+}
+
+/// A step of the midpoint rule turns what goes round at W late by (W h)^2/12.
+#[test]
+fn well_conditioned_impacts_are_the_references() {
+    let (mut seen, mut closest) = (0, 0);
+    let (mut worst, mut halved) = (0.0_f64, Vec::new());
+    for number in 0..48 {
+        let mut scene = without_stops(number);
+        let before = cut(&mut scene);
+        let turned = STEP * fastest(&scene, scene.two_plane.as_ref().expect("two ends"));
+        if before == 0 || turned > 0.05 {
+            continue;
+        }
+        let truth = touchdown_truth::simulate(&scene);
+        let fine = model::run(&scene).expect("a valid scene").histories.whole;
+        scene.model.step = 2.0 * STEP;
+        let coarse = model::run(&scene).expect("a valid scene").histories.whole;
+        let grown = growth(&scene, &truth, before);
+        for (k, growth) in grown.into_iter().enumerate().filter(|it| it.1 <= TAME) {
+            let off = apart(&fine.impacts[k], &truth.impacts[k], &scene);
+            let limit = growth * (1e-8 + turned * turned);
+            println!("{number} {k}: {off:.1e} of {limit:.1e}, growth {growth:.1}");
+            assert!(off <= limit, "machine {number}, impact {k}: {off} {limit}");
+            worst = worst.max(off / limit);
+            seen += 1;
+            closest += u32::from(off <= 1e-6);
+            if let Some(coarse) = coarse.impacts.get(k).filter(|_| off > 1e-9) {
+                halved.push(apart(coarse, &truth.impacts[k], &scene) / off);
+            }
+        }
+    }
+    halved.sort_by(f64::total_cmp);
+    let median = halved[halved.len() / 2];
+    println!("{seen} impacts, {closest} to 1e-6, worst {worst:.2} of its limit; in steps twice as long {median:.2} times as far off");
+    assert!(seen > 60, "{seen}");
+    assert!((3.5..4.5).contains(&median), "{median}");
+}
