@@ -169,24 +169,9 @@ impl TwoPlaneTable {
         let rings = all_rings(rotor, retainer, rings)?;
         let ends = rings.iter().map(|ring| ring.place);
         let lowest = ends.clone().fold(f64::INFINITY, f64::min);
-        let sensors = match self.sensor_z_mm {
-            Some(places) => {
-                for place in places {
-                    between(TABLE, "sensor_z_mm", place, limits::PLACE_MM)?;
-                }
-                places.map(|place| MILLI * place)
-            }
-            None => [lowest, ends.fold(f64::NEG_INFINITY, f64::max)],
-        };
-        let elastic_mode = match self.elastic_mode_hz {
-            Some(mode) => Some(between(
-                TABLE,
-                "elastic_mode_hz",
-                mode,
-                limits::ELASTIC_MODE_HZ,
-            )?),
-            None => None,
-        };
+        let sensors = self.sensors([lowest, ends.fold(f64::NEG_INFINITY, f64::max)])?;
+        let mode = |it| between(TABLE, "elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
+        let elastic_mode = self.elastic_mode_hz.map(mode).transpose()?;
         for (key, pair) in [
             ("tilt_mrad", self.tilt_mrad),
             ("tilt_rate_rad_s", self.tilt_rate_rad_s),
@@ -222,6 +207,17 @@ impl TwoPlaneTable {
             magnets: all_magnets(magnets)?,
             modes: all_modes(modes, rotor.mass, self.rotor_length_mm)?,
         })
+    }
+
+    /// Places of the planes as given, or `ends`, m.
+    fn sensors(&self, ends: [f64; 2]) -> Result<[f64; 2], Diagnostic> {
+        let Some(places) = self.sensor_z_mm else {
+            return Ok(ends);
+        };
+        for place in places {
+            between(TABLE, "sensor_z_mm", place, limits::PLACE_MM)?;
+        }
+        Ok(places.map(|place| MILLI * place))
     }
 
     /// As given, or that of a solid cylinder of the given length.

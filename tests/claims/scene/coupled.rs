@@ -2,19 +2,19 @@
 
 use touchdown_scene::{Fidelity, Scene};
 
-fn compressor(change: impl Fn(String) -> String) -> Result<Scene, String> {
-    let text = Scene::text("compressor").expect("built in").into_owned();
+fn york(change: impl Fn(String) -> String) -> Result<Scene, String> {
+    let text = Scene::text("york-ymc2").expect("built in").into_owned();
     Scene::parse("c.toml", &change(text)).map_err(|error| error.to_string())
 }
 
 #[test]
 fn the_combination_chooses_the_rung() {
-    let scene = compressor(|text| text).expect("valid");
+    let scene = york(|text| text).expect("valid");
     assert_eq!(scene.model.rung, Fidelity::Coupled);
     assert!(scene.warnings().is_empty(), "{:?}", scene.warnings());
     let plain = Scene::load("two-plane").expect("built in");
     assert_eq!(plain.model.rung, Fidelity::TwoPlane);
-    let damped = compressor(|_| {
+    let damped = york(|_| {
         let text = Scene::text("two-plane").expect("built in").into_owned();
         text + "\n[[magnet]]\nz_mm = 0.0\ndamping_n_s_m = 10.0\n"
     });
@@ -24,7 +24,7 @@ fn the_combination_chooses_the_rung() {
 #[test]
 fn a_row_overrides_what_holds_for_all_rings() {
     let own = "z_mm = 190.0\nsupport = { mass_kg = 0.3, stiffness_n_m = 1e6 }\n";
-    let scene = compressor(|text| text.replace("z_mm = 190.0", own)).expect("valid");
+    let scene = york(|text| text.replace("z_mm = 190.0", own)).expect("valid");
     let rings = &scene.two_plane.expect("rings").rings;
     let masses: Vec<_> = rings.iter().map(|it| it.support.expect("mount").mass).collect();
     assert_eq!(masses, [0.6, 0.3]);
@@ -40,7 +40,7 @@ fn a_beam_has_its_modes() {
         let text = format!("{}beam = true\n\n{}", &text[..at], &text[end..]);
         text.replace("transverse_inertia_kg_m2 = 1.5", "rotor_length_mm = 580.0")
     };
-    let scene = compressor(beam).expect("valid");
+    let scene = york(beam).expect("valid");
     let modes = scene.two_plane.expect("modes").modes;
     let points = 2000;
     let square = (0..points).map(|k| 0.58 * ((f64::from(k) + 0.5) / f64::from(points) - 0.5));
@@ -56,9 +56,9 @@ fn broken_rules_name_their_line() {
         ("shape = [2.0,", "shape = [", "shape and at_mm must have the same length"),
         ("at_mm = [-280.0", "at_mm = [-80.0", "at_mm must rise"),
         ("damping_ratio = 0.005", "damping_ratio = 2.0", "damping_ratio must be 0 to 1"),
-        ("[start]", "[model]\nrung = \"two-plane\"\n[start]", "rung = \"two-plane\" has no support"),
+        ("[model]", "[model]\nrung = \"two-plane\"", "rung = \"two-plane\" has no support"),
     ] {
-        let error = compressor(|text| text.replacen(from, to, 1)).expect_err(rule);
+        let error = york(|text| text.replacen(from, to, 1)).expect_err(rule);
         assert!(error.contains(rule), "{error}");
         assert!(error.starts_with("c.toml:"), "{error}");
     }

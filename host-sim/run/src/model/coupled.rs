@@ -124,18 +124,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         }
         shape
     };
-    let seat = |ring: &touchdown_scene::Ring| SeatConfig {
-        ring: RingConfig {
-            place: ring.place,
-            clearance: ring.retainer.clearance,
-            radius: ring.radius,
-            friction: ring.retainer.friction,
-            restitution: ring.retainer.restitution,
-        },
-        mount: ring.support.as_ref().map(mount),
-        race: ring.ball_bearing.as_ref().map(race),
-        shape: shape(ring.place),
-    };
+    let seat = |ring: &touchdown_scene::Ring| seat(ring, shape(ring.place));
     let rings: Vec<_> = machine.rings.iter().map(seat).collect();
     let mut magnets = [ActuatorConfig::default(); 2];
     for (to, from) in magnets.iter_mut().zip(&machine.magnets) {
@@ -176,6 +165,21 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         modes,
         step: scene.model.step,
     })
+}
+
+fn seat(ring: &touchdown_scene::Ring, shape: [f64; MODES]) -> SeatConfig<f64> {
+    SeatConfig {
+        ring: RingConfig {
+            place: ring.place,
+            clearance: ring.retainer.clearance,
+            radius: ring.radius,
+            friction: ring.retainer.friction,
+            restitution: ring.retainer.restitution,
+        },
+        mount: ring.support.as_ref().map(mount),
+        race: ring.ball_bearing.as_ref().map(race),
+        shape,
+    }
 }
 
 fn placement<const N: usize>(
@@ -236,12 +240,12 @@ fn in_rings<R: Precision, const N: usize>(
         start: placement(scene, &exact)?.rounded::<R>(),
     };
     let model = &whole_model.model;
-    let machine = machine(scene)?;
+    let radii: Vec<f64> = machine(scene)?.rings.iter().map(|it| it.radius).collect();
     let recorder = Recorder::new(-scene.first_sample_time());
     let (mut whole, mut rings, mut merge) = (recorder.clone(), vec![recorder; N], Merge::new(N));
     // Spin is told as surface speed in the ring.
     let at_ring = |ring: usize| Scales {
-        spin: scales.speed / machine.rings[ring].radius,
+        spin: scales.speed / radii[ring],
         ..scales
     };
     let mut take = |it: RingEvent<R>| {
@@ -262,11 +266,7 @@ fn in_rings<R: Precision, const N: usize>(
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
         model.step(&mut state, pointer(&mut take));
-        let reach = (0..N).map(|ring| model.reach_at(&state, ring).to_f64() - 1.0);
-        each(StepView {
-            beyond: reach.fold(-1.0, |worst, it| if it <= worst { worst } else { it }),
-            energy: model.energy(&state).to_f64(),
-        });
+        each(seen(model, &state));
     }
     if fraction > 0.0 {
         model.part_step(&mut state, R::lit(fraction), pointer(&mut take));
@@ -277,6 +277,7 @@ fn in_rings<R: Precision, const N: usize>(
         .collect();
     let end = Seen::state(&whole_model.kinematics(&state), duration, &scales);
     let still = STILL * scales.speed;
+    let rings = rings.into_iter().zip(ends);
     let unit = scene.rotor.mass * scales.speed * scales.speed;
     let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, &scales));
     Ok(ModelRun {
@@ -285,13 +286,17 @@ fn in_rings<R: Precision, const N: usize>(
         ledger: Some(ledger(unit, &begun, &model.energy(&state).to_f64())),
         histories: Histories {
             whole: whole.finish(end, still),
-            rings: rings
-                .into_iter()
-                .zip(ends)
-                .map(|(ring, end)| ring.finish(end, still))
-                .collect(),
+            rings: rings.map(|(ring, end)| ring.finish(end, still)).collect(),
         },
     })
+}
+
+fn seen<R: Precision, const N: usize>(model: &Model<R, N>, state: &State<R, N>) -> StepView {
+    let reach = (0..N).map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
+    StepView {
+        beyond: reach.fold(-1.0, |worst, it| if it <= worst { worst } else { it }),
+        energy: model.energy(state).to_f64(),
+    }
 }
 
 fn ring_end<R: Precision, const N: usize>(

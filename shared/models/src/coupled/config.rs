@@ -194,17 +194,24 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 force: Vector::new(magnet.force).times(rate / config.mass),
             };
         }
+        model.weight = model.unbalanced(config);
+        model.checked()
+    }
+
+    /// Of the unbalance: the offset of each coordinate's mass.
+    fn unbalanced<const M: usize>(&self, config: &CoupledConfig<R, M>) -> [Vector<R>; Q] {
         let offset = |size: R, angle: R| {
             let (sin, cos) = angle.sin_cos();
             Vector::new([size * cos, size * sin])
         };
-        let unbalance = &config.unbalance;
-        let weight = offset(unbalance.eccentricity / scales.length, unbalance.angle);
-        let couple = (R::ONE - ratio) * unbalance.skew * arm / scales.length;
+        let (unbalance, length) = (&config.unbalance, self.scales.length);
+        let weight = offset(unbalance.eccentricity / length, unbalance.angle);
+        let ratio = config.polar_inertia / config.transverse_inertia;
+        let couple = (R::ONE - ratio) * unbalance.skew / self.tilt;
         let centres = config.modes.map(|it| it.map_or(R::ZERO, |it| it.centre));
-        model.weight = model.shape_at(R::ZERO, centres).map(|b| weight.times(b));
-        model.weight[1] = offset(couple, unbalance.skew_angle);
-        model.checked()
+        let mut weights = self.shape_at(R::ZERO, centres).map(|b| weight.times(b));
+        weights[1] = offset(couple, unbalance.skew_angle);
+        weights
     }
 
     /// What rounding or the scales make of the numbers.

@@ -254,9 +254,32 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         Some(passage)
     }
 
+    /// The wall of a ring that the rotor is held by; `turning` is the speed of the inner ring.
+    fn contact(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        free: &Passage<R, N, Q>,
+        i: usize,
+        turning: R,
+    ) -> Option<Link<R>> {
+        let (ring, held) = (&self.rings[i], state.seats[i].held?);
+        let place = self.within(state, i);
+        let normal = place.times(R::ONE / place.length());
+        let slip = normal.cross(self.relative(state, i)) + self.surface(state, i);
+        let moved = at(&ring.shape, &free.moved) - free.rides[i].moved;
+        let mut link = Link::new(normal, moved);
+        link.surface = R::HALF * free.time * (ring.surface * state.spin.value() - turning);
+        link.friction = ring.friction;
+        link.grip = if held.rolling {
+            Grip::Sticks
+        } else {
+            Link::sliding(ring.friction, slip)
+        };
+        Some(link)
+    }
+
     /// The walls that hold at the start, with what moves in them.
     fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Walls<R, N> {
-        let half = R::HALF * free.time;
         let mut walls = Walls {
             time: free.time,
             links: Links::new(),
@@ -268,22 +291,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             if let Some(race) = &ring.race {
                 turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
             }
-            if let Some(held) = state.seats[i].held {
-                let place = self.within(state, i);
-                let velocity = self.relative(state, i);
-                let normal = place.times(R::ONE / place.length());
-                let slip = normal.cross(velocity) + self.surface(state, i);
-                let moved = at(&ring.shape, &free.moved) - free.rides[i].moved;
-                let mut link = Link::new(normal, moved);
-                link.surface = half * (ring.surface * state.spin.value() - turnings[i].free);
-                link.friction = ring.friction;
-                link.grip = if held.rolling {
-                    Grip::Sticks
-                } else {
-                    Link::sliding(ring.friction, slip)
-                };
-                walls.contacts[i] = Some(walls.links.add(link));
-            }
+            let link = self.contact(state, free, i, turnings[i].free);
+            walls.contacts[i] = link.map(|link| walls.links.add(link));
             if state.is_stopped(i) {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());
