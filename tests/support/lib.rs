@@ -2,6 +2,7 @@
 
 pub mod binary;
 pub mod cases;
+pub mod close;
 #[cfg(unix)]
 pub mod controller;
 pub mod counting;

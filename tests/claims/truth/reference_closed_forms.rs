@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 use touchdown_base::history::{ModelEvent, History, PhaseKind, Recorder, Regime, RotorState};
 use touchdown_base::machine::{Machine, Start};
+use touchdown_tests::close::close;
 use touchdown_truth::reference::{Reference, energy};
 
 const RIG: Machine = Machine {
@@ -37,14 +38,6 @@ fn run(machine: &Machine, start: &Start, spin: f64, end: f64) -> History {
 
 fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
     Start::Free { position, velocity }
-}
-
-fn close(have: f64, want: f64, tolerance: f64) {
-    let error = (have - want).abs();
-    assert!(
-        error <= tolerance,
-        "{have} is not {want}: off by {error:.1e}"
-    );
 }
 
 /// Angle from the bottom and tangential speed.

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 use touchdown_base::history::{ModelEvent, Impact};
 use touchdown_base::machine::{Machine, Start};
+use touchdown_tests::close::{close, close_pair};
 use touchdown_truth::reference::Reference;
 use touchdown_truth::reference::coupled::{
     Magnet, Mode, Mount, Race, Ring, SupportMachine, SupportReference, SupportStart,
@@ -71,19 +72,6 @@ fn impacts(happenings: &[(usize, ModelEvent)], contact: usize) -> Vec<Impact> {
         _ => None,
     };
     happenings.iter().filter_map(impact).collect()
-}
-
-fn close(have: f64, want: f64, tolerance: f64) {
-    let error = (have - want).abs();
-    assert!(
-        error <= tolerance,
-        "{have} is not {want}: off by {error:.1e}"
-    );
-}
-
-fn close_pair(have: [f64; 2], want: [f64; 2], tolerance: f64) {
-    close(have[0], want[0], tolerance);
-    close(have[1], want[1], tolerance);
 }
 
 /// Product of complex numbers, the second of length `size` and direction `angle`.

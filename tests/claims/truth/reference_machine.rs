@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::{Machine, Start};
+use touchdown_tests::close::{close, close_pair};
 use touchdown_truth::reference::coupled::{
     Bending, CoupledMachine, CoupledReference, CoupledStart, Magnet, Mount, Race, Retainer, Ring,
     SupportMachine, SupportReference, SupportStart, TwoPlaneMachine, TwoPlaneReference,
@@ -75,19 +76,6 @@ fn frictionless(machine: &mut CoupledMachine, restitution: f64) {
         it.ring.friction = 0.0;
         it.ring.restitution = restitution;
     }
-}
-
-fn close(have: f64, want: f64, tolerance: f64) {
-    let error = (have - want).abs();
-    assert!(
-        error <= tolerance,
-        "{have} is not {want}: off by {error:.1e}"
-    );
-}
-
-fn close_pair(have: [f64; 2], want: [f64; 2], tolerance: f64) {
-    close(have[0], want[0], tolerance);
-    close(have[1], want[1], tolerance);
 }
 
 /// Times of impacts at one contact, with the normal speeds.

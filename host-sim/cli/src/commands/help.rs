@@ -86,7 +86,9 @@ Exit status: 0 done; 2 bad usage or input.";
 
 pub(super) const LIMITS: &str = "\
 Examples:
-  touchdown limits --json limits.json";
+  touchdown limits --json limits.json
+  touchdown limits --machines 1600              random machines of the level coupled
+  touchdown limits --machine 975                the scene file of one of them";
 
 pub(super) const SCORE: &str = "\
 Examples:

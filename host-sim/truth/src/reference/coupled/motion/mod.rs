@@ -14,7 +14,7 @@ use touchdown_base::history::ModelEvent;
 const ON_WALL: f64 = 64.0 * f64::EPSILON;
 /// Size of the last terms of a series, in parts of the coordinates' sizes.
 const ACCURACY: f64 = 1e-18;
-/// Steps of a run: 6 s on a desktop's core. A drop of 0.3 s onto a soft support takes 1 000 to 10 000; what chatters without
+/// Steps of a run. A drop of 0.3 s onto a soft support takes 1 000 to 10 000; what chatters without
 /// bound would never end.
 const MOST_STEPS: u32 = 30_000;
 
