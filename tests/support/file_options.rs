@@ -173,6 +173,7 @@ pub const ROWS: &[Row] = &[
         command: "limits",
         words: "limits",
         outputs: &[File("--json")],
+        others: &["machines", "machine"],
         ..NONE
     },
     Row {

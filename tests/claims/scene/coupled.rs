@@ -56,7 +56,7 @@ fn broken_rules_name_their_line() {
         ("shape = [2.0,", "shape = [", "shape and at_mm must have the same length"),
         ("at_mm = [-280.0", "at_mm = [-80.0", "at_mm must rise"),
         ("damping_ratio = 0.005", "damping_ratio = 2.0", "damping_ratio must be 0 to 1"),
-        ("[model]", "[model]\nrung = \"two-plane\"", "rung = \"two-plane\" has no support"),
+        ("[start]", "[model]\nrung = \"two-plane\"\n[start]", "rung = \"two-plane\" has no support"),
     ] {
         let error = york(|text| text.replacen(from, to, 1)).expect_err(rule);
         assert!(error.contains(rule), "{error}");
