@@ -1,12 +1,14 @@
 //! What the firmware takes of the chip, against its limits: `firmware/budget.toml`.
 
 mod calls;
+mod cycles;
 mod image;
 mod judge;
 mod kept;
 mod modules;
 #[cfg(test)]
 mod planted;
+mod queue;
 mod ticks;
 
 use std::path::Path;
@@ -17,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::firmware::{self, Extra};
 use crate::workspace;
 
+use self::cycles::Modelled;
 use self::judge::Limits;
 pub use self::kept::FILE as MEASURED;
 
@@ -41,6 +44,9 @@ pub struct Budget {
     flash_by_module: Vec<Module>,
     /// That built the images.
     compiler: String,
+    /// Of the tick; modelled, not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cycles: Option<Modelled>,
 }
 
 /// Code by where it was written.
@@ -76,8 +82,9 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     firmware::build_one("touchdown-tick", Extra::StackSizes)?;
     firmware::build_one("touchdown-firmware", Extra::StackSizes)?;
 
-    let table = ticks::count(&images.join("touchdown-count-tick"))?;
+    let (table, cycles) = cycles::count(&images.join("touchdown-count-tick"))?;
     print!("{}", table.by_scene());
+    print!("{}", cycles::table(&cycles));
     let tick = image::look(&images.join("touchdown-tick"))?;
     for name in tick.panics.iter().chain(&tick.soft_float) {
         println!("  reachable from the tick: {name}");
@@ -105,6 +112,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
         soft_float_symbols: tick.soft_float.len() as u64,
         flash_by_module: modules,
         compiler: table.compiler,
+        cycles: Some(cycles),
     };
     if let Some(file) = json {
         kept::save(&budget, file)?;

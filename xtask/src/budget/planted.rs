@@ -31,6 +31,7 @@ fn a_planted_panic_f64_and_slow_path_break_the_budget() {
         soft_float_symbols: reached.soft_float.len() as u64,
         flash_by_module: vec![],
         compiler: table.compiler,
+        cycles: None,
     };
     let found = breaches(&budget, &limits);
     println!("{found:?}");

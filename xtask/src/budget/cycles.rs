@@ -1,0 +1,337 @@
+//! Cycles of the tick as the emulator's plugin (`xtask/cycles`) models them: no chip has counted them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::iter;
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use serde::{Deserialize, Serialize};
+
+use super::queue::{self, Queue};
+use super::ticks::{self, TYPICAL, Table};
+use crate::firmware;
+
+const CLOCK: u64 = 168_000_000;
+/// Sample rates, 1/s; the first is that of the firmware.
+const RATES: [u64; 3] = [20_000, 25_000, 50_000];
+const PERIOD: u64 = CLOCK / RATES[0];
+/// Samples that can wait: in the converter's one register, and in a ring in its place.
+const RINGS: [usize; 2] = [1, 8];
+/// Samples in 10 ms.
+const SPAN: usize = 200;
+/// Entry and exit of the interrupt: 12 cycles each and 18 words of the floating-point unit each (Cortex-M4 TRM, 3.9.1;
+/// application note 298), as modelled a line of flash each. At the most with waits of the bus.
+const ENTRY_AND_EXIT: Cycles = Cycles {
+    lower: 60,
+    modelled: 72,
+    upper: 150,
+};
+/// Parts in the order in which the image counts them, after a stream's whole ticks.
+const PARTS: [&str; 8] = [
+    "guard",
+    "proof, alarms, touches",
+    "sensing and health",
+    "detector",
+    "severity",
+    "outputs",
+    "recorder",
+    "forecast slice",
+];
+const WINDOW_BYTES: usize = 16;
+
+/// At the least, as modelled, at the most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cycles {
+    lower: u64,
+    modelled: u64,
+    upper: u64,
+}
+
+impl Cycles {
+    /// Each figure by itself.
+    fn each(self, other: Self, with: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            lower: with(self.lower, other.lower),
+            modelled: with(self.modelled, other.modelled),
+            upper: with(self.upper, other.upper),
+        }
+    }
+}
+
+/// Of all streams.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Modelled {
+    /// Between two samples at 20 kHz.
+    period: u64,
+    /// Mean while the rotor floats on its orbit.
+    typical: Cycles,
+    /// Greatest of any tick, each figure by itself.
+    worst: Cycles,
+    /// Longest that the interrupt of highest priority holds the core: today the whole tick, with entry and exit.
+    top_priority_worst: Cycles,
+    /// Greatest mean over 10 ms.
+    mean_10_ms_modelled: u64,
+    /// At 20 kHz with the converter's one register.
+    samples_lost_modelled: u64,
+    streams: usize,
+    ticks: usize,
+    /// Mean and greatest of each part, as modelled.
+    parts: Vec<PartModelled>,
+    /// At each rate.
+    queues: Vec<AtRate>,
+}
+
+/// A part of the tick.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct PartModelled {
+    part: String,
+    typical_modelled: u64,
+    worst_modelled: u64,
+}
+
+/// What the samples meet.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct AtRate {
+    samples_per_s: u64,
+    places: usize,
+    samples_lost: u64,
+    /// From a sample to the end of its tick.
+    latency_worst_us: u64,
+}
+
+/// A stretch between two readings of the counter.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    instructions: u32,
+    cycles: Cycles,
+}
+
+/// The ticks of a stream.
+struct Stream<'a> {
+    is_typical: bool,
+    ticks: &'a [Window],
+    /// As many as `PARTS` for each tick.
+    parts: &'a [Window],
+}
+
+/// Runs the counting image under the plugin: its own table, and the cycles.
+pub fn count(image: &Path) -> anyhow::Result<(Table, Modelled)> {
+    let plugin = firmware::build_plugin()?;
+    let folder = ticks::folder(image)?;
+    let (code, out) = (folder.join("code.bin"), folder.join("windows.bin"));
+    fs::write(&code, firmware::flash_content(image)?).context("cannot write the image's code")?;
+    let plugin = [
+        plugin.display().to_string(),
+        format!("code={}", code.display()),
+        format!("out={}", out.display()),
+    ];
+    let table = ticks::count_with(image, Some(&plugin.join(",")))?;
+    let bytes = fs::read(&out).context("the plugin wrote nothing")?;
+    let windows: Vec<_> = bytes.chunks_exact(WINDOW_BYTES).map(window).collect();
+    let modelled = modelled(&streams(&table, &windows)?);
+    Ok((table, modelled))
+}
+
+fn window(bytes: &[u8]) -> Window {
+    let number = |k: usize| u32::from_le_bytes(bytes[4 * k..4 * k + 4].try_into().expect("four"));
+    let [lower, modelled, upper] = [1, 2, 3].map(|k| number(k).into());
+    Window {
+        instructions: number(0),
+        cycles: Cycles {
+            lower,
+            modelled,
+            upper,
+        },
+    }
+}
+
+/// Windows by stream; fails where their instructions are not those that the image counted itself.
+fn streams<'a>(table: &Table, windows: &'a [Window]) -> anyhow::Result<Vec<Stream<'a>>> {
+    // What two readings take, which the image counts first and takes off.
+    let (empty, mut rest) = windows.split_first().context("the plugin saw no window")?;
+    let mut streams = vec![];
+    for (scene, ticks) in table.streams() {
+        let all = ticks * (1 + PARTS.len());
+        ensure!(rest.len() >= all, "the plugin's windows end in {scene}");
+        let (these, after) = rest.split_at(all);
+        let (ticks, parts) = these.split_at(ticks);
+        let worst = ticks.iter().map(|it| it.instructions).max();
+        let worst = worst.map(|it| it - empty.instructions);
+        ensure!(
+            worst == table.worst_in(scene),
+            "{scene}: {worst:?} instructions by the plugin, {:?} by the image",
+            table.worst_in(scene)
+        );
+        streams.push(Stream {
+            is_typical: scene == TYPICAL,
+            ticks,
+            parts,
+        });
+        rest = after;
+    }
+    ensure!(
+        rest.is_empty(),
+        "the plugin saw {} windows too many",
+        rest.len()
+    );
+    Ok(streams)
+}
+
+fn mean(cycles: impl Iterator<Item = Cycles>) -> Cycles {
+    let (mut sum, mut count) = (Cycles::default(), 0);
+    for it in cycles {
+        sum = sum.each(it, |a, b| a + b);
+        count += 1;
+    }
+    sum.each(sum, |it, _| it / count.max(1))
+}
+
+fn worst(cycles: impl Iterator<Item = Cycles>) -> Cycles {
+    cycles.fold(Cycles::default(), |a, b| a.each(b, u64::max))
+}
+
+fn modelled(streams: &[Stream]) -> Modelled {
+    let typical = || streams.iter().filter(|it| it.is_typical);
+    let ticks = || streams.iter().flat_map(|it| it.ticks);
+    let longest = worst(ticks().map(|it| it.cycles));
+    let interrupts: Vec<Vec<u64>> = streams.iter().map(Stream::interrupts).collect();
+    let part = |(k, part): (usize, &&str)| PartModelled {
+        part: (*part).into(),
+        typical_modelled: mean(typical().flat_map(|it| it.part(k))).modelled,
+        worst_modelled: worst(streams.iter().flat_map(|it| it.part(k))).modelled,
+    };
+    let queues: Vec<_> = RATES
+        .into_iter()
+        .flat_map(|rate| RINGS.map(|places| at_rate(&interrupts, rate, places)))
+        .collect();
+    let spans = interrupts.iter().flat_map(|it| it.windows(SPAN));
+    let mean_10_ms = spans.map(|it| it.iter().sum::<u64>() / SPAN as u64).max();
+    Modelled {
+        period: PERIOD,
+        typical: mean(typical().flat_map(|it| it.ticks).map(|it| it.cycles)),
+        worst: longest,
+        top_priority_worst: longest.each(ENTRY_AND_EXIT, |a, b| a + b),
+        mean_10_ms_modelled: mean_10_ms.unwrap_or(0),
+        samples_lost_modelled: queues[0].samples_lost,
+        streams: streams.len(),
+        ticks: ticks().count(),
+        parts: iter::zip(0.., &PARTS).map(part).collect(),
+        queues,
+    }
+}
+
+impl Stream<'_> {
+    /// What each sample takes of the core, as modelled.
+    fn interrupts(&self) -> Vec<u64> {
+        let of = |it: &Window| it.cycles.modelled + ENTRY_AND_EXIT.modelled;
+        self.ticks.iter().map(of).collect()
+    }
+
+    fn part(&self, k: usize) -> impl Iterator<Item = Cycles> {
+        let every = self.parts.iter().skip(k).step_by(PARTS.len());
+        every.map(|it| it.cycles)
+    }
+}
+
+/// Each stream by itself.
+fn at_rate(streams: &[Vec<u64>], rate: u64, places: usize) -> AtRate {
+    let period = CLOCK / rate;
+    let queues = streams.iter().map(|it| queue::simulate(it, period, places));
+    let all = queues.fold(Queue::default(), |a, b| Queue {
+        lost: a.lost + b.lost,
+        latency_worst: a.latency_worst.max(b.latency_worst),
+    });
+    AtRate {
+        samples_per_s: rate,
+        places,
+        samples_lost: all.lost,
+        latency_worst_us: all.latency_worst.div_ceil(CLOCK / 1_000_000),
+    }
+}
+
+/// For the eye.
+pub fn table(it: &Modelled) -> String {
+    let mut text = format!(
+        "  cycles, modelled and not measured, {} streams, {} ticks; period {}\n    {:24} {:>7} {:>8} {:>7}\n",
+        it.streams, it.ticks, it.period, "", "lower", "modelled", "upper"
+    );
+    for (name, cycles) in [
+        ("typical", it.typical),
+        ("worst", it.worst),
+        ("interrupt at worst", it.top_priority_worst),
+    ] {
+        let Cycles {
+            lower,
+            modelled,
+            upper,
+        } = cycles;
+        let _ = writeln!(text, "    {name:24} {lower:7} {modelled:8} {upper:7}");
+    }
+    let mean = it.mean_10_ms_modelled;
+    let _ = writeln!(text, "    {:24} {:7} {mean:8}", "worst mean of 10 ms", "");
+    for part in &it.parts {
+        let (name, typical, worst) = (&part.part, part.typical_modelled, part.worst_modelled);
+        let _ = writeln!(text, "    {name:24} typical {typical}, worst {worst}");
+    }
+    for at in &it.queues {
+        let _ = writeln!(
+            text,
+            "    {} samples/s, {} waiting at most: {} lost, {} us at most to the end of a tick",
+            at.samples_per_s, at.places, at.samples_lost, at.latency_worst_us
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window_of(modelled: u64) -> Window {
+        Window {
+            instructions: modelled as u32,
+            cycles: Cycles {
+                lower: modelled - 1,
+                modelled,
+                upper: 2 * modelled,
+            },
+        }
+    }
+
+    #[test]
+    fn figures_are_of_the_streams_and_the_interrupt_adds_entry_and_exit() {
+        let orbit = [window_of(5_000), window_of(7_000)];
+        let drop = [
+            window_of(30_000),
+            window_of(10),
+            window_of(10),
+            window_of(10),
+        ];
+        let parts: Vec<_> = (1..=8).map(|k| window_of(100 * k)).collect();
+        let stream = |is_typical, ticks| Stream {
+            is_typical,
+            ticks,
+            parts: &parts,
+        };
+        let it = modelled(&[stream(true, &orbit), stream(false, &drop)]);
+        assert_eq!((it.typical.lower, it.typical.modelled), (5_999, 6_000));
+        assert_eq!((it.worst.modelled, it.worst.upper), (30_000, 60_000));
+        assert_eq!(it.top_priority_worst.modelled, 30_072);
+        assert_eq!(it.parts[3].worst_modelled, 400);
+        // 30 072 cycles are 3.6 periods: of three samples one is kept.
+        assert_eq!(it.samples_lost_modelled, 2);
+        assert_eq!((it.streams, it.ticks), (2, 6));
+    }
+
+    #[test]
+    fn windows_that_are_not_those_of_the_image_are_refused() {
+        let table = Table::parse("compiler,rustc\ntick|drop|1|90|90\n").unwrap();
+        let mut windows = vec![window_of(2); 10];
+        windows[1] = window_of(92);
+        assert_eq!(streams(&table, &windows).unwrap().len(), 1);
+        windows[1] = window_of(93);
+        assert!(streams(&table, &windows).is_err());
+        assert!(streams(&table, &windows[..9]).is_err());
+    }
+}
