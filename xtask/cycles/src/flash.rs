@@ -15,12 +15,12 @@ pub fn line(address: u32) -> u32 {
 }
 
 /// Lines kept, the one used longest ago given up first.
-struct Kept<const N: usize> {
+struct LineCache<const N: usize> {
     lines: [(u32, u64); N],
     uses: u64,
 }
 
-impl<const N: usize> Kept<N> {
+impl<const N: usize> LineCache<N> {
     fn new() -> Self {
         Self {
             lines: array::from_fn(|_| (NONE, 0)),
@@ -42,8 +42,8 @@ impl<const N: usize> Kept<N> {
 
 /// What the accelerator holds.
 pub struct Flash {
-    code: Kept<CODE_LINES>,
-    data: Kept<DATA_LINES>,
+    code: LineCache<CODE_LINES>,
+    data: LineCache<DATA_LINES>,
     current: u32,
     /// Line that is read ahead, and the cycle at which it is there.
     ahead: (u32, u64),
@@ -53,8 +53,8 @@ impl Flash {
     /// Holds nothing.
     pub fn cold() -> Self {
         Self {
-            code: Kept::new(),
-            data: Kept::new(),
+            code: LineCache::new(),
+            data: LineCache::new(),
             current: NONE,
             ahead: (NONE, 0),
         }

@@ -38,6 +38,8 @@ const PARTS: [&str; 8] = [
     "recorder",
     "forecast slice",
 ];
+/// Of the image's count, which reads a timer of finite steps: one in 83 000 was seen.
+const ROUNDING: u32 = 1;
 const WINDOW_BYTES: usize = 16;
 
 /// At the least, as modelled, at the most.
@@ -82,6 +84,14 @@ pub struct Modelled {
     queues: Vec<AtRate>,
 }
 
+#[cfg(test)]
+impl Modelled {
+    /// Whether the worst tick holds a loop of so many turns, of two instructions or more, and loses samples by it.
+    pub fn shows_a_loop_of(&self, turns: u64) -> bool {
+        self.worst.lower > 2 * turns && self.samples_lost_modelled > turns * 2 / PERIOD
+    }
+}
+
 /// A part of the tick.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct PartModelled {
@@ -102,17 +112,17 @@ struct AtRate {
 
 /// A stretch between two readings of the counter.
 #[derive(Clone, Copy, Debug)]
-struct Window {
+struct CountedWindow {
     instructions: u32,
     cycles: Cycles,
 }
 
 /// The ticks of a stream.
-struct Stream<'a> {
+struct PlayedStream<'a> {
     is_typical: bool,
-    ticks: &'a [Window],
+    ticks: &'a [CountedWindow],
     /// As many as `PARTS` for each tick.
-    parts: &'a [Window],
+    parts: &'a [CountedWindow],
 }
 
 /// Runs the counting image under the plugin: its own table, and the cycles.
@@ -133,10 +143,10 @@ pub fn count(image: &Path) -> anyhow::Result<(Table, Modelled)> {
     Ok((table, modelled))
 }
 
-fn window(bytes: &[u8]) -> Window {
+fn window(bytes: &[u8]) -> CountedWindow {
     let number = |k: usize| u32::from_le_bytes(bytes[4 * k..4 * k + 4].try_into().expect("four"));
     let [lower, modelled, upper] = [1, 2, 3].map(|k| number(k).into());
-    Window {
+    CountedWindow {
         instructions: number(0),
         cycles: Cycles {
             lower,
@@ -147,7 +157,10 @@ fn window(bytes: &[u8]) -> Window {
 }
 
 /// Windows by stream; fails where their instructions are not those that the image counted itself.
-fn streams<'a>(table: &Table, windows: &'a [Window]) -> anyhow::Result<Vec<Stream<'a>>> {
+fn streams<'a>(
+    table: &Table,
+    windows: &'a [CountedWindow],
+) -> anyhow::Result<Vec<PlayedStream<'a>>> {
     // What two readings take, which the image counts first and takes off.
     let (empty, mut rest) = windows.split_first().context("the plugin saw no window")?;
     let mut streams = vec![];
@@ -159,11 +172,13 @@ fn streams<'a>(table: &Table, windows: &'a [Window]) -> anyhow::Result<Vec<Strea
         let worst = ticks.iter().map(|it| it.instructions).max();
         let worst = worst.map(|it| it - empty.instructions);
         ensure!(
-            worst == table.worst_in(scene),
+            worst
+                .zip(table.worst_in(scene))
+                .is_some_and(|(a, b)| a.abs_diff(b) <= ROUNDING),
             "{scene}: {worst:?} instructions by the plugin, {:?} by the image",
             table.worst_in(scene)
         );
-        streams.push(Stream {
+        streams.push(PlayedStream {
             is_typical: scene == TYPICAL,
             ticks,
             parts,
@@ -191,11 +206,11 @@ fn worst(cycles: impl Iterator<Item = Cycles>) -> Cycles {
     cycles.fold(Cycles::default(), |a, b| a.each(b, u64::max))
 }
 
-fn modelled(streams: &[Stream]) -> Modelled {
+fn modelled(streams: &[PlayedStream]) -> Modelled {
     let typical = || streams.iter().filter(|it| it.is_typical);
     let ticks = || streams.iter().flat_map(|it| it.ticks);
     let longest = worst(ticks().map(|it| it.cycles));
-    let interrupts: Vec<Vec<u64>> = streams.iter().map(Stream::interrupts).collect();
+    let interrupts: Vec<Vec<u64>> = streams.iter().map(PlayedStream::interrupts).collect();
     let part = |(k, part): (usize, &&str)| PartModelled {
         part: (*part).into(),
         typical_modelled: mean(typical().flat_map(|it| it.part(k))).modelled,
@@ -221,10 +236,10 @@ fn modelled(streams: &[Stream]) -> Modelled {
     }
 }
 
-impl Stream<'_> {
+impl PlayedStream<'_> {
     /// What each sample takes of the core, as modelled.
     fn interrupts(&self) -> Vec<u64> {
-        let of = |it: &Window| it.cycles.modelled + ENTRY_AND_EXIT.modelled;
+        let of = |it: &CountedWindow| it.cycles.modelled + ENTRY_AND_EXIT.modelled;
         self.ticks.iter().map(of).collect()
     }
 
@@ -288,8 +303,8 @@ pub fn table(it: &Modelled) -> String {
 mod tests {
     use super::*;
 
-    fn window_of(modelled: u64) -> Window {
-        Window {
+    fn window_of(modelled: u64) -> CountedWindow {
+        CountedWindow {
             instructions: modelled as u32,
             cycles: Cycles {
                 lower: modelled - 1,
@@ -309,7 +324,7 @@ mod tests {
             window_of(10),
         ];
         let parts: Vec<_> = (1..=8).map(|k| window_of(100 * k)).collect();
-        let stream = |is_typical, ticks| Stream {
+        let stream = |is_typical, ticks| PlayedStream {
             is_typical,
             ticks,
             parts: &parts,
@@ -330,7 +345,7 @@ mod tests {
         let mut windows = vec![window_of(2); 10];
         windows[1] = window_of(92);
         assert_eq!(streams(&table, &windows).unwrap().len(), 1);
-        windows[1] = window_of(93);
+        windows[1] = window_of(94);
         assert!(streams(&table, &windows).is_err());
         assert!(streams(&table, &windows[..9]).is_err());
     }
