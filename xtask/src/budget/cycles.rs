@@ -38,8 +38,8 @@ const PARTS: [&str; 8] = [
     "recorder",
     "forecast slice",
 ];
-/// Of the image's count, which reads a timer of finite steps: one in 83 000 was seen.
-const ROUNDING: u32 = 1;
+/// Instructions of the two readings, which the image takes off.
+const READINGS: u32 = 2;
 const WINDOW_BYTES: usize = 16;
 
 /// At the least, as modelled, at the most.
@@ -161,8 +161,8 @@ fn streams<'a>(
     table: &Table,
     windows: &'a [CountedWindow],
 ) -> anyhow::Result<Vec<PlayedStream<'a>>> {
-    // What two readings take, which the image counts first and takes off.
-    let (empty, mut rest) = windows.split_first().context("the plugin saw no window")?;
+    // The first is empty: the image measures by it what two readings take.
+    let (_, mut rest) = windows.split_first().context("the plugin saw no window")?;
     let mut streams = vec![];
     for (scene, ticks) in table.streams() {
         let all = ticks * (1 + PARTS.len());
@@ -170,11 +170,9 @@ fn streams<'a>(
         let (these, after) = rest.split_at(all);
         let (ticks, parts) = these.split_at(ticks);
         let worst = ticks.iter().map(|it| it.instructions).max();
-        let worst = worst.map(|it| it - empty.instructions);
+        let worst = worst.map(|it| it.saturating_sub(READINGS));
         ensure!(
-            worst
-                .zip(table.worst_in(scene))
-                .is_some_and(|(a, b)| a.abs_diff(b) <= ROUNDING),
+            worst == table.worst_in(scene),
             "{scene}: {worst:?} instructions by the plugin, {:?} by the image",
             table.worst_in(scene)
         );
@@ -345,7 +343,7 @@ mod tests {
         let mut windows = vec![window_of(2); 10];
         windows[1] = window_of(92);
         assert_eq!(streams(&table, &windows).unwrap().len(), 1);
-        windows[1] = window_of(94);
+        windows[1] = window_of(93);
         assert!(streams(&table, &windows).is_err());
         assert!(streams(&table, &windows[..9]).is_err());
     }
