@@ -189,7 +189,13 @@ impl Fall {
         let on_event = |h: ModelEvent<R>| {
             let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
             let change = match h.change {
-                Change::Impact(normal) => Change::Impact(normal.to_f64() * speed),
+                Change::Impact {
+                    speed: into,
+                    impulse,
+                } => Change::Impact {
+                    speed: into.to_f64() * speed,
+                    impulse: impulse.to_f64() * speed,
+                },
                 Change::ContactStarts => Change::ContactStarts,
                 Change::RollingStarts => Change::RollingStarts,
                 Change::SlidingStarts => Change::SlidingStarts,

@@ -83,7 +83,7 @@ impl Use for Parts<'_> {
                 let mut state = before.clone();
                 let mut normal = R::ZERO;
                 model.step(&mut state, |happening| {
-                    if let Change::Impact(speed) = happening.change {
+                    if let Change::Impact { speed, .. } = happening.change {
                         normal = speed;
                     }
                 });

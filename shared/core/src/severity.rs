@@ -54,7 +54,8 @@ pub(crate) struct SeverityState {
     /// Sum of the speeds into the wall, m/s.
     speeds: f32,
     was_released: bool,
-    was_in_contact: bool,
+    /// Samples since those that the dwell counts; 0 in contact.
+    uncounted: u16,
 }
 
 impl SeverityModel {
@@ -73,15 +74,20 @@ impl SeverityModel {
     /// After a tick that gave `notices`.
     pub(crate) fn take(&self, state: &mut SeverityState, strain: &Exposure, notices: &[Notice]) {
         if strain.is_released && !state.was_released {
-            *state = SeverityState::default();
+            *state = SeverityState {
+                uncounted: u16::MAX,
+                ..SeverityState::default()
+            };
         }
         state.was_released = strain.is_released;
         for notice in notices {
             if let Notice::Declared(event) = notice {
-                self.event(state, event, strain.restitution);
+                self.event(state, event, strain);
             }
         }
-        self.contact(state, strain);
+        if strain.is_released {
+            self.contact(state, strain);
+        }
         let so_far = &mut state.so_far;
         if strain.speed_error < WELL_KNOWN * self.unit {
             so_far.velocity_index = so_far.velocity_index.max(strain.speed / self.unit);
@@ -96,35 +102,40 @@ impl SeverityModel {
         }
     }
 
-    fn event(&self, state: &mut SeverityState, event: &Event, restitution: f32) {
+    fn event(&self, state: &mut SeverityState, event: &Event, strain: &Exposure) {
         let so_far = &mut state.so_far;
         match event.kind {
             EventKind::Impact => {
                 state.speeds += event.normal_speed;
                 so_far.impacts = so_far.impacts.saturating_add(1);
                 so_far.impact_speed = so_far.impact_speed.max(event.normal_speed);
-                self.impulses(state, restitution);
+                self.impulses(state, strain.restitution);
             }
             EventKind::LiftOff => {
-                // It was over before it was declared.
+                // It was over before it was declared; another end may have been in contact since then.
                 let late = Moment::of_sample(event.declared).since(event.onset);
+                let late = (late - strain.contact_age.unwrap_or(0) as f32).max(0.0);
                 so_far.dwell = (so_far.dwell - late * self.period).max(0.0);
+                if strain.contact_age.is_none() {
+                    state.uncounted = late as u16;
+                }
             }
             _ => {}
         }
     }
 
     fn contact(&self, state: &mut SeverityState, strain: &Exposure) {
+        state.uncounted = state.uncounted.saturating_add(1);
         if let Some(age) = strain.contact_age {
-            // It began before it was declared.
-            let samples = if state.was_in_contact { 1 } else { age };
+            // It began before it was declared; another end may have been in contact then.
+            let samples = age.min(u32::from(state.uncounted));
             state.so_far.dwell += samples as f32 * self.period;
-            if !state.was_in_contact {
+            if state.uncounted > 1 {
                 state.speeds += strain.ahead;
                 self.impulses(state, strain.restitution);
             }
+            state.uncounted = 0;
         }
-        state.was_in_contact = strain.contact_age.is_some();
     }
 
     fn impulses(&self, state: &mut SeverityState, restitution: f32) {

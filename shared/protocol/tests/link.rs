@@ -1,6 +1,7 @@
 //! The link takes any bytes; its frames are those of docs/formats/link.md, byte for byte.
 
 use proptest::prelude::*;
+use touchdown_core::checksum::CRC;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_core::monitor::MonitorConfig;
@@ -455,10 +456,39 @@ fn newest_samples_come_at_the_step_that_was_asked() {
     }
 }
 
+/// A frame of any version.
+fn framed(version: u8, sequence: u8, message: &[u8]) -> Vec<u8> {
+    let plain = [&[version, sequence], message].concat();
+    let checksum = CRC.checksum(&plain).to_le_bytes();
+    [
+        &cobs::encode_vec(&[&plain[..], &checksum].concat())[..],
+        &[0],
+    ]
+    .concat()
+}
+
+#[test]
+fn hello_is_answered_in_every_version_and_nothing_else_is() {
+    for version in 0..=u8::MAX {
+        let (mut server, mut bench) = (server(), Bench::new());
+        let hello = framed(version, 7, &[0]);
+        let mut answer = None;
+        for byte in hello {
+            answer = answer.or(server.take(byte, &mut bench));
+        }
+        let answer = answer.expect("an answer");
+        let body = [&[0, 5], &b"0.1.0"[..], &20_000_f32.to_le_bytes()].concat();
+        assert_eq!(answer[..], framed(version, 7, &body)[..], "{version}");
+        let state = framed(version, 8, &[1]);
+        let answers = state.iter().filter_map(|it| server.take(*it, &mut bench));
+        assert_eq!(answers.count(), usize::from(version == VERSION));
+    }
+}
+
 #[test]
 fn version_and_length_are_named() {
     let mut decoder = Decoder::default();
-    let plain = [VERSION + 1, 0, 0];
+    let plain = [VERSION + 1, 0, 1];
     let checksum = touchdown_core::checksum::CRC.checksum(&plain).to_le_bytes();
     let other: Vec<u8> = cobs::encode_vec(&[&plain[..], &checksum].concat());
     let said = other

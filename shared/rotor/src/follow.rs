@@ -157,7 +157,10 @@ impl<R: Precision> Rigid<R> {
             let (position, velocity) = launched.at(R::ZERO, law);
             on_event(ModelEvent {
                 at: state.begun,
-                change: Change::Impact(normal),
+                change: Change::Impact {
+                    speed: normal,
+                    impulse: normal + hit.launch_speed,
+                },
                 after: Kinematics {
                     position,
                     velocity,

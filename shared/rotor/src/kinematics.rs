@@ -5,8 +5,14 @@ use crate::clock::Instant;
 /// What changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change<R> {
-    /// An impact with this speed into the wall.
-    Impact(R),
+    /// An impact.
+    Impact {
+        /// Into the wall.
+        speed: R,
+        /// Along the normal, over the rotor's mass, V. Where contact takes time: what restitution makes of the speed; the
+        /// contact's own is told with its end.
+        impulse: R,
+    },
     /// Permanent contact began.
     ContactStarts,
     /// Slip ended.

@@ -117,3 +117,26 @@ fn nothing_before_the_first_drop() {
         (0, 0.0, 0.0)
     );
 }
+
+/// An end that lifts off while the other is in contact takes nothing from the dwell.
+#[test]
+fn contact_of_two_ends_counts_once() {
+    let toml = include_str!("../../../host-sim/scenes/two-plane.toml");
+    let toml = replaced(toml, "duration_s", 1.7);
+    let toml = replaced(&toml, "restitution", 0.3);
+    for (speed, friction) in [(-20_000.0, 0.2), (-12_000.0, 0.15), (30_000.0, 0.15)] {
+        let toml = replaced(&replaced(&toml, "speed_rpm", speed), "friction", friction);
+        let scene = Scene::parse("ends.toml", &toml).expect("a valid scene");
+        let drop = watch(&scene, &scene);
+        let seen = f64::from(drop.seen.dwell);
+        println!("{speed} 1/min: {seen} s of {} s", drop.dwell);
+        assert!((seen - drop.dwell).abs() < 0.02, "{seen} {}", drop.dwell);
+    }
+}
+
+/// The scene with another value of the first line `key = ...`.
+fn replaced(toml: &str, key: &str, value: f64) -> String {
+    let is_key = |line: &&str| line.split('=').next().is_some_and(|it| it.trim() == key);
+    let line = toml.lines().find(is_key).expect("a line with the key");
+    toml.replacen(line, &format!("{key} = {value:?}"), 1)
+}

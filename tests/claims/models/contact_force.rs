@@ -72,7 +72,7 @@ where
     let mut entry = 0.0;
     for _ in 0..10_000_000 {
         model.step(&mut state, |h| match h.change {
-            Change::Impact(normal) => entry = normal.to_f64(),
+            Change::Impact { speed: normal, .. } => entry = normal.to_f64(),
             Change::Released(p) => pulse = Some((p, h.after.velocity[1].to_f64())),
             _ => panic!("{:?}", h.change),
         });

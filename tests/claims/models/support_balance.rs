@@ -84,7 +84,7 @@ fn impacts_are_those_of_the_reference() {
         let found: Vec<_> = told
             .iter()
             .filter_map(|t| match t.1 {
-                Change::Impact(speed) => Some((t.0, speed)),
+                Change::Impact { speed, .. } => Some((t.0, speed)),
                 _ => None,
             })
             .collect();

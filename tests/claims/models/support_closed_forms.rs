@@ -176,7 +176,7 @@ fn an_impact_with_a_free_ring_keeps_the_momentum() {
         fall.rigid.gravity = 0.0;
         let fall = fall.free([1e-4, 0.0], [0.03, -0.04]).spinning(40.0);
         let (end, told) = fall.end::<f64>(0.01);
-        let impacts = told.iter().filter(|t| matches!(t.1, Change::Impact(_)));
+        let impacts = told.iter().filter(|t| matches!(t.1, Change::Impact { .. }));
         assert_eq!(impacts.count(), 1, "{told:?}");
         let start = [5.0 * 0.03, 5.0 * -0.04];
         for (k, start) in start.iter().enumerate() {
@@ -184,7 +184,7 @@ fn an_impact_with_a_free_ring_keeps_the_momentum() {
             assert!((now - start).abs() < 1e-14, "{ring} kg: {now} {start}");
         }
         // The impact's normal is where the ring went but for friction.
-        let (Change::Impact(speed), at) = (told[0].1, told[0].0) else {
+        let (Change::Impact { speed, .. }, at) = (told[0].1, told[0].0) else {
             panic!("{told:?}");
         };
         let met = [1e-4 + 0.03 * at, -0.04 * at].map(|x| x / 3e-4);

@@ -109,7 +109,7 @@ fn drops_of_the_plane_converge_to_the_reference() {
             let mut keep = |_: usize, h: touchdown_rotor::ModelEvent<f64>| {
                 let time = (h.at.tick as f64 + h.at.fraction) * step;
                 match h.change {
-                    Change::Impact(_) => times.push(time),
+                    Change::Impact { .. } => times.push(time),
                     Change::ContactStarts if contact.is_none() => contact = Some(time),
                     _ => {}
                 }
@@ -276,7 +276,7 @@ fn tilted_ends_land_at_their_times() {
         let first = if want[0] < want[1] { 0 } else { 1 };
         let mut landed = None;
         let mut keep = |ring: usize, h: touchdown_rotor::ModelEvent<f64>| {
-            if let (Change::Impact(_), None) = (h.change, landed) {
+            if let (Change::Impact { .. }, None) = (h.change, landed) {
                 landed = Some((ring, (h.at.tick as f64 + h.at.fraction) * 1e-3));
             }
         };

@@ -41,7 +41,7 @@ fn swing<R: Precision>(
     let (mut worst, mut turned) = (0.0_f64, 0.0_f64);
     for _ in 0..steps {
         model.step(&mut state, |_, h| match h.change {
-            Change::Impact(_) => impacts += 1,
+            Change::Impact { .. } => impacts += 1,
             change => panic!("{change:?}"),
         });
         worst = worst.max((energy(&state) - first).abs());

@@ -23,7 +23,7 @@ fn check<R: Precision>(drop: &Drop, steps: u32, tolerance: f64) -> Result<(), Te
         let mut normal_speeds_positive = true;
         model.step(&mut state, |happening| {
             happenings.push(happening);
-            if let Change::Impact(normal) = happening.change {
+            if let Change::Impact { speed: normal, .. } = happening.change {
                 normal_speeds_positive &= normal > R::ZERO;
             }
         });

@@ -155,7 +155,7 @@ impl Use for Check<'_> {
             model.step(&mut state, |happening| {
                 happenings += 1;
                 sane &= is_finite(&happening.after);
-                if let Change::Impact(normal) = happening.change {
+                if let Change::Impact { speed: normal, .. } = happening.change {
                     sane &= normal > R::ZERO && normal.is_finite();
                 }
             });

@@ -132,6 +132,11 @@ fn a_speed_that_is_wrong_for_a_turn_changes_nothing() {
         .assert()
         .success();
     let json: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
-    assert_eq!(events(&json, false), Vec::<&Value>::new());
+    let told = events(&json, false);
+    let [fault] = told[..] else {
+        panic!("{told:?}");
+    };
+    assert_eq!(fault["event"], "sensor_fault");
+    assert_eq!(fault["fault"]["channel"], "speed");
     assert_eq!(json["faults"], 40, "the readings are told");
 }

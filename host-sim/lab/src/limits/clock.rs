@@ -71,7 +71,7 @@ fn measure<R: Number>(
             if let Some(&other) = impacts.get(count as usize) {
                 apart = apart.max((ticks(h.at) - ticks(other)).abs());
             }
-            if matches!(h.change, Change::Impact(_)) {
+            if matches!(h.change, Change::Impact { .. }) {
                 count += 1;
                 last = h.at;
             }

@@ -103,7 +103,7 @@ impl Use for Press<'_> {
         for _ in 0..steps as u64 {
             let mut hits = 0;
             model.step(&mut state, |h| {
-                hits += u32::from(matches!(h.change, Change::Impact(_)))
+                hits += u32::from(matches!(h.change, Change::Impact { .. }))
             });
             let now = model.kinematics(&state);
             seen.not_finite += u32::from(!is_finite(&now));

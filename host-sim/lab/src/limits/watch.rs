@@ -76,7 +76,7 @@ impl Use for Watch<'_> {
             model.step(&mut state, |happening| {
                 in_step += 1;
                 finite &= is_finite(&happening.after);
-                if let Change::Impact(speed) = happening.change {
+                if let Change::Impact { speed, .. } = happening.change {
                     finite &= speed.is_finite();
                 }
             });

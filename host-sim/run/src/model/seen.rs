@@ -51,9 +51,8 @@ pub(super) struct Seen {
     pub scales: Scales<f64>,
     /// s.
     pub step: f64,
-    /// That an impact meets, kg.
+    /// Of the rotor, kg.
     pub mass: f64,
-    pub restitution: f64,
 }
 
 impl Seen {
@@ -65,15 +64,15 @@ impl Seen {
         } = self.scales;
         let state = Self::state(after, time, &self.scales);
         match *change {
-            Change::Impact(normal) => {
-                let normal_speed = normal.to_f64() * speed;
-                ModelEvent::Impact(Impact {
-                    state,
-                    normal_speed,
-                    normal_impulse: self.mass * (1.0 + self.restitution) * normal_speed,
-                    pulse: None,
-                })
-            }
+            Change::Impact {
+                speed: into,
+                impulse,
+            } => ModelEvent::Impact(Impact {
+                state,
+                normal_speed: into.to_f64() * speed,
+                normal_impulse: impulse.to_f64() * self.mass * speed,
+                pulse: None,
+            }),
             Change::Released(pulse) => ModelEvent::Released {
                 state,
                 pulse: Pulse {

@@ -51,7 +51,6 @@ impl Use for Simulate<'_> {
             scales: *scales,
             step: scene.model.step,
             mass: scene.rotor.mass,
-            restitution: scene.retainer.restitution,
         };
         let mut recorder = Recorder::new(-scene.first_sample_time());
         let mut take = |happening: model::ModelEvent<R>| recorder.take(seen.happening(&happening));

@@ -151,12 +151,10 @@ impl UseSupport for Run<'_> {
             spin,
             scales,
         } = subject;
-        let ring_mass = scene.support.map_or(f64::INFINITY, |support| support.mass);
         let seen = Seen {
             scales,
             step: scene.model.step,
-            mass: 1.0 / (1.0 / scene.rotor.mass + 1.0 / ring_mass),
-            restitution: scene.retainer.restitution,
+            mass: scene.rotor.mass,
         };
         let travel = scene.support.and_then(|support| support.travel);
         let travel = travel.map_or(f64::INFINITY, |travel| travel / scales.length);

@@ -55,16 +55,6 @@ fn machine(scene: &Scene) -> Result<&touchdown_scene::TwoPlane, ConfigError> {
     scene.two_plane.as_ref().ok_or(rule)
 }
 
-/// That an impact in the ring meets, kg.
-pub(crate) fn effective_mass(
-    scene: &Scene,
-    machine: &touchdown_scene::TwoPlane,
-    ring: usize,
-) -> f64 {
-    let place = machine.rings[ring].place;
-    1.0 / (1.0 / scene.rotor.mass + place * place / machine.transverse_inertia)
-}
-
 fn config<const N: usize>(scene: &Scene) -> Result<TwoPlaneConfig<f64, N>, ConfigError> {
     let machine = machine(scene)?;
     let ring = |ring: &touchdown_scene::Ring| RingConfig {
@@ -176,8 +166,7 @@ fn in_rings<R: Precision, const N: usize>(
         let seen = Seen {
             scales: at_ring(ring),
             step: scene.model.step,
-            mass: effective_mass(scene, machine, ring),
-            restitution: machine.rings[ring].retainer.restitution,
+            mass: scene.rotor.mass,
         };
         let happening = seen.happening(&happening);
         rings[ring].take(happening);

@@ -107,9 +107,9 @@ impl Run {
     fn judge(&mut self, &ModelEvent { at, change, after }: &ModelEvent<Poly32>) -> Option<Fate> {
         let now = time(&at);
         match change {
-            Change::Impact(normal) => {
+            Change::Impact { speed, .. } => {
                 self.leg = Leg::default();
-                self.end_of_series(now, normal.0, &after)
+                self.end_of_series(now, speed.0, &after)
             }
             Change::ContactStarts => {
                 let [sin, minus_cos] = after.position.map(|it| it.0);

@@ -282,7 +282,7 @@ fn run<R: Precision, M: Stepper<R>>(
 
 fn line<R: Real>(happening: &ModelEvent<R>) -> String {
     let change = match &happening.change {
-        Change::Impact(normal) => format!("impact {}", number(*normal)),
+        Change::Impact { speed, .. } => format!("impact {}", number(*speed)),
         Change::Released(pulse) => format!(
             "released {} {} {}",
             number(pulse.peak_force),

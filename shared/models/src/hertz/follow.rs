@@ -85,7 +85,11 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         match state.touching {
             None if outward > R::ZERO => {
                 state.touching = Some(Touching::new(at, self.rate(outward)));
-                tell(state, at, Change::Impact(outward), on_event);
+                let change = Change::Impact {
+                    speed: outward,
+                    impulse: outward * (R::ONE + self.law.restitution),
+                };
+                tell(state, at, change, on_event);
             }
             None => {}
             Some(touching) => {

@@ -71,7 +71,12 @@ impl<R: Precision> Moreau<R> {
         let away = launched([sin, cos], hit.launch_speed, hit.tangential);
         if normal > R::CUTOFF_SPEED {
             state.motion = Motion::Flight(Flight::new([sin, -cos], away));
-            self.tell(state, middle, Change::Impact(normal), on_event);
+            let impulse = normal + hit.launch_speed;
+            let change = Change::Impact {
+                speed: normal,
+                impulse,
+            };
+            self.tell(state, middle, change, on_event);
         }
         let rest = [sin, cos];
         if R::TWO * hit.launch_speed <= normal_acceleration * self.step {

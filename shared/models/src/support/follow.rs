@@ -42,7 +42,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         let whole = self.step * part;
         let (mut left, mut longest, mut impacts, mut crossings) = (whole, whole, 0, 0);
         state.impulse = R::ZERO;
-        state.struck = false;
+        state.held_impulse = R::ZERO;
         for stretch in 0..=MOST_STRETCHES {
             if left <= R::ZERO {
                 break;
@@ -81,9 +81,8 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
         }
         state.load.normal = state.impulse / whole;
         state.load.peak = state.load.peak.most(state.load.normal);
-        if state.held.is_some() && !state.struck {
-            state.load.held_peak = state.load.held_peak.most(state.load.normal);
-        }
+        let held = state.held_impulse / whole;
+        state.load.held_peak = state.load.held_peak.most(held);
     }
 
     /// The first wall that the stretch goes beyond.
@@ -157,6 +156,7 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             state.heat.add(heat);
             state.lost.add(impulse * into);
             state.impulse += impulse;
+            state.held_impulse += impulse;
         }
         self.race.advance(&mut state.race, time, turned, rub, heat);
         let Some(press) = &passage.press else {

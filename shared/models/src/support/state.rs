@@ -26,7 +26,7 @@ pub struct Load<R> {
     pub normal: R,
     /// Largest so far; an impact counts by its impulse, so it depends on the step.
     pub peak: R,
-    /// Largest so far in steps of permanent contact without impact.
+    /// Largest so far, without the impulses of impacts.
     pub held_peak: R,
 }
 
@@ -50,8 +50,8 @@ pub struct SupportState<R, S, T> {
     pub(super) load: Load<R>,
     /// Normal impulse in this step so far.
     pub(super) impulse: R,
-    /// Whether it has an impact.
-    pub(super) struck: bool,
+    /// Part of it without impacts.
+    pub(super) held_impulse: R,
     pub(super) shortened: u32,
 }
 
@@ -94,7 +94,7 @@ impl<R: Precision, S: Default, T: Default> SupportState<R, S, T> {
             lost: Sum::default(),
             load: Load::default(),
             impulse: R::ZERO,
-            struck: false,
+            held_impulse: R::ZERO,
             shortened: 0,
         }
     }

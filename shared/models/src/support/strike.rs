@@ -147,8 +147,11 @@ impl<R: Precision, M: Mount<R>, B: Race<R>> Support<R, M, B> {
             state.lost.add(-raised);
         }
         if new && meeting.outward > R::CUTOFF_SPEED {
-            state.struck = true;
-            self.tell(state, part, Change::Impact(meeting.outward), on_event);
+            let change = Change::Impact {
+                speed: meeting.outward,
+                impulse: impulse.normal,
+            };
+            self.tell(state, part, change, on_event);
         }
         if returns {
             let place = state.place.value();

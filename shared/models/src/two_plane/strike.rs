@@ -94,7 +94,11 @@ impl<R: Precision, const N: usize> TwoPlane<R, N> {
             if let Some(meeting) = meeting.filter(ActiveContact::is_new)
                 && meeting.outward > R::CUTOFF_SPEED
             {
-                self.tell(state, i, part, Change::Impact(meeting.outward), on_event);
+                let change = Change::Impact {
+                    speed: meeting.outward,
+                    impulse: meeting.impulse.normal,
+                };
+                self.tell(state, i, part, change, on_event);
             }
         }
         for (i, (meeting, returns)) in meetings.iter().zip(&mut returns).enumerate() {

@@ -16,15 +16,22 @@ const PLAIN_BYTES: usize = 448;
 pub const FRAME_BYTES: usize = PLAIN_BYTES + PLAIN_BYTES / 254 + 2;
 const HEAD: usize = 2;
 const TAIL: usize = 4;
+/// `Request::Hello` in every version.
+const HELLO: [u8; 1] = [0];
 
 /// A frame on the line.
 pub type Frame = Vec<u8, FRAME_BYTES>;
 
 /// Message to frame; `None` where it is too long, which no message of this version is.
 pub fn encode<M: Serialize>(sequence: u8, message: &M) -> Option<Frame> {
+    encode_as(VERSION, sequence, message)
+}
+
+/// Likewise, in a frame of this version.
+pub(super) fn encode_as<M: Serialize>(version: u8, sequence: u8, message: &M) -> Option<Frame> {
     let mut plain = [0; PLAIN_BYTES];
     let (head, rest) = plain.split_first_chunk_mut::<HEAD>()?;
-    *head = [VERSION, sequence];
+    *head = [version, sequence];
     let end = HEAD + postcard::to_slice(message, rest).ok()?.len();
     let checksum = CRC.checksum(plain.get(..end)?);
     plain
@@ -55,6 +62,8 @@ pub enum FrameError {
     Checksum,
     /// Another version.
     Version(u8),
+    /// A hello of another version, and its sequence number.
+    Hello(u8, u8),
     /// No message of this version.
     Message,
 }
@@ -101,6 +110,9 @@ impl Decoder {
         let (&[version, sequence], message) = checked.split_first_chunk::<HEAD>().ok_or(cut)?;
         if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
             return Err(FrameError::Checksum);
+        }
+        if version != VERSION && message == HELLO {
+            return Err(FrameError::Hello(version, sequence));
         }
         if version != VERSION {
             return Err(FrameError::Version(version));

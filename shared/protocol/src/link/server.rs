@@ -1,6 +1,6 @@
 //! The controller's side: requests in, answers out, orders only by right.
 
-use super::frame::{self, Decoder, Frame};
+use super::frame::{self, Decoder, Frame, FrameError};
 use super::message::{Chunk, Hello, Recent, Refusal, Reply, Request, State, shortened};
 use super::right::{Mac, Right};
 use crate::config_block::{self, Block, Key, Settings};
@@ -121,6 +121,11 @@ impl Server {
             Ok(received) => {
                 let reply = self.answer(received.message, device);
                 frame::encode(received.sequence, &reply)
+            }
+            // In its version: so a desktop of another one learns who is there.
+            Err(FrameError::Hello(version, sequence)) => {
+                let reply = self.answer(Request::Hello, device);
+                frame::encode_as(version, sequence, &reply)
             }
             Err(_) => {
                 self.damaged = self.damaged.saturating_add(1);

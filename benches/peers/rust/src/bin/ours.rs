@@ -104,7 +104,7 @@ impl Use for Run<'_> {
             |h| {
                 let [x, y, u, v] = in_si(&h.after);
                 match h.change {
-                    Change::Impact(normal) => {
+                    Change::Impact { speed: normal, .. } => {
                         let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
                         impacts.push([at, x, y, u, v, normal.to_f64() * scales.speed]);
                     }

@@ -2,12 +2,12 @@
 
 use super::jet::{Jet, dot, solve};
 use super::mode::Mode;
-use super::system::{Hold, Law, SIZE, System};
+use super::system::{Hold, Law, System};
 
 /// Accelerations under the links' forces.
 pub struct Forces {
     /// Of the coordinates.
-    pub acceleration: [Jet; SIZE],
+    pub acceleration: Vec<Jet>,
     /// Normal force of each link, N.
     pub normal: Vec<Jet>,
     /// Friction of each link without slip, N.
@@ -33,11 +33,13 @@ impl Forces {
         system: &System,
         law: &impl Law,
         modes: &[Mode],
-        place: &[Jet; SIZE],
-        speed: &[Jet; SIZE],
+        place: &[Jet],
+        speed: &[Jet],
     ) -> Self {
-        let forces = law.forces(place, speed);
-        let mut acceleration: [Jet; SIZE] = std::array::from_fn(|i| forces[i] * system.mobility[i]);
+        let mut acceleration = law.forces(place, speed);
+        for (force, mobility) in acceleration.iter_mut().zip(&system.mobility) {
+            *force = *force * *mobility;
+        }
         let mut unknowns = Vec::new();
         for (index, (link, mode)) in system.links.iter().zip(modes).enumerate() {
             match (link.hold, *mode) {
@@ -73,9 +75,9 @@ impl Forces {
                     unknowns.push(Unknown::without_slip(index, [Jet::ZERO; 2]));
                 }
                 (Hold::Brake(limit), Mode::Slide(sign)) => {
-                    for k in 0..2 {
-                        let braked = -sign * limit * link.arms[k] * system.mobility[4 + k];
-                        acceleration[4 + k] = acceleration[4 + k] + Jet::constant(braked);
+                    for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
+                        let braked = -sign * limit * arm * system.mobility[i];
+                        acceleration[i] = acceleration[i] + Jet::constant(braked);
                     }
                 }
             }
@@ -96,7 +98,7 @@ impl Forces {
             let turning = link_at.turning(&acceleration) * row.1;
             right.push(*target - dot(&row.0, &free) - turning);
             let diagonal = system.lateral(*link, *link) + system.turning(*link, *link) * row.1;
-            let parts: f64 = (0..4)
+            let parts: f64 = (0..system.first_spin())
                 .map(|i| (link_at.shares[i / 2] * acceleration[i].value()).abs())
                 .sum();
             size += (target.value().abs() + parts + turning.value().abs()) / diagonal;
@@ -116,14 +118,16 @@ impl Forces {
 
     fn apply(&mut self, system: &System, unknown: &Unknown, force: Jet) {
         let link = &system.links[unknown.link];
-        for k in 0..2 {
-            for axis in 0..2 {
-                let i = 2 * k + axis;
-                let part = link.shares[k] * system.mobility[i];
-                self.acceleration[i] = self.acceleration[i] + force * unknown.force.0[axis] * part;
+        let vector = unknown.force.0.map(|direction| force * direction);
+        for i in 0..system.first_spin() {
+            let part = link.shares[i / 2] * system.mobility[i];
+            if part != 0.0 {
+                self.acceleration[i] = self.acceleration[i] + vector[i % 2] * part;
             }
-            let part = link.arms[k] * system.mobility[4 + k] * unknown.force.1;
-            self.acceleration[4 + k] = self.acceleration[4 + k] + force * part;
+        }
+        for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
+            let part = arm * system.mobility[i] * unknown.force.1;
+            self.acceleration[i] = self.acceleration[i] + force * part;
         }
         let list = if unknown.grips {
             &mut self.grip

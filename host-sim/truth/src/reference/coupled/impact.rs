@@ -3,7 +3,7 @@
 
 use super::jet::{Jet, solve};
 use super::step::Mode;
-use super::system::{Hold, Link, SIZE, System};
+use super::system::{Hold, Link, System};
 
 /// Passes over all links; for a light ring between the rotor and its stop thousands are needed.
 const MAX_PASSES: usize = 100_000;
@@ -26,7 +26,7 @@ pub struct Touching {
 
 impl Touching {
     /// Before the impact.
-    pub fn new(system: &System, link: usize, place: &[f64; SIZE], speed: &[f64; SIZE]) -> Self {
+    pub fn new(system: &System, link: usize, place: &[f64], speed: &[f64]) -> Self {
         let [x, y] = system.links[link].lateral(place);
         let distance = f64::hypot(x, y);
         let normal = [x / distance, y / distance];
@@ -44,31 +44,31 @@ impl Touching {
     }
 
     /// Speed into the wall.
-    pub fn outward(&self, system: &System, speed: &[f64; SIZE]) -> f64 {
+    pub fn outward(&self, system: &System, speed: &[f64]) -> f64 {
         let w = system.links[self.link].lateral(speed);
         w[0] * self.normal[0] + w[1] * self.normal[1]
     }
 
     /// Slip; that of a brake has no lateral part.
-    pub fn slip(&self, system: &System, speed: &[f64; SIZE]) -> f64 {
+    pub fn slip(&self, system: &System, speed: &[f64]) -> f64 {
         let link = &system.links[self.link];
         let w = link.lateral(speed);
         w[1] * self.normal[0] - w[0] * self.normal[1] + link.turning(speed)
     }
 
-    fn press(&self, system: &System, impulse: f64, speed: &mut [f64; SIZE]) {
+    fn press(&self, system: &System, impulse: f64, speed: &mut [f64]) {
         let vector = self.normal.map(|n| -n * impulse);
         system.push(self.link, vector, 0.0, speed);
     }
 
-    fn rub(&self, system: &System, impulse: f64, speed: &mut [f64; SIZE]) {
+    fn rub(&self, system: &System, impulse: f64, speed: &mut [f64]) {
         let vector = [-self.normal[1] * impulse, self.normal[0] * impulse];
         system.push(self.link, vector, impulse, speed);
     }
 }
 
 /// The impact: afterwards no link closes, and each that took an impulse leaves with its restitution.
-pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE]) {
+pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64]) {
     let largest = |size: &dyn Fn(&Link) -> f64| {
         let sizes = touching.iter().map(|touch| size(&system.links[touch.link]));
         ROUNDING * sizes.fold(0.0, f64::max)
@@ -113,7 +113,7 @@ pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64; SIZE
 }
 
 /// Takes what is left of normal speed and slip from links that have none.
-pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64; SIZE], speed: &mut [f64; SIZE]) {
+pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64], speed: &mut [f64]) {
     // Direction, part that turns, and speed of each condition.
     let mut kept = Vec::new();
     for (index, mode) in modes.iter().enumerate() {
@@ -148,7 +148,7 @@ pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64; SIZE], speed: &
 }
 
 /// Puts a link's displacement on its wall.
-pub fn keep_place(system: &System, index: usize, place: &mut [f64; SIZE]) {
+pub fn keep_place(system: &System, index: usize, place: &mut [f64]) {
     let link = &system.links[index];
     let Some(clearance) = link.clearance() else {
         return;

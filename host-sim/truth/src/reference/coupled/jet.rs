@@ -145,6 +145,11 @@ impl Mul for Jet {
     }
 }
 
+/// Values that stay.
+pub fn constants(values: &[f64]) -> Vec<Jet> {
+    values.iter().map(|value| Jet::constant(*value)).collect()
+}
+
 /// Scalar product.
 pub fn dot(a: &[Jet; 2], b: &[Jet; 2]) -> Jet {
     a[0] * b[0] + a[1] * b[1]

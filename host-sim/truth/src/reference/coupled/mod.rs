@@ -1,7 +1,7 @@
 //! The truth beyond the rigid plane: systems with several round walls, solved event by event,
 //! independent of the models under test.
 //!
-//! Two bodies that move in the plane (or one and its tilt) and two spins, a constant mass matrix,
+//! Bodies that move in the plane (also tilt and modes of bending) and spins, a constant mass matrix,
 //! any smooth forces, and links: walls with Newton's restitution and Coulomb's friction, and dry
 //! brakes. Smooth motion is a Taylor series of order 20, made by arithmetic with series; the forces
 //! of closed walls, of grip without slip and of brakes at rest follow from a linear system at the
@@ -27,15 +27,21 @@ mod fall;
 mod forces;
 mod impact;
 mod jet;
+mod machine;
 mod mode;
 mod motion;
 mod step;
 mod support;
+mod surroundings;
 mod system;
 mod two_plane;
 
+pub use machine::{
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, RingState,
+};
 pub use mode::Mode;
 pub use support::{Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState};
+pub use surroundings::Magnet;
 pub use two_plane::{
-    Magnet, Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
+    Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
 };

@@ -2,9 +2,9 @@
 
 use super::fall::first_fall;
 use super::forces::Forces;
-use super::jet::{Jet, ORDER, dot};
+use super::jet::{Jet, ORDER, constants, dot};
 pub use super::mode::Mode;
-use super::system::{Hold, Law, SIZE, System};
+use super::system::{Hold, Law, System};
 use crate::reference::roots::Fall;
 
 /// Rounding of what a contact's forces and slips are made of, relative.
@@ -36,20 +36,20 @@ pub struct Step {
     pub end: f64,
     /// How it ends.
     pub ending: Ending,
-    place: [Jet; SIZE],
-    speed: [Jet; SIZE],
+    place: Vec<Jet>,
+    speed: Vec<Jet>,
     normal: Vec<Jet>,
 }
 
 impl Step {
     /// Nothing moves, and it is over at once.
-    pub fn none(place: &[f64; SIZE], speed: &[f64; SIZE], links: usize) -> Self {
+    pub fn none(place: &[f64], speed: &[f64], links: usize) -> Self {
         Self {
             span: 1.0,
             end: 0.0,
             ending: Ending::Step,
-            place: place.map(Jet::constant),
-            speed: speed.map(Jet::constant),
+            place: constants(place),
+            speed: constants(speed),
             normal: vec![Jet::ZERO; links],
         }
     }
@@ -59,14 +59,15 @@ impl Step {
         system: &System,
         law: &impl Law,
         modes: &[Mode],
-        (place, speed): (&[f64; SIZE], &[f64; SIZE]),
+        (place, speed): (&[f64], &[f64]),
         (accuracy, longest): (f64, f64),
     ) -> Self {
-        let (mut place, mut speed) = (place.map(Jet::start), speed.map(Jet::start));
+        let starts = |of: &[f64]| of.iter().map(|x| Jet::start(*x)).collect();
+        let (mut place, mut speed): (Vec<Jet>, Vec<Jet>) = (starts(place), starts(speed));
         let mut forces = Forces::new(system, law, modes, &place, &speed);
         for k in 1..=ORDER {
             let part = 1.0 / k as f64;
-            for i in 0..SIZE {
+            for i in 0..place.len() {
                 let rate = speed[i].terms()[k - 1];
                 speed[i].push(part * forces.acceleration[i].terms()[k - 1]);
                 place[i].push(part * rate);
@@ -84,15 +85,16 @@ impl Step {
             .zip(&system.size)
             .map(reach)
             .fold(longest, f64::min);
+        let scaled = |of: &[Jet]| of.iter().map(|jet| jet.scaled(span)).collect();
         let mut step = Self {
             span,
             end: 1.0,
             ending: Ending::Step,
-            place: place.map(|jet| jet.scaled(span)),
-            speed: speed.map(|jet| jet.scaled(span)),
-            normal: forces.normal.iter().map(|jet| jet.scaled(span)).collect(),
+            place: scaled(&place),
+            speed: scaled(&speed),
+            normal: scaled(&forces.normal),
         };
-        let grip: Vec<Jet> = forces.grip.iter().map(|jet| jet.scaled(span)).collect();
+        let grip: Vec<Jet> = scaled(&forces.grip);
         for (link, mode) in modes.iter().enumerate() {
             step.locate(system, link, *mode, &grip[link], forces.size);
         }
@@ -100,13 +102,13 @@ impl Step {
     }
 
     /// Coordinates at a part of the span.
-    pub fn place(&self, part: f64) -> [f64; SIZE] {
-        self.place.map(|jet| jet.at(part))
+    pub fn place(&self, part: f64) -> Vec<f64> {
+        self.place.iter().map(|jet| jet.at(part)).collect()
     }
 
     /// Their rates.
-    pub fn speed(&self, part: f64) -> [f64; SIZE] {
-        self.speed.map(|jet| jet.at(part))
+    pub fn speed(&self, part: f64) -> Vec<f64> {
+        self.speed.iter().map(|jet| jet.at(part)).collect()
     }
 
     /// Normal force at a link, N.

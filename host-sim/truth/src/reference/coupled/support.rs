@@ -1,9 +1,9 @@
 //! A rotor in a retainer ring on a spring and a damper, with an inner ring that turns.
 
-use super::jet::Jet;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
-use super::system::{Hold, Law, Link, SIZE, System};
+use super::surroundings::{Body, Surroundings};
+use super::system::{Hold, Link, System};
 use crate::reference::scale::Scale;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::{Machine, Start};
@@ -118,34 +118,7 @@ impl SupportState {
 /// space; those of contact 1 are the ring's at its stop, told with the ring's position.
 #[derive(Clone, Debug)]
 pub struct SupportReference {
-    motion: Motion<Support>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Support {
-    weight: f64,
-    stiffness: f64,
-    damping: f64,
-    viscous_drag: f64,
-}
-
-impl Law for Support {
-    fn forces(&self, place: &[Jet; SIZE], speed: &[Jet; SIZE]) -> [Jet; SIZE] {
-        let sprung = |i: usize| -(place[i] * self.stiffness + speed[i] * self.damping);
-        [
-            Jet::ZERO,
-            Jet::constant(-self.weight),
-            sprung(2),
-            sprung(3),
-            Jet::ZERO,
-            speed[5] * -self.viscous_drag,
-        ]
-    }
-
-    fn potential(&self, place: &[f64; SIZE]) -> f64 {
-        let square = place[2] * place[2] + place[3] * place[3];
-        self.weight * place[1] + 0.5 * self.stiffness * square
-    }
+    motion: Motion<Surroundings>,
 }
 
 impl SupportReference {
@@ -155,38 +128,38 @@ impl SupportReference {
         let scale = Scale::new(rotor, &start.rotor, start.spin);
         let bore = rotor.radius + rotor.clearance;
         let mut links = vec![Link {
-            shares: [1.0, -1.0],
-            arms: [rotor.radius, -bore],
+            shares: vec![1.0, -1.0],
+            arms: vec![rotor.radius, -bore],
             hold: Hold::Wall {
                 clearance: rotor.clearance,
                 friction: rotor.friction,
                 restitution: rotor.restitution,
             },
-            told: [1.0, 0.0],
+            told: vec![1.0, 0.0],
         }];
         links.extend(mount.and_then(|mount| mount.travel).map(|travel| Link {
-            shares: [0.0, 1.0],
-            arms: [0.0; 2],
+            shares: vec![0.0, 1.0],
+            arms: vec![0.0; 2],
             hold: Hold::Wall {
                 clearance: travel,
                 friction: 0.0,
                 restitution: 0.0,
             },
-            told: [0.0, 1.0],
+            told: vec![0.0, 1.0],
         }));
         let dry = race.map_or(0.0, |race| race.dry_drag);
         links.extend((dry > 0.0).then_some(Link {
-            shares: [0.0; 2],
-            arms: [0.0, bore],
+            shares: vec![0.0; 2],
+            arms: vec![0.0, bore],
             hold: Hold::Brake(dry / bore),
-            told: [0.0; 2],
+            told: vec![0.0; 2],
         }));
         let (body, ring) = (
             1.0 / rotor.mass,
             mount.map_or(0.0, |mount| 1.0 / mount.mass),
         );
         let system = System {
-            mobility: [
+            mobility: vec![
                 body,
                 body,
                 ring,
@@ -194,7 +167,7 @@ impl SupportReference {
                 1.0 / rotor.polar_inertia,
                 race.map_or(0.0, |race| 1.0 / race.inertia),
             ],
-            size: [
+            size: vec![
                 scale.length,
                 scale.length,
                 scale.length,
@@ -204,11 +177,21 @@ impl SupportReference {
             ],
             links,
         };
-        let law = Support {
-            weight: rotor.mass * rotor.gravity,
-            stiffness: mount.map_or(0.0, |mount| mount.stiffness),
-            damping: mount.map_or(0.0, |mount| mount.damping),
-            viscous_drag: race.map_or(0.0, |race| race.viscous_drag),
+        let law = Surroundings {
+            polar_inertia: 0.0,
+            bodies: vec![
+                Body {
+                    weight: [0.0, -rotor.mass * rotor.gravity],
+                    ..Body::default()
+                },
+                Body {
+                    stiffness: mount.map_or(0.0, |mount| mount.stiffness),
+                    damping: mount.map_or(0.0, |mount| mount.damping),
+                    ..Body::default()
+                },
+            ],
+            magnets: Vec::new(),
+            viscous_drags: vec![0.0, race.map_or(0.0, |race| race.viscous_drag)],
         };
         let motion = Motion::new(
             system,
@@ -227,18 +210,18 @@ impl SupportReference {
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) -> SupportState {
         let moment = self.motion.advance(time, on_event);
-        let ([x, y, u, v, _, race_angle], [vx, vy, du, dv, spin, race_spin]) =
-            (moment.place, moment.speed);
+        let pair = |of: &[f64], first: usize| [of[first], of[first + 1]];
+        let (place, speed) = (&moment.place, &moment.speed);
         let stop = self.motion.walls() > 1;
         SupportState {
             time: moment.time,
-            position: [x, y],
-            velocity: [vx, vy],
-            spin,
-            ring_position: [u, v],
-            ring_velocity: [du, dv],
-            race_spin,
-            race_angle,
+            position: pair(place, 0),
+            velocity: pair(speed, 0),
+            spin: speed[4],
+            ring_position: pair(place, 2),
+            ring_velocity: pair(speed, 2),
+            race_spin: speed[5],
+            race_angle: place[5],
             modes: [
                 moment.modes[0],
                 if stop { moment.modes[1] } else { Mode::Flight },
@@ -265,7 +248,7 @@ impl SupportReference {
     }
 }
 
-fn coordinates(machine: &SupportMachine, start: &SupportStart) -> ([f64; SIZE], [f64; SIZE]) {
+fn coordinates(machine: &SupportMachine, start: &SupportStart) -> (Vec<f64>, Vec<f64>) {
     let ([u, v], [du, dv]) = match machine.mount {
         Some(_) => (start.ring_position, start.ring_velocity),
         None => ([0.0; 2], [0.0; 2]),
@@ -283,7 +266,7 @@ fn coordinates(machine: &SupportMachine, start: &SupportStart) -> ([f64; SIZE], 
         }
     };
     (
-        [x, y, u, v, 0.0, 0.0],
-        [vx, vy, du, dv, start.spin, race_spin],
+        vec![x, y, u, v, 0.0, 0.0],
+        vec![vx, vy, du, dv, start.spin, race_spin],
     )
 }

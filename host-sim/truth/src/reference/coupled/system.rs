@@ -1,13 +1,10 @@
-//! What a coupled system is: two bodies that move in the plane, two spins, and what they touch.
+//! What a coupled system is: bodies that move in the plane, spins, and what they touch.
 //!
-//! Coordinates are x and y of the first body, x and y of the second, and the two angles. The second
-//! "body" may also be the tilt of the first. The mass matrix is constant and diagonal.
+//! Coordinates are x and y of each body, then the angles. A "body" may also be the tilt of another,
+//! or a mode of its bending. The mass matrix is constant and diagonal.
 
 use super::jet::Jet;
 use std::ops::{Add, Mul};
-
-/// Number of coordinates.
-pub const SIZE: usize = 6;
 
 /// How far a link's grip goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,39 +23,42 @@ pub enum Hold {
 }
 
 /// A contact, or a brake.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Displacement: the parts that the two bodies have in it.
-    pub shares: [f64; 2],
+    /// Displacement: the part that each body has in it.
+    pub shares: Vec<f64>,
     /// Slip: the tangential speed and these arms times the spins, m.
-    pub arms: [f64; 2],
+    pub arms: Vec<f64>,
     /// What holds it.
     pub hold: Hold,
-    /// The position told in happenings: the parts that the two bodies have in it.
-    pub told: [f64; 2],
+    /// The position told in happenings: the part that each body has in it.
+    pub told: Vec<f64>,
 }
 
 impl Link {
     /// Displacement of coordinates, or its rate of rates.
-    pub fn lateral<T>(&self, of: &[T; SIZE]) -> [T; 2]
+    pub fn lateral<T>(&self, of: &[T]) -> [T; 2]
     where
         T: Copy + Mul<f64, Output = T> + Add<Output = T>,
     {
-        shared(self.shares, of)
+        shared(&self.shares, of)
     }
 
     /// Part of the spins in the slip.
-    pub fn turning<T>(&self, of: &[T; SIZE]) -> T
+    pub fn turning<T>(&self, of: &[T]) -> T
     where
         T: Copy + Mul<f64, Output = T> + Add<Output = T>,
     {
-        of[4] * self.arms[0] + of[5] * self.arms[1]
+        weighted(&self.arms, |k| of[2 * self.shares.len() + k])
     }
 
     /// Speeds that slip is made of, without their signs.
-    pub fn slip_size(&self, speed: &[f64; SIZE]) -> f64 {
+    pub fn slip_size(&self, speed: &[f64]) -> f64 {
         let [x, y] = self.lateral(speed);
-        x.abs() + y.abs() + (self.arms[0] * speed[4]).abs() + (self.arms[1] * speed[5]).abs()
+        let turning = self.arms.iter().zip(&speed[2 * self.shares.len()..]);
+        turning.fold(x.abs() + y.abs(), |sum, (arm, spin)| {
+            sum + (arm * spin).abs()
+        })
     }
 
     /// Coulomb's coefficient; 0 for a brake.
@@ -78,52 +78,77 @@ impl Link {
     }
 }
 
-/// A sum of the two bodies' vectors.
-pub fn shared<T>(shares: [f64; 2], of: &[T; SIZE]) -> [T; 2]
+/// A sum of the bodies' vectors.
+pub fn shared<T>(shares: &[f64], of: &[T]) -> [T; 2]
 where
     T: Copy + Mul<f64, Output = T> + Add<Output = T>,
 {
-    [0, 1].map(|axis| of[axis] * shares[0] + of[2 + axis] * shares[1])
+    [0, 1].map(|axis| weighted(shares, |k| of[2 * k + axis]))
+}
+
+fn weighted<T>(weights: &[f64], of: impl Fn(usize) -> T) -> T
+where
+    T: Mul<f64, Output = T> + Add<Output = T>,
+{
+    let mut sum = of(0) * weights[0];
+    for (k, weight) in weights.iter().enumerate().skip(1) {
+        if *weight != 0.0 {
+            sum = sum + of(k) * *weight;
+        }
+    }
+    sum
 }
 
 /// Masses and links.
 #[derive(Clone, Debug)]
 pub struct System {
     /// One over mass or inertia; 0 is fixed. Both axes of a body have the same.
-    pub mobility: [f64; SIZE],
+    pub mobility: Vec<f64>,
     /// Sizes of the coordinates, against which errors count.
-    pub size: [f64; SIZE],
+    pub size: Vec<f64>,
     /// Walls first.
     pub links: Vec<Link>,
 }
 
 impl System {
+    /// Number of the first spin among the coordinates.
+    pub fn first_spin(&self) -> usize {
+        2 * self.links[0].shares.len()
+    }
+
     /// Change of one link's displacement rate by an impulse at another, along the same direction.
     pub fn lateral(&self, a: usize, b: usize) -> f64 {
-        let (a, b) = (self.links[a].shares, self.links[b].shares);
-        a[0] * b[0] * self.mobility[0] + a[1] * b[1] * self.mobility[2]
+        let (a, b) = (&self.links[a].shares, &self.links[b].shares);
+        (0..a.len())
+            .map(|k| a[k] * b[k] * self.mobility[2 * k])
+            .sum()
     }
 
     /// The same for the spins' part of the slip.
     pub fn turning(&self, a: usize, b: usize) -> f64 {
-        let (a, b) = (self.links[a].arms, self.links[b].arms);
-        a[0] * b[0] * self.mobility[4] + a[1] * b[1] * self.mobility[5]
+        let first = self.first_spin();
+        let (a, b) = (&self.links[a].arms, &self.links[b].arms);
+        (0..a.len())
+            .map(|k| a[k] * b[k] * self.mobility[first + k])
+            .sum()
     }
 
     /// Adds an impulse (or whatever acts like one) at a link: a vector, and a part that only turns.
-    pub fn push(&self, link: usize, vector: [f64; 2], turn: f64, speed: &mut [f64; SIZE]) {
-        let Link { shares, arms, .. } = self.links[link];
-        for k in 0..2 {
+    pub fn push(&self, link: usize, vector: [f64; 2], turn: f64, speed: &mut [f64]) {
+        let Link { shares, arms, .. } = &self.links[link];
+        for (k, share) in shares.iter().enumerate() {
             for (axis, part) in vector.into_iter().enumerate() {
                 let i = 2 * k + axis;
-                speed[i] += self.mobility[i] * shares[k] * part;
+                speed[i] += self.mobility[i] * share * part;
             }
-            speed[4 + k] += self.mobility[4 + k] * arms[k] * turn;
+        }
+        for (arm, i) in arms.iter().zip(self.first_spin()..) {
+            speed[i] += self.mobility[i] * arm * turn;
         }
     }
 
     /// Kinetic energy, J.
-    pub fn kinetic(&self, speed: &[f64; SIZE]) -> f64 {
+    pub fn kinetic(&self, speed: &[f64]) -> f64 {
         let moving = |(speed, mobility): (&f64, &f64)| match *mobility {
             0.0 => 0.0,
             mobility => 0.5 * speed * speed / mobility,
@@ -135,8 +160,8 @@ impl System {
 /// The forces besides those of the links.
 pub trait Law {
     /// Force or torque on each coordinate.
-    fn forces(&self, place: &[Jet; SIZE], speed: &[Jet; SIZE]) -> [Jet; SIZE];
+    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet>;
 
     /// Potential energy, J.
-    fn potential(&self, place: &[f64; SIZE]) -> f64;
+    fn potential(&self, place: &[f64]) -> f64;
 }

@@ -4,10 +4,11 @@
 //! a = (theta_y, -theta_x). Free tilt turns as a'' = i g w a', g = J_p/J_t, x + iy: forward nutation.
 //! Small tilt; unbalance does not act on the spin.
 
-use super::jet::Jet;
+use super::jet::constants;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
-use super::system::{Hold, Law, Link, SIZE, System};
+use super::surroundings::{Body, Magnet, Surroundings};
+use super::system::{Hold, Law, Link, System};
 use touchdown_base::history::ModelEvent;
 
 /// A ring that does not move.
@@ -23,18 +24,6 @@ pub struct Ring {
     pub friction: f64,
     /// Coefficient of restitution, 0 to 1.
     pub restitution: f64,
-}
-
-/// What is left of a magnetic bearing: a force on the axis, and one that grows with its
-/// displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnet {
-    /// Along the axis from the centre of mass, m.
-    pub place: f64,
-    /// Outward force over displacement, N/m: negative holds the rotor.
-    pub stiffness: f64,
-    /// N.
-    pub force: [f64; 2],
 }
 
 /// Directions are those at spin angle 0, counter-clockwise from x.
@@ -144,61 +133,7 @@ impl TwoPlaneState {
 /// A drop into several rings, followed from its release.
 #[derive(Clone, Debug)]
 pub struct TwoPlaneReference {
-    motion: Motion<TwoPlane>,
-}
-
-#[derive(Clone, Debug)]
-struct TwoPlane {
-    weight: [f64; 2],
-    polar_inertia: f64,
-    /// Force and moment over the spin squared, and their directions.
-    static_unbalance: (f64, f64),
-    couple_unbalance: (f64, f64),
-    magnets: Vec<Magnet>,
-}
-
-impl Law for TwoPlane {
-    fn forces(&self, place: &[Jet; SIZE], speed: &[Jet; SIZE]) -> [Jet; SIZE] {
-        let spin = speed[4];
-        let gyroscopic = spin * self.polar_inertia;
-        let mut forces = [
-            Jet::constant(self.weight[0]),
-            Jet::constant(self.weight[1]),
-            -(gyroscopic * speed[3]),
-            gyroscopic * speed[2],
-            Jet::ZERO,
-            Jet::ZERO,
-        ];
-        for (first, (size, angle)) in [(0, self.static_unbalance), (2, self.couple_unbalance)] {
-            if size != 0.0 {
-                let (sine, cosine) = (place[4] + Jet::constant(angle)).sin_cos();
-                let force = spin * spin * size;
-                forces[first] = forces[first] + force * cosine;
-                forces[first + 1] = forces[first + 1] + force * sine;
-            }
-        }
-        for magnet in &self.magnets {
-            for axis in 0..2 {
-                let displacement = place[axis] + place[2 + axis] * magnet.place;
-                let force = displacement * magnet.stiffness + Jet::constant(magnet.force[axis]);
-                forces[axis] = forces[axis] + force;
-                forces[2 + axis] = forces[2 + axis] + force * magnet.place;
-            }
-        }
-        forces
-    }
-
-    fn potential(&self, place: &[f64; SIZE]) -> f64 {
-        let height = |axis: usize| -self.weight[axis] * place[axis];
-        let held = |magnet: &Magnet| {
-            let held = |axis: usize| {
-                let displacement = place[axis] + place[2 + axis] * magnet.place;
-                -displacement * (0.5 * magnet.stiffness * displacement + magnet.force[axis])
-            };
-            held(0) + held(1)
-        };
-        height(0) + height(1) + self.magnets.iter().map(held).sum::<f64>()
-    }
+    motion: Motion<Surroundings>,
 }
 
 impl TwoPlaneReference {
@@ -209,41 +144,54 @@ impl TwoPlaneReference {
         let length = least(&|ring| ring.clearance);
         let tilt = least(&|ring| ring.clearance / ring.place.abs());
         let tilt = if tilt.is_finite() { tilt } else { 1.0 };
-        let law = TwoPlane {
-            weight: machine.gravity.map(|g| machine.mass * g),
+        let Unbalance {
+            eccentricity,
+            angle,
+            skew,
+            skew_angle,
+        } = machine.unbalance;
+        let couple = (machine.transverse_inertia - machine.polar_inertia) * skew;
+        let law = Surroundings {
             polar_inertia: machine.polar_inertia,
-            static_unbalance: (
-                machine.mass * machine.unbalance.eccentricity,
-                machine.unbalance.angle,
-            ),
-            couple_unbalance: (
-                (machine.transverse_inertia - machine.polar_inertia) * machine.unbalance.skew,
-                machine.unbalance.skew_angle,
-            ),
-            magnets: machine.magnets.clone(),
+            bodies: vec![
+                Body {
+                    weight: machine.gravity.map(|g| machine.mass * g),
+                    turning: (machine.mass * eccentricity, angle),
+                    ..Body::default()
+                },
+                Body {
+                    turning: (couple, skew_angle),
+                    ..Body::default()
+                },
+            ],
+            magnets: machine
+                .magnets
+                .iter()
+                .map(|magnet| (vec![1.0, magnet.place], *magnet, 0.0))
+                .collect(),
+            viscous_drags: vec![0.0],
         };
         let link = |ring: &Ring| Link {
-            shares: [1.0, ring.place],
-            arms: [ring.radius, 0.0],
+            shares: vec![1.0, ring.place],
+            arms: vec![ring.radius],
             hold: Hold::Wall {
                 clearance: ring.clearance,
                 friction: ring.friction,
                 restitution: ring.restitution,
             },
-            told: [1.0, ring.place],
+            told: vec![1.0, ring.place],
         };
         let (body, tilting) = (1.0 / machine.mass, 1.0 / machine.transverse_inertia);
         let polar = 1.0 / machine.polar_inertia;
         let system = System {
-            mobility: [body, body, tilting, tilting, polar, 0.0],
-            size: [length, length, tilt, tilt, 1.0, 1.0],
+            mobility: vec![body, body, tilting, tilting, polar],
+            size: vec![length, length, tilt, tilt, 1.0],
             links: machine.rings.iter().map(link).collect(),
         };
-        let place = [start.position, start.tilt, [0.0; 2]].concat();
-        let speed = [start.velocity, start.tilt_rate, [spin, 0.0]].concat();
-        let coordinates = |of: Vec<f64>| std::array::from_fn(|i| of[i]);
-        let (place, speed): ([f64; SIZE], [f64; SIZE]) = (coordinates(place), coordinates(speed));
-        let pulled = law.forces(&place.map(Jet::constant), &speed.map(Jet::constant));
+        let coordinates = |[a, b]: [f64; 2], [c, d]: [f64; 2], last| vec![a, b, c, d, last];
+        let place = coordinates(start.position, start.tilt, 0.0);
+        let speed = coordinates(start.velocity, start.tilt_rate, spin);
+        let pulled = law.forces(&constants(&place), &constants(&speed));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
         let moving = |ring: &Ring| {
             let rate = |k: usize| speed[k] + ring.place * speed[2 + k];
@@ -276,15 +224,16 @@ impl TwoPlaneReference {
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) -> TwoPlaneState {
         let moment = self.motion.advance(time, on_event);
-        let ([x, y, a, b, spin_angle, _], [vx, vy, da, db, spin, _]) = (moment.place, moment.speed);
+        let pair = |of: &[f64], first: usize| [of[first], of[first + 1]];
+        let (place, speed) = (&moment.place, &moment.speed);
         TwoPlaneState {
             time: moment.time,
-            position: [x, y],
-            velocity: [vx, vy],
-            tilt: [a, b],
-            tilt_rate: [da, db],
-            spin,
-            spin_angle,
+            position: pair(place, 0),
+            velocity: pair(speed, 0),
+            tilt: pair(place, 2),
+            tilt_rate: pair(speed, 2),
+            spin: speed[4],
+            spin_angle: place[4],
             modes: moment.modes.clone(),
             normal_forces: moment.normal.clone(),
             turns_in_contact: moment.turns.clone(),

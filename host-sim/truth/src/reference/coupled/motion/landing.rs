@@ -73,13 +73,13 @@ impl<L: Law> Motion<L> {
     }
 
     fn impact(&self, touch: &Touching) -> Impact {
-        let told = self.system.links[touch.link].told;
+        let told = &self.system.links[touch.link].told;
         Impact {
             state: RotorState {
                 time: self.since.value,
                 position: shared(told, &self.place),
                 velocity: shared(told, &self.speed),
-                spin: self.speed[4],
+                spin: self.speed[self.system.first_spin()],
                 turns_in_contact: 0.0,
             },
             normal_speed: touch.closing,

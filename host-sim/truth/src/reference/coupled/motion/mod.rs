@@ -5,7 +5,7 @@ mod modes;
 
 use super::mode::Mode;
 use super::step::{Ending, Step};
-use super::system::{Hold, Law, Link, SIZE, System};
+use super::system::{Hold, Law, Link, System};
 use crate::reference::scale::Sum;
 use std::f64::consts::TAU;
 use touchdown_base::history::ModelEvent;
@@ -28,8 +28,8 @@ pub struct Motion<L> {
     units: (f64, f64),
     /// Start of the step, s.
     since: Sum,
-    place: [f64; SIZE],
-    speed: [f64; SIZE],
+    place: Vec<f64>,
+    speed: Vec<f64>,
     modes: Vec<Mode>,
     turns: Vec<f64>,
     step: Step,
@@ -48,9 +48,9 @@ pub struct Moment {
     /// s.
     pub time: f64,
     /// Coordinates.
-    pub place: [f64; SIZE],
+    pub place: Vec<f64>,
     /// Their rates.
-    pub speed: [f64; SIZE],
+    pub speed: Vec<f64>,
     /// Of each link.
     pub modes: Vec<Mode>,
     /// Signed turns of each link round its wall since contact began; 0 in flight.
@@ -65,7 +65,7 @@ impl<L: Law> Motion<L> {
         system: System,
         law: L,
         units: (f64, f64),
-        (place, speed): ([f64; SIZE], [f64; SIZE]),
+        (place, speed): (Vec<f64>, Vec<f64>),
     ) -> Self {
         let links = system.links.len();
         let brake_or_flight = |link: &Link| match link.hold {
@@ -148,7 +148,7 @@ impl<L: Law> Motion<L> {
     }
 
     /// Turns of a link's displacement since the start of the step.
-    fn turned(&self, link: usize, place: &[f64; SIZE]) -> f64 {
+    fn turned(&self, link: usize, place: &[f64]) -> f64 {
         let link = &self.system.links[link];
         let ([a, b], [x, y]) = (link.lateral(&self.place), link.lateral(place));
         (a * y - b * x).atan2(a * x + b * y) / TAU
