@@ -1,5 +1,7 @@
 //! Cycles of a sequence of instructions: Cortex-M4 Technical Reference Manual (DDI 0439), 3.3 and 7.2.3.
 
+use std::mem;
+
 use crate::decode::{Instruction, Kind};
 use crate::flash::{Flash, WAIT_STATES, line};
 
@@ -52,46 +54,157 @@ fn alone(kind: Kind) -> Cycles {
     }
 }
 
+/// Without wait states and the refill of a branch, after the instruction that ran before.
+fn cost(it: &Instruction, last: Option<&Instruction>) -> Cycles {
+    let mut cost = alone(it.kind);
+    if let Some(last) = last {
+        let single = |kind| matches!(kind, Kind::Load | Kind::Store);
+        if single(last.kind) && single(it.kind) {
+            (cost.lower, cost.modelled) = (1, 1);
+        }
+        if last.fp_writes & it.fp_reads != 0 {
+            cost.modelled += 1;
+            cost.upper += 1;
+        }
+    }
+    cost
+}
+
+/// Lines of an instruction, the last one if it is another.
+fn lines(it: &Instruction) -> (u32, Option<u32>) {
+    let (first, last) = (line(it.address), line(it.address + it.bytes - 1));
+    (first, (last != first).then_some(last))
+}
+
+/// What the flash is asked for.
+#[derive(Clone, Copy, Debug)]
+enum Asked {
+    Nothing,
+    Code(u32),
+    Data(u32),
+}
+
+/// What is known of some instructions before they run, and what follows them.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Address of the instruction that ends it.
+    end: u32,
+    instructions: u32,
+    cycles: Cycles,
+    then: Asked,
+}
+
+/// Instructions in a row: only its first is jumped to, and only its last may jump.
+pub struct Block {
+    first: Instruction,
+    last: Instruction,
+    /// Of all but the first.
+    steps: Vec<Step>,
+}
+
+impl Block {
+    /// Nothing of no instructions.
+    pub fn of(code: &[Instruction]) -> Option<Self> {
+        let (&first, &last) = code.first().zip(code.last())?;
+        let mut steps = vec![];
+        let (mut instructions, mut cycles) = (0, Cycles::default());
+        for pair in code.windows(2) {
+            let [before, it] = pair else { continue };
+            let mut ask = |instructions: &mut u32, cycles: &mut Cycles, then| {
+                steps.push(Step {
+                    end: it.address,
+                    instructions: mem::take(instructions),
+                    cycles: mem::take(cycles),
+                    then,
+                });
+            };
+            let (line, next) = lines(it);
+            let (begun, at_end) = lines(before);
+            let new = (line != at_end.unwrap_or(begun)).then_some(line);
+            for line in new.into_iter().chain(next) {
+                ask(&mut instructions, &mut cycles, Asked::Code(line));
+                cycles.upper += WAIT_STATES;
+            }
+            instructions += 1;
+            cycles.add(cost(it, Some(before)));
+            if let Some(literal) = it.literal {
+                cycles.upper += LITERAL_MOST;
+                ask(&mut instructions, &mut cycles, Asked::Data(self::line(literal)));
+            } else if it.loads {
+                ask(&mut instructions, &mut cycles, Asked::Nothing);
+            }
+        }
+        steps.push(Step {
+            end: last.address,
+            instructions,
+            cycles,
+            then: Asked::Nothing,
+        });
+        Some(Self { first, last, steps })
+    }
+}
+
 /// A stretch of instructions, as they are run. An instruction that its condition skips counts as one that runs.
-pub struct Stretch {
+pub struct Stretch<'a> {
     pub instructions: u32,
     pub cycles: Cycles,
     flash: Flash,
-    last: Option<Instruction>,
+    last: Option<&'a Instruction>,
+    /// Of the block that runs.
+    rest: &'a [Step],
 }
 
-impl Stretch {
-    /// Begins with nothing in the flash's caches: the work below the tick has run through them.
+impl<'a> Stretch<'a> {
     pub fn new() -> Self {
         Self {
             instructions: 0,
             cycles: Cycles::default(),
             flash: Flash::cold(),
             last: None,
+            rest: &[],
         }
     }
 
-    /// The next instruction that is run.
-    pub fn run(&mut self, it: &Instruction) {
+    /// Begins anew, with nothing in the flash's caches: the work below the tick has run through them.
+    pub fn begin(&mut self) {
+        (self.instructions, self.cycles) = (0, Cycles::default());
+        (self.last, self.rest) = (None, &[]);
+        self.flash.forget();
+    }
+
+    /// A block begins to run; the one before has run to its end.
+    pub fn enter(&mut self, block: &'a Block) {
+        self.run_to(u32::MAX);
+        self.run(&block.first);
+        (self.last, self.rest) = (Some(&block.last), &block.steps);
+    }
+
+    /// The block has run so far that the instruction at `address` is done.
+    pub fn run_to(&mut self, address: u32) {
+        while let Some((step, rest)) = self.rest.split_first()
+            && step.end <= address
+        {
+            self.instructions += step.instructions;
+            self.cycles.add(step.cycles);
+            self.cycles.modelled += match step.then {
+                Asked::Nothing => 0,
+                Asked::Code(line) => self.flash.wait_for_code(line, self.cycles.modelled),
+                Asked::Data(line) => self.flash.wait_for_data(line),
+            };
+            self.rest = rest;
+        }
+    }
+
+    /// The instruction at which a block begins.
+    fn run(&mut self, it: &'a Instruction) {
         self.instructions += 1;
-        let last = self.last.replace(*it);
+        let last = self.last.replace(it);
         let follows = last.is_some_and(|last| last.address + last.bytes == it.address);
         if last.is_some() && !follows {
             self.cycles.add(REFILL);
         }
         self.fetch(it, last.filter(|_| follows));
-        let mut cost = alone(it.kind);
-        if let Some(last) = last {
-            let single = |kind| matches!(kind, Kind::Load | Kind::Store);
-            if single(last.kind) && single(it.kind) {
-                (cost.lower, cost.modelled) = (1, 1);
-            }
-            if last.fp_writes & it.fp_reads != 0 {
-                cost.modelled += 1;
-                cost.upper += 1;
-            }
-        }
-        self.cycles.add(cost);
+        self.cycles.add(cost(it, last));
         if let Some(literal) = it.literal {
             self.read(literal);
         }
@@ -103,18 +216,15 @@ impl Stretch {
         self.cycles.upper += LITERAL_MOST;
     }
 
-    fn fetch(&mut self, it: &Instruction, before: Option<Instruction>) {
-        let (first, last) = (line(it.address), line(it.address + it.bytes - 1));
-        let now = self.cycles.modelled;
-        let wait = self.flash.wait_for_code(first, now);
-        self.cycles.modelled += wait;
+    fn fetch(&mut self, it: &Instruction, before: Option<&Instruction>) {
+        let (first, next) = lines(it);
+        self.cycles.modelled += self.flash.wait_for_code(first, self.cycles.modelled);
         // At the most each line waits anew, and so does the target of each branch.
         if before.is_none_or(|it| line(it.address + it.bytes - 1) != first) {
             self.cycles.upper += WAIT_STATES;
         }
-        if last != first {
-            let now = self.cycles.modelled;
-            self.cycles.modelled += self.flash.wait_for_code(last, now);
+        if let Some(next) = next {
+            self.cycles.modelled += self.flash.wait_for_code(next, self.cycles.modelled);
             self.cycles.upper += WAIT_STATES;
         }
     }
@@ -128,10 +238,10 @@ mod tests {
 
     /// Of instructions at those places from the beginning of the flash.
     fn cycles(code: &[(u32, u16, u16)]) -> [u64; 3] {
+        let code = code.iter();
+        let code: Vec<_> = code.map(|it| decode(FLASH + it.0, it.1, it.2)).collect();
         let mut stretch = Stretch::new();
-        for &(at, first, second) in code {
-            stretch.run(&decode(FLASH + at, first, second));
-        }
+        code.iter().for_each(|it| stretch.run(it));
         let Cycles {
             lower,
             modelled,
@@ -181,6 +291,34 @@ mod tests {
     fn an_instruction_across_lines_waits_for_both() {
         // movw at 14: the second line is read ahead only since the first is there.
         assert_eq!(cycles(&[(14, 0xf240, 1)]), [1, 11, 11]);
+    }
+
+    #[test]
+    fn a_block_takes_what_its_instructions_take_one_by_one() {
+        // Loads, literals, floats and wide instructions across lines, 40 times over.
+        let halves = [
+            0x6808, 0x681a, 0x4810, 0xee30, 0x0a81, 0xee70, 0x1a01, 0x1888, 0xf240, 0x0001, 0xbd30,
+        ];
+        let halves: Vec<u16> = halves.into_iter().cycle().take(440).collect();
+        let (mut code, mut at) = (vec![], 0);
+        while let [first, rest @ ..] = &halves[at..] {
+            let it = decode(FLASH + 2 * at as u32, *first, *rest.first().unwrap_or(&0));
+            at += it.bytes as usize / 2;
+            code.push(it);
+        }
+        let (mut one_by_one, mut whole, mut in_parts) =
+            (Stretch::new(), Stretch::new(), Stretch::new());
+        code.iter().for_each(|it| one_by_one.run(it));
+        let block = Block::of(&code).unwrap();
+        whole.enter(&block);
+        whole.run_to(u32::MAX);
+        assert_eq!(whole.cycles, one_by_one.cycles);
+        assert_eq!(whole.instructions as usize, code.len());
+        in_parts.enter(&block);
+        for (k, it) in code.iter().enumerate().filter(|(_, it)| it.loads) {
+            in_parts.run_to(it.address);
+            assert_eq!(in_parts.instructions as usize, k + 1);
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::ptr;
 use std::sync::atomic::{AtomicPtr, Ordering};
 
 use crate::FLASH;
-use crate::cost::Stretch;
+use crate::cost::{Block, Stretch};
 use crate::decode::{Instruction, decode};
 
 /// SysTick's counter: a window begins at one reading of it and ends at the next.
@@ -19,7 +19,7 @@ const READS_AND_WRITES: c_int = 3;
 type Id = u64;
 type OnBlock = extern "C" fn(Id, *mut c_void);
 type OnExit = extern "C" fn(Id, *mut c_void);
-type OnInstruction = extern "C" fn(c_uint, *mut c_void);
+type OnRun = extern "C" fn(c_uint, *mut c_void);
 type OnAccess = extern "C" fn(c_uint, u32, u64, *mut c_void);
 
 unsafe extern "C" {
@@ -28,9 +28,9 @@ unsafe extern "C" {
     fn qemu_plugin_tb_n_insns(block: *const c_void) -> usize;
     fn qemu_plugin_tb_get_insn(block: *const c_void, index: usize) -> *mut c_void;
     fn qemu_plugin_insn_vaddr(instruction: *const c_void) -> u64;
-    fn qemu_plugin_register_vcpu_insn_exec_cb(
-        instruction: *mut c_void,
-        call: OnInstruction,
+    fn qemu_plugin_register_vcpu_tb_exec_cb(
+        block: *mut c_void,
+        call: OnRun,
         registers: c_int,
         data: *mut c_void,
     );
@@ -49,9 +49,11 @@ pub static qemu_plugin_version: c_int = 1;
 
 struct State {
     /// At each half word of the flash; stays where it is, as QEMU holds pointers into it.
-    code: Vec<Instruction>,
+    code: &'static [Instruction],
     flash_end: u64,
-    window: Option<Stretch>,
+    /// Between two readings.
+    counting: bool,
+    window: Stretch<'static>,
     out: BufWriter<File>,
 }
 
@@ -89,9 +91,10 @@ pub unsafe extern "C" fn qemu_plugin_install(
         return 1;
     };
     let state = Box::new(State {
-        code: instructions(&bytes),
+        code: instructions(&bytes).leak(),
         flash_end: u64::from(FLASH) + bytes.len() as u64,
-        window: None,
+        counting: false,
+        window: Stretch::new(),
         out: BufWriter::new(out),
     });
     STATE.store(Box::into_raw(state), Ordering::Relaxed);
@@ -115,43 +118,57 @@ fn instructions(bytes: &[u8]) -> Vec<Instruction> {
 
 extern "C" fn on_block(_: Id, block: *mut c_void) {
     let state = state();
+    let mut code = vec![];
     // SAFETY: the block is QEMU's, and indices are below its number of instructions.
     unsafe {
         for k in 0..qemu_plugin_tb_n_insns(block) {
             let it = qemu_plugin_tb_get_insn(block, k);
             let place = qemu_plugin_insn_vaddr(it).wrapping_sub(u64::from(FLASH)) / 2;
             let Some(known) = state.code.get(place as usize) else {
-                continue;
+                return;
             };
-            let data = ptr::from_ref(known).cast_mut().cast();
-            qemu_plugin_register_vcpu_insn_exec_cb(it, on_instruction, NO_REGISTERS, data);
+            code.push(*known);
             if known.loads && known.literal.is_none() {
+                let data = ptr::from_ref(known).cast_mut().cast();
                 let reads = READS_AND_WRITES;
                 qemu_plugin_register_vcpu_mem_cb(it, on_access, NO_REGISTERS, reads, data);
             }
         }
-    }
-}
-
-extern "C" fn on_instruction(_: c_uint, data: *mut c_void) {
-    if let Some(window) = &mut state().window {
-        // SAFETY: what `on_block` registered, which stays.
-        window.run(unsafe { &*data.cast::<Instruction>() });
-    }
-}
-
-extern "C" fn on_access(_: c_uint, _: u32, address: u64, _: *mut c_void) {
-    let state = state();
-    if address == COUNTER {
-        match state.window.take() {
-            Some(window) => write(&mut state.out, &window),
-            None => state.window = Some(Stretch::new()),
+        // It stays: QEMU keeps what it has translated.
+        if let Some(known) = Block::of(&code) {
+            let data = Box::into_raw(Box::new(known)).cast();
+            qemu_plugin_register_vcpu_tb_exec_cb(block, on_run, NO_REGISTERS, data);
         }
-    } else if (u64::from(FLASH)..state.flash_end).contains(&address)
-        && let Some(window) = &mut state.window
-    {
-        window.read(address as u32);
     }
+}
+
+extern "C" fn on_run(_: c_uint, data: *mut c_void) {
+    let state = state();
+    if state.counting {
+        // SAFETY: what `on_block` registered, which stays.
+        state.window.enter(unsafe { &*data.cast::<Block>() });
+    }
+}
+
+/// A reading of the counter leaves its block: QEMU translates what follows anew.
+extern "C" fn on_access(_: c_uint, _: u32, address: u64, data: *mut c_void) {
+    let state = state();
+    let in_flash = (u64::from(FLASH)..state.flash_end).contains(&address);
+    if address != COUNTER && !(in_flash && state.counting) {
+        return;
+    }
+    // SAFETY: what `on_block` registered, which stays.
+    let it = unsafe { &*data.cast::<Instruction>() };
+    state.window.run_to(it.address);
+    if in_flash {
+        state.window.read(address as u32);
+        return;
+    }
+    if state.counting {
+        write(&mut state.out, &state.window);
+    }
+    state.counting = !state.counting;
+    state.window.begin();
 }
 
 fn write(out: &mut impl Write, window: &Stretch) {
