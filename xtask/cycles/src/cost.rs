@@ -129,7 +129,11 @@ impl Block {
             cycles.add(cost(it, Some(before)));
             if let Some(literal) = it.literal {
                 cycles.upper += LITERAL_MOST;
-                ask(&mut instructions, &mut cycles, Asked::Data(self::line(literal)));
+                ask(
+                    &mut instructions,
+                    &mut cycles,
+                    Asked::Data(self::line(literal)),
+                );
             } else if it.loads {
                 ask(&mut instructions, &mut cycles, Asked::Nothing);
             }

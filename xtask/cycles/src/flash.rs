@@ -150,7 +150,10 @@ mod tests {
     fn the_line_used_longest_ago_gives_way() {
         let mut flash = Flash::cold();
         for line in (0..65).map(|it| it * 2) {
-            assert_eq!(flash.wait_for_code(FIRST_LINE + line, 100 * u64::from(line)), 5);
+            assert_eq!(
+                flash.wait_for_code(FIRST_LINE + line, 100 * u64::from(line)),
+                5
+            );
         }
         assert_eq!(flash.wait_for_code(FIRST_LINE + 4, 100_000), 0);
         assert_eq!(flash.wait_for_code(FIRST_LINE + 0, 200_000), 5);

@@ -1,14 +1,16 @@
 //! Cycles of the tick as the emulator's plugin (`xtask/cycles`) models them: no chip has counted them.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::fs;
 use std::iter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::thread;
 
 use anyhow::{Context, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::queue::{self, Queue};
+use super::stream::Stream;
 use super::ticks::{self, TYPICAL, Table};
 use crate::firmware;
 
@@ -77,6 +79,10 @@ pub struct Modelled {
     /// At 20 kHz with the converter's one register.
     samples_lost_modelled: u64,
     streams: usize,
+    /// Of them found by a search; the others are the image's own.
+    streams_of_corpus: usize,
+    /// Greatest of any tick in those of the corpus.
+    corpus_instructions_worst: Option<u32>,
     ticks: usize,
     /// Mean and greatest of each part, as modelled.
     parts: Vec<PartModelled>,
@@ -121,25 +127,114 @@ struct CountedWindow {
 struct PlayedStream<'a> {
     is_typical: bool,
     ticks: &'a [CountedWindow],
-    /// As many as `PARTS` for each tick.
+    /// As many as `PARTS` for each tick, or none.
     parts: &'a [CountedWindow],
 }
 
-/// Runs the counting image under the plugin: its own table, and the cycles.
-pub fn count(image: &Path) -> anyhow::Result<(Table, Modelled)> {
-    let plugin = firmware::build_plugin()?;
-    let folder = ticks::folder(image)?;
-    let (code, out) = (folder.join("code.bin"), folder.join("windows.bin"));
-    fs::write(&code, firmware::flash_content(image)?).context("cannot write the image's code")?;
-    let plugin = [
-        plugin.display().to_string(),
-        format!("code={}", code.display()),
-        format!("out={}", out.display()),
-    ];
-    let table = ticks::count_with(image, Some(&plugin.join(",")))?;
-    let bytes = fs::read(&out).context("the plugin wrote nothing")?;
-    let windows: Vec<_> = bytes.chunks_exact(WINDOW_BYTES).map(window).collect();
-    let modelled = modelled(&streams(&table, &windows)?);
+/// The counting image with the plugin.
+pub struct Player {
+    image: PathBuf,
+    plugin: PathBuf,
+    code: PathBuf,
+}
+
+/// The worst tick of a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Worst {
+    instructions: u32,
+    pub modelled: u64,
+}
+
+impl fmt::Display for Worst {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
+            instructions,
+            modelled,
+        } = self;
+        write!(
+            f,
+            "{modelled} cycles as modelled, {instructions} instructions"
+        )
+    }
+}
+
+impl Player {
+    /// Builds the plugin.
+    pub fn new(image: &Path) -> anyhow::Result<Self> {
+        let code = ticks::folder(image, "run")?.join("code.bin");
+        fs::write(&code, firmware::flash_content(image)?)
+            .context("cannot write the image's code")?;
+        Ok(Self {
+            image: image.into(),
+            plugin: firmware::build_plugin()?,
+            code,
+        })
+    }
+
+    /// The image's own table and the plugin's windows, of these streams, or of the image's own where there are none.
+    fn play(
+        &self,
+        name: &str,
+        described: &[Stream],
+    ) -> anyhow::Result<(Table, Vec<CountedWindow>)> {
+        let folder = ticks::folder(&self.image, name)?;
+        if !described.is_empty() {
+            let bytes: Vec<u8> = described.iter().flat_map(Stream::bytes).collect();
+            fs::write(folder.join("streams.bin"), bytes).context("cannot write the streams")?;
+        }
+        let out = folder.join("windows.bin");
+        let plugin = [
+            self.plugin.display().to_string(),
+            format!("code={}", self.code.display()),
+            format!("out={}", out.display()),
+        ];
+        let table = ticks::count_in(&folder, &self.image, Some(&plugin.join(",")))?;
+        let bytes = fs::read(&out).context("the plugin wrote nothing")?;
+        Ok((
+            table,
+            bytes.chunks_exact(WINDOW_BYTES).map(window).collect(),
+        ))
+    }
+
+    /// Of each stream.
+    pub fn worst(&self, name: &str, described: &[Stream]) -> anyhow::Result<Vec<Worst>> {
+        let (table, windows) = self.play(name, described)?;
+        let streams = streams(&table, &windows)?;
+        let modelled = |it: &PlayedStream| worst(it.ticks.iter().map(|it| it.cycles)).modelled;
+        let worst = table
+            .streams()
+            .zip(&streams)
+            .map(|((name, ..), stream)| Worst {
+                instructions: table.worst_in(name).unwrap_or(0),
+                modelled: modelled(stream),
+            });
+        Ok(worst.collect())
+    }
+}
+
+/// Runs the counting image under the plugin, over its own streams and the `corpus` at once: the table of its own, and
+/// the cycles of all.
+pub fn count(image: &Path, corpus: &[Stream]) -> anyhow::Result<(Table, Modelled)> {
+    let player = Player::new(image)?;
+    let (own, found) = thread::scope(|scope| {
+        let found = scope.spawn(|| match corpus {
+            [] => Ok(None),
+            _ => player.play("corpus", corpus).map(Some),
+        });
+        (player.play("run", &[]), found.join().expect("no panic"))
+    });
+    let ((table, windows), found) = (own?, found?);
+    let mut all = streams(&table, &windows)?;
+    if let Some((table, windows)) = &found {
+        all.extend(streams(table, windows)?);
+    }
+    let mut modelled = modelled(&all);
+    let instructions = found.iter().flat_map(|(table, _)| {
+        let worst = table.streams().map(|(name, ..)| table.worst_in(name));
+        worst.flatten().collect::<Vec<_>>()
+    });
+    modelled.corpus_instructions_worst = instructions.max();
+    modelled.streams_of_corpus = corpus.len();
     Ok((table, modelled))
 }
 
@@ -164,8 +259,8 @@ fn streams<'a>(
     // The first is empty: the image measures by it what two readings take.
     let (_, mut rest) = windows.split_first().context("the plugin saw no window")?;
     let mut streams = vec![];
-    for (scene, ticks) in table.streams() {
-        let all = ticks * (1 + PARTS.len());
+    for (scene, ticks, parts) in table.streams() {
+        let all = ticks * (1 + parts);
         ensure!(rest.len() >= all, "the plugin's windows end in {scene}");
         let (these, after) = rest.split_at(all);
         let (ticks, parts) = these.split_at(ticks);
@@ -228,6 +323,8 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
         mean_10_ms_modelled: mean_10_ms.unwrap_or(0),
         samples_lost_modelled: queues[0].samples_lost,
         streams: streams.len(),
+        streams_of_corpus: 0,
+        corpus_instructions_worst: None,
         ticks: ticks().count(),
         parts: iter::zip(0.., &PARTS).map(part).collect(),
         queues,
@@ -280,6 +377,13 @@ pub fn table(it: &Modelled) -> String {
             upper,
         } = cycles;
         let _ = writeln!(text, "    {name:24} {lower:7} {modelled:8} {upper:7}");
+    }
+    if let Some(worst) = it.corpus_instructions_worst {
+        let streams = it.streams_of_corpus;
+        let _ = writeln!(
+            text,
+            "    {streams} of the streams are of the corpus; {worst} instructions at worst there"
+        );
     }
     let mean = it.mean_10_ms_modelled;
     let _ = writeln!(text, "    {:24} {:7} {mean:8}", "worst mean of 10 ms", "");
@@ -339,7 +443,11 @@ mod tests {
 
     #[test]
     fn windows_that_are_not_those_of_the_image_are_refused() {
-        let table = Table::parse("compiler,rustc\ntick|drop|1|90|90\n").unwrap();
+        let mut text = "compiler,rustc\ntick|drop|1|90|90\n".to_owned();
+        for part in PARTS {
+            let _ = writeln!(text, "{part}|drop|1|2|2");
+        }
+        let table = Table::parse(&text).unwrap();
         let mut windows = vec![window_of(2); 10];
         windows[1] = window_of(92);
         assert_eq!(streams(&table, &windows).unwrap().len(), 1);

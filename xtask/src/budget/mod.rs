@@ -9,6 +9,8 @@ mod modules;
 #[cfg(test)]
 mod planted;
 mod queue;
+pub mod search;
+mod stream;
 mod ticks;
 
 use std::path::Path;
@@ -82,7 +84,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     firmware::build_one("touchdown-tick", Extra::StackSizes)?;
     firmware::build_one("touchdown-firmware", Extra::StackSizes)?;
 
-    let (table, cycles) = cycles::count(&images.join("touchdown-count-tick"))?;
+    let (table, cycles) = cycles::count(&images.join("touchdown-count-tick"), &stream::read()?)?;
     print!("{}", table.by_scene());
     print!("{}", cycles::table(&cycles));
     let tick = image::look(&images.join("touchdown-tick"))?;

@@ -20,7 +20,7 @@ fn a_planted_panic_f64_and_slow_path_break_the_budget() {
     limits.soft_float_symbols = clean.soft_float.len() as u64;
 
     let reached = image::look(&planted("touchdown-tick")).expect("symbols");
-    let (table, cycles) = cycles::count(&planted("touchdown-count-tick")).expect("counts");
+    let (table, cycles) = cycles::count(&planted("touchdown-count-tick"), &[]).expect("counts");
     // A loop of 20 000 turns is more cycles than instructions, and samples are lost meanwhile.
     assert!(cycles.shows_a_loop_of(20_000), "{cycles:?}");
     let budget = Budget {

@@ -36,22 +36,21 @@ pub struct Table {
     notices: Vec<(String, u32)>,
 }
 
-/// Runs the counting image.
-#[cfg(test)]
-pub fn count(image: &Path) -> anyhow::Result<Table> {
-    count_with(image, None)
-}
-
-/// Folder that the counting image runs in.
-pub fn folder(image: &Path) -> anyhow::Result<PathBuf> {
-    let folder = image.with_extension("run");
+/// Folder of this name that the counting image runs in.
+pub fn folder(image: &Path, name: &str) -> anyhow::Result<PathBuf> {
+    let folder = image.with_extension(name);
     fs::create_dir_all(&folder).context("cannot make a folder to count in")?;
     Ok(folder)
 }
 
-/// Runs the counting image, with a plugin of the emulator if given: its file and arguments.
-pub fn count_with(image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
-    let folder = folder(image)?;
+/// Runs the counting image.
+#[cfg(test)]
+pub fn count(image: &Path) -> anyhow::Result<Table> {
+    count_in(&folder(image, "run")?, image, None)
+}
+
+/// Runs the counting image in a folder, with a plugin of the emulator if given: its file and arguments.
+pub fn count_in(folder: &Path, image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
     let status = Command::new("qemu-system-arm")
         .args([
             "-M",
@@ -67,7 +66,7 @@ pub fn count_with(image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
         .args(plugin.into_iter().flat_map(|it| ["-plugin", it]))
         .arg("-kernel")
         .arg(image)
-        .current_dir(&folder)
+        .current_dir(folder)
         .status()
         .context("cannot start qemu-system-arm: `cargo xtask setup` installs it")?;
     ensure!(status.success(), "counting failed ({status})");
@@ -117,10 +116,13 @@ impl Table {
             .collect()
     }
 
-    /// Streams in the order they were played, with their ticks.
-    pub fn streams(&self) -> impl Iterator<Item = (&str, usize)> {
+    /// Streams in the order they were played, with their ticks, and how many parts of each were counted.
+    pub fn streams(&self) -> impl Iterator<Item = (&str, usize, usize)> {
         let whole = self.rows.iter().filter(|row| row.part == WHOLE);
-        whole.map(|row| (row.scene.as_str(), row.calls as usize))
+        whole.map(|row| {
+            let of = self.rows.iter().filter(|it| it.scene == row.scene);
+            (row.scene.as_str(), row.calls as usize, of.count() - 1)
+        })
     }
 
     /// The greatest count of a whole tick in a stream.
