@@ -40,8 +40,6 @@ const PARTS: [&str; 8] = [
     "recorder",
     "forecast slice",
 ];
-/// Instructions of the two readings, which the image takes off.
-const READINGS: u32 = 2;
 const WINDOW_BYTES: usize = 16;
 
 /// At the least, as modelled, at the most.
@@ -256,8 +254,9 @@ fn streams<'a>(
     table: &Table,
     windows: &'a [CountedWindow],
 ) -> anyhow::Result<Vec<PlayedStream<'a>>> {
-    // The first is empty: the image measures by it what two readings take.
-    let (_, mut rest) = windows.split_first().context("the plugin saw no window")?;
+    // The first is empty: the image measures by it what two readings take, and by its clock that is one more.
+    let (empty, mut rest) = windows.split_first().context("the plugin saw no window")?;
+    let readings = empty.instructions + 1;
     let mut streams = vec![];
     for (scene, ticks, parts) in table.streams() {
         let all = ticks * (1 + parts);
@@ -265,7 +264,7 @@ fn streams<'a>(
         let (these, after) = rest.split_at(all);
         let (ticks, parts) = these.split_at(ticks);
         let worst = ticks.iter().map(|it| it.instructions).max();
-        let worst = worst.map(|it| it.saturating_sub(READINGS));
+        let worst = worst.map(|it| it.saturating_sub(readings));
         ensure!(
             worst == table.worst_in(scene),
             "{scene}: {worst:?} instructions by the plugin, {:?} by the image",
@@ -448,7 +447,7 @@ mod tests {
             let _ = writeln!(text, "{part}|drop|1|2|2");
         }
         let table = Table::parse(&text).unwrap();
-        let mut windows = vec![window_of(2); 10];
+        let mut windows = vec![window_of(1); 10];
         windows[1] = window_of(92);
         assert_eq!(streams(&table, &windows).unwrap().len(), 1);
         windows[1] = window_of(93);
