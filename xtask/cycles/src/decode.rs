@@ -12,7 +12,10 @@ pub enum Kind {
     Divide,
     /// One word, half or byte.
     Load,
+    /// At an address that an immediate offset gives.
     Store,
+    /// At one that a register gives, or of the floating-point unit.
+    LateStore,
     /// Of so many words.
     Multiple(u8),
     /// By a table in the code.
@@ -22,8 +25,8 @@ pub enum Kind {
     FpArithmetic,
     FpMultiplyAdd,
     FpDivide,
-    /// Between two core registers and the unit.
-    FpPair,
+    /// Between core registers and the unit.
+    FpMove,
 }
 
 /// An instruction.
@@ -36,9 +39,9 @@ pub struct Instruction {
     pub literal: Option<u32>,
     /// Reads memory.
     pub loads: bool,
-    /// Registers of the unit.
+    /// Registers of the unit that it needs as it begins: the addend of a multiplication comes later.
     pub fp_reads: u32,
-    /// By arithmetic.
+    /// Likewise, by arithmetic: moves, changes of sign and what loads write are there at once.
     pub fp_writes: u32,
 }
 
@@ -90,7 +93,7 @@ fn narrow(it: &mut Instruction, first: u16) {
             it.literal = Some(offset(it.address, true, u32::from(first & 0xff) * 4));
             (Kind::Load, true)
         }
-        0x5000..0x5600 => (Kind::Store, false),
+        0x5000..0x5600 => (Kind::LateStore, false),
         0x5600..0x6000 => (Kind::Load, true),
         0x6000..0xa000 if first & 0x0800 != 0 => (Kind::Load, true),
         0x6000..0xa000 => (Kind::Store, false),
@@ -128,6 +131,7 @@ fn wide_multiple(it: &mut Instruction, first: u16, second: u16) {
 
 fn wide_single(it: &mut Instruction, first: u16, second: u16) {
     it.kind = match first {
+        _ if first & 0xff90 == 0xf800 && second & 0x0fc0 == 0 => Kind::LateStore,
         _ if first & 0xff10 == 0xf800 => Kind::Store,
         _ if first & 0xfe10 == 0xf810 => {
             it.loads = true;
@@ -166,7 +170,7 @@ fn floating(it: &mut Instruction, first: u16, second: u16) {
     let n = register(double, first, second >> 7, words);
     let at_m = |words| register(double, second, second >> 5, words);
     if first & 0xffe0 == 0xec40 {
-        it.kind = Kind::FpPair;
+        it.kind = Kind::FpMove;
         it.fp_reads = if loads { at_m(2) } else { 0 };
     } else if first & 0x0200 == 0 {
         let single = first & 0x0120 == 0x0100;
@@ -177,7 +181,7 @@ fn floating(it: &mut Instruction, first: u16, second: u16) {
         };
         it.kind = match (words, loads) {
             (1, true) if single => Kind::Load,
-            (1, false) if single => Kind::Store,
+            (1, false) if single => Kind::LateStore,
             _ => Kind::Multiple(words as u8),
         };
         it.loads = loads;
@@ -188,8 +192,10 @@ fn floating(it: &mut Instruction, first: u16, second: u16) {
         it.fp_reads = if loads { 0 } else { at_d(words) };
     } else if second & 0x10 != 0 {
         // VMOV from or to one core register; VMRS has none of the unit.
-        let moves = first & 0x00e0 != 0x00e0;
-        it.fp_reads = if loads && moves { n } else { 0 };
+        if first & 0x00e0 != 0x00e0 {
+            it.kind = Kind::FpMove;
+            it.fp_reads = if loads { n } else { 0 };
+        }
     } else {
         arithmetic(it, first, second, [at_d(words), n, at_m(words)]);
     }
@@ -197,10 +203,11 @@ fn floating(it: &mut Instruction, first: u16, second: u16) {
 
 fn arithmetic(it: &mut Instruction, first: u16, second: u16, [d, n, m]: [u32; 3]) {
     (it.kind, it.fp_reads, it.fp_writes) = match first >> 4 & 0xb {
-        0 | 1 | 9 | 10 => (Kind::FpMultiplyAdd, d | n | m, d),
+        0 | 1 | 9 | 10 => (Kind::FpMultiplyAdd, n | m, d),
         8 => (Kind::FpDivide, n | m, d),
         11 => match (first & 0xf, second >> 6 & 3) {
-            (_, 0 | 2) => (Kind::FpArithmetic, 0, d),
+            (_, 0 | 2) => (Kind::FpArithmetic, 0, 0),
+            (0, _) | (1, 1) => (Kind::FpArithmetic, m, 0),
             (1, 3) => (Kind::FpDivide, m, d),
             (4, _) => (Kind::FpArithmetic, d | m, 0),
             // Compares with zero.
@@ -223,7 +230,12 @@ mod tests {
         for (text, first, second, bytes, kind) in [
             ("adds r0, r1, r2", 0x1888, 0, 2, Kind::Plain),
             ("ldr r0, [pc, #4]", 0x4801, 0, 2, Kind::Load),
-            ("str r0, [r1, r2]", 0x5088, 0, 2, Kind::Store),
+            ("str r0, [r1, r2]", 0x5088, 0, 2, Kind::LateStore),
+            ("str r0, [r1, #4]", 0x6048, 0, 2, Kind::Store),
+            ("str.w r0, [r1, r2]", 0xf841, 0x0002, 4, Kind::LateStore),
+            ("str r0, [r1], #4", 0xf841, 0x0b04, 4, Kind::Store),
+            ("vstr s0, [r1]", 0xed81, 0x0a00, 4, Kind::LateStore),
+            ("vmov r0, s3", 0xee11, 0x0a90, 4, Kind::FpMove),
             ("ldrh r0, [r1, r2]", 0x5a88, 0, 2, Kind::Load),
             ("ldr r0, [sp, #4]", 0x9801, 0, 2, Kind::Load),
             ("push {r4, r5, lr}", 0xb530, 0, 2, Kind::Multiple(3)),
@@ -267,7 +279,7 @@ mod tests {
             ("vldr s0, [r1]", 0xed91, 0x0a00, 4, Kind::Load),
             ("vldr d0, [r1]", 0xed91, 0x0b00, 4, Kind::Multiple(2)),
             ("vpush {d8, d9}", 0xed2d, 0x8b04, 4, Kind::Multiple(4)),
-            ("vmov r0, r1, d0", 0xec51, 0x0b10, 4, Kind::FpPair),
+            ("vmov r0, r1, d0", 0xec51, 0x0b10, 4, Kind::FpMove),
         ] {
             let it = decode(AT, first, second);
             assert_eq!((it.bytes, it.kind), (bytes, kind), "{text}");
@@ -286,16 +298,17 @@ mod tests {
 
     #[test]
     fn registers_of_the_unit_are_told() {
-        // vadd.f32 s0, s1, s2; vmla.f32 s0, s1, s2; vcmp.f32 s0, s1; vcmp.f32 s2, #0; vmov r0, s3; vpush {d8}.
+        // vadd.f32 s0, s1, s2; vmla.f32 s0, s1, s2; vcmp.f32 s0, s1; vcmp.f32 s2, #0; vmov r0, s3; vpush {d8}; vneg.f32 s0, s1.
         let of = |first, second| {
             let it = decode(AT, first, second);
             (it.fp_reads, it.fp_writes)
         };
         assert_eq!(of(0xee30, 0x0a81), (0b110, 0b1));
-        assert_eq!(of(0xee00, 0x0a81), (0b111, 0b1));
+        assert_eq!(of(0xee00, 0x0a81), (0b110, 0b1));
         assert_eq!(of(0xeeb4, 0x0a60), (0b11, 0));
         assert_eq!(of(0xeeb5, 0x1a40), (0b100, 0));
         assert_eq!(of(0xee11, 0x0a90), (0b1000, 0));
         assert_eq!(of(0xed2d, 0x8b02), (0b11 << 16, 0));
+        assert_eq!(of(0xeeb1, 0x0a60), (0b10, 0));
     }
 }
