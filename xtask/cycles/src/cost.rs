@@ -349,11 +349,16 @@ mod tests {
         whole.run_to(u32::MAX);
         assert_eq!(whole.cycles, one_by_one.cycles);
         assert_eq!(whole.instructions as usize, code.len());
+        // Nothing is left of what ran before.
+        in_parts.enter(&block);
+        in_parts.begin();
         in_parts.enter(&block);
         for (k, it) in code.iter().enumerate().filter(|(_, it)| it.loads) {
             in_parts.run_to(it.address);
             assert_eq!(in_parts.instructions as usize, k + 1);
         }
+        in_parts.run_to(u32::MAX);
+        assert_eq!(in_parts.cycles, one_by_one.cycles);
     }
 
     #[test]

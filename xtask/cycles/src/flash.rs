@@ -1,10 +1,10 @@
-//! Wait states of the flash behind the accelerator of the STM32F4: RM0090, 3.4.2.
+//! Wait states of the flash behind the accelerator of the STM32F4: RM0090 (Rev 21), 3.5.2.
 
 use std::mem;
 
 use crate::{FLASH, FLASH_BYTES};
 
-/// At 168 MHz and 2.7 V or more: RM0090, table 10.
+/// At 168 MHz and 2.7 V or more: RM0090, 3.5.1.
 pub const WAIT_STATES: u64 = 5;
 const LINE_BYTES: u32 = 16;
 const CODE_LINES: usize = 64;
@@ -156,13 +156,13 @@ mod tests {
             );
         }
         assert_eq!(flash.wait_for_code(FIRST_LINE + 4, 100_000), 0);
-        assert_eq!(flash.wait_for_code(FIRST_LINE + 0, 200_000), 5);
+        assert_eq!(flash.wait_for_code(FIRST_LINE, 200_000), 5);
         for line in 0..8 {
             assert_eq!(flash.wait_for_data(FIRST_LINE + line), 5);
             assert_eq!(flash.wait_for_data(FIRST_LINE + line), 0);
         }
         assert_eq!(flash.wait_for_data(FIRST_LINE + 8), 5);
-        assert_eq!(flash.wait_for_data(FIRST_LINE + 0), 5);
+        assert_eq!(flash.wait_for_data(FIRST_LINE), 5);
         assert_eq!(flash.wait_for_data(FIRST_LINE + 2), 0);
     }
 }

@@ -22,8 +22,8 @@ const PERIOD: u64 = CLOCK / RATES[0];
 const RINGS: [usize; 2] = [1, 8];
 /// Samples in 10 ms.
 const SPAN: usize = 200;
-/// Entry and exit of the interrupt: 12 cycles each and 18 words of the floating-point unit each (Cortex-M4 TRM, 3.9.1;
-/// application note 298), as modelled a line of flash each. At the most with waits of the bus.
+/// Entry and exit of the interrupt: 12 cycles and 18 words of the floating-point unit each way, as modelled a line of
+/// flash each way. How far these could be checked: `docs/build/timing.md`.
 const ENTRY_AND_EXIT: Cycles = Cycles {
     lower: 60,
     modelled: 72,
