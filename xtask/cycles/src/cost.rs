@@ -100,7 +100,7 @@ enum Asked {
 
 /// What is known of some instructions before they run, and what follows them.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct KnownStep {
     /// Address of the instruction that ends it.
     end: u32,
     instructions: u32,
@@ -113,7 +113,7 @@ pub struct Block {
     first: Instruction,
     last: Instruction,
     /// Of all but the first.
-    steps: Vec<Step>,
+    steps: Vec<KnownStep>,
 }
 
 impl Block {
@@ -125,7 +125,7 @@ impl Block {
         for pair in code.windows(2) {
             let [before, it] = pair else { continue };
             let mut ask = |instructions: &mut u32, cycles: &mut Cycles, then| {
-                steps.push(Step {
+                steps.push(KnownStep {
                     end: it.address,
                     instructions: mem::take(instructions),
                     cycles: mem::take(cycles),
@@ -152,7 +152,7 @@ impl Block {
                 ask(&mut instructions, &mut cycles, Asked::Nothing);
             }
         }
-        steps.push(Step {
+        steps.push(KnownStep {
             end: last.address,
             instructions,
             cycles,
@@ -169,7 +169,7 @@ pub struct Stretch<'a> {
     flash: Flash,
     last: Option<&'a Instruction>,
     /// Of the block that runs.
-    rest: &'a [Step],
+    rest: &'a [KnownStep],
 }
 
 impl<'a> Stretch<'a> {

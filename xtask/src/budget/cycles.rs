@@ -138,12 +138,12 @@ pub struct Player {
 
 /// The worst tick of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Worst {
+pub struct WorstTick {
     instructions: u32,
     pub modelled: u64,
 }
 
-impl fmt::Display for Worst {
+impl fmt::Display for WorstTick {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
             instructions,
@@ -195,14 +195,14 @@ impl Player {
     }
 
     /// Of each stream.
-    pub fn worst(&self, name: &str, described: &[Stream]) -> anyhow::Result<Vec<Worst>> {
+    pub fn worst(&self, name: &str, described: &[Stream]) -> anyhow::Result<Vec<WorstTick>> {
         let (table, windows) = self.play(name, described)?;
         let streams = streams(&table, &windows)?;
         let modelled = |it: &PlayedStream| worst(it.ticks.iter().map(|it| it.cycles)).modelled;
         let worst = table
             .streams()
             .zip(&streams)
-            .map(|((name, ..), stream)| Worst {
+            .map(|((name, ..), stream)| WorstTick {
                 instructions: table.worst_in(name).unwrap_or(0),
                 modelled: modelled(stream),
             });

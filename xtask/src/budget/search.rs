@@ -7,7 +7,7 @@ use std::thread;
 
 use anyhow::{Context, ensure};
 
-use super::cycles::{Player, Worst};
+use super::cycles::{Player, WorstTick};
 use super::stream::{self, Chance, FILE, Stream};
 use crate::firmware::{self, Extra};
 use crate::workspace;
@@ -19,7 +19,7 @@ const EMULATORS: usize = 2;
 const PLAYED: usize = 20;
 
 /// A stream that was played.
-type Found = (Worst, Stream);
+type Found = (WorstTick, Stream);
 
 /// Searches `count` streams, or somewhat more, the second half of them by changing the worst of the first; writes the
 /// worst ones to the corpus.
@@ -43,7 +43,9 @@ pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
         let near = (0..EMULATORS * PLAYED).map(|k| kept[k % KEPT].1.near(&mut chance));
         let found = play(&player, near.collect())?;
         for (k, it) in found.iter().enumerate() {
-            climb(&mut kept[k % KEPT], it);
+            if it.0.modelled > kept[k % KEPT].0.modelled {
+                kept[k % KEPT] = *it;
+            }
         }
         all.extend(found);
         report(&all);
@@ -55,13 +57,6 @@ pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
         .iter()
         .map(|(worst, stream)| (stream, worst.to_string()));
     fs::write(workspace().join(FILE), stream::text(&head, remarked)).context(FILE)
-}
-
-/// Takes the place of the one it came from, if it is worse.
-fn climb(kept: &mut Found, it: &Found) {
-    if it.0.modelled > kept.0.modelled {
-        *kept = *it;
-    }
 }
 
 /// The worst tick of each, in their order.
@@ -80,7 +75,7 @@ fn play(player: &Player, streams: Vec<Stream>) -> anyhow::Result<Vec<Found>> {
     Ok(worst.into_iter().zip(streams).collect())
 }
 
-fn worst(found: &[Found], of: impl Fn(&Stream) -> bool) -> Option<Worst> {
+fn worst(found: &[Found], of: impl Fn(&Stream) -> bool) -> Option<WorstTick> {
     let of = found.iter().filter(|it| of(&it.1)).map(|it| it.0);
     of.max_by_key(|it| it.modelled)
 }
@@ -91,15 +86,10 @@ fn report(found: &[Found]) {
 }
 
 /// What the corpus says of itself.
-fn head(found: &[Found], seed: u64, at_random: Worst) -> anyhow::Result<String> {
-    let plain = worst(found, Stream::is_plain).map(|it| it.to_string());
-    let [commit, date] = [
-        ["git", "rev-parse", "--short", "HEAD"].as_slice(),
-        ["date", "-u", "+%F"].as_slice(),
-    ]
-    .map(output);
-    let (commit, date, count) = (commit?, date?, found.len());
-    let plain = plain.unwrap_or_else(|| "none".into());
+fn head(found: &[Found], seed: u64, at_random: WorstTick) -> anyhow::Result<String> {
+    let plain = worst(found, Stream::is_plain).map_or("none".into(), |it| it.to_string());
+    let commit = output("git", &["rev-parse", "--short", "HEAD"])?;
+    let (date, count) = (output("date", &["-u", "+%F"])?, found.len());
     Ok(format!(
         "The worst streams that were found for the tick, by its modelled cycles; each of another random stream.\n\
          Written by cargo xtask budget --search {count} --seed {seed}, {date} at {commit}; numbers: xtask/src/budget/stream.rs.\n\
@@ -108,11 +98,11 @@ fn head(found: &[Found], seed: u64, at_random: Worst) -> anyhow::Result<String> 
     ))
 }
 
-fn output(command: &[&str]) -> anyhow::Result<String> {
-    let output = Command::new(command[0])
-        .args(&command[1..])
-        .current_dir(workspace())
+fn output(program: &str, arguments: &[&str]) -> anyhow::Result<String> {
+    let mut command = Command::new(program);
+    let command = command.args(arguments).current_dir(workspace());
+    let output = command
         .output()
-        .with_context(|| format!("cannot start {}", command[0]))?;
+        .with_context(|| format!("cannot start {program}"))?;
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

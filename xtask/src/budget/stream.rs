@@ -12,75 +12,46 @@ use crate::workspace;
 /// Streams that a search found worst, from the workspace on.
 pub const FILE: &str = "firmware/corpus.toml";
 
-/// A number of a description.
-struct Field {
-    name: &'static str,
-    lowest: f32,
-    highest: f32,
-    whole: bool,
-}
-
-const fn real(name: &'static str, lowest: f32, highest: f32) -> Field {
-    Field {
-        name,
-        lowest,
-        highest,
-        whole: false,
-    }
-}
-
-const fn whole(name: &'static str, lowest: f32, highest: f32) -> Field {
-    Field {
-        name,
-        lowest,
-        highest,
-        whole: true,
-    }
-}
+/// A number of a description: its name, the lowest and the highest, and whether it is whole.
+type Field = (&'static str, f32, f32, bool);
 
 /// In the order in which the image takes them (`firmware/count/src/tick/scenes.rs`), SI; times in samples.
 const FIELDS: [Field; 24] = [
     // Sample at which the first end is released, and how much later the second one is.
-    whole("release", 3_000.0, 5_500.0),
-    whole("apart", -400.0, 400.0),
+    ("release", 3_000.0, 5_500.0, true),
+    ("apart", -400.0, 400.0, true),
     // Velocity of each end sideways as it is released.
-    real("kick_a", -0.1, 0.1),
-    real("kick_b", -0.1, 0.1),
-    real("friction", 0.0, 0.5),
-    real("restitution", 0.2, 0.95),
+    ("kick_a", -0.1, 0.1, false),
+    ("kick_b", -0.1, 0.1, false),
+    ("friction", 0.0, 0.5, false),
+    ("restitution", 0.2, 0.95, false),
     // Of each ring, as a part of what the configuration says.
-    real("clearance_a", 0.9, 1.1),
-    real("clearance_b", 0.9, 1.1),
-    real("orbit", 0.0, 60e-6),
-    real("runout", 0.0, 20e-6),
-    real("noise", 0.1e-6, 3e-6),
-    whole("seed", 1.0, 1e6),
-    whole("speed_known", 0.0, 1.0),
-    whole("levitation_known", 0.0, 1.0),
-    whole("tachometers", 0.0, 1.0),
-    whole("instants", 4.0, 32.0),
-    real("spin", -6_000.0, 6_000.0),
-    real("mounting_angle", -0.8, 0.8),
+    ("clearance_a", 0.9, 1.1, false),
+    ("clearance_b", 0.9, 1.1, false),
+    ("orbit", 0.0, 60e-6, false),
+    ("runout", 0.0, 20e-6, false),
+    ("noise", 0.1e-6, 3e-6, false),
+    ("seed", 1.0, 1e6, true),
+    ("speed_known", 0.0, 1.0, true),
+    ("levitation_known", 0.0, 1.0, true),
+    ("tachometers", 0.0, 1.0, true),
+    ("instants", 4.0, 32.0, true),
+    ("spin", -6_000.0, 6_000.0, false),
+    ("mounting_angle", -0.8, 0.8, false),
     // Of all channels, by a commissioning check.
-    real("gain", 0.9, 1.1),
-    real("skew", -0.05, 0.05),
+    ("gain", 0.9, 1.1, false),
+    ("skew", -0.05, 0.05, false),
     // 0 none, 1 stuck, 2 invalid, 3 full scale, 4 drifting; again every 1 000 samples.
-    whole("fault", 0.0, 4.0),
-    whole("fault_channel", 0.0, 3.0),
-    whole("fault_from", 3_000.0, 8_500.0),
-    whole("fault_length", 1.0, 500.0),
+    ("fault", 0.0, 4.0, true),
+    ("fault_channel", 0.0, 3.0, true),
+    ("fault_from", 3_000.0, 8_500.0, true),
+    ("fault_length", 1.0, 500.0, true),
 ];
 
-impl Field {
-    /// The nearest number that is one of it.
-    fn nearest(&self, number: f32) -> f32 {
-        let number = number.clamp(self.lowest, self.highest);
-        if self.whole { number.round() } else { number }
-    }
-
-    fn any(&self, chance: &mut Chance) -> f32 {
-        self.nearest(self.lowest + (self.highest - self.lowest) * chance.part())
-    }
+/// The nearest number that the field can be.
+fn nearest((_, lowest, highest, whole): &Field, number: f32) -> f32 {
+    let number = number.clamp(*lowest, *highest);
+    if *whole { number.round() } else { number }
 }
 
 /// A generator of random numbers: splitmix64.
@@ -99,6 +70,10 @@ impl Chance {
         (self.bits() >> 40) as f32 / (1 << 24) as f32
     }
 
+    fn of(&mut self, field: &Field) -> f32 {
+        nearest(field, field.1 + (field.2 - field.1) * self.part())
+    }
+
     fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
@@ -110,7 +85,7 @@ pub struct Stream([f32; FIELDS.len()]);
 
 impl Stream {
     pub fn any(chance: &mut Chance) -> Self {
-        Self(FIELDS.each_ref().map(|field| field.any(chance)))
+        Self(FIELDS.each_ref().map(|field| chance.of(field)))
     }
 
     /// With one to three numbers changed: by a tenth of their range at the most, or, one in four, to any.
@@ -119,11 +94,10 @@ impl Stream {
         for _ in 0..=chance.below(3) {
             let k = chance.below(FIELDS.len());
             let field = &FIELDS[k];
-            let by = (field.highest - field.lowest) * (chance.part() - 0.5) / 5.0;
-            near.0[k] = if chance.below(4) == 0 {
-                field.any(chance)
-            } else {
-                field.nearest(near.0[k] + by)
+            let by = (field.2 - field.1) * (chance.part() - 0.5) / 5.0;
+            near.0[k] = match chance.below(4) {
+                0 => chance.of(field),
+                _ => nearest(field, near.0[k] + by),
             };
         }
         near
@@ -133,7 +107,7 @@ impl Stream {
     pub fn is_plain(&self) -> bool {
         let has = |name: &str, most| {
             let mut all = FIELDS.iter().zip(self.0);
-            all.any(|(field, number)| field.name == name && number <= most)
+            all.any(|(field, number)| field.0 == name && number <= most)
         };
         has("tachometers", 0.0) && has("instants", 16.0)
     }
@@ -157,9 +131,9 @@ fn parse(text: &str) -> anyhow::Result<Vec<Stream>> {
     let of = |mut numbers: BTreeMap<String, f32>| {
         let mut stream = Stream([0.0; FIELDS.len()]);
         for (field, place) in FIELDS.iter().zip(&mut stream.0) {
-            let (name, number) = (field.name, numbers.remove(field.name));
+            let (name, number) = (field.0, numbers.remove(field.0));
             *place = number.with_context(|| format!("a stream without {name}"))?;
-            ensure!(field.nearest(*place) == *place, "{name} cannot be {place}");
+            ensure!(nearest(field, *place) == *place, "{name} cannot be {place}");
         }
         ensure!(numbers.is_empty(), "a stream cannot have {numbers:?}");
         Ok(stream)
@@ -178,7 +152,7 @@ pub fn text<'a>(head: &str, streams: impl Iterator<Item = (&'a Stream, String)>)
     let mut text: String = head.lines().map(|line| format!("# {line}\n")).collect();
     for (Stream(numbers), remark) in streams {
         let _ = writeln!(text, "\n# {remark}\n[[stream]]");
-        for (Field { name, .. }, number) in FIELDS.iter().zip(numbers) {
+        for ((name, ..), number) in FIELDS.iter().zip(numbers) {
             let _ = writeln!(text, "{name} = {number}");
         }
     }
@@ -214,7 +188,7 @@ mod tests {
             let changed = stream.0.iter().zip(near.0).filter(|(a, b)| *a != b);
             assert!(changed.count() <= 3);
             for (field, number) in FIELDS.iter().zip(near.0) {
-                assert_eq!(field.nearest(number), number, "{}", field.name);
+                assert_eq!(nearest(field, number), number, "{}", field.0);
             }
             stream = near;
         }
