@@ -49,14 +49,16 @@ pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
         }
         all.extend(found);
         report(&all);
+        // As a search takes long, what it has is kept as it goes.
+        let head = head(&all, count, seed, at_random)?;
+        let mut sorted = kept.clone();
+        sorted.sort_by_key(|it| Reverse(it.0.modelled));
+        let remarked = sorted
+            .iter()
+            .map(|(worst, stream)| (stream, worst.to_string()));
+        fs::write(workspace().join(FILE), stream::text(&head, remarked)).context(FILE)?;
     }
-    kept.sort_by_key(|it| Reverse(it.0.modelled));
-    let head = head(&all, seed, at_random)?;
-    println!("{head}");
-    let remarked = kept
-        .iter()
-        .map(|(worst, stream)| (stream, worst.to_string()));
-    fs::write(workspace().join(FILE), stream::text(&head, remarked)).context(FILE)
+    Ok(())
 }
 
 /// The worst tick of each, in their order.
@@ -86,13 +88,14 @@ fn report(found: &[Found]) {
 }
 
 /// What the corpus says of itself.
-fn head(found: &[Found], seed: u64, at_random: WorstTick) -> anyhow::Result<String> {
+fn head(found: &[Found], count: usize, seed: u64, at_random: WorstTick) -> anyhow::Result<String> {
     let plain = worst(found, Stream::is_plain).map_or("none".into(), |it| it.to_string());
     let commit = output("git", &["rev-parse", "--short", "HEAD"])?;
-    let (date, count) = (output("date", &["-u", "+%F"])?, found.len());
+    let (date, played) = (output("date", &["-u", "+%F"])?, found.len());
     Ok(format!(
         "The worst streams that were found for the tick, by its modelled cycles; each of another random stream.\n\
-         Written by cargo xtask budget --search {count} --seed {seed}, {date} at {commit}; numbers: xtask/src/budget/stream.rs.\n\
+         Written by cargo xtask budget --search {count} --seed {seed} after {played} streams, {date} at {commit}.\n\
+         What the numbers are: xtask/src/budget/stream.rs.\n\
          Worst of the random half: {at_random}.\n\
          Worst without tachometers, 16 instants at most: {plain}."
     ))
