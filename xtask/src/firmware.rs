@@ -1,6 +1,9 @@
 //! Builds the images, and says how much of the chip they take.
 
-use std::env;
+use std::env::{
+    self,
+    consts::{DLL_PREFIX, DLL_SUFFIX},
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +12,7 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
 
 use crate::image_check;
 use crate::machine::Machine;
-use crate::toolchain::TARGET;
+use crate::toolchain::{TARGET, default_cargo};
 use crate::workspace;
 
 /// An image: its package, name and profile.
@@ -36,6 +39,9 @@ const IMAGES: [Image; 5] = [
 ];
 /// The budget looks at it; without a stack, as it is never run.
 const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
+/// The emulator's plugin that models cycles.
+const PLUGIN: &str = "touchdown-cycles";
+const FLASH_START: u64 = 0x0800_0000;
 const RAM_START: u64 = 0x2000_0000;
 
 const fn image(package: &'static str, name: &'static str, profile: &'static str) -> Image {
@@ -111,6 +117,18 @@ pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Builds the emulator's plugin that models cycles, for the desktop; its file.
+pub fn build_plugin() -> anyhow::Result<PathBuf> {
+    let status = default_cargo()
+        .args(["build", "--quiet", "--release", "--package", PLUGIN])
+        .current_dir(workspace())
+        .status()
+        .context("cannot start cargo for the plugin")?;
+    ensure!(status.success(), "the plugin does not build ({status})");
+    let name = format!("{DLL_PREFIX}{}{DLL_SUFFIX}", PLUGIN.replace('-', "_"));
+    Ok(target_directory().join("release").join(name))
+}
+
 /// Folder of the images.
 pub fn images() -> PathBuf {
     folder(PROFILE)
@@ -136,6 +154,24 @@ fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
 
 fn target_directory() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
+}
+
+/// What an image holds from the flash's first address on.
+pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
+    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let file = object::File::parse(&*bytes)?;
+    let mut content = vec![];
+    for section in file.sections() {
+        let Some(at) = section.address().checked_sub(FLASH_START) else {
+            continue;
+        };
+        if section.address() < RAM_START && section.kind() != object::SectionKind::Metadata {
+            let (at, data) = (at as usize, section.data()?);
+            content.resize(content.len().max(at + data.len()), 0);
+            content[at..at + data.len()].copy_from_slice(data);
+        }
+    }
+    Ok(content)
 }
 
 /// Flash and RAM that an image takes, bytes.

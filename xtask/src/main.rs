@@ -49,6 +49,12 @@ enum Task {
         /// Keep the figures in firmware/measured.json, which the documents follow (`cargo xtask figures`)
         #[arg(long)]
         keep: bool,
+        /// In place of all that: search so many streams for the most cycles, and keep the worst in firmware/corpus.toml
+        #[arg(long, value_name = "N", conflicts_with_all = ["json", "keep"])]
+        search: Option<usize>,
+        /// The search's seed
+        #[arg(long, default_value_t = 1, requires = "search")]
+        seed: u64,
     },
     /// Write the measured tables of README.md and docs/ from what was measured
     #[command(after_help = figures::HELP)]
@@ -109,7 +115,15 @@ fn main() -> ExitCode {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware => firmware::build(),
         Task::Instructions => firmware::build().and_then(|()| instructions::count()),
-        Task::Budget { json, keep } => budget::run(json.as_deref(), keep),
+        Task::Budget {
+            json,
+            keep,
+            search,
+            seed,
+        } => match search {
+            Some(count) => budget::search::run(count, seed),
+            None => budget::run(json.as_deref(), keep),
+        },
         Task::Figures { check, program } => figures::run(check, program),
         Task::House { rebuild } => house::run(rebuild),
         Task::Flash {

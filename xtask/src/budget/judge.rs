@@ -142,6 +142,7 @@ mod tests {
             soft_float_symbols: 0,
             flash_by_module: vec![],
             compiler: String::new(),
+            cycles: None,
         };
         (budget, toml::from_str(LIMITS).unwrap())
     }

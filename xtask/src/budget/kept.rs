@@ -40,8 +40,10 @@ pub fn differences(kept: &Budget, now: &Budget) -> anyhow::Result<Vec<String>> {
         return Ok(vec![]);
     }
     let mut now = now.clone();
-    if kept.flash_bytes.abs_diff(now.flash_bytes) <= PATHS {
+    if (1..=PATHS).contains(&kept.flash_bytes.abs_diff(now.flash_bytes)) {
         now.flash_bytes = kept.flash_bytes;
+        // Constants then lie elsewhere, and other lines of flash are waited for.
+        now.cycles.clone_from(&kept.cycles);
     }
     let (kept, now) = (serde_json::to_value(kept)?, serde_json::to_value(now)?);
     let fields = kept.as_object().into_iter().flatten();
@@ -89,6 +91,8 @@ mod tests {
     fn a_changed_figure_is_named_and_a_longer_path_is_none() {
         let kept = read().unwrap();
         let mut now = kept.clone();
+        now.cycles = None;
+        assert_eq!(differences(&kept, &now).unwrap().len(), 1);
         now.flash_bytes += PATHS;
         assert_eq!(differences(&kept, &now).unwrap(), [""; 0]);
         now.ram_bytes += 1;

@@ -1,12 +1,16 @@
 //! What the firmware takes of the chip, against its limits: `firmware/budget.toml`.
 
 mod calls;
+mod cycles;
 mod image;
 mod judge;
 mod kept;
 mod modules;
 #[cfg(test)]
 mod planted;
+mod queue;
+pub mod search;
+mod stream;
 mod ticks;
 
 use std::path::Path;
@@ -17,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::firmware::{self, Extra};
 use crate::workspace;
 
+use self::cycles::Modelled;
 use self::judge::Limits;
 pub use self::kept::FILE as MEASURED;
 
@@ -41,6 +46,9 @@ pub struct Budget {
     flash_by_module: Vec<Module>,
     /// That built the images.
     compiler: String,
+    /// Of the tick; modelled, not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cycles: Option<Modelled>,
 }
 
 /// Code by where it was written.
@@ -76,8 +84,9 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     firmware::build_one("touchdown-tick", Extra::StackSizes)?;
     firmware::build_one("touchdown-firmware", Extra::StackSizes)?;
 
-    let table = ticks::count(&images.join("touchdown-count-tick"))?;
+    let (table, cycles) = cycles::count(&images.join("touchdown-count-tick"), &stream::read()?)?;
     print!("{}", table.by_scene());
+    print!("{}", cycles::table(&cycles));
     let tick = image::look(&images.join("touchdown-tick"))?;
     for name in tick.panics.iter().chain(&tick.soft_float) {
         println!("  reachable from the tick: {name}");
@@ -105,6 +114,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
         soft_float_symbols: tick.soft_float.len() as u64,
         flash_by_module: modules,
         compiler: table.compiler,
+        cycles: Some(cycles),
     };
     if let Some(file) = json {
         kept::save(&budget, file)?;

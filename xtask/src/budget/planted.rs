@@ -2,7 +2,7 @@
 //! the clean ones keep to their limits is what `cargo xtask budget` requires.
 
 use super::judge::{Limits, breaches};
-use super::{Budget, image, ticks};
+use super::{Budget, cycles, image};
 use crate::firmware::{PLANTED, images};
 
 #[test]
@@ -20,7 +20,9 @@ fn a_planted_panic_f64_and_slow_path_break_the_budget() {
     limits.soft_float_symbols = clean.soft_float.len() as u64;
 
     let reached = image::look(&planted("touchdown-tick")).expect("symbols");
-    let table = ticks::count(&planted("touchdown-count-tick")).expect("counts");
+    let (table, cycles) = cycles::count(&planted("touchdown-count-tick"), &[]).expect("counts");
+    // A loop of 20 000 turns is more cycles than instructions, and samples are lost meanwhile.
+    assert!(cycles.shows_a_loop_of(20_000), "{cycles:?}");
     let budget = Budget {
         parts: table.parts(),
         tick: table.tick().expect("a whole tick"),
@@ -31,6 +33,7 @@ fn a_planted_panic_f64_and_slow_path_break_the_budget() {
         soft_float_symbols: reached.soft_float.len() as u64,
         flash_by_module: vec![],
         compiler: table.compiler,
+        cycles: None,
     };
     let found = breaches(&budget, &limits);
     println!("{found:?}");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, ensure};
@@ -10,7 +10,7 @@ use anyhow::{Context, ensure};
 use super::{Instructions, Part};
 
 /// Streams that typical ticks are taken from.
-const TYPICAL: &str = "orbit, speed known";
+pub const TYPICAL: &str = "orbit, speed known";
 /// 16 ns of emulated time an instruction: what the image's counter is made for.
 const COUNTING: [&str; 2] = ["-icount", "shift=4"];
 /// Part that stands for all.
@@ -36,10 +36,21 @@ pub struct Table {
     notices: Vec<(String, u32)>,
 }
 
-/// Runs the counting image.
-pub fn count(image: &Path) -> anyhow::Result<Table> {
-    let folder = image.with_extension("run");
+/// Folder of this name that the counting image runs in.
+pub fn folder(image: &Path, name: &str) -> anyhow::Result<PathBuf> {
+    let folder = image.with_extension(name);
     fs::create_dir_all(&folder).context("cannot make a folder to count in")?;
+    Ok(folder)
+}
+
+/// Runs the counting image.
+#[cfg(test)]
+pub fn count(image: &Path) -> anyhow::Result<Table> {
+    count_in(&folder(image, "run")?, image, None)
+}
+
+/// Runs the counting image in a folder, with a plugin of the emulator if given: its file and arguments.
+pub fn count_in(folder: &Path, image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
     let status = Command::new("qemu-system-arm")
         .args([
             "-M",
@@ -52,9 +63,10 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
         .args(["-serial", "none"])
         .args(["-semihosting-config", "enable=on,target=native"])
         .args(COUNTING)
+        .args(plugin.into_iter().flat_map(|it| ["-plugin", it]))
         .arg("-kernel")
         .arg(image)
-        .current_dir(&folder)
+        .current_dir(folder)
         .status()
         .context("cannot start qemu-system-arm: `cargo xtask setup` installs it")?;
     ensure!(status.success(), "counting failed ({status})");
@@ -62,7 +74,7 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
 }
 
 impl Table {
-    fn parse(text: &str) -> anyhow::Result<Self> {
+    pub fn parse(text: &str) -> anyhow::Result<Self> {
         let compiler = text.lines().next().and_then(|it| it.split_once(','));
         let mut table = Self {
             compiler: compiler.map(|(_, it)| it.to_owned()).unwrap_or_default(),
@@ -102,6 +114,22 @@ impl Table {
                 })
             })
             .collect()
+    }
+
+    /// Streams in the order they were played, with their ticks, and how many parts of each were counted.
+    pub fn streams(&self) -> impl Iterator<Item = (&str, usize, usize)> {
+        let whole = self.rows.iter().filter(|row| row.part == WHOLE);
+        whole.map(|row| {
+            let of = self.rows.iter().filter(|it| it.scene == row.scene);
+            (row.scene.as_str(), row.calls as usize, of.count() - 1)
+        })
+    }
+
+    /// The greatest count of a whole tick in a stream.
+    pub fn worst_in(&self, scene: &str) -> Option<u32> {
+        let mut rows = self.rows.iter();
+        let row = rows.find(|row| row.part == WHOLE && row.scene == scene)?;
+        Some(row.worst)
     }
 
     fn of(&self, part: &str) -> Option<Instructions> {

@@ -4,7 +4,7 @@ use core::f32::consts::TAU;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
-use touchdown_core::sensing::PLANES;
+use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_rotor::real::{Poly32, Real};
 use touchdown_rotor::{Rigid, RigidConfig, Start, Stepper};
@@ -13,8 +13,10 @@ use touchdown_firmware::board::default_config;
 
 /// Sample at which no plane is released.
 const NEVER: u32 = u32::MAX;
-/// Standard deviation of the noise, m.
-const NOISE: f32 = 1e-6;
+/// Numbers that describe a stream.
+pub(super) const NUMBERS: usize = 24;
+/// Samples of a described stream.
+const DESCRIBED_SAMPLES: u32 = 9_000;
 
 /// A stream of samples.
 #[derive(Clone, Copy)]
@@ -30,12 +32,52 @@ pub(super) struct Scene {
     release: [u32; PLANES],
     kick: [f64; PLANES],
     friction: f64,
+    /// Where not the machine's.
+    restitution: Option<f64>,
+    /// Clearance of each plane's ring, as a part of the machine's.
+    clearance: [f64; PLANES],
+    /// Standard deviation of the noise, m, and its seed.
+    noise: f32,
+    seed: u32,
     /// An inner ring that is watched.
     ring: bool,
     /// Instants of each bank, where not the default.
     instants: Option<u8>,
+    /// rad/s, where not the default.
+    spin: Option<f32>,
+    /// Angle at which the sensors are mounted, rad, and what a commissioning check found of all channels.
+    mounting_angle: f32,
+    found: Option<PlaneCalibration>,
     /// Sensors that fail.
     fail: fn(u32, &mut Sample),
+    fault: Option<Fault>,
+}
+
+/// A channel that fails for a while, again and again.
+#[derive(Clone, Copy)]
+struct Fault {
+    /// 1 stuck, 2 invalid, 3 full scale, else drifting.
+    kind: u32,
+    channel: usize,
+    from: u32,
+    length: u32,
+    every: u32,
+}
+
+impl Fault {
+    fn apply(self, at: u32, sample: &mut Sample) {
+        let Some(since) = at.checked_sub(self.from).map(|it| it % self.every) else {
+            return;
+        };
+        let count = &mut sample.counts[self.channel];
+        match self.kind {
+            _ if since >= self.length => {}
+            1 => *count = 2_048,
+            2 => sample.valid &= !(1 << self.channel),
+            3 => *count = 4_095,
+            _ => *count = count.wrapping_add((since / 8) as u16).min(4_095),
+        }
+    }
 }
 
 const FLOATING: Scene = Scene {
@@ -48,9 +90,17 @@ const FLOATING: Scene = Scene {
     release: [NEVER; PLANES],
     kick: [0.0; PLANES],
     friction: 0.1,
+    restitution: None,
+    clearance: [1.0; PLANES],
+    noise: 1e-6,
+    seed: 1,
     ring: false,
     instants: None,
+    spin: None,
+    mounting_angle: 0.0,
+    found: None,
     fail: |_, _| {},
+    fault: None,
 };
 const TURNING: Scene = Scene {
     name: "orbit, speed known",
@@ -147,6 +197,48 @@ pub(super) const SCENES: [Scene; 14] = [
 ];
 
 impl Scene {
+    /// Of these numbers, in the order of `xtask/src/budget/stream.rs`.
+    pub(super) fn described(numbers: [f32; NUMBERS]) -> Self {
+        #[rustfmt::skip]
+        let [
+            release, apart, kick_a, kick_b, friction, restitution, clearance_a, clearance_b, orbit, runout, noise, seed,
+            speed_known, levitation_known, ring, instants, spin, mounting_angle, gain, skew, kind, channel, from, length,
+        ] = numbers;
+        let (release, apart) = (release as u32, apart as i32);
+        Self {
+            name: "described",
+            samples: DESCRIBED_SAMPLES,
+            orbit,
+            runout,
+            speed_known: speed_known != 0.0,
+            levitation_known: levitation_known != 0.0,
+            release: [release, release.saturating_add_signed(apart)],
+            kick: [kick_a, kick_b].map(f64::from),
+            friction: friction.into(),
+            restitution: Some(restitution.into()),
+            clearance: [clearance_a, clearance_b].map(f64::from),
+            noise,
+            seed: seed as u32,
+            ring: ring != 0.0,
+            instants: Some(instants as u8),
+            spin: Some(spin),
+            mounting_angle,
+            found: (gain != 1.0 || skew != 0.0).then_some(PlaneCalibration {
+                zero: [0.0; 2],
+                gain: [gain; 2],
+                skew,
+            }),
+            fail: |_, _| {},
+            fault: (kind != 0.0).then_some(Fault {
+                kind: kind as u32,
+                channel: channel as usize % CHANNELS,
+                from: from as u32,
+                length: length as u32,
+                every: 1_000,
+            }),
+        }
+    }
+
     /// The configuration of the monitor.
     pub(super) fn config(&self) -> MonitorConfig {
         MonitorConfig {
@@ -167,19 +259,23 @@ impl Scene {
             config.detector.tuning.release_instants = instants;
             config.detector.tuning.impact_instants = instants;
         }
+        config.detector.machine.spin = self.spin.unwrap_or(config.detector.machine.spin);
+        config.sensing.mounting_angle = [self.mounting_angle; PLANES];
+        config.sensing.calibration = self.found.map(|found| Calibration {
+            date: 20_260_101,
+            planes: [found; PLANES],
+        });
         config
     }
 
     /// Calls `take` with every sample.
     pub(super) fn play(&self, mut take: impl FnMut(&Sample)) {
-        let machine = default_config().detector.machine;
+        let machine = self.config().detector.machine;
         let rate = default_config().detector.sample_rate;
-        let model = self.rotor();
-        let scales = *model.scales();
-        let spin = f64::from(machine.spin) / scales.spin;
-        let fallen: Rigid<Poly32> = model.rounded();
+        let models = self.clearance.map(|it| self.rotor(it));
+        let rotors: [Rigid<Poly32>; PLANES] = [0, 1].map(|plane| models[plane].rounded());
         let mut planes = [const { None }; PLANES];
-        let mut noise = Noise(1);
+        let mut noise = Noise(self.seed);
         for at in 0..self.samples {
             let angle = machine.spin / rate * at as f32 % TAU;
             let (sin, cos) = sin_cos(angle);
@@ -188,6 +284,7 @@ impl Scene {
             let runout = [self.runout * cos, self.runout * sin];
             let mut counts = [0; CHANNELS];
             for (plane, pair) in counts.chunks_exact_mut(2).enumerate() {
+                let (scales, fallen) = (models[plane].scales(), &rotors[plane]);
                 if at == self.release[plane] {
                     let along = [-place[1], place[0]].map(|x| f64::from(x * machine.spin));
                     let start = Start::Free {
@@ -198,20 +295,20 @@ impl Scene {
                         ],
                     };
                     let start = start.rounded();
-                    let spin = Poly32::lit(spin);
-                    planes[plane] = Stepper::start(&fallen, &start, spin, |_| ()).ok();
+                    let spin = Poly32::lit(f64::from(machine.spin) / scales.spin);
+                    planes[plane] = Stepper::start(fallen, &start, spin, |_| ()).ok();
                 }
                 let seen = match &mut planes[plane] {
                     Some(state) => {
-                        Stepper::step(&fallen, state, |_| ());
+                        Stepper::step(fallen, state, |_| ());
                         let unit = scales.length;
-                        let position = Stepper::kinematics(&fallen, state).position;
+                        let position = Stepper::kinematics(fallen, state).position;
                         position.map(|x| (x.to_f64() * unit) as f32)
                     }
                     None => place,
                 };
                 for ((count, seen), runout) in pair.iter_mut().zip(seen).zip(runout) {
-                    let shown = seen + runout + NOISE * noise.next();
+                    let shown = seen + runout + self.noise * noise.next();
                     *count = (2_048.5 + shown * (4_096.0 / 2_000e-6)) as u16;
                 }
             }
@@ -229,11 +326,14 @@ impl Scene {
             };
             const { assert!(TACHOMETERS == 2) };
             (self.fail)(at, &mut sample);
+            if let Some(fault) = self.fault {
+                fault.apply(at, &mut sample);
+            }
             take(&sample);
         }
     }
 
-    fn rotor(&self) -> Rigid<f64> {
+    fn rotor(&self, clearance: f64) -> Rigid<f64> {
         let machine = default_config().detector.machine;
         let radius = f64::from(machine.rotor_radius);
         let mass = f64::from(machine.mass);
@@ -241,9 +341,9 @@ impl Scene {
             mass,
             radius,
             polar_inertia: f64::from(machine.inertia_ratio) * mass * radius * radius,
-            clearance: f64::from(machine.clearance),
+            clearance: f64::from(machine.clearance) * clearance,
             friction: self.friction,
-            restitution: f64::from(machine.restitution),
+            restitution: self.restitution.unwrap_or(machine.restitution.into()),
             gravity: f64::from(machine.gravity),
             speed: 1.0,
             step: 1.0 / f64::from(default_config().detector.sample_rate),

@@ -1,0 +1,88 @@
+//! What becomes of samples while ticks take longer than a period.
+
+/// Over a list of ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Queue {
+    /// Samples that were overwritten before a tick took them.
+    pub lost: u64,
+    /// Longest from a sample to the end of its tick, cycles.
+    pub latency_worst: u64,
+}
+
+/// Of samples at equal `period`s, whose ticks take `cycles` each. Up to `depth` samples wait; a new one then takes the
+/// place of the oldest. The converter's register is a queue of one. A lost sample takes no time.
+pub fn simulate(cycles: &[u64], period: u64, depth: usize) -> Queue {
+    let mut queue = Queue::default();
+    let mut waiting = std::collections::VecDeque::new();
+    let mut free = 0;
+    let arrival = |sample: usize| sample as u64 * period;
+    let serve = |sample: usize, free: &mut u64| {
+        *free = arrival(sample).max(*free) + cycles[sample];
+        *free - arrival(sample)
+    };
+    for sample in 0..cycles.len() {
+        // What begins before this sample, or as it comes.
+        while free <= arrival(sample)
+            && let Some(next) = waiting.pop_front()
+        {
+            queue.latency_worst = queue.latency_worst.max(serve(next, &mut free));
+        }
+        if waiting.len() == depth {
+            waiting.pop_front();
+            queue.lost += 1;
+        }
+        waiting.push_back(sample);
+    }
+    for next in waiting {
+        queue.latency_worst = queue.latency_worst.max(serve(next, &mut free));
+    }
+    queue
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(cycles: &[u64], depth: usize) -> (u64, u64) {
+        let Queue {
+            lost,
+            latency_worst,
+        } = simulate(cycles, 100, depth);
+        (lost, latency_worst)
+    }
+
+    #[test]
+    fn ticks_within_a_period_lose_nothing() {
+        assert_eq!(of(&[60, 100, 80], 1), (0, 100));
+    }
+
+    #[test]
+    fn one_long_tick_delays_the_next() {
+        // Ends at 150; the second ends at 210, 110 after its sample; the third at 260.
+        assert_eq!(of(&[150, 60, 50], 1), (0, 150));
+        assert_eq!(of(&[190, 90, 50], 1), (0, 190));
+        assert_eq!(of(&[190, 110, 50], 1), (0, 200));
+    }
+
+    #[test]
+    fn a_tick_of_more_than_two_periods_loses_with_one_place_and_not_with_two() {
+        // The first ends at 250: the sample of 100 was overwritten at 200, which ends at 260.
+        assert_eq!(of(&[250, 10, 10, 10], 1), (1, 250));
+        assert_eq!(of(&[250, 10, 10, 10], 2), (0, 250));
+        // Ends at 450: those of 100, 200 and 300 are lost; with two places those of 100 and 200.
+        assert_eq!(of(&[450, 1, 1, 1, 1], 1), (3, 450));
+        assert_eq!(of(&[450, 1, 1, 1, 1], 2), (2, 450));
+    }
+
+    #[test]
+    fn samples_that_come_as_a_tick_ends_are_taken() {
+        assert_eq!(of(&[200, 10, 10], 1), (0, 200));
+    }
+
+    #[test]
+    fn ticks_that_are_always_too_long_lose_a_share() {
+        // Each takes one and a half periods: every third is lost.
+        let lost = simulate(&[150; 300], 100, 1).lost;
+        assert!((98..=100).contains(&lost), "{lost}");
+    }
+}
