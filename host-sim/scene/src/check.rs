@@ -69,11 +69,26 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         },
         zones: zones(file.guard.zones)?,
     };
-    if scene.model.rung == Fidelity::Hertz {
-        scene.model.step = step_in_contact(&scene, file.model.step_us.is_some())?;
+    let given = file.model.step_us.is_some();
+    match scene.model.rung {
+        Fidelity::Hertz => scene.model.step = step_in_contact(&scene, given)?,
+        Fidelity::Coupled if !given => scene.model.step = resolved_step(&scene),
+        _ => {}
     }
     monitor(&scene)?;
     Ok(scene)
+}
+
+/// Of fidelity `coupled`: a whole part of a sample that follows the fastest motion and short bounces, as far as
+/// the run has no more steps than it can pay.
+fn resolved_step(scene: &Scene) -> f64 {
+    let machine = scene.two_plane.as_ref();
+    let fastest = machine.map_or(0.0, |it| it.fastest(scene.rotor.spin));
+    let wanted = (limits::ANGLE_OF_STEP / fastest).min(limits::RESOLVED);
+    let least = (scene.run.duration / limits::STEPS).max(MICRO);
+    let sample = scene.model.step;
+    let parts = (sample / wanted).ceil().min((sample / least).floor());
+    sample / parts.max(1.0)
 }
 
 /// Upper ends of the zones A, B and C.

@@ -187,16 +187,29 @@ impl Scene {
     }
 
     fn step_warning(&self) -> Option<String> {
-        if self.model.rung != Fidelity::Hertz {
-            return None;
-        }
-        let limit = compliance(self).ok()?.accurate_step();
-        (self.model.step > limit).then(|| {
+        let step = self.model.step;
+        let (longest, of, then) = match self.model.rung {
+            Fidelity::Hertz => {
+                let limit = compliance(self).ok()?.accurate_step();
+                (limit, "T_c/25", "forces and contact times are inaccurate")
+            }
+            Fidelity::Coupled => {
+                let fastest = self.two_plane.as_ref()?.fastest(self.rotor.spin);
+                let limit = 5.0 * limits::ANGLE_OF_STEP / fastest;
+                (
+                    limit,
+                    "half a radian of the fastest motion",
+                    "it is not followed",
+                )
+            }
+            _ => return None,
+        };
+        (step > longest).then(|| {
             format!(
-                "{}: step_us is {}, above T_c/25 = {:.4} us: forces and contact times are inaccurate",
+                "{}: step_us is {}, above {of} = {:.4} us: {then}",
                 self.name,
-                self.model.step * 1e6,
-                limit * 1e6
+                step * 1e6,
+                longest * 1e6
             )
         })
     }

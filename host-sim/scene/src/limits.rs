@@ -30,6 +30,13 @@ pub const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;
 pub const LEAST_GRAVITY_M_S2: f64 = 1e-6;
 /// Length of a step, us.
 pub const STEP_US: RangeInclusive<f64> = 1.0..=1000.0;
+/// What the fastest motion may turn in a step of fidelity `coupled` that nobody gave, rad: the midpoint rule is
+/// late by its square over 12. Beyond five times that much a given step is warned of.
+pub const ANGLE_OF_STEP: f64 = 0.1;
+/// Longest such step, s: bounces shorter than a step are left out.
+pub const RESOLVED: f64 = 1e-5;
+/// Most such steps of a run: a few seconds.
+pub const STEPS: f64 = 1e5;
 /// Cut-off of a bounce series, mm/s.
 pub const CUTOFF_MM_S: RangeInclusive<f64> = 0.0..=1.0;
 /// Stiffness of a support or magnet, N/m.

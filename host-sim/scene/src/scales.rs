@@ -20,6 +20,9 @@ pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
 /// give its first elastic mode.
 pub fn validity(scene: &Scene) -> Option<Validity> {
     let machine = scene.two_plane.as_ref()?;
+    if !machine.modes.is_empty() {
+        return None;
+    }
     let mode = machine.elastic_mode?;
     let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
     let rings = machine.rings.iter().map(|ring| ring.place / gyration);

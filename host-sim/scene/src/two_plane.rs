@@ -88,6 +88,14 @@ impl TwoPlane {
             || !self.modes.is_empty()
     }
 
+    /// Of spin (rad/s), bending modes, mounts and the decay of their motion, the fastest, rad/s.
+    pub fn fastest(&self, spin: f64) -> f64 {
+        let modes = self.modes.iter().map(|it| it.speed);
+        let mounts = self.rings.iter().filter_map(|it| it.support);
+        let mounts = mounts.map(|it| (it.stiffness / it.mass).sqrt().max(it.damping / it.mass));
+        modes.chain(mounts).fold(spin.abs(), f64::max)
+    }
+
     /// The start must be within every ring.
     pub(super) fn check_start(&self, start: &Start) -> Result<(), Diagnostic> {
         let Start::Free { position, .. } = *start else {

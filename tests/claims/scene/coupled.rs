@@ -63,3 +63,25 @@ fn broken_rules_name_their_line() {
         assert!(error.starts_with("c.toml:"), "{error}");
     }
 }
+
+/// A machine that follows its mounts unasked, and says so where it is told not to.
+#[test]
+fn the_default_step_follows_the_fastest_motion() {
+    let fastest = |scene: &Scene| {
+        let machine = scene.two_plane.as_ref().expect("two ends");
+        scene.model.step * machine.fastest(scene.rotor.spin)
+    };
+    let plain = york(|text| text).expect("valid");
+    assert!(fastest(&plain) <= 0.1 && plain.model.step <= 1e-5);
+    let stiff = york(|text| text.replace("2.0e7", "2.0e9")).expect("valid");
+    assert!(stiff.model.step < 0.5 * plain.model.step && fastest(&stiff) <= 0.1);
+    let long = york(|text| {
+        let text = text.replace("2.0e7", "2.0e10");
+        text.replace("duration_s = 0.3", "duration_s = 2.0")
+    });
+    let long = long.expect("valid");
+    assert!(long.run.duration / long.model.step <= 1e5);
+    assert!(long.warnings()[0].contains("half a radian"), "{:?}", long.warnings());
+    let coarse = york(|text| text + "\n[model]\nstep_us = 200.0\n").expect("valid");
+    assert!(coarse.warnings()[0].contains("step_us is 200"), "{:?}", coarse.warnings());
+}
