@@ -1,5 +1,5 @@
-//! What is held of the rungs `support` and `two-plane` at any extreme, watched step by step: no wall is
-//! passed, contacts make no energy, and all of it is accounted for.
+//! What is held of the rungs `support`, `two-plane` and `coupled` at any extreme, watched step by step: no
+//! wall is passed, contacts make no energy, and all of it is accounted for.
 
 use touchdown_rotor::error::ConfigError;
 
