@@ -211,7 +211,7 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nrung = \"soft\"",
-            "scene.toml:12: rung must be \"rigid\" or \"moreau\" or \"hertz\" or \"support\" or \"two-plane\", is \"soft\"",
+            "scene.toml:12: rung must be \"rigid\" or \"moreau\" or \"hertz\" or \"support\" or \"two-plane\" or \"coupled\", is \"soft\"",
         ),
         (
             "[model]\nrung = \"moreau\"\nscheme = \"verlet\"",
