@@ -73,7 +73,7 @@ fn the_default_step_follows_the_fastest_motion() {
     };
     let plain = york(|text| text).expect("valid");
     assert!(fastest(&plain) <= 0.1 && plain.model.step <= 1e-5);
-    let stiff = york(|text| text.replace("2.0e7", "2.0e9")).expect("valid");
+    let stiff = york(|text| text.replace("2.0e7", "4.0e8")).expect("valid");
     assert!(stiff.model.step < 0.5 * plain.model.step && fastest(&stiff) <= 0.1);
     let long = york(|text| {
         let text = text.replace("2.0e7", "2.0e10");
