@@ -208,7 +208,7 @@ impl Scene {
             format!(
                 "{}: step_us is {}, above {of} = {:.4} us: {then}",
                 self.name,
-                step * 1e6,
+                (step * 1e12).round() * 1e-6,
                 longest * 1e6
             )
         })
