@@ -86,23 +86,14 @@ fn wrong_impacts(outcome: &Outcome) -> (usize, usize) {
     (missed, invented)
 }
 
-/// Not the machines: a light rotor that is thrown at the wall (`dtu`) is told as a spike.
-const RIGS: [&str; 9] = [
-    "rig",
-    "rig-wide-gap",
-    "backward-whirl",
-    "rolling",
-    "lift-off",
-    "ball-bearing",
-    "soft-support",
-    "two-plane",
-    "vertical",
-];
+/// The first of the machines, which are not looked at: a light rotor that is thrown at the wall (`dtu`) is told as
+/// a spike.
+const MACHINES: &str = "eth-rig";
 
 #[test]
 fn nothing_is_recognised_in_healthy_drops() {
     let mut drops = 0;
-    for built_in in BUILT_IN.iter().filter(|it| RIGS.contains(&it.name)) {
+    for built_in in BUILT_IN.iter().take_while(|it| it.name != MACHINES) {
         for rate in [10_000.0, RATE, 50_000.0] {
             for (planes, seed) in [(1, 0), (1, 1), (2, 2), (2, 3), (2, 4)] {
                 let mut scene = Scene::load(built_in.name).expect("built-in scene");
@@ -122,7 +113,7 @@ fn nothing_is_recognised_in_healthy_drops() {
         }
     }
     println!("{drops} drops");
-    assert_eq!(drops, 15 * RIGS.len());
+    assert_eq!(drops, 15 * 9);
 }
 
 /// A motion of both planes (m, by time in s) before the sensors.

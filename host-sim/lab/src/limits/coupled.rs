@@ -17,13 +17,17 @@ use touchdown_truth::{Units, simulate};
 /// Of a place or an energy, in units of the last digit.
 const ROUNDED: f64 = 64.0;
 
-/// Of the energy of motion, in units of the last digit, a step: a whirl turns all of it round. Chosen.
+/// Of the first impact's time at an extreme, h^2/T: forces that go round with the spin change within a step. Chosen.
+const LATE: f64 = 4.0;
+
+/// Of the energy of motion of a random machine, in units of the last digit, a step: a whirl turns all of it
+/// round. Chosen.
 const TURNED: f64 = 16.0;
 
 /// How long the reference runs beyond the model's first impact and what it may be off, s.
 const AFTER: f64 = 20e-6;
 
-/// What the place at the first impact may be off, h^2 times the greatest acceleration: the midpoint rule
+/// What the place at a random machine's first impact may be off, h^2 times the greatest acceleration: the midpoint rule
 /// is of second order. Chosen. A mode of bending turns late by (W h)^2/12 of its angle W t.
 const OFF: f64 = 4.0;
 
@@ -60,21 +64,23 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Runs a scene as it is; its first impact is held against the reference's.
+    /// Runs a random machine as it is; its first impact is held against the reference's.
     pub fn watch(&mut self, scene: &Scene, run: Run) -> Result<(), ConfigError> {
-        if let Some(ours) = look(scene, run, self)? {
-            self.impact(scene, &ours, first_impact(scene, &ours));
+        if let Some(ours) = look(scene, run, true, self)? {
+            let late = may_be_late(scene, &ours);
+            let truth = first_impact(scene, ours.state.time + late);
+            self.impact(scene, &ours, truth, late);
         }
         Ok(())
     }
 
-    /// `truth` is the time of the reference's impact, s.
-    fn impact(&mut self, scene: &Scene, ours: &Impact, truth: f64) {
+    /// `truth` is the time of the reference's impact, `late` what ours may be off but for rounding, s.
+    fn impact(&mut self, scene: &Scene, ours: &Impact, truth: f64, late: f64) {
         let time = Units::of(scene).time;
         let rounding = ROUNDED * epsilon(scene.model.precision);
         let off = (ours.state.time - truth).abs() / time;
-        let late = self.late.get_or_insert_default();
-        late.take(off, may_be_late(scene, ours) / time + rounding);
+        let worst = self.late.get_or_insert_default();
+        worst.take(off, late / time + rounding);
     }
 
     /// The worse of each measure.
@@ -119,9 +125,11 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
         let mut scene = scene.clone();
         scene.model.precision = precision;
         scene.model.step = step;
-        if let Some(ours) = look(&scene, run, &mut seen)? {
-            let truth = *first.get_or_insert_with(|| first_impact(&scene, &ours));
-            seen.impact(&scene, &ours, truth);
+        if let Some(ours) = look(&scene, run, false, &mut seen)? {
+            let about = ours.state.time;
+            let truth = *first.get_or_insert_with(|| first_impact(&scene, about));
+            let late = LATE * step * step / Units::of(&scene).time;
+            seen.impact(&scene, &ours, truth, late);
         }
     }
     let name = format!("{}: {name}", scene.model.rung.name());
@@ -129,9 +137,9 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
 }
 
 /// Of the reference, s; infinite where it has none at about this time. What follows may be costly.
-fn first_impact(scene: &Scene, ours: &Impact) -> f64 {
+fn first_impact(scene: &Scene, about: f64) -> f64 {
     let mut scene = scene.clone();
-    scene.run.duration = ours.state.time + may_be_late(&scene, ours) + AFTER;
+    scene.run.duration = about + AFTER;
     let first = simulate(&scene).impacts.first().map(|it| it.state.time);
     first.unwrap_or(f64::INFINITY)
 }
@@ -172,7 +180,12 @@ pub fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
 }
 
 /// Watches one run; its first impact.
-fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
+fn look(
+    scene: &Scene,
+    run: Run,
+    random: bool,
+    seen: &mut Seen,
+) -> Result<Option<Impact>, ConfigError> {
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -196,6 +209,9 @@ fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, Conf
             .fold(glance.gone.abs(), |sum, it| sum + it.abs());
         size = size.max(parts);
     })?;
+    if !random {
+        (turned_round, rolled) = (0.0, 0.0);
+    }
     let rounded = epsilon * (ROUNDED * size + TURNED * turned_round);
     let rounding = super::rounding(scene.model.precision) + rounded;
     seen.beyond.take(farthest, 1.0);
