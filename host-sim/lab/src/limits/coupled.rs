@@ -56,6 +56,7 @@ type Run = fn(&Scene, &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError>;
 /// Worst of all steps.
 #[derive(Default)]
 pub struct Seen {
+    random: bool,
     beyond: Worst,
     made: Worst,
     missing: Worst,
@@ -66,7 +67,8 @@ pub struct Seen {
 impl Seen {
     /// Runs a random machine as it is; its first impact is held against the reference's.
     pub fn watch(&mut self, scene: &Scene, run: Run) -> Result<(), ConfigError> {
-        if let Some(ours) = look(scene, run, true, self)? {
+        self.random = true;
+        if let Some(ours) = look(scene, run, self)? {
             let late = may_be_late(scene, &ours);
             let truth = first_impact(scene, ours.state.time + late);
             self.impact(scene, &ours, truth, late);
@@ -85,15 +87,13 @@ impl Seen {
 
     /// The worse of each measure.
     pub fn worse(mut self, other: Self) -> Self {
-        self.beyond.take(other.beyond.measured, other.beyond.limit);
-        self.made.take(other.made.measured, other.made.limit);
-        self.missing
-            .take(other.missing.measured, other.missing.limit);
+        let take = |into: &mut Worst, it: Worst| into.take(it.measured, it.limit);
+        take(&mut self.beyond, other.beyond);
+        take(&mut self.made, other.made);
+        take(&mut self.missing, other.missing);
         self.broken.measured += other.broken.measured;
         if let Some(late) = other.late {
-            self.late
-                .get_or_insert_default()
-                .take(late.measured, late.limit);
+            take(self.late.get_or_insert_default(), late);
         }
         self
     }
@@ -110,10 +110,8 @@ impl Seen {
             row("energy not accounted for", self.missing, "m g rho0"),
             row("steps with NaN or infinity", self.broken, "steps"),
         ];
-        let late = self
-            .late
-            .map(|it| row("first impact, off the reference", it, "T"));
-        rows.extend(late);
+        let late = "first impact, off the reference";
+        rows.extend(self.late.map(|it| row(late, it, "T")));
         rows
     }
 }
@@ -125,7 +123,7 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
         let mut scene = scene.clone();
         scene.model.precision = precision;
         scene.model.step = step;
-        if let Some(ours) = look(&scene, run, false, &mut seen)? {
+        if let Some(ours) = look(&scene, run, &mut seen)? {
             let about = ours.state.time;
             let truth = *first.get_or_insert_with(|| first_impact(&scene, about));
             let late = LATE * step * step / Units::of(&scene).time;
@@ -180,12 +178,7 @@ pub fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
 }
 
 /// Watches one run; its first impact.
-fn look(
-    scene: &Scene,
-    run: Run,
-    random: bool,
-    seen: &mut Seen,
-) -> Result<Option<Impact>, ConfigError> {
+fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -209,7 +202,7 @@ fn look(
             .fold(glance.gone.abs(), |sum, it| sum + it.abs());
         size = size.max(parts);
     })?;
-    if !random {
+    if !seen.random {
         (turned_round, rolled) = (0.0, 0.0);
     }
     let rounded = epsilon * (ROUNDED * size + TURNED * turned_round);

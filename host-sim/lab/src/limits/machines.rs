@@ -30,8 +30,7 @@ const STEPS: f64 = 8_000.0;
 pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure> {
     let mut rows = Vec::new();
     for parts in 0..JOBS {
-        let seeds = (0..machines).filter(|seed| seed % JOBS == parts);
-        let seeds: Vec<u64> = seeds.collect();
+        let seeds: Vec<u64> = (parts..machines).step_by(JOBS as usize).collect();
         if seeds.is_empty() {
             continue;
         }
@@ -61,15 +60,9 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
 }
 
 fn named(parts: u64) -> String {
-    let there = PARTS
-        .iter()
-        .enumerate()
-        .filter(|(bit, _)| parts >> bit & 1 == 1);
-    let names: Vec<&str> = there.map(|(_, name)| *name).collect();
-    if names.is_empty() {
-        return "rigid ends".to_owned();
-    }
-    names.join(", ")
+    let there = (0..PARTS.len()).filter(|bit| parts >> bit & 1 == 1);
+    let names = std::iter::once("two ends").chain(there.map(|bit| PARTS[bit]));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// The scene file of a random machine; its parts are the seed's lowest bits.
