@@ -1,4 +1,4 @@
-"""Who runs, at what settings: each row is a command for each variant of the drop."""
+"""Who runs, at what settings: each row of a table is a command for each variant of the drop."""
 
 import subprocess
 import sys
@@ -12,6 +12,8 @@ RUST = HERE.parent / "rust/target/release"
 SYSTEM_PYTHON = "/usr/bin/python3"
 # Simulated time that is timed, s; the scored part of the variants but E is shorter than it.
 DURATION = 0.5
+# Until just after impact 5 of these.
+UNTIL_FIVE = {"S": 0.0094, "T": 0.02}
 # Interval of the samples of adaptive solvers, s, by duration of the contact, us.
 EVERY = {280: "1e-5", 28: "1e-6"}
 
@@ -24,7 +26,7 @@ class Peer:
     setting: str
     # ours, penalty (another law of contact), time-stepping or events.
     kind: str
-    # From variant, file for samples and repeats to the command.
+    # From variant, file for samples, duration and repeats to the command.
     command: object
     repeats: int
     # Whether the program tells its impacts; else they are read from its samples.
@@ -40,8 +42,10 @@ def ours(rung, precision, step_us, way, repeats=101, cutoff=None):
         model += f"\ncutoff_mm_s = {cutoff}"
         setting += f", cutoff {cutoff} mm/s"
 
-    def command(variant, file, repeats):
-        return [RUST / "ours", variant, model, way, DURATION, file, repeats]
+    def command(variant, file, duration, repeats):
+        # Read for the energy alone: it tells its impacts.
+        samples = file if variant == "E" else "-"
+        return [RUST / "ours", variant, model, way, duration, samples, repeats]
 
     return Peer("Touchdown", setting, "ours", command, repeats, tells=True)
 
@@ -51,10 +55,10 @@ def contact(variant, contact_time):
 
 
 def ode_solvers(contact_us, method, setting, repeats):
-    def command(variant, file, repeats):
+    def command(variant, file, duration, repeats):
         law = contact(variant, contact_us * 1e-6)
         every = EVERY[contact_us] if method == "dopri5" else setting
-        return [RUST / "penalty", variant, *law, method, setting, DURATION, every, file, repeats]
+        return [RUST / "penalty", variant, *law, method, setting, duration, every, file, repeats]
 
     what = "rtol" if method == "dopri5" else "step"
     setting_text = f"penalty {contact_us} us, {method}, {what} {setting}"
@@ -62,36 +66,36 @@ def ode_solvers(contact_us, method, setting, repeats):
 
 
 def scipy_penalty(contact_us, method, rtol, repeats):
-    def command(variant, file, repeats):
+    def command(variant, file, duration, repeats):
         law = contact(variant, contact_us * 1e-6)
         program, every = HERE / "scipy_penalty.py", EVERY[contact_us]
-        return [sys.executable, program, variant, *law, method, rtol, DURATION, every, file, repeats]
+        return [sys.executable, program, variant, *law, method, rtol, duration, every, file, repeats]
 
     setting = f"penalty {contact_us} us, {method}, rtol {rtol}"
     return Peer("scipy", setting, "penalty", command, repeats)
 
 
 def scipy_events(method, rtol, max_step, repeats):
-    def command(variant, _, repeats):
+    def command(variant, _, duration, repeats):
         program = HERE / "scipy_events.py"
-        return [sys.executable, program, variant, method, rtol, max_step, DURATION, repeats]
+        return [sys.executable, program, variant, method, rtol, max_step, duration, repeats]
 
     setting = f"events, {method}, rtol {rtol}, max_step {max_step}"
     return Peer("scipy", setting, "events", command, repeats, tells=True)
 
 
 def siconos(step, repeats):
-    def command(variant, file, repeats):
+    def command(variant, file, duration, repeats):
         program = HERE / "siconos_drop.py"
-        return [SYSTEM_PYTHON, program, variant, step, DURATION, file, repeats]
+        return [SYSTEM_PYTHON, program, variant, step, duration, file, repeats]
 
     return Peer("Siconos", f"Moreau-Jean, step {step}", "time-stepping", command, repeats)
 
 
 def pymunk(step, repeats):
-    def command(variant, file, repeats):
+    def command(variant, file, duration, repeats):
         program = HERE / "pymunk_drop.py"
-        return [sys.executable, program, variant, step, 32, DURATION, file, repeats]
+        return [sys.executable, program, variant, step, 32, duration, file, repeats]
 
     return Peer("pymunk", f"small disk, 32 segments, step {step}", "time-stepping", command, repeats)
 
@@ -134,3 +138,26 @@ PEERS = [
     pymunk("1e-4", 5),
     pymunk("1e-5", 3),
 ]
+
+# The coarsest that show all five, by trial, one that does not, and finer ones.
+SICONOS_STEPS = {
+    "S": ("1e-4", "4.5e-5", "3e-5", "1e-5", "3e-6"),
+    "T": ("1e-3", "7e-4", "5e-4", "3e-4", "1e-4", "3e-5", "1e-5", "3e-6"),
+}
+OUR_STEPS = ((1, 3), (3, 5), (10, 11), (30, 21), (100, 51), (200, 51), (1000, 101))
+# Of the variants of which five impacts are scored.
+FIVE = {
+    variant: [
+        *(
+            ours("coupled", precision, step_us, "steps", repeats)
+            for precision in ("f64", "f32")
+            for step_us, repeats in OUR_STEPS
+        ),
+        scipy_events("RK45", "1e-3", "inf", 5),
+        scipy_events("RK45", "1e-4", "1e-3", 5),
+        scipy_events("RK45", "1e-6", "inf", 5),
+        scipy_events("DOP853", "1e-9", "1e-3", 5),
+        *(siconos(step, 3 if float(step) < 2e-5 else 11) for step in steps),
+    ]
+    for variant, steps in SICONOS_STEPS.items()
+}

@@ -1,4 +1,5 @@
-"""solve_ivp with events: each flight to its contact, the impact law between them, then sliding.
+"""solve_ivp with events: each flight to its contact, the impact law between them; in the plane then
+sliding. A state is what machine() has for q and its rate, without the angle.
 
 Arguments: variant, method, rtol, max_step (s, inf, or hop: a quarter of how long the next hop will
 take about), duration (s), repeats."""
@@ -20,16 +21,32 @@ friction, restitution = drop.VARIANTS[variant]
 BETA = 0.5
 
 
-def flight(_, s):
-    return [s[2], s[3], 0.0, -drop.GRAVITY]
+machine = drop.machine(variant)
+MASS, SIZE = machine.mass, len(machine.mass)
 
 
-def gap(_, s):
-    return math.hypot(s[0], s[1]) - drop.CLEARANCE
+def flight(spin):
+    """Rate of the state at this spin."""
+    damping = machine.damping + spin * machine.gyration
+    spring, damper = (-matrix / MASS[:, None] for matrix in (machine.stiffness, damping))
+    rates = np.block([[np.zeros((SIZE, SIZE)), np.eye(SIZE)], [spring, damper]])
+    constant = np.concatenate([np.zeros(SIZE), machine.force / MASS])
+    return lambda _, s: rates @ s + constant
 
 
-gap.terminal = True
-gap.direction = 1.0
+def wall(factor):
+    """The event of reaching a ring."""
+
+    def gap(_, s):
+        return math.hypot(*machine.within(s[:SIZE], factor)) - drop.CLEARANCE
+
+    gap.terminal = True
+    gap.direction = 1.0
+    return gap
+
+
+FACTORS = list(machine.rings.values())
+GAPS = [wall(factor) for factor in FACTORS]
 
 
 def sliding(_, s):
@@ -41,18 +58,22 @@ def sliding(_, s):
     return [rate, rub - pull, rub * drop.CLEARANCE / drop.RADIUS / BETA]
 
 
-def collide(s, spin):
+def collide(s, spin, factor):
     """State and spin after an impact, the speed into the wall before it and the one along it after."""
-    nx, ny = np.array(s[:2]) / math.hypot(s[0], s[1])
-    into, along = s[2] * nx + s[3] * ny, s[3] * nx - s[2] * ny
-    limit = friction * (1.0 + restitution) * into
-    rub = -(along + drop.RADIUS * spin) * BETA / (1.0 + BETA)
-    rub = min(max(rub, -limit), limit)
-    along += rub
-    spin += rub / BETA / drop.RADIUS
-    out = -restitution * into
-    x, y = nx * drop.CLEARANCE, ny * drop.CLEARANCE
-    return [x, y, out * nx - along * ny, out * ny + along * nx], spin, into, along
+    q, v = s[:SIZE].copy(), s[SIZE:].copy()
+    d = machine.within(q, factor)
+    n = d / math.hypot(*d)
+    along_wall = np.array([-n[1], n[0]])
+    rows = [np.concatenate([e, factor * e])[:SIZE] for e in (n, along_wall)]
+    ease = np.sum(rows[0] ** 2 / MASS)
+    ease_along = ease + drop.RADIUS**2 / drop.INERTIA
+    into, slip = rows[0] @ v, rows[1] @ v + drop.RADIUS * spin
+    push = (1.0 + restitution) * into / ease
+    rub = min(max(-slip / ease_along, -friction * push), friction * push)
+    v += (rows[1] * rub - rows[0] * push) / MASS
+    spin += drop.RADIUS * rub / drop.INERTIA
+    q[:2] += drop.CLEARANCE * n - d
+    return np.concatenate([q, v]), spin, into, rows[1] @ v
 
 
 def quarter_hop(s, into, along):
@@ -64,15 +85,16 @@ def quarter_hop(s, into, along):
 
 def fall():
     """Impacts until the bounces are slow; sliding from there on."""
-    time, s, spin, impacts = 0.0, [0.0, 0.0, 0.0, 0.0], drop.SPIN, []
+    time, spin, impacts = 0.0, drop.SPIN, []
+    s = np.concatenate([machine.start, np.zeros(SIZE)])
     longest = max_step
     while time < duration:
         found = solve_ivp(
-            flight,
+            flight(spin),
             (time, duration),
             s,
             method,
-            events=gap,
+            events=GAPS,
             rtol=rtol,
             atol=rtol * 1e-4,
             max_step=longest,
@@ -80,8 +102,10 @@ def fall():
         if found.status != 1:
             break
         time = found.t[-1]
-        s, spin, into, along = collide(found.y[:, -1], spin)
-        impacts.append([time, *s, into])
+        factor = next(f for f, times in zip(FACTORS, found.t_events) if len(times))
+        s, spin, into, along = collide(found.y[:, -1], spin, factor)
+        place, velocity = machine.axis(s[:SIZE], factor), machine.axis(s[SIZE:], factor)
+        impacts.append([time, *place, *velocity, into])
         if by_hops:
             longest = quarter_hop(s, into, along)
         if restitution * into < drop.CUT_OFF:

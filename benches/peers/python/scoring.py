@@ -28,10 +28,11 @@ def told(rows):
 
 
 def seen(samples):
-    """Impacts as equidistant samples show them: steps in which the velocity changes by what is not
-    gravity; at the mean time of that change."""
-    t, x, y, u, v = samples.T
+    """Impacts as equidistant samples show them: steps in which the velocity of the rotor's middle
+    changes by what is not gravity; at the mean time of that change, in the ring with the largest."""
+    t, rings = samples[:, 0], samples[:, 1:].reshape(len(samples), -1, 4)
     dt = t[1] - t[0]
+    u, v = rings.mean(axis=1)[:, 2:].T
     jump = np.hypot(np.diff(u), np.diff(v) + drop.GRAVITY * dt)
     hit = np.concatenate(([False], jump > 0.5 * drop.GRAVITY * dt, [False]))
     begins, ends = np.flatnonzero(np.diff(hit.astype(int))).reshape(-1, 2).T
@@ -39,8 +40,9 @@ def seen(samples):
     for begin, end in zip(begins, ends):
         weight = jump[begin:end]
         time = float(np.sum(weight * (t[begin:end] + 0.5 * dt)) / np.sum(weight))
-        after = (float(u[end]), float(v[end]))
-        impacts.append(Impact(time, after, rebound(x[end], y[end], *after)))
+        changes = np.linalg.norm((rings[end] - rings[begin])[:, 2:], axis=1)
+        after = [float(number) for number in rings[end][np.argmax(changes)]]
+        impacts.append(Impact(time, tuple(after[2:]), rebound(*after)))
     return impacts
 
 
@@ -49,12 +51,12 @@ def counted(impacts, until):
     return sum(1 for impact in impacts if impact.time < until and impact.rebound >= drop.CUT_OFF)
 
 
-def errors(impacts, exact):
-    """Of the first three: time, s, and velocity after over the speed into the wall before; None for
+def errors(impacts, exact, count):
+    """Of the first `count`: time, s, and velocity after over the speed into the wall before; None for
     an impact that is not there or is nearer to another one."""
-    times = [row[0] for row in exact[:5]]
+    times = [row[0] for row in exact[: count + 2]]
     scores = []
-    for k in range(3):
+    for k in range(count):
         impact = impacts[k] if k < len(impacts) else None
         if impact is None or min(times, key=lambda t: abs(t - impact.time)) != times[k]:
             scores.append(None)

@@ -7,10 +7,17 @@ use super::template::Figure;
 
 /// Errors below this are given by their worst.
 const SMALL: f64 = 1e-4;
-/// Columns, from 0: setting, times, velocities, found, processor time.
-const COLUMNS: [(&str, usize); 4] = [("times", 2), ("velocities", 3), ("found", 4), ("cpu", 7)];
+/// Columns, from 0: setting, times, velocities, found or worst time, factor, processor time.
+const COLUMNS: [(&str, usize); 6] = [
+    ("times", 2),
+    ("velocities", 3),
+    ("found", 4),
+    ("worst", 4),
+    ("factor", 6),
+    ("cpu", 7),
+];
 
-/// `SETTING times|velocities|found|cpu`; `SETTING over SETTING`, of processor time; `claim TEXT`, the factor of the
+/// `SETTING times|velocities|found|worst|factor|cpu`; `SETTING over SETTING`, of processor time; `claim TEXT`, the factor of the
 /// claim that begins so.
 pub fn figure(results: &str, words: &[&str]) -> anyhow::Result<Figure> {
     match *words {

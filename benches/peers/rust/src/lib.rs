@@ -15,7 +15,7 @@ pub type Sample = [f64; 5];
 /// If there is no such variant.
 pub fn contact(variant: &str) -> (f64, f64) {
     match variant {
-        "A" => (0.1, 0.8),
+        "A" | "S" | "T" => (0.1, 0.8),
         "C" => (0.05, 0.3),
         "E" => (0.0, 1.0),
         _ => panic!("unknown variant {variant}"),

@@ -1,4 +1,5 @@
-//! The drop by Touchdown, on any rung, or its exact course by the independent reference.
+//! The drop by Touchdown, on any rung, or its exact course by the independent reference. Impacts are those
+//! of any ring; position and velocity are the axis' there.
 //!
 //! Arguments: variant, `[model]` of the scene as TOML, `steps` or `changes`, duration (s), file for
 //! the samples (`-`: none), repeats; or variant, `exact`, duration.
@@ -8,21 +9,35 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 use serde_json::{Value, json};
-use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Change, ModelEvent, Kinematics, Precision, Stepper};
 use touchdown_peers::{Sample, answer, contact, median_time, write_samples};
-use touchdown_base::history;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::{Change, Kinematics, ModelEvent, Precision, Stepper};
 use touchdown_run::model::{Subject, Use, with_model};
-use touchdown_truth::reference::Reference;
 use touchdown_scene::Scene;
 
+/// What a variant has besides rotor and ring.
+fn parts(variant: &str) -> &'static str {
+    match variant {
+        "S" => {
+            "two_plane = { transverse_inertia_kg_m2 = 0.03078 }
+             support = { mass_kg = 0.5, stiffness_n_m = 2.6e6, damping_n_s_m = 320.0 }
+             ring = [{ z_mm = 0.0 }]"
+        }
+        "T" => {
+            "two_plane = { transverse_inertia_kg_m2 = 0.03078, tilt_mrad = [0.0, 0.6] }
+             ring = [{ z_mm = -120.0 }, { z_mm = 120.0 }]"
+        }
+        _ => "",
+    }
+}
+
 fn scene(variant: &str, model: &str, duration: f64) -> Scene {
-    let (friction, restitution) = contact(variant);
+    let ((friction, restitution), parts) = (contact(variant), parts(variant));
     let rpm = 3141.6 * 60.0 / TAU;
     let text = format!(
         "rotor = {{ mass_kg = 3.42, radius_mm = 24.0, speed_rpm = {rpm:?} }}\n\
          retainer = {{ clearance_mm = 0.3, friction = {friction:?}, restitution = {restitution:?} }}\n\
-         run = {{ duration_s = {duration:?}, gravity_m_s2 = 9.81 }}\n\
+         run = {{ duration_s = {duration:?}, gravity_m_s2 = 9.81 }}\n{parts}\n\
          [model]\n{model}\n"
     );
     Scene::parse("peers", &text).expect("valid scene")
@@ -33,19 +48,13 @@ type Impact = [f64; 6];
 
 fn exact(variant: &str, duration: f64) -> Value {
     let scene = scene(variant, "", duration);
-    let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
-    let mut impacts: Vec<Impact> = Vec::new();
-    let mut contact_starts = Vec::new();
-    reference.advance(duration, &mut |happening| match happening {
-        history::ModelEvent::Impact(impact) => {
-            let s = impact.state;
-            let ([x, y], [u, v]) = (s.position, s.velocity);
-            impacts.push([s.time, x, y, u, v, impact.normal_speed]);
-        }
-        history::ModelEvent::ContactStart { time, .. } => contact_starts.push(time),
-        _ => {}
+    let history = touchdown_truth::simulate(&scene);
+    let impacts = history.impacts.iter().map(|impact| -> Impact {
+        let ([x, y], [u, v]) = (impact.state.position, impact.state.velocity);
+        [impact.state.time, x, y, u, v, impact.normal_speed]
     });
-    json!({ "impacts": impacts, "contact_starts": contact_starts })
+    let impacts: Vec<Impact> = impacts.collect();
+    json!({ "impacts": impacts, "contact_starts": history.contact_starts })
 }
 
 struct Run<'a> {
@@ -66,7 +75,9 @@ impl Run<'_> {
         mut seen: impl FnMut(u64, &Kinematics<R>),
         mut on_event: impl FnMut(ModelEvent<R>),
     ) {
-        let mut state = model.start(start, *spin, &mut on_event).expect("valid start");
+        let mut state = model
+            .start(start, *spin, &mut on_event)
+            .expect("valid start");
         if self.by_steps {
             for step in 1..=steps {
                 model.step(&mut state, &mut on_event);
