@@ -37,13 +37,9 @@ class Machine:
     rings: dict
     tilts: bool
 
-    def within(self, q, factor):
-        """The rotor's axis in a ring, from the ring's centre; of q or its rate."""
-        return q[:2] + factor * q[2:] if len(self.mass) > 2 else q
-
     def axis(self, q, factor):
-        """The same from the bearing's centre."""
-        return self.within(q, factor) if self.tilts else q[:2]
+        """The rotor's axis in a ring, from the bearing's centre; of q or its rate."""
+        return q[:2] + factor * q[2:] if self.tilts else q[:2]
 
 
 def machine(variant):

@@ -23,10 +23,14 @@ BETA = 0.5
 
 machine = drop.machine(variant)
 MASS, SIZE = machine.mass, len(machine.mass)
+# Of each pair of coordinates.
+MASSES = MASS[::2].tolist()
 
 
 def flight(spin):
-    """Rate of the state at this spin."""
+    """Rate of the state at this spin; in the plane without matrices, which would cost time there."""
+    if SIZE == 2:
+        return lambda _, s: [s[2], s[3], 0.0, -drop.GRAVITY]
     damping = machine.damping + spin * machine.gyration
     spring, damper = (-matrix / MASS[:, None] for matrix in (machine.stiffness, damping))
     rates = np.block([[np.zeros((SIZE, SIZE)), np.eye(SIZE)], [spring, damper]])
@@ -37,8 +41,13 @@ def flight(spin):
 def wall(factor):
     """The event of reaching a ring."""
 
-    def gap(_, s):
-        return math.hypot(*machine.within(s[:SIZE], factor)) - drop.CLEARANCE
+    def in_plane(_, s):
+        return math.hypot(s[0], s[1]) - drop.CLEARANCE
+
+    def beside(_, s):
+        return math.hypot(s[0] + factor * s[2], s[1] + factor * s[3]) - drop.CLEARANCE
+
+    gap = beside if factor else in_plane
 
     gap.terminal = True
     gap.direction = 1.0
@@ -60,20 +69,24 @@ def sliding(_, s):
 
 def collide(s, spin, factor):
     """State and spin after an impact, the speed into the wall before it and the one along it after."""
-    q, v = s[:SIZE].copy(), s[SIZE:].copy()
-    d = machine.within(q, factor)
-    n = d / math.hypot(*d)
-    along_wall = np.array([-n[1], n[0]])
-    rows = [np.concatenate([e, factor * e])[:SIZE] for e in (n, along_wall)]
-    ease = np.sum(rows[0] ** 2 / MASS)
+    s = s.tolist()
+    shares = (1.0, factor)[: SIZE // 2]
+    axis = lambda k: sum(b * s[k + 2 * i] for i, b in enumerate(shares))
+    x, y, u, v = map(axis, (0, 1, SIZE, SIZE + 1))
+    distance = math.hypot(x, y)
+    nx, ny = x / distance, y / distance
+    ease = sum(b * b / m for b, m in zip(shares, MASSES))
     ease_along = ease + drop.RADIUS**2 / drop.INERTIA
-    into, slip = rows[0] @ v, rows[1] @ v + drop.RADIUS * spin
+    into, along = u * nx + v * ny, v * nx - u * ny
     push = (1.0 + restitution) * into / ease
-    rub = min(max(-slip / ease_along, -friction * push), friction * push)
-    v += (rows[1] * rub - rows[0] * push) / MASS
-    spin += drop.RADIUS * rub / drop.INERTIA
-    q[:2] += drop.CLEARANCE * n - d
-    return np.concatenate([q, v]), spin, into, rows[1] @ v
+    rub = -(along + drop.RADIUS * spin) / ease_along
+    rub = min(max(rub, -friction * push), friction * push)
+    for i, (b, m) in enumerate(zip(shares, MASSES)):
+        s[SIZE + 2 * i] -= b / m * (push * nx + rub * ny)
+        s[SIZE + 2 * i + 1] -= b / m * (push * ny - rub * nx)
+    s[0] += drop.CLEARANCE * nx - x
+    s[1] += drop.CLEARANCE * ny - y
+    return np.array(s), spin + drop.RADIUS * rub / drop.INERTIA, into, along + rub * ease
 
 
 def quarter_hop(s, into, along):
