@@ -144,7 +144,7 @@ SICONOS_STEPS = {
     "S": ("1e-4", "4.5e-5", "3e-5", "1e-5", "3e-6"),
     "T": ("1e-3", "7e-4", "5e-4", "3e-4", "1e-4", "3e-5", "1e-5", "3e-6"),
 }
-OUR_STEPS = ((1, 3), (3, 5), (10, 11), (30, 21), (100, 51), (200, 51), (1000, 101))
+OUR_STEPS = ((1, 1), (3, 3), (10, 5), (30, 7), (100, 15), (200, 15), (1000, 31))
 # Of the variants of which five impacts are scored.
 FIVE = {
     variant: [
@@ -153,11 +153,11 @@ FIVE = {
             for precision in ("f64", "f32")
             for step_us, repeats in OUR_STEPS
         ),
-        scipy_events("RK45", "1e-3", "inf", 5),
-        scipy_events("RK45", "1e-4", "1e-3", 5),
-        scipy_events("RK45", "1e-6", "inf", 5),
-        scipy_events("DOP853", "1e-9", "1e-3", 5),
-        *(siconos(step, 3 if float(step) < 2e-5 else 11) for step in steps),
+        scipy_events("RK45", "1e-3", "inf", 2),
+        scipy_events("RK45", "1e-4", "1e-3", 2),
+        scipy_events("RK45", "1e-6", "inf", 2),
+        scipy_events("DOP853", "1e-9", "1e-3", 2),
+        *(siconos(step, 1 if float(step) < 2e-5 else 5) for step in steps),
     ]
     for variant, steps in SICONOS_STEPS.items()
 }

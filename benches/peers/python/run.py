@@ -2,6 +2,7 @@
 
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,7 @@ import table
 from peers import DURATION, FIVE, HERE, PEERS, RUST, UNTIL_FIVE, has_siconos
 
 BUILD = HERE.parent / "build"
+ROUNDS = 3
 
 
 def run(command):
@@ -45,10 +47,9 @@ def course(peer, variant, folder, duration, repeats):
     return found, samples, scoring.told(found["impacts"]) if peer.tells else scoring.seen(samples)
 
 
-def timed(row, found):
-    row["cpu_per_simulated"] = found["cpu_s"] / DURATION
-    steps = found["steps"]
-    row["ns_per_step"] = found["cpu_s"] / steps * 1e9 if steps else None
+def timed(row, taken, steps):
+    row["cpu_per_simulated"] = taken / DURATION
+    row["ns_per_step"] = taken / steps * 1e9 if steps else None
 
 
 def score(peer, row, exact, folder):
@@ -64,43 +65,55 @@ def score(peer, row, exact, folder):
         row[f"{variant}_errors"] = scoring.errors(impacts, exact[variant]["impacts"], 3)
         if variant == "A":
             row["A_counted"] = scoring.counted(impacts, exact["A"]["contact_starts"][0])
-            timed(row, found)
+            timed(row, found["cpu_s"], found["steps"])
 
 
-def score_five(peer, row, variant, exact, folder):
-    """The figures of a row of the tables of five impacts. Events are not followed beyond these."""
-    until = UNTIL_FIVE[variant]
-    found, _, impacts = course(peer, variant, folder, until, 5 * peer.repeats)
-    row["cpu_to_five"] = found["cpu_s"]
-    if peer.kind != "events":
-        found, _, impacts = course(peer, variant, folder, DURATION, peer.repeats)
-        timed(row, found)
-    row["errors"] = scoring.errors(impacts, exact[variant]["impacts"], 5)
+def score_five(peers, rows, variant, exact, folder):
+    """The figures of a table of five impacts. Each time is the median over rounds through the table,
+    so that a slow spell of the machine is not one row's. Events are not followed beyond impact 5."""
+    taken = [([], []) for _ in rows]
+    for turn in range(ROUNDS):
+        for peer, row, (to_five, whole) in zip(peers, rows, taken):
+            if row["kind"] == "not installed":
+                continue
+            print(f"{turn + 1}/{ROUNDS} {row['setting']}", file=sys.stderr, flush=True)
+            found = course(peer, variant, folder, UNTIL_FIVE[variant], 5 * peer.repeats)
+            to_five.append(found[0]["cpu_s"])
+            if peer.kind != "events":
+                found = course(peer, variant, folder, DURATION, peer.repeats)
+                whole.append(found[0]["cpu_s"])
+            row["errors"] = scoring.errors(found[2], exact[variant]["impacts"], 5)
+            row["cpu_to_five"] = statistics.median(to_five)
+            if whole:
+                timed(row, statistics.median(whole), found[0]["steps"])
 
 
 def main():
     variants = ["A", "C", "E", *FIVE]
     exact = {variant: run([RUST / "ours", variant, "exact", DURATION]) for variant in variants}
     installed = has_siconos()
-    tables = {"": PEERS, **FIVE}
-    rows = {variant: [] for variant in tables}
+
+    def rows(peers, prefix=""):
+        there = lambda peer: installed or peer.name != "Siconos"
+        kind = lambda peer: peer.kind if there(peer) else "not installed"
+        return [
+            {"peer": peer.name, "setting": prefix + peer.setting, "kind": kind(peer)}
+            for peer in peers
+        ]
+
+    drops = rows(PEERS)
+    five = {variant: rows(peers, f"{variant}: ") for variant, peers in FIVE.items()}
     with tempfile.TemporaryDirectory() as folder:
-        for variant, peers in tables.items():
-            for peer in peers:
-                setting = f"{variant}: {peer.setting}" if variant else peer.setting
-                print(f"{peer.name}: {setting}", file=sys.stderr, flush=True)
-                row = {"peer": peer.name, "setting": setting, "kind": peer.kind}
-                rows[variant].append(row)
-                if peer.name == "Siconos" and not installed:
-                    row["kind"] = "not installed"
-                elif variant:
-                    score_five(peer, row, variant, exact, folder)
-                else:
-                    score(peer, row, exact, folder)
+        for peer, row in zip(PEERS, drops):
+            print(f"{peer.name}: {peer.setting}", file=sys.stderr, flush=True)
+            if row["kind"] != "not installed":
+                score(peer, row, exact, folder)
+        for variant, peers in FIVE.items():
+            score_five(peers, five[variant], variant, exact, folder)
     count = scoring.counted(
         scoring.told(exact["A"]["impacts"]), exact["A"]["contact_starts"][0]
     )
-    table.write(rows, count, HERE.parent)
+    table.write(drops, five, count, HERE.parent)
 
 
 if __name__ == "__main__":

@@ -215,17 +215,16 @@ def versions():
     return ", ".join([*python, "ode_solvers 0.6.2", f"Siconos {siconos}", rust])
 
 
-def write(rows, count, folder):
-    """RESULTS.md and results.json in `folder`; rows by table, the first without a name."""
+def write(drops, five, count, folder):
+    """RESULTS.md and results.json in `folder`; `five`: rows by variant."""
     head = HEAD.format(
         date=datetime.date.today(), machine=machine(), versions=versions(), count=count
     )
-    drops, five = rows[""], {name: rows[name] for name in TITLES}
     body = "\n".join(line(row) for row in drops) + "\n"
     body += "".join(table_five(name, of) for name, of in five.items())
     lines = claims(drops, count)
     lines += [text for name, of in five.items() for text in claims_five(name, of)]
     text = head + body + "\n## Claims\n\n" + "\n".join(lines) + "\n"
     (folder / "RESULTS.md").write_text(text, encoding="utf-8")
-    every = [row for of in rows.values() for row in of]
+    every = drops + [row for of in five.values() for row in of]
     (folder / "results.json").write_text(json.dumps(every, indent=1) + "\n", encoding="utf-8")
