@@ -57,9 +57,7 @@ fn claim(results: &str, text: &str) -> anyhow::Result<Figure> {
     let start = format!("- {text}: ");
     let mut claims = results.lines().filter_map(|line| line.strip_prefix(&start));
     let claim = claims.next().context("no claim begins so")?;
-    let claim = claim
-        .trim_start_matches("**not met**, ")
-        .trim_start_matches("met, ");
+    let claim = claim.split_once(", ").map_or(claim, |it| it.1);
     let (factor, _) = claim
         .split_once(" times")
         .context("the claim has no factor")?;
