@@ -1,12 +1,9 @@
 //! The machine, SI.
 
+use super::mount::{MountConfig, Sprung};
+use super::race::{BallBearing, RaceConfig};
+use super::vector::Vector;
 use super::{Coupled, Magnet, Ring};
-use crate::support::config::Units;
-use crate::support::mount::{Mount, Sprung};
-use crate::support::race::{BallBearing, Race};
-use crate::two_plane::UnbalanceConfig;
-use crate::vector::Vector;
-use crate::{MountConfig, RaceConfig, RingConfig};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -18,6 +15,47 @@ const MOST_RINGS: usize = 4;
 pub(super) const MODES: usize = 3;
 /// (h/2)^2 times the stiffness that pulls away, over mass; at 1 the step has no solution.
 const STIFFEST: f64 = 0.25;
+
+/// A retainer ring and the rotor in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingConfig<R> {
+    /// Axial place from the centre of mass, m.
+    pub place: R,
+    /// Radial clearance, m.
+    pub clearance: R,
+    /// Of the rotor there, m.
+    pub radius: R,
+    /// Coefficient of friction, 0 or more.
+    pub friction: R,
+    /// Restitution, 0 to 1.
+    pub restitution: R,
+}
+
+/// Static and couple unbalance; angles on the rotor, from its x axis at spin angle 0, rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UnbalanceConfig<R> {
+    /// Of the centre of mass from the axis, m.
+    pub eccentricity: R,
+    /// Of the eccentricity.
+    pub angle: R,
+    /// Of the principal axis from the axis, rad.
+    pub skew: R,
+    /// Of the skew.
+    pub skew_angle: R,
+}
+
+/// What turns SI into the model's units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units<R> {
+    pub(super) mass: R,
+    /// Of the rotor at the first ring, m.
+    pub(super) radius: R,
+    /// Of the retainer, m.
+    pub(super) bore: R,
+    /// Length of a step, T.
+    pub(super) step: R,
+    pub(super) scales: Scales<R>,
+}
 
 /// A retainer ring, what it stands on and what turns in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +117,7 @@ pub struct CoupledConfig<R, const N: usize> {
     pub unbalance: UnbalanceConfig<R>,
     /// Two planes of magnets; all 0 without.
     pub magnets: [ActuatorConfig<R>; 2],
-    /// Bending modes; those beyond the model's `Q` - 2 are left out, and must be none.
+    /// Bending modes; those beyond the model's `Q` - 2 must be none.
     pub modes: [Option<ModeConfig<R>>; MODES],
     /// Length of a step, s.
     pub step: R,
@@ -143,10 +181,10 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Checks `config` and works out the coefficients.
     pub fn try_new(config: &CoupledConfig<R, N>) -> Result<Self, ConfigError> {
-        if !(2..=2 + MODES).contains(&Q) {
+        if !(1..=2 + MODES).contains(&Q) {
             return Err(ConfigError::OutOfRange("modes", "0 to 3"));
         }
-        config.check(Q - 2)?;
+        config.check(Q.saturating_sub(2))?;
         let Some(first) = config.rings.first().map(|seat| seat.ring) else {
             return Err(ConfigError::OutOfRange("rings", "1 to 4"));
         };
@@ -162,7 +200,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             gyration: ratio * size,
             turn: size,
             gravity: Vector::new(config.gravity).times(rate),
-            magnets: [Magnet::default(); 2],
+            magnets: [None; 2],
             frequency: [R::ZERO; Q],
             decay: [R::ZERO; Q],
             mode_scale: [R::ZERO; Q],
@@ -187,12 +225,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         for k in 0..2 {
             let magnet = &config.magnets[k];
-            model.magnets[k] = Magnet {
+            let [x, y] = magnet.force;
+            let pulls = [magnet.stiffness, magnet.damping, x, y];
+            model.magnets[k] = pulls.iter().any(|it| *it != R::ZERO).then(|| Magnet {
                 shape: model.shape_at(magnet.place, magnet.shape),
                 stiffness: magnet.stiffness / config.mass * scales.time * scales.time,
                 damping: magnet.damping / config.mass * scales.time,
                 force: Vector::new(magnet.force).times(rate / config.mass),
-            };
+            });
         }
         model.weight = model.unbalanced(config);
         model.checked()
@@ -210,7 +250,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let couple = (R::ONE - ratio) * unbalance.skew / self.tilt;
         let centres = config.modes.map(|it| it.map_or(R::ZERO, |it| it.centre));
         let mut weights = self.shape_at(R::ZERO, centres).map(|b| weight.times(b));
-        weights[1] = offset(couple, unbalance.skew_angle);
+        if let Some(tilt) = weights.get_mut(1) {
+            *tilt = offset(couple, unbalance.skew_angle);
+        }
         weights
     }
 
@@ -219,7 +261,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         positive("step", self.step)?;
         positive("inertia_ratio", self.inertia_ratio)?;
         let mut pull = R::ZERO;
-        for magnet in &self.magnets {
+        for magnet in self.magnets.iter().flatten() {
             let square = magnet.shape.iter().fold(R::ZERO, |sum, b| sum + *b * *b);
             finite("magnets", &[magnet.stiffness * square])?;
             pull += magnet.stiffness.most(R::ZERO) * square;

@@ -1,8 +1,6 @@
 //! Where the energy is, and where it went.
 
 use super::{Coupled, CoupledState, at};
-use crate::support::mount::Mount;
-use crate::support::race::Race;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::sum::Sum;
@@ -110,7 +108,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             energy.motion += R::HALF * v.square();
             energy.bending += R::HALF * *frequency * *frequency * x.square();
         }
-        for magnet in &self.magnets {
+        for magnet in self.magnets.iter().flatten() {
             let place = at(&magnet.shape, &places);
             let potential = R::HALF * magnet.stiffness * place.square() + magnet.force.dot(place);
             energy.magnets += -potential;

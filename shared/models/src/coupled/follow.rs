@@ -5,12 +5,10 @@
 //! value and slope before and its value after; the stretch is taken to there, and again from there, until
 //! the wall is met.
 
+use super::crossing::crossing;
 use super::passage::Passage;
+use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent, at};
-use crate::crossing::crossing;
-use crate::support::mount::Mount;
-use crate::support::race::Race;
-use crate::vector::Vector;
 use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 
@@ -238,7 +236,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {
             books.damped.add(*decay * rate * moved.square());
         }
-        for magnet in &self.magnets {
+        for magnet in self.magnets.iter().flatten() {
             let moved = at(&magnet.shape, &passage.moved);
             books.damped.add(magnet.damping * rate * moved.square());
         }
@@ -265,7 +263,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let (mut turned, mut race_spin) = (R::ZERO, R::ZERO);
         if let Some(race) = &ring.race {
             turned = race.turned(&seat.race, time, passage.drags[i], rub);
-            race_spin = crate::BallBearing::surface(&seat.race) + R::HALF * turned;
+            race_spin = seat.race.surface() + R::HALF * turned;
         }
         let mut heat = R::ZERO;
         if let Some(press) = &passage.presses[i] {

@@ -5,7 +5,7 @@
 //! links press, and which of them slide, is found by trial: a link that would pull is opened, one that
 //! would go through is closed, friction that is too large slides, a slip that friction would drive sticks.
 
-use crate::vector::Vector;
+use super::vector::Vector;
 use touchdown_rotor::real::Real;
 
 /// Most links: a contact and a stop in each of four rings.

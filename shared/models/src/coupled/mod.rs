@@ -1,10 +1,10 @@
-//! Rung `coupled`: a rotor that moves across its axis, tilts and bends, in rings of their own axial places,
-//! each rigid or on a spring and a damper, each a bushing or a ball bearing.
+//! Rungs `support`, `two-plane` and `coupled`: a rotor that moves across its axis, tilts and bends, in rings of
+//! their own axial places, each rigid or on a spring and a damper, each a bushing or a ball bearing.
 //!
 //! The axis at z is at p + z a + sum of phi_k(z) eta_k. In units of the model every one of these
 //! coordinates has the rotor's mass, so that a place on the axis is a row of numbers b, its shape: its
-//! displacement is b . X, and an impulse there moves another place by b . b'. `Q` coordinates: 2 of the
-//! rigid rotor and one for each bending mode. What a ring has not is not computed.
+//! displacement is b . X, and an impulse there moves another place by b . b'. `Q` coordinates: the centre, the
+//! tilt, and one for each bending mode; 1 for a rotor that does not tilt. What a ring has not is not computed.
 //!
 //! Solved by time-stepping: the midpoint rule for all that is smooth, with the walls that are in permanent
 //! contact in it (`passage`); impacts at the moments that a step shows (`follow`, `strike`); all walls that
@@ -14,22 +14,32 @@
 #![allow(clippy::needless_range_loop)]
 
 mod config;
+mod crossing;
 mod energy;
 mod follow;
 mod links;
+mod mount;
 mod passage;
+mod race;
 mod settle;
 mod state;
 mod strike;
+mod vector;
+mod whole;
 
-pub use config::{ActuatorConfig, CoupledConfig, ModeConfig, SeatConfig};
+pub use config::{
+    ActuatorConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
+};
 pub use energy::CoupledEnergy;
-pub use state::{CoupledState, RingEvent};
+pub use mount::MountConfig;
+pub use race::{RaceConfig, RaceMotion};
+pub use state::{CoupledState, Load, Placement, RingEvent, RingMotion};
+pub use whole::Whole;
 
-use crate::support::mount::Sprung;
-use crate::support::race::BallBearing;
-use crate::vector::Vector;
 use config::MODES;
+use mount::Sprung;
+use race::BallBearing;
+use vector::Vector;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
@@ -69,18 +79,7 @@ struct Magnet<R, const Q: usize> {
     force: Vector<R>,
 }
 
-impl<R: Real, const Q: usize> Default for Magnet<R, Q> {
-    fn default() -> Self {
-        Self {
-            shape: [R::ZERO; Q],
-            stiffness: R::ZERO,
-            damping: R::ZERO,
-            force: Vector::default(),
-        }
-    }
-}
-
-/// Coefficients of the model; `N` rings, `Q` - 2 bending modes.
+/// Coefficients of the model; `N` rings, `Q` coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupled<R, const N: usize, const Q: usize> {
     rings: [Ring<R, Q>; N],
@@ -91,7 +90,7 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     /// Angular speed of a spin of 1.
     turn: R,
     gravity: Vector<R>,
-    magnets: [Magnet<R, Q>; 2],
+    magnets: [Option<Magnet<R, Q>>; 2],
     /// Of each coordinate by itself: a bending mode's frequency and damping.
     frequency: [R; Q],
     decay: [R; Q],
@@ -120,6 +119,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The model's units, those of the first ring.
     pub fn scales(&self) -> &Scales<R> {
         &self.scales
+    }
+
+    /// Angular speed (rad/T) of a spin given as surface speed at the first ring.
+    pub fn angular_speed(&self, spin: R) -> R {
+        self.turn * spin
     }
 
     /// Unit of the tilt, rad: the tilt that displaces the axis by a clearance at the radius of gyration.
@@ -159,11 +163,13 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
             gyration: R::lit(self.gyration),
             turn: R::lit(self.turn),
             gravity: vector(self.gravity),
-            magnets: self.magnets.map(|magnet| Magnet {
-                shape: magnet.shape.map(R::lit),
-                stiffness: R::lit(magnet.stiffness),
-                damping: R::lit(magnet.damping),
-                force: vector(magnet.force),
+            magnets: self.magnets.map(|magnet| {
+                magnet.map(|magnet| Magnet {
+                    shape: magnet.shape.map(R::lit),
+                    stiffness: R::lit(magnet.stiffness),
+                    damping: R::lit(magnet.damping),
+                    force: vector(magnet.force),
+                })
             }),
             frequency: self.frequency.map(R::lit),
             decay: self.decay.map(R::lit),

@@ -5,10 +5,10 @@
 //! normal is found by repetition.
 
 use super::links::{Grip, Link, Links};
+use super::mount::Ride;
+use super::race::{Drag, Turning};
+use super::vector::Vector;
 use super::{Coupled, CoupledState, at, product};
-use crate::support::mount::{Mount, Ride};
-use crate::support::race::{Drag, Race, Turning};
-use crate::vector::Vector;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
@@ -147,15 +147,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut matrix = [[Vector::default(); Q]; Q];
         let mut force = passage.unbalance;
         force[0] = force[0] + self.gravity;
-        force[1] = force[1] + velocities[1].turned().times(nutation);
         for k in 0..Q {
             let stiffness = self.frequency[k] * self.frequency[k];
             let middle = places[k] + velocities[k].times(half);
             force[k] = force[k] - middle.times(stiffness) - velocities[k].times(self.decay[k]);
             matrix[k][k] = Vector::real(R::ONE + half * (self.decay[k] + half * stiffness));
         }
-        matrix[1][1].y = -(half * nutation);
-        for magnet in &self.magnets {
+        if Q > 1 {
+            force[1] = force[1] + velocities[1].turned().times(nutation);
+            matrix[1][1].y = -(half * nutation);
+        }
+        for magnet in self.magnets.iter().flatten() {
             let rate = at(&magnet.shape, &velocities);
             let middle = at(&magnet.shape, &places) + rate.times(half);
             let pull = middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);

@@ -6,10 +6,8 @@
 
 use super::links::{Link, Links};
 use super::passage::Passage;
+use super::vector::Vector;
 use super::{Coupled, CoupledState};
-use crate::support::mount::Mount;
-use crate::support::race::Race;
-use crate::vector::Vector;
 use touchdown_rotor::precision::Precision;
 
 /// Distance from the wall, in units of epsilon and the clearance, from which a held ring is put back.

@@ -1,16 +1,65 @@
 //! The state: the rotor's coordinates, its spin, and each ring's motion.
 
+use super::mount::SprungState;
+use super::race::{BallBearingState, RaceMotion};
+use super::vector::{Sums, Vector};
 use super::{Coupled, at};
-use crate::support::mount::{Mount, Sprung, SprungState};
-use crate::support::race::{BallBearing, BallBearingState, Race};
-use crate::vector::{Sums, Vector};
-use crate::{Load, Placement, RingMotion};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
 use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
 use touchdown_rotor::sum::Sum;
 use touchdown_rotor::turns::Turns;
+
+/// Where the rotor starts, in the model's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement<R> {
+    /// Of the centre of mass, rho0.
+    pub position: [R; 2],
+    /// V.
+    pub velocity: [R; 2],
+    /// (theta_y, -theta_x), in units of [`Coupled::tilt_scale`]; 0 without tilt.
+    pub tilt: [R; 2],
+    /// The same over T.
+    pub tilt_rate: [R; 2],
+}
+
+impl Placement<f64> {
+    /// Every number rounded once.
+    pub fn rounded<R: Real>(&self) -> Placement<R> {
+        Placement {
+            position: self.position.map(R::lit),
+            velocity: self.velocity.map(R::lit),
+            tilt: self.tilt.map(R::lit),
+            tilt_rate: self.tilt_rate.map(R::lit),
+        }
+    }
+}
+
+/// Normal force in a ring over the rotor's mass, V^2/rho0: impulse of a step over its length.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load<R> {
+    /// In the last step.
+    pub normal: R,
+    /// Largest so far; an impact counts by its impulse, so it depends on the step.
+    pub peak: R,
+    /// Largest so far, without the impulses of impacts.
+    pub held_peak: R,
+}
+
+/// A ring and its inner ring at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingMotion<R> {
+    /// From the place where it rests under its own weight, rho0.
+    pub position: [R; 2],
+    /// V.
+    pub velocity: [R; 2],
+    /// Whether the hard stop holds it.
+    pub stopped: bool,
+    /// The inner ring of a ball bearing.
+    pub race: Option<RaceMotion<R>>,
+}
 
 /// Something that happened in a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,9 +120,19 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
         self.shortened
     }
 
+    /// Time since the release, in whole steps.
+    pub fn now(&self) -> Instant<R> {
+        Instant::at_tick(self.tick)
+    }
+
     /// Spin as surface speed at the first ring, V.
     pub fn spin(&self) -> R {
         self.spin.value()
+    }
+
+    /// Spin angle beyond whole turns, rad.
+    pub fn angle(&self) -> R {
+        self.angle.parts().1
     }
 
     /// Displacement and velocity of the centre of mass, rho0 and V.
@@ -107,11 +166,11 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
     }
 
     pub(super) fn ring_place(&self, ring: usize) -> Vector<R> {
-        Sprung::place(&self.seats[ring].mount)
+        self.seats[ring].mount.place()
     }
 
     pub(super) fn ring_velocity(&self, ring: usize) -> Vector<R> {
-        Sprung::velocity(&self.seats[ring].mount)
+        self.seats[ring].mount.velocity()
     }
 
     pub(super) fn is_held(&self, ring: usize) -> bool {
@@ -120,7 +179,7 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
 
     /// Whether a hard stop holds the ring.
     pub(super) fn is_stopped(&self, ring: usize) -> bool {
-        Sprung::is_stopped(&self.seats[ring].mount)
+        self.seats[ring].mount.is_stopped()
     }
 
     pub(super) fn in_step(&self, part: R) -> Instant<R> {
@@ -153,6 +212,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let numbers = [start.position, start.velocity, start.tilt, start.tilt_rate];
         if numbers.as_flattened().iter().any(|x| !x.is_finite()) {
             return Err(ConfigError::NotFinite("start"));
+        }
+        let tilts = [start.tilt, start.tilt_rate];
+        if Q == 1 && tilts.as_flattened().iter().any(|x| *x != R::ZERO) {
+            return Err(ConfigError::OutOfRange("start", "without tilt"));
         }
         let seat = Seat {
             held: None,
@@ -201,7 +264,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Surface speed of the rotor against what it rubs on.
     pub(super) fn surface(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
-        let race = BallBearing::surface(&state.seats[ring].race);
+        let race = state.seats[ring].race.surface();
         self.rings[ring].surface * state.spin.value() - race
     }
 
@@ -222,6 +285,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
+    /// Displacement of the axis in a ring, rho0.
+    pub fn displacement(&self, state: &CoupledState<R, N, Q>, ring: usize) -> [R; 2] {
+        self.within(state, ring).parts()
+    }
+
+    /// A ring's way beyond its hard stop, rho0; below 0 before it, none without a stop.
+    pub fn beyond_stop(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Option<R> {
+        let travel = self.rings[ring].mount?.travel()?;
+        Some(state.ring_place(ring).length() - travel)
+    }
+
     /// Distance of the axis from a ring's centre, of the ring's clearance.
     pub fn reach_at(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
         self.within(state, ring).length() / self.rings[ring].limit
@@ -234,7 +308,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             position: state.ring_place(ring).parts(),
             velocity: state.ring_velocity(ring).parts(),
             stopped: state.is_stopped(ring),
-            race: race.and_then(|it| it.motion(&state.seats[ring].race)),
+            race: race.map(|it| it.motion(&state.seats[ring].race)),
         }
     }
 

@@ -6,10 +6,8 @@
 
 use super::follow::Arrival;
 use super::links::{Grip, Link, Links};
+use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent};
-use crate::support::mount::Mount;
-use crate::support::race::Race;
-use crate::vector::Vector;
 use touchdown_rotor::kinematics::Change;
 use touchdown_rotor::precision::Precision;
 

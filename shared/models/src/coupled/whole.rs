@@ -1,28 +1,23 @@
-//! A rotor that tilts, as a stepper like those of the plane.
+//! A rotor in its rings as a stepper like those of the plane, its rings seen as one.
 
-use super::{Placement, TwoPlane, TwoPlaneState};
+use super::{Coupled, CoupledState, Placement, RingEvent};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::start::Start;
 use touchdown_rotor::stepper::Stepper;
 
-/// The model and where it starts, its rings seen as one.
+/// The model and where it starts.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends<R, const N: usize> {
-    model: TwoPlane<R, N>,
-    start: Placement<R>,
+pub struct Whole<R, const N: usize, const Q: usize> {
+    /// The model.
+    pub model: Coupled<R, N, Q>,
+    /// Its start.
+    pub start: Placement<R>,
 }
 
-impl<R, const N: usize> Ends<R, N> {
-    /// Starts of the plane have no tilt: `start` stands for all of them.
-    pub fn new(model: TwoPlane<R, N>, start: Placement<R>) -> Self {
-        Self { model, start }
-    }
-}
-
-impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
-    type State = TwoPlaneState<R, N>;
+impl<R: Precision, const N: usize, const Q: usize> Stepper<R> for Whole<R, N, Q> {
+    type State = CoupledState<R, N, Q>;
 
     /// From its own start: one of the plane has no tilt.
     fn start(
@@ -31,27 +26,30 @@ impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
         spin: R,
         mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError> {
-        self.model.start(&self.start, spin, |_, h| on_event(h))
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.start(&self.start, spin, pointer(&mut sink))
     }
 
     fn step(&self, state: &mut Self::State, mut on_event: impl FnMut(ModelEvent<R>)) {
-        self.model.step(state, |_, h| on_event(h));
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.step(state, pointer(&mut sink));
     }
 
     fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        self.model.part_step(state, part, |_, h| on_event(h));
+        let mut sink = |it: RingEvent<R>| on_event(it.event);
+        self.model.part_step(state, part, pointer(&mut sink));
     }
 
     /// Of the centre of mass; turns are those of the ring that has most.
     fn kinematics(&self, state: &Self::State) -> Kinematics<R> {
         let (position, velocity) = state.centre();
-        let rings = (0..N).map(|ring| self.model.kinematics_at(state, ring));
         let (mut touch, mut turns) = (Touch::None, (0_i64, R::ZERO));
-        for ring in rings {
+        for ring in (0..N).map(|ring| self.model.kinematics_at(state, ring)) {
             if ring.touch == Touch::Sliding || touch == Touch::None {
                 touch = ring.touch;
             }
-            if ring.turns.0.abs() > turns.0.abs() {
+            let size = |(whole, part): (i64, R)| (whole.abs(), part.abs());
+            if size(ring.turns) > size(turns) {
                 turns = ring.turns;
             }
         }
@@ -63,4 +61,9 @@ impl<R: Precision, const N: usize> Stepper<R> for Ends<R, N> {
             turns,
         }
     }
+}
+
+/// The model's code is built once, whatever is done with its events.
+fn pointer<R>(on_event: &mut impl FnMut(RingEvent<R>)) -> &mut dyn FnMut(RingEvent<R>) {
+    on_event
 }

@@ -1,25 +1,50 @@
-//! What the rotor rubs on: a bushing, or the inner ring of a ball bearing.
+//! The inner ring of a ball bearing, which the rotor rubs on.
 //!
 //! The inner ring obeys b s' = -f - d_0 sign s - d_1 s with s the surface speed at its bore and f the
 //! friction on the rotor. In a stretch h with f and the dry drag as impulses, s+ = E s - g (f + D): E
 //! = 1/(1 + z + z^2/2), z = h d_1/b, is the decay to second order, without swing at any step, and g = (1 - E)/(h d_1). The dry
 //! drag D is h d_0 or less, and stops the ring: D is then what leaves s+ = 0. Temperature alike.
 
-use super::config::{RaceConfig, Units};
+use super::config::Units;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
-use touchdown_rotor::scales::positive;
+use touchdown_rotor::scales::{not_negative, positive};
 use touchdown_rotor::sum::Sum;
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for super::Bushing {}
-    impl<R> Sealed for super::BallBearing<R> {}
+/// A ball bearing, SI. Its bore is the rotor's radius and the clearance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaceConfig<R> {
+    /// Of the inner ring and what turns with it, kg m^2.
+    pub inertia: R,
+    /// Drag that does not depend on the speed, N m, 0 or more.
+    pub dry_drag: R,
+    /// Drag over speed, N m s, 0 or more.
+    pub viscous_drag: R,
+    /// Speed of the cage over that of the inner ring, 0 to 1: half of 1 - ball over pitch diameter.
+    pub cage_ratio: R,
+    /// J/K.
+    pub heat_capacity: R,
+    /// To the surroundings, W/K, 0 or more.
+    pub heat_loss: R,
+}
+
+impl<R: Real> RaceConfig<R> {
+    fn check(&self) -> Result<(), ConfigError> {
+        positive("race_inertia", self.inertia)?;
+        not_negative("dry_drag", self.dry_drag)?;
+        not_negative("viscous_drag", self.viscous_drag)?;
+        not_negative("cage_ratio", self.cage_ratio)?;
+        if self.cage_ratio > R::ONE {
+            return Err(ConfigError::OutOfRange("cage_ratio", "0 to 1"));
+        }
+        positive("heat_capacity", self.heat_capacity)?;
+        not_negative("heat_loss", self.heat_loss)
+    }
 }
 
 /// The dry drag in a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drag<R> {
+pub(super) enum Drag<R> {
     /// It leaves the inner ring at rest.
     Stops,
     /// All of it, with this sign or 0, against the turning.
@@ -28,11 +53,11 @@ pub enum Drag<R> {
 
 /// The inner ring in a stretch.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Turning<R> {
+pub(super) struct Turning<R> {
     /// Surface speed at the end, without friction.
-    pub(crate) free: R,
+    pub(super) free: R,
     /// Surface speed lost by an impulse of friction.
-    pub(crate) mobility: R,
+    pub(super) mobility: R,
 }
 
 /// The inner ring at one moment.
@@ -47,83 +72,9 @@ pub struct RaceMotion<R> {
     pub temperature: R,
 }
 
-/// What the rotor rubs on.
-#[doc(hidden)]
-pub trait Race<R: Real>: sealed::Sealed + Copy + core::fmt::Debug + PartialEq {
-    type Config: Copy;
-    type State: Copy + core::fmt::Debug + Default + PartialEq;
-
-    fn try_new(config: &Self::Config, units: &Units<R>) -> Result<Self, ConfigError>;
-
-    fn surface(state: &Self::State) -> R;
-    /// Surface speed lost by an impulse of friction in an impact.
-    fn mobility(&self) -> R;
-    /// What the drag is at first taken for.
-    fn guess(&self, state: &Self::State) -> Drag<R>;
-    fn turning(&self, state: &Self::State, time: R, drag: Drag<R>) -> Turning<R>;
-    /// What the drag is rather, with friction `rub`; none if it was right.
-    fn corrected(&self, state: &Self::State, time: R, drag: Drag<R>, rub: R) -> Option<Drag<R>>;
-    /// Change of the surface speed.
-    fn turned(&self, state: &Self::State, time: R, drag: Drag<R>, rub: R) -> R;
-    fn advance(&self, state: &mut Self::State, time: R, turned: R, rub: R, heat: R);
-    fn strike(&self, state: &mut Self::State, rub: R, heat: R);
-    fn motion(&self, state: &Self::State) -> Option<RaceMotion<R>>;
-    /// Kinetic; taken by drag.
-    fn energy(&self, state: &Self::State) -> [R; 2];
-}
-
-/// A ring that does not turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bushing;
-
-impl<R: Real> Race<R> for Bushing {
-    type Config = Self;
-    type State = ();
-
-    fn try_new(config: &Self, _: &Units<R>) -> Result<Self, ConfigError> {
-        Ok(*config)
-    }
-
-    fn surface((): &()) -> R {
-        R::ZERO
-    }
-
-    fn mobility(&self) -> R {
-        R::ZERO
-    }
-
-    fn guess(&self, (): &()) -> Drag<R> {
-        Drag::Stops
-    }
-
-    fn turning(&self, (): &(), _: R, _: Drag<R>) -> Turning<R> {
-        Turning::default()
-    }
-
-    fn corrected(&self, (): &(), _: R, _: Drag<R>, _: R) -> Option<Drag<R>> {
-        None
-    }
-
-    fn turned(&self, (): &(), _: R, _: Drag<R>, _: R) -> R {
-        R::ZERO
-    }
-
-    fn advance(&self, (): &mut (), _: R, _: R, _: R, _: R) {}
-
-    fn strike(&self, (): &mut (), _: R, _: R) {}
-
-    fn motion(&self, (): &()) -> Option<RaceMotion<R>> {
-        None
-    }
-
-    fn energy(&self, (): &()) -> [R; 2] {
-        [R::ZERO; 2]
-    }
-}
-
 /// A ball bearing whose inner ring turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallBearing<R> {
+pub(super) struct BallBearing<R> {
     /// Over the rotor's mass and the square of the bore.
     inertia: R,
     dry: R,
@@ -139,10 +90,17 @@ pub struct BallBearing<R> {
 
 /// The inner ring's motion, its temperature, and what the drag has taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BallBearingState<R> {
+pub(super) struct BallBearingState<R> {
     surface: Sum<R>,
     temperature: Sum<R>,
     dragged: Sum<R>,
+}
+
+impl<R: Real> BallBearingState<R> {
+    /// Speed of the bore.
+    pub(super) fn surface(&self) -> R {
+        self.surface.value()
+    }
 }
 
 /// Part lost in time z of a decay, to second order, and what is left of an input of 1 in it.
@@ -153,7 +111,7 @@ fn decay<R: Real>(z: R) -> (R, R) {
 }
 
 impl BallBearing<f64> {
-    pub(crate) fn rounded<R: Real>(&self) -> BallBearing<R> {
+    pub(super) fn rounded<R: Real>(&self) -> BallBearing<R> {
         BallBearing {
             inertia: R::lit(self.inertia),
             dry: R::lit(self.dry),
@@ -174,11 +132,8 @@ impl<R: Real> BallBearing<R> {
     }
 }
 
-impl<R: Real> Race<R> for BallBearing<R> {
-    type Config = RaceConfig<R>;
-    type State = BallBearingState<R>;
-
-    fn try_new(config: &RaceConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
+impl<R: Real> BallBearing<R> {
+    pub(super) fn try_new(config: &RaceConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
         config.check()?;
         let scales = &units.scales;
         let moment = units.mass * units.bore;
@@ -196,15 +151,13 @@ impl<R: Real> Race<R> for BallBearing<R> {
         })
     }
 
-    fn surface(state: &BallBearingState<R>) -> R {
-        state.surface.value()
-    }
-
-    fn mobility(&self) -> R {
+    /// Surface speed lost by an impulse of friction in an impact.
+    pub(super) fn mobility(&self) -> R {
         R::ONE / self.inertia
     }
 
-    fn guess(&self, state: &BallBearingState<R>) -> Drag<R> {
+    /// What the drag is at first taken for.
+    pub(super) fn guess(&self, state: &BallBearingState<R>) -> Drag<R> {
         let surface = state.surface.value();
         if self.dry <= R::ZERO {
             Drag::Runs(R::ZERO)
@@ -217,7 +170,7 @@ impl<R: Real> Race<R> for BallBearing<R> {
         }
     }
 
-    fn turning(&self, state: &BallBearingState<R>, time: R, drag: Drag<R>) -> Turning<R> {
+    pub(super) fn turning(&self, state: &BallBearingState<R>, time: R, drag: Drag<R>) -> Turning<R> {
         let Drag::Runs(sign) = drag else {
             return Turning::default();
         };
@@ -230,7 +183,8 @@ impl<R: Real> Race<R> for BallBearing<R> {
         }
     }
 
-    fn corrected(
+    /// What the drag is rather, with friction `rub`; none if it was right.
+    pub(super) fn corrected(
         &self,
         state: &BallBearingState<R>,
         time: R,
@@ -252,7 +206,8 @@ impl<R: Real> Race<R> for BallBearing<R> {
         }
     }
 
-    fn turned(&self, state: &BallBearingState<R>, time: R, drag: Drag<R>, rub: R) -> R {
+    /// Change of the surface speed.
+    pub(super) fn turned(&self, state: &BallBearingState<R>, time: R, drag: Drag<R>, rub: R) -> R {
         let before = state.surface.value();
         match drag {
             Drag::Stops => -before,
@@ -263,7 +218,7 @@ impl<R: Real> Race<R> for BallBearing<R> {
         }
     }
 
-    fn advance(&self, state: &mut BallBearingState<R>, time: R, turned: R, rub: R, heat: R) {
+    pub(super) fn advance(&self, state: &mut BallBearingState<R>, time: R, turned: R, rub: R, heat: R) {
         let mean = state.surface.value() + R::HALF * turned;
         state.surface.add(turned);
         let drag_heat = (-self.inertia * turned - rub) * mean;
@@ -271,21 +226,22 @@ impl<R: Real> Race<R> for BallBearing<R> {
         self.take_heat(state, time, heat + drag_heat);
     }
 
-    fn strike(&self, state: &mut BallBearingState<R>, rub: R, heat: R) {
+    pub(super) fn strike(&self, state: &mut BallBearingState<R>, rub: R, heat: R) {
         state.surface.add(-(rub / self.inertia));
         self.take_heat(state, R::ZERO, heat);
     }
 
-    fn motion(&self, state: &BallBearingState<R>) -> Option<RaceMotion<R>> {
+    pub(super) fn motion(&self, state: &BallBearingState<R>) -> RaceMotion<R> {
         let spin = self.turn * state.surface.value();
-        Some(RaceMotion {
+        RaceMotion {
             spin,
             cage: self.cage * spin,
             temperature: state.temperature.value(),
-        })
+        }
     }
 
-    fn energy(&self, state: &BallBearingState<R>) -> [R; 2] {
+    /// Kinetic; taken by drag.
+    pub(super) fn energy(&self, state: &BallBearingState<R>) -> [R; 2] {
         let surface = state.surface.value();
         [
             R::HALF * self.inertia * surface * surface,
