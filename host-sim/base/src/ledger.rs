@@ -34,13 +34,15 @@ impl Ledger {
     }
 }
 
-/// Entries in one unit of energy (J).
-pub fn entries<const N: usize>(unit: f64, parts: [(&'static str, f64); N]) -> Vec<Entry> {
-    let entry = |(name, energy)| Entry {
-        name,
-        energy_j: unit * energy,
+/// Entries in one unit of energy (J), of parts that are there.
+pub fn entries<const N: usize>(unit: f64, parts: [(bool, &'static str, f64); N]) -> Vec<Entry> {
+    let entry = |(there, name, energy): (bool, _, f64)| {
+        there.then_some(Entry {
+            name,
+            energy_j: unit * energy,
+        })
     };
-    parts.map(entry).to_vec()
+    parts.into_iter().filter_map(entry).collect()
 }
 
 fn sum(entries: &[Entry]) -> f64 {

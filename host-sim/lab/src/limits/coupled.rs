@@ -4,14 +4,13 @@
 use touchdown_rotor::error::ConfigError;
 
 use super::extreme::STEPS;
-use super::glance::Glance;
 use super::row::{Row, Worst};
 use super::{epsilon, refused};
 use crate::{limits::support, limits::two_plane};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Impact;
-use touchdown_run::model::ModelRun;
-use touchdown_scene::{Fidelity, Precision, Ring, Scene, TwoPlane};
+use touchdown_run::model::coupled::watch;
+use touchdown_scene::{Precision, Ring, Scene, Support, TwoPlane};
 use touchdown_truth::{Units, simulate};
 
 /// Of a place or an energy, in units of the last digit.
@@ -31,7 +30,7 @@ const AFTER: f64 = 20e-6;
 /// is of second order. Chosen. A mode of bending turns late by (W h)^2/12 of its angle W t.
 const OFF: f64 = 4.0;
 
-/// All measures of all extremes of both rungs.
+/// All measures of all extremes.
 pub fn rows() -> Result<Vec<Row>, Failure> {
     let scenes = support::scenes()?.into_iter().chain(two_plane::scenes()?);
     let mut rows = Vec::new();
@@ -42,16 +41,6 @@ pub fn rows() -> Result<Vec<Row>, Failure> {
     }
     Ok(rows)
 }
-
-fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
-    match scene.model.rung {
-        Fidelity::TwoPlane => two_plane::run(scene, each),
-        _ => support::run(scene, each),
-    }
-}
-
-/// Runs a scene, watched after each step.
-type Run = fn(&Scene, &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError>;
 
 /// Worst of all steps.
 #[derive(Default)]
@@ -66,9 +55,9 @@ pub struct Seen {
 
 impl Seen {
     /// Runs a random machine as it is; its first impact is held against the reference's.
-    pub fn watch(&mut self, scene: &Scene, run: Run) -> Result<(), ConfigError> {
+    pub fn watch(&mut self, scene: &Scene) -> Result<(), ConfigError> {
         self.random = true;
-        if let Some(ours) = look(scene, run, self)? {
+        if let Some(ours) = look(scene, self)? {
             let late = may_be_late(scene, &ours);
             let truth = first_impact(scene, ours.state.time + late);
             self.impact(scene, &ours, truth, late);
@@ -123,7 +112,7 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
         let mut scene = scene.clone();
         scene.model.precision = precision;
         scene.model.step = step;
-        if let Some(ours) = look(&scene, run, &mut seen)? {
+        if let Some(ours) = look(&scene, &mut seen)? {
             let about = ours.state.time;
             let truth = *first.get_or_insert_with(|| first_impact(&scene, about));
             let late = LATE * step * step / Units::of(&scene).time;
@@ -168,7 +157,7 @@ fn greatest_acceleration(scene: &Scene) -> f64 {
 }
 
 /// Greatest speed in a ring over that of all of the rotor's motion.
-pub fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
+fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
     let mass = scene.rotor.mass;
     let modes = machine.modes.iter();
     let bent: f64 = modes
@@ -177,30 +166,48 @@ pub fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
     (1.0 + ring.place * ring.place * mass / machine.transverse_inertia + bent).sqrt()
 }
 
+/// Greatest speed at any wall over that of all motion, in its clearances.
+fn lever(scene: &Scene) -> f64 {
+    let yields = |it: Option<Support>| it.map_or(0.0, |it| scene.rotor.mass / it.mass).sqrt();
+    let Some(machine) = &scene.two_plane else {
+        return yields(scene.support).hypot(1.0);
+    };
+    let of = |ring: &Ring| {
+        let part = scene.retainer.clearance / ring.retainer.clearance;
+        part * rotor_lever(scene, machine, ring).hypot(yields(ring.support))
+    };
+    machine.rings.iter().map(of).fold(0.0, f64::max)
+}
+
 /// Watches one run; its first impact.
-fn look(scene: &Scene, run: Run, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
+fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     let (mut turned_round, mut rolled) = (0.0, 0.0_f64);
     let (mut fastest, step) = (0.0_f64, scene.model.step / Units::of(scene).time);
-    let run = run(scene, &mut |glance| {
-        let numbers = [glance.beyond, glance.total, glance.gone];
-        let mut all = numbers.iter().chain(&glance.parts);
+    let lever = lever(scene);
+    let run = watch(scene, &mut |view| {
+        let energy = view.energy;
+        let (motion, total) = (energy.motion + energy.rings, energy.total());
+        let gone = energy.heat + energy.lost + energy.stops;
+        let parts = [
+            energy.spin + energy.races,
+            motion,
+            energy.bending + energy.springs,
+            energy.magnets.abs() + energy.driven.abs() + energy.height.abs(),
+        ];
+        let mut all = [view.beyond, total, gone].into_iter().chain(parts);
         seen.broken.measured += f64::from(u8::from(all.any(|number| !number.is_finite())));
-        most_gone = most_gone.max(glance.gone);
-        made = made.max(most_gone - glance.gone);
-        fastest = fastest.max((2.0 * glance.motion).sqrt());
-        turned_round += glance.motion;
-        rolled = rolled.max(glance.rolled);
-        let path = step * (fastest + step) * glance.lever + ROUNDED * epsilon;
-        farthest = farthest.max(glance.beyond / path);
-        missing = missing.max((glance.total - *start.get_or_insert(glance.total)).abs());
-        let parts = glance
-            .parts
-            .iter()
-            .fold(glance.gone.abs(), |sum, it| sum + it.abs());
-        size = size.max(parts);
+        most_gone = most_gone.max(gone);
+        made = made.max(most_gone - gone);
+        fastest = fastest.max((2.0 * motion).sqrt());
+        turned_round += motion;
+        rolled = rolled.max(energy.races);
+        let path = step * (fastest + step) * lever + ROUNDED * epsilon;
+        farthest = farthest.max(view.beyond / path);
+        missing = missing.max((total - *start.get_or_insert(total)).abs());
+        size = size.max(parts.iter().fold(gone.abs(), |sum, it| sum + it.abs()));
     })?;
     if !seen.random {
         (turned_round, rolled) = (0.0, 0.0);

@@ -6,17 +6,13 @@ use std::fmt::Write as _;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use touchdown_rotor::error::ConfigError;
 
-use super::coupled::{Seen, rotor_lever};
-use super::glance::Glance;
+use super::coupled::Seen;
 use super::row::Row;
 use super::{PRECISIONS, refused};
 use touchdown_base::failure::Failure;
 use touchdown_base::progress::Progress;
-use touchdown_run::model::ModelRun;
-use touchdown_run::model::coupled::watch;
-use touchdown_scene::{Ring, Scene, TwoPlane};
+use touchdown_scene::Scene;
 
 /// Parts, by the bits of a combination.
 const PARTS: [&str; 4] = ["soft mounts", "ball bearings", "bending modes", "magnets"];
@@ -40,7 +36,7 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
                 let mut scene = Scene::parse(&format!("machine {seed}"), &text(*seed))?;
                 scene.model.precision = precision;
                 let mut seen = Seen::default();
-                seen.watch(&scene, run).map_err(refused)?;
+                seen.watch(&scene).map_err(refused)?;
                 Ok((*seed, seen))
             });
             let seen: Vec<(u64, Seen)> = seen.collect::<Result<_, Failure>>()?;
@@ -156,37 +152,6 @@ fn modes(random: &mut ChaCha8Rng) -> String {
         );
     }
     text
-}
-
-/// Runs a scene, watched after each step.
-fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
-    let lever = scene.two_plane.as_ref().map_or(1.0, |it| lever(scene, it));
-    watch(scene, &mut |sight| {
-        let energy = sight.energy;
-        each(Glance {
-            beyond: sight.beyond,
-            motion: energy.motion + energy.rings,
-            rolled: energy.races,
-            lever,
-            gone: energy.heat + energy.lost + energy.stops,
-            total: energy.total(),
-            parts: [
-                energy.spin + energy.races,
-                energy.motion + energy.rings,
-                energy.bending + energy.springs,
-                energy.magnets.abs() + energy.driven.abs() + energy.height.abs(),
-            ],
-        });
-    })
-}
-
-/// Greatest speed at a wall over that of all motion.
-fn lever(scene: &Scene, machine: &TwoPlane) -> f64 {
-    let of = |ring: &Ring| {
-        let mount = ring.support.map_or(0.0, |it| scene.rotor.mass / it.mass);
-        rotor_lever(scene, machine, ring).hypot(mount.sqrt())
-    };
-    machine.rings.iter().map(of).fold(0.0, f64::max)
 }
 
 fn decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {

@@ -10,7 +10,6 @@ mod closed_form;
 mod compliant;
 mod coupled;
 mod extreme;
-mod glance;
 mod machines;
 mod press;
 mod refusal;

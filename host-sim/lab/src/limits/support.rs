@@ -1,12 +1,7 @@
 //! The extremes of a retainer that gives way or turns.
 
-use touchdown_rotor::error::ConfigError;
-
-use super::glance::Glance;
 use touchdown_base::input_error::InputError;
 use touchdown_base::machine::Start;
-use touchdown_run::model::ModelRun;
-use touchdown_run::model::support::watch;
 use touchdown_scene::{BallBearing, Model, Scene, Support};
 
 /// Longest part of a scene, s.
@@ -108,28 +103,4 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
         (*name, scene)
     });
     Ok(made.collect())
-}
-
-/// Runs a scene, watched after each step.
-pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
-    // The ring may be the faster of the two.
-    let ring = scene.support.map_or(1.0, |it| scene.rotor.mass / it.mass);
-    let lever = ring.max(1.0).sqrt();
-    watch(scene, &mut |sight| {
-        let energy = sight.energy;
-        each(Glance {
-            beyond: sight.beyond.max(sight.stop),
-            motion: energy.motion + energy.ring,
-            rolled: energy.race,
-            lever,
-            gone: energy.dissipated(),
-            total: sight.total,
-            parts: [
-                energy.spin,
-                energy.motion + energy.ring,
-                energy.spring,
-                energy.race,
-            ],
-        });
-    })
 }

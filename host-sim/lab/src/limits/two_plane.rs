@@ -1,11 +1,6 @@
-//! The extremes of a rotor that tilts, watched step by step.
+//! The extremes of a rotor that tilts.
 
-use touchdown_rotor::error::ConfigError;
-
-use super::glance::Glance;
 use touchdown_base::input_error::InputError;
-use touchdown_run::model::ModelRun;
-use touchdown_run::model::two_plane::watch;
 use touchdown_scene::{Magnet, Scene, TwoPlane};
 
 /// Longest part of a scene, s.
@@ -115,28 +110,4 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
         (*name, scene)
     });
     Ok(made.collect())
-}
-
-/// Runs a scene, watched after each step.
-pub fn run(scene: &Scene, each: &mut dyn FnMut(Glance)) -> Result<ModelRun, ConfigError> {
-    let lever = scene.two_plane.as_ref().map_or(1.0, |it| {
-        let square = it.transverse_inertia / scene.rotor.mass;
-        let lever = |ring: &touchdown_scene::Ring| {
-            let part = scene.retainer.clearance / ring.retainer.clearance;
-            part * (1.0 + ring.place * ring.place / square).sqrt()
-        };
-        it.rings.iter().map(lever).fold(0.0, f64::max)
-    });
-    watch(scene, &mut |sight| {
-        let energy = sight.energy;
-        each(Glance {
-            beyond: sight.beyond,
-            motion: energy.motion,
-            rolled: 0.0,
-            lever,
-            gone: energy.heat + energy.lost,
-            total: sight.total,
-            parts: [energy.spin, energy.motion, energy.driven, energy.magnets],
-        });
-    })
 }

@@ -1,174 +1,136 @@
-//! Rung `coupled`: as a model among others, and with what happens in each ring and to it.
+//! Rungs `support`, `two-plane` and `coupled`: as a model among others, and with what happens in each ring and to it.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, ModeConfig, Placement,
-    RingConfig, RingEvent, SeatConfig, UnbalanceConfig,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, ModeConfig, MountConfig,
+    Placement, RaceConfig, RingConfig, RingEvent, SeatConfig, UnbalanceConfig, Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
-use touchdown_rotor::{Kinematics, ModelEvent, Precision, Start, Stepper, Touch};
+use touchdown_rotor::{Precision, Start, Stepper};
 
 use super::once::Once;
 use super::seen::{ModelRun, RingEnd, STILL, Seen, steps_of_run};
-use super::support::{mount, race};
-use super::two_plane::machine;
-use super::{InNumbers, Subject, Use, in_numbers};
+use super::{InNumbers, Subject, Use, in_numbers, scaled};
 use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::ledger::{Ledger, entries};
 use touchdown_base::rings::{Histories, Merge};
 use touchdown_scene::scales::start_speed;
-use touchdown_scene::{MODES, Scene};
+use touchdown_scene::{Fidelity, MODES, Ring, Scene, TwoPlane};
 
-/// Coordinates across the axis: modes that a scene does not have stand still. One number, because each
-/// more is built for every number of rings and kind of numbers.
-const COORDINATES: usize = 2 + MODES;
-type Model<R, const N: usize> = Coupled<R, N, COORDINATES>;
-type State<R, const N: usize> = CoupledState<R, N, COORDINATES>;
+/// Coordinates of a rotor that only moves, that tilts too, and that bends too. Modes that a scene does not have
+/// stand still, because each number more is built for every number of rings and kind of numbers.
+const MOVES: usize = 1;
+const TILTS: usize = 2;
+const BENDS: usize = 2 + MODES;
 
-/// The model and where it starts, its rings seen as one.
-struct Whole<R, const N: usize> {
-    model: Model<R, N>,
-    start: Placement<R>,
+/// What is done with the model, whatever its rings and coordinates.
+trait UseWhole {
+    type Output;
+
+    fn with<R: Precision, const N: usize, const Q: usize>(
+        self,
+        whole: Whole<R, N, Q>,
+        scales: Scales<f64>,
+    ) -> Result<Self::Output, ConfigError>;
 }
 
-impl<R: Precision, const N: usize> Stepper<R> for Whole<R, N> {
-    type State = State<R, N>;
+struct AsModel<'a, U>(&'a Scene, U);
 
-    /// From its own start: one of the plane has no tilt.
-    fn start(
-        &self,
-        _: &Start<R>,
-        spin: R,
-        mut on_event: impl FnMut(ModelEvent<R>),
-    ) -> Result<Self::State, ConfigError> {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.start(&self.start, spin, pointer(&mut sink))
-    }
+impl<U: Use> UseWhole for AsModel<'_, U> {
+    type Output = U::Output;
 
-    fn step(&self, state: &mut Self::State, mut on_event: impl FnMut(ModelEvent<R>)) {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.step(state, pointer(&mut sink));
-    }
-
-    fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.part_step(state, part, pointer(&mut sink));
-    }
-
-    /// Of the centre of mass; turns are those of the ring that has most.
-    fn kinematics(&self, state: &Self::State) -> Kinematics<R> {
-        let (position, velocity) = state.centre();
-        let (mut touch, mut turns) = (Touch::None, (0_i64, R::ZERO));
-        for ring in (0..N).map(|ring| self.model.kinematics_at(state, ring)) {
-            if ring.touch == Touch::Sliding || touch == Touch::None {
-                touch = ring.touch;
-            }
-            if ring.turns.0.abs() > turns.0.abs() {
-                turns = ring.turns;
-            }
-        }
-        Kinematics {
-            position,
-            velocity,
-            spin: state.spin(),
-            touch,
-            turns,
-        }
+    fn with<R: Precision, const N: usize, const Q: usize>(
+        self,
+        whole: Whole<R, N, Q>,
+        scales: Scales<f64>,
+    ) -> Result<U::Output, ConfigError> {
+        self.1.with(&Subject {
+            start: Start::Free {
+                position: whole.start.position,
+                velocity: whole.start.velocity,
+            },
+            spin: R::lit(self.0.rotor.spin / scales.spin),
+            scales,
+            model: Once(whole),
+        })
     }
 }
 
-/// The model's code is built once, whatever is done with its events.
-fn pointer<R>(on_event: &mut impl FnMut(RingEvent<R>)) -> &mut dyn FnMut(RingEvent<R>) {
-    on_event
-}
-
-/// Builds the model with the scene's rings for `what`.
-pub(super) fn with_rings<R: Precision, U: Use>(
+/// Builds the model with the scene's parts for `what`.
+pub(super) fn with_parts<R: Precision, U: Use>(
     scene: &Scene,
     what: U,
 ) -> Result<U::Output, ConfigError> {
-    match machine(scene)?.rings.len() {
-        1 => with::<R, U, 1>(scene, what),
-        2 => with::<R, U, 2>(scene, what),
-        3 => with::<R, U, 3>(scene, what),
-        _ => with::<R, U, 4>(scene, what),
-    }
+    in_parts::<R, _>(scene, AsModel(scene, what))
 }
 
-fn with<R: Precision, U: Use, const N: usize>(
-    scene: &Scene,
-    what: U,
-) -> Result<U::Output, ConfigError> {
-    let model = Model::<f64, N>::try_new(&config::<N>(scene)?)?;
-    let scales = *model.scales();
-    what.with(&Subject {
-        start: Start::Free {
-            position: [R::ZERO; 2],
-            velocity: [R::ZERO; 2],
+fn in_parts<R: Precision, V: UseWhole>(scene: &Scene, what: V) -> Result<V::Output, ConfigError> {
+    let rings = seats(scene).len();
+    let bends = modelled_modes(scene).next().is_some();
+    match (scene.model.rung, bends) {
+        (Fidelity::Support, _) => built::<R, V, 1, MOVES>(scene, what),
+        (_, false) => match rings {
+            1 => built::<R, V, 1, TILTS>(scene, what),
+            2 => built::<R, V, 2, TILTS>(scene, what),
+            3 => built::<R, V, 3, TILTS>(scene, what),
+            _ => built::<R, V, 4, TILTS>(scene, what),
         },
-        spin: R::lit(scene.rotor.spin / scales.spin),
-        scales,
-        model: Once(Whole {
-            start: placement(scene, &model)?.rounded::<R>(),
-            model: model.rounded::<R>(),
-        }),
-    })
+        (_, true) => match rings {
+            1 => built::<R, V, 1, BENDS>(scene, what),
+            2 => built::<R, V, 2, BENDS>(scene, what),
+            3 => built::<R, V, 3, BENDS>(scene, what),
+            _ => built::<R, V, 4, BENDS>(scene, what),
+        },
+    }
 }
 
-fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
-    let machine = machine(scene)?;
-    let shape = |place: f64| {
-        let mut shape = [0.0; MODES];
-        for (to, mode) in shape.iter_mut().zip(&machine.modes) {
-            *to = mode.at(place);
-        }
-        shape
+fn built<R: Precision, V: UseWhole, const N: usize, const Q: usize>(
+    scene: &Scene,
+    what: V,
+) -> Result<V::Output, ConfigError> {
+    let model = Coupled::<f64, N, Q>::try_new(&config::<N>(scene)?)?;
+    let whole = Whole {
+        start: placement(scene, &model).rounded::<R>(),
+        model: model.rounded::<R>(),
     };
-    let seat = |ring: &touchdown_scene::Ring| seat(ring, shape(ring.place));
-    let rings: Vec<_> = machine.rings.iter().map(seat).collect();
-    let mut magnets = [ActuatorConfig::default(); 2];
-    for (to, from) in magnets.iter_mut().zip(&machine.magnets) {
-        *to = ActuatorConfig {
-            place: from.place,
-            stiffness: from.stiffness,
-            damping: from.damping,
-            force: from.force,
-            shape: shape(from.place),
-        };
-    }
-    let mut modes = [None; MODES];
-    for (to, mode) in modes.iter_mut().zip(&machine.modes) {
-        *to = Some(ModeConfig {
-            speed: mode.speed,
-            damping_ratio: mode.damping_ratio,
-            mass: mode.mass,
-            centre: mode.at(0.0),
-        });
-    }
-    let (sin, cos) = machine.gravity_angle.sin_cos();
-    Ok(CoupledConfig {
-        mass: scene.rotor.mass,
-        polar_inertia: scene.rotor.polar_inertia,
-        transverse_inertia: machine.transverse_inertia,
-        rings: rings
-            .try_into()
-            .map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,
-        gravity: [scene.run.gravity * sin, -scene.run.gravity * cos],
-        speed: start_speed(scene),
-        unbalance: UnbalanceConfig {
-            eccentricity: machine.unbalance[0] / scene.rotor.mass,
-            angle: machine.unbalance[1],
-            skew: machine.skew[0],
-            skew_angle: machine.skew[1],
-        },
-        magnets,
-        modes,
-        step: scene.model.step,
-    })
+    what.with(whole, *model.scales())
 }
 
-fn seat(ring: &touchdown_scene::Ring, shape: [f64; MODES]) -> SeatConfig<f64> {
-    SeatConfig {
+/// The rotor's ends, where the rung has them.
+fn ends(scene: &Scene) -> Option<&TwoPlane> {
+    let has = scene.model.rung != Fidelity::Support;
+    scene.two_plane.as_ref().filter(|_| has)
+}
+
+/// Bending modes that the rung has.
+fn modelled_modes(scene: &Scene) -> impl Iterator<Item = &touchdown_scene::Mode> {
+    let has = scene.model.rung == Fidelity::Coupled;
+    let modes = ends(scene).into_iter().flat_map(|it| &it.modes);
+    modes.filter(move |_| has)
+}
+
+/// Each bending mode's displacement at a place.
+fn shape(scene: &Scene, place: f64) -> [f64; MODES] {
+    let mut shape = [0.0; MODES];
+    for (to, mode) in shape.iter_mut().zip(modelled_modes(scene)) {
+        *to = mode.at(place);
+    }
+    shape
+}
+
+/// The retainer's rings with what the rung has of them.
+fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
+    let whole = Ring {
+        name: String::new(),
+        place: 0.0,
+        radius: scene.rotor.radius,
+        retainer: scene.retainer,
+        support: scene.support,
+        ball_bearing: scene.ball_bearing.clone(),
+    };
+    let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
+    let moves = scene.model.rung != Fidelity::TwoPlane;
+    let seat = |ring: &Ring| SeatConfig {
         ring: RingConfig {
             place: ring.place,
             clearance: ring.retainer.clearance,
@@ -176,34 +138,107 @@ fn seat(ring: &touchdown_scene::Ring, shape: [f64; MODES]) -> SeatConfig<f64> {
             friction: ring.retainer.friction,
             restitution: ring.retainer.restitution,
         },
-        mount: ring.support.as_ref().map(mount),
-        race: ring.ball_bearing.as_ref().map(race),
-        shape,
+        mount: ring.support.as_ref().filter(|_| moves).map(mount),
+        race: ring.ball_bearing.as_ref().filter(|_| moves).map(race),
+        shape: shape(scene, ring.place),
+    };
+    rings.iter().map(seat).collect()
+}
+
+fn mount(support: &touchdown_scene::Support) -> MountConfig<f64> {
+    MountConfig {
+        mass: support.mass,
+        stiffness: support.stiffness,
+        damping: support.damping,
+        travel: support.travel,
     }
 }
 
-fn placement<const N: usize>(
+fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
+    RaceConfig {
+        inertia: bearing.inertia,
+        dry_drag: bearing.dry_drag,
+        viscous_drag: bearing.viscous_drag,
+        cage_ratio: bearing.cage_ratio,
+        heat_capacity: bearing.heat_capacity,
+        heat_loss: bearing.heat_loss,
+    }
+}
+
+fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
+    let rings = seats(scene).try_into();
+    let mut config = CoupledConfig {
+        mass: scene.rotor.mass,
+        polar_inertia: scene.rotor.polar_inertia,
+        transverse_inertia: scene.rotor.polar_inertia,
+        rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,
+        gravity: [0.0, -scene.run.gravity],
+        speed: start_speed(scene),
+        unbalance: UnbalanceConfig::default(),
+        magnets: [ActuatorConfig::default(); 2],
+        modes: [None; MODES],
+        step: scene.model.step,
+    };
+    let Some(machine) = ends(scene) else {
+        return Ok(config);
+    };
+    config.transverse_inertia = machine.transverse_inertia;
+    let (sin, cos) = machine.gravity_angle.sin_cos();
+    config.gravity = [scene.run.gravity * sin, -scene.run.gravity * cos];
+    config.unbalance = UnbalanceConfig {
+        eccentricity: machine.unbalance[0] / scene.rotor.mass,
+        angle: machine.unbalance[1],
+        skew: machine.skew[0],
+        skew_angle: machine.skew[1],
+    };
+    let damps = f64::from(u8::from(scene.model.rung == Fidelity::Coupled));
+    for (to, from) in config.magnets.iter_mut().zip(&machine.magnets) {
+        *to = ActuatorConfig {
+            place: from.place,
+            stiffness: from.stiffness,
+            damping: damps * from.damping,
+            force: from.force,
+            shape: shape(scene, from.place),
+        };
+    }
+    for (to, mode) in config.modes.iter_mut().zip(modelled_modes(scene)) {
+        *to = Some(ModeConfig {
+            speed: mode.speed,
+            damping_ratio: mode.damping_ratio,
+            mass: mode.mass,
+            centre: mode.at(0.0),
+        });
+    }
+    Ok(config)
+}
+
+fn placement<const N: usize, const Q: usize>(
     scene: &Scene,
-    model: &Model<f64, N>,
-) -> Result<Placement<f64>, ConfigError> {
-    let machine = machine(scene)?;
+    model: &Coupled<f64, N, Q>,
+) -> Placement<f64> {
     let scales = model.scales();
-    let touchdown_scene::Start::Free { position, velocity } = scene.start else {
-        return Err(ConfigError::OutOfRange("start", "free"));
+    let (position, velocity) = match scaled(&scene.start, scales) {
+        Start::Free { position, velocity } => (position, velocity),
+        Start::Wall {
+            sin,
+            cos,
+            tangential,
+        } => ([sin, -cos], [tangential * cos, tangential * sin]),
     };
     let rate = scales.time / model.tilt_scale();
-    Ok(Placement {
-        position: position.map(|x| x / scales.length),
-        velocity: velocity.map(|v| v / scales.speed),
-        tilt: machine.tilt.map(|a| a / model.tilt_scale()),
-        tilt_rate: machine.tilt_rate.map(|a| a * rate),
-    })
+    Placement {
+        position,
+        velocity,
+        tilt: ends(scene).map_or([0.0; 2], |it| it.tilt.map(|a| a / model.tilt_scale())),
+        tilt_rate: ends(scene).map_or([0.0; 2], |it| it.tilt_rate.map(|a| a * rate)),
+    }
 }
 
 /// The machine after a step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepView {
-    /// Farthest beyond the wall of any ring, its clearance; below 0 in flight.
+    /// Farthest of the axis beyond the wall of any ring, its clearance, and of a ring beyond its hard stop, rho0; below
+    /// 0 before any.
     pub beyond: f64,
     /// What energy there is and was, in m V^2.
     pub energy: CoupledEnergy<f64>,
@@ -220,33 +255,36 @@ impl InNumbers for Run<'_> {
     type Output = ModelRun;
 
     fn with<R: Precision>(self) -> Result<ModelRun, ConfigError> {
-        match machine(self.0)?.rings.len() {
-            1 => in_rings::<R, 1>(self.0, self.1),
-            2 => in_rings::<R, 2>(self.0, self.1),
-            3 => in_rings::<R, 3>(self.0, self.1),
-            _ => in_rings::<R, 4>(self.0, self.1),
-        }
+        in_parts::<R, _>(self.0, self)
     }
 }
 
-fn in_rings<R: Precision, const N: usize>(
+impl UseWhole for Run<'_> {
+    type Output = ModelRun;
+
+    fn with<R: Precision, const N: usize, const Q: usize>(
+        self,
+        whole: Whole<R, N, Q>,
+        scales: Scales<f64>,
+    ) -> Result<ModelRun, ConfigError> {
+        followed(self.0, &whole, &scales, self.1)
+    }
+}
+
+fn followed<R: Precision, const N: usize, const Q: usize>(
     scene: &Scene,
+    of: &Whole<R, N, Q>,
+    scales: &Scales<f64>,
     each: &mut dyn FnMut(StepView),
 ) -> Result<ModelRun, ConfigError> {
-    let exact = Model::<f64, N>::try_new(&config::<N>(scene)?)?;
-    let scales = *exact.scales();
-    let whole_model = Whole {
-        model: exact.rounded::<R>(),
-        start: placement(scene, &exact)?.rounded::<R>(),
-    };
-    let model = &whole_model.model;
-    let radii: Vec<f64> = machine(scene)?.rings.iter().map(|it| it.radius).collect();
+    let model = &of.model;
+    let radii: Vec<f64> = seats(scene).iter().map(|it| it.ring.radius).collect();
     let recorder = Recorder::new(-scene.first_sample_time());
     let (mut whole, mut rings, mut merge) = (recorder.clone(), vec![recorder; N], Merge::new(N));
     // Spin is told as surface speed in the ring.
     let at_ring = |ring: usize| Scales {
         spin: scales.speed / radii[ring],
-        ..scales
+        ..*scales
     };
     let mut take = |it: RingEvent<R>| {
         let seen = Seen {
@@ -260,48 +298,66 @@ fn in_rings<R: Precision, const N: usize>(
             whole.take(happening);
         }
     };
+    let take: &mut dyn FnMut(RingEvent<R>) = &mut take;
     let spin = R::lit(scene.rotor.spin / scales.spin);
-    let mut state = model.start(&whole_model.start, spin, pointer(&mut take))?;
+    let mut state = model.start(&of.start, spin, &mut *take)?;
     let begun = model.energy(&state).to_f64();
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
-        model.step(&mut state, pointer(&mut take));
+        model.step(&mut state, &mut *take);
         each(seen(model, &state));
     }
     if fraction > 0.0 {
-        model.part_step(&mut state, R::lit(fraction), pointer(&mut take));
+        model.part_step(&mut state, R::lit(fraction), take);
     }
     let duration = scene.run.duration;
     let ends: Vec<RotorState> = (0..N)
         .map(|ring| Seen::state(&model.kinematics_at(&state, ring), duration, &at_ring(ring)))
         .collect();
-    let end = Seen::state(&whole_model.kinematics(&state), duration, &scales);
+    let end = Seen::state(&of.kinematics(&state), duration, scales);
     let still = STILL * scales.speed;
     let rings = rings.into_iter().zip(ends);
     let unit = scene.rotor.mass * scales.speed * scales.speed;
-    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, &scales));
-    Ok(ModelRun {
+    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales));
+    let energy = [begun, model.energy(&state).to_f64()];
+    let mut run = ModelRun {
         ring: None,
-        seats: seats.collect(),
-        ledger: Some(ledger(unit, &begun, &model.energy(&state).to_f64())),
+        seats: Vec::new(),
+        ledger: Some(ledger(scene, unit, &energy)),
         histories: Histories {
             whole: whole.finish(end, still),
-            rings: rings.map(|(ring, end)| ring.finish(end, still)).collect(),
+            rings: Vec::new(),
         },
-    })
+    };
+    match scene.model.rung {
+        Fidelity::Support => run.ring = seats.last(),
+        Fidelity::Coupled => run.seats = seats.collect(),
+        _ => {}
+    }
+    if scene.model.rung != Fidelity::Support {
+        let rings = rings.map(|(ring, end)| ring.finish(end, still));
+        run.histories.rings = rings.collect();
+    }
+    Ok(run)
 }
 
-fn seen<R: Precision, const N: usize>(model: &Model<R, N>, state: &State<R, N>) -> StepView {
-    let reach = (0..N).map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
+fn seen<R: Precision, const N: usize, const Q: usize>(
+    model: &Coupled<R, N, Q>,
+    state: &CoupledState<R, N, Q>,
+) -> StepView {
+    let walls = (0..N).map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
+    let stops = (0..N).filter_map(|ring| model.beyond_stop(state, ring).map(R::to_f64));
+    // NaN is the worst there is.
+    let worse = |worst: f64, it: f64| if it <= worst { worst } else { it };
     StepView {
-        beyond: reach.fold(-1.0, |worst, it| if it <= worst { worst } else { it }),
+        beyond: walls.chain(stops).fold(-1.0, worse),
         energy: model.energy(state).to_f64(),
     }
 }
 
-fn ring_end<R: Precision, const N: usize>(
-    model: &Model<R, N>,
-    state: &State<R, N>,
+fn ring_end<R: Precision, const N: usize, const Q: usize>(
+    model: &Coupled<R, N, Q>,
+    state: &CoupledState<R, N, Q>,
     ring: usize,
     unit: f64,
     scales: &Scales<f64>,
@@ -318,33 +374,42 @@ fn ring_end<R: Precision, const N: usize>(
     }
 }
 
-/// In units of `unit`, J.
-fn ledger(unit: f64, start: &CoupledEnergy<f64>, end: &CoupledEnergy<f64>) -> Ledger {
+/// Of the parts that there are; `unit` in J.
+fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> Ledger {
+    let seats = seats(scene);
+    let mounts = seats.iter().filter_map(|it| it.mount);
+    let stops = mounts.clone().any(|it| it.travel.is_some());
+    let mounts = mounts.count() > 0;
+    let races = seats.iter().any(|it| it.race.is_some());
+    let bends = modelled_modes(scene).next().is_some();
+    let machine = ends(scene);
+    let magnets = machine.is_some_and(|it| !it.magnets.is_empty());
+    let driven = machine.is_some_and(|it| it.unbalance[0] != 0.0 || it.skew[0] != 0.0);
     Ledger {
         start_j: unit * start.stored(),
         stored: entries(
             unit,
             [
-                ("motion", end.motion),
-                ("spin", end.spin),
-                ("height", end.height),
-                ("magnets", end.magnets),
-                ("bending", end.bending),
-                ("rings", end.rings),
-                ("springs", end.springs),
-                ("inner rings", end.races),
+                (true, "motion", end.motion),
+                (true, "spin", end.spin),
+                (true, "height", end.height),
+                (magnets, "magnets", end.magnets),
+                (bends, "bending", end.bending),
+                (mounts, "ring", end.rings),
+                (mounts, "spring", end.springs),
+                (races, "inner ring", end.races),
             ],
         ),
         gone: entries(
             unit,
             [
-                ("friction heat", end.heat),
-                ("impacts", end.lost),
-                ("dampers", end.mounts),
-                ("hard stops", end.stops),
-                ("drag", end.drag),
-                ("damping of bending and magnets", end.damped),
-                ("by the drive of the spin", -end.driven),
+                (true, "friction heat", end.heat),
+                (true, "impacts", end.lost),
+                (mounts, "damper", end.mounts),
+                (stops, "hard stop", end.stops),
+                (races, "drag", end.drag),
+                (bends || magnets, "damping of bending and magnets", end.damped),
+                (driven, "by the drive of the spin", -end.driven),
             ],
         ),
     }

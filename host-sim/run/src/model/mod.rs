@@ -4,8 +4,6 @@ pub mod coupled;
 mod once;
 mod seen;
 mod simulate;
-pub mod support;
-pub mod two_plane;
 
 use once::Once;
 pub use seen::{ModelRun, RingEnd, steps_of_run};
@@ -107,9 +105,9 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
             }
         },
-        Fidelity::Support => support::with_parts::<R, U>(scene, what),
-        Fidelity::TwoPlane => two_plane::with_rings::<R, U>(scene, what),
-        Fidelity::Coupled => coupled::with_rings::<R, U>(scene, what),
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
+            coupled::with_parts::<R, U>(scene, what)
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Precision, Stepper};
 
 use super::seen::{ModelRun, STILL, Seen, steps_of_run};
-use super::{Subject, Use, coupled, support, two_plane, with_model};
+use super::{Subject, Use, coupled, with_model};
 use touchdown_base::history::{History, Recorder};
 use touchdown_base::rings::Histories;
 use touchdown_scene::{Fidelity, Scene};
@@ -13,9 +13,9 @@ use touchdown_scene::{Fidelity, Scene};
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
-        Fidelity::Support => support::watch(scene, &mut |_| ()),
-        Fidelity::TwoPlane => two_plane::watch(scene, &mut |_| ()),
-        Fidelity::Coupled => coupled::watch(scene, &mut |_| ()),
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
+            coupled::watch(scene, &mut |_| ())
+        }
         _ => Ok(ModelRun {
             histories: Histories {
                 whole: with_model(scene, Simulate(scene))?,
