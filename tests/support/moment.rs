@@ -1,6 +1,6 @@
 //! A rotor in a ring that moves, at one moment.
 
-use touchdown_models::{Ledger, Load};
+use touchdown_models::{CoupledEnergy, Load};
 use touchdown_rotor::Touch;
 
 /// The model at one moment, SI.
@@ -29,7 +29,7 @@ pub struct Moment {
     /// Of the rotor round the ring since contact began.
     pub turns: f64,
     /// J.
-    pub ledger: Ledger<f64>,
+    pub energy: CoupledEnergy<f64>,
     /// N.
     pub load: Load<f64>,
     /// Steps that hit the bound on their stretches.
@@ -37,18 +37,22 @@ pub struct Moment {
 }
 
 /// Every number by the unit.
-pub fn scaled(ledger: &Ledger<f64>, unit: f64) -> Ledger<f64> {
-    Ledger {
-        motion: ledger.motion * unit,
-        spin: ledger.spin * unit,
-        height: ledger.height * unit,
-        ring: ledger.ring * unit,
-        spring: ledger.spring * unit,
-        race: ledger.race * unit,
-        heat: ledger.heat * unit,
-        lost: ledger.lost * unit,
-        damped: ledger.damped * unit,
-        stop: ledger.stop * unit,
-        drag: ledger.drag * unit,
+pub fn scaled(energy: &CoupledEnergy<f64>, unit: f64) -> CoupledEnergy<f64> {
+    CoupledEnergy {
+        motion: energy.motion * unit,
+        spin: energy.spin * unit,
+        height: energy.height * unit,
+        magnets: energy.magnets * unit,
+        bending: energy.bending * unit,
+        rings: energy.rings * unit,
+        springs: energy.springs * unit,
+        races: energy.races * unit,
+        heat: energy.heat * unit,
+        lost: energy.lost * unit,
+        mounts: energy.mounts * unit,
+        stops: energy.stops * unit,
+        drag: energy.drag * unit,
+        damped: energy.damped * unit,
+        driven: energy.driven * unit,
     }
 }

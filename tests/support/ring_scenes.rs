@@ -3,10 +3,10 @@
 use crate::moment::{Moment, scaled};
 use touchdown_base::machine::Machine;
 use touchdown_models::{
-    BallBearing, Bushing, Fixed, Load, Mount, MountConfig, Race, RaceConfig, Sprung, Support,
-    SupportConfig, SupportState,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Load, MountConfig, Placement, RaceConfig,
+    RingConfig, RingEvent, SeatConfig, UnbalanceConfig,
 };
-use touchdown_rotor::{Change, ModelEvent, Precision, RigidConfig, Start, Stepper};
+use touchdown_rotor::{Change, Precision, RigidConfig};
 use touchdown_truth::reference;
 use touchdown_truth::reference::coupled::{SupportMachine, SupportReference, SupportStart};
 
@@ -131,62 +131,27 @@ impl Fall {
     ///
     /// # Panics
     /// If the configuration is not valid.
-    pub fn follow<R: Precision>(&self, time: f64, each: impl FnMut(&Moment)) -> Vec<Told> {
-        match (self.mount, self.race) {
-            (None, None) => {
-                let model: Support<f64, Fixed, Bushing> = self.built(Fixed, Bushing);
-                self.go(&model.rounded::<R>(), time, each)
-            }
-            (None, Some(race)) => {
-                let model: Support<f64, Fixed, BallBearing<f64>> = self.built(Fixed, race);
-                self.go(&model.rounded::<R>(), time, each)
-            }
-            (Some(mount), None) => {
-                let model: Support<f64, Sprung<f64>, Bushing> = self.built(mount, Bushing);
-                self.go(&model.rounded::<R>(), time, each)
-            }
-            (Some(mount), Some(race)) => {
-                let model: Support<f64, Sprung<f64>, BallBearing<f64>> = self.built(mount, race);
-                self.go(&model.rounded::<R>(), time, each)
-            }
-        }
-    }
-
-    fn built<M: Mount<f64>, B: Race<f64>>(
-        &self,
-        mount: M::Config,
-        race: B::Config,
-    ) -> Support<f64, M, B> {
-        Support::try_new(&SupportConfig {
-            rigid: self.rigid,
-            mount,
-            race,
-        })
-        .expect("valid configuration")
-    }
-
-    fn go<R: Precision, M: Mount<R>, B: Race<R>>(
-        &self,
-        model: &Support<R, M, B>,
-        time: f64,
-        mut each: impl FnMut(&Moment),
-    ) -> Vec<Told> {
+    pub fn follow<R: Precision>(&self, time: f64, mut each: impl FnMut(&Moment)) -> Vec<Told> {
+        let model = self.built().rounded::<R>();
         let scales = *model.scales();
         let [length, speed, spin] = [scales.length, scales.speed, scales.spin].map(R::to_f64);
-        let start = match self.start {
-            reference::Start::Free { position, velocity } => Start::Free {
-                position: position.map(|x| R::lit(x / length)),
-                velocity: velocity.map(|v| R::lit(v / speed)),
-            },
-            reference::Start::Wall { angle, tangential } => Start::Wall {
-                sin: R::lit(angle.sin()),
-                cos: R::lit(angle.cos()),
-                tangential: R::lit(tangential / speed),
-            },
+        let (position, velocity) = match self.start {
+            reference::Start::Free { position, velocity } => {
+                (position.map(|x| x / length), velocity.map(|v| v / speed))
+            }
+            reference::Start::Wall { angle, tangential } => (
+                [angle.sin(), -angle.cos()],
+                [angle.cos(), angle.sin()].map(|part| part * tangential / speed),
+            ),
+        };
+        let start = Placement {
+            position: position.map(R::lit),
+            velocity: velocity.map(R::lit),
+            ..Placement::default()
         };
         let step = self.rigid.step;
         let told = core::cell::RefCell::new(Vec::new());
-        let on_event = |h: ModelEvent<R>| {
+        let on_event = |RingEvent { event: h, .. }: RingEvent<R>| {
             let at = (h.at.tick as f64 + h.at.fraction.to_f64()) * step;
             let change = match h.change {
                 Change::Impact {
@@ -207,32 +172,60 @@ impl Fall {
         let mut state = model
             .start(&start, R::lit(self.spin / spin), on_event)
             .expect("valid start");
-        each(&self.moment(model, &state));
+        each(&self.moment(&model, &state));
         for _ in 0..(time / step).round() as u64 {
             model.step(&mut state, on_event);
-            each(&self.moment(model, &state));
+            each(&self.moment(&model, &state));
         }
         told.into_inner()
     }
 
-    fn moment<R: Precision, M: Mount<R>, B: Race<R>>(
+    fn built(&self) -> Coupled<f64, 1, 1> {
+        let rigid = &self.rigid;
+        Coupled::try_new(&CoupledConfig {
+            mass: rigid.mass,
+            polar_inertia: rigid.polar_inertia,
+            transverse_inertia: rigid.polar_inertia,
+            rings: [SeatConfig {
+                ring: RingConfig {
+                    place: 0.0,
+                    clearance: rigid.clearance,
+                    radius: rigid.radius,
+                    friction: rigid.friction,
+                    restitution: rigid.restitution,
+                },
+                mount: self.mount,
+                race: self.race,
+                shape: [0.0; 3],
+            }],
+            gravity: [0.0, -rigid.gravity],
+            speed: rigid.speed,
+            unbalance: UnbalanceConfig::default(),
+            magnets: [ActuatorConfig::default(); 2],
+            modes: [None; 3],
+            step: rigid.step,
+        })
+        .expect("valid configuration")
+    }
+
+    fn moment<R: Precision>(
         &self,
-        model: &Support<R, M, B>,
-        state: &SupportState<R, M::State, B::State>,
+        model: &Coupled<R, 1, 1>,
+        state: &CoupledState<R, 1, 1>,
     ) -> Moment {
         let scales = model.scales();
         let [length, speed, spin] = [scales.length, scales.speed, scales.spin].map(R::to_f64);
         let places = |x: [R; 2]| x.map(|x| x.to_f64() * length);
         let speeds = |v: [R; 2]| v.map(|v| v.to_f64() * speed);
         let newtons = |f: R| f.to_f64() * self.rigid.mass * speed * speed / length;
-        let (seen, ring) = (model.kinematics(state), model.ring(state));
-        let (ledger, load) = (model.ledger(state), state.load());
+        let (seen, ring) = (model.kinematics_at(state, 0), model.ring(state, 0));
+        let (energy, load) = (model.energy(state), model.load(state, 0));
         Moment {
             time: state.now().tick as f64 * self.rigid.step,
             position: places(seen.position),
             velocity: speeds(seen.velocity),
             spin: seen.spin.to_f64() * spin,
-            displacement: places(state.displacement()),
+            displacement: places(model.displacement(state, 0)),
             ring: places(ring.position),
             ring_velocity: speeds(ring.velocity),
             stopped: ring.stopped,
@@ -242,7 +235,7 @@ impl Fall {
             }),
             touch: seen.touch,
             turns: seen.turns.0 as f64 + seen.turns.1.to_f64() / core::f64::consts::TAU,
-            ledger: scaled(&ledger.to_f64(), self.rigid.mass * speed * speed),
+            energy: scaled(&energy.to_f64(), self.rigid.mass * speed * speed),
             load: Load {
                 normal: newtons(load.normal),
                 peak: newtons(load.peak),

@@ -69,7 +69,7 @@ fn friction_heats_the_bearing() {
     let heat = fall.rigid.friction * force * end.time * (start - 0.5 * rate * end.time);
     let capacity = fall.race.expect("a bearing").heat_capacity;
     println!("{heat:.3} J, {:.4} K", end.race[2]);
-    assert!((end.ledger.heat / heat - 1.0).abs() < 1e-10, "{end:?}");
+    assert!((end.energy.heat / heat - 1.0).abs() < 1e-10, "{end:?}");
     assert!(
         (end.race[2] * capacity / heat - 1.0).abs() < 1e-10,
         "{end:?}"
@@ -134,7 +134,7 @@ fn drag_slows_the_inner_ring_as_its_closed_form() {
                 };
                 worst = worst.max((now.race[0] - speed.max(0.0)).abs() / first);
             }
-            let drag: f64 = moments.last().expect("some").ledger.drag - moments[0].ledger.drag;
+            let drag: f64 = moments.last().expect("some").energy.drag - moments[0].energy.drag;
             let energy = 0.5 * INERTIA * first * first;
             let left = moments.last().expect("some").race[0] / first;
             assert!(

@@ -193,8 +193,8 @@ fn a_heavy_inner_ring_is_a_bushing() {
 fn imbalance<R: Precision>(fall: &Fall) -> f64 {
     let (mut first, mut worst) = (None, 0.0_f64);
     fall.follow::<R>(0.2, |now: &Moment| {
-        let first: f64 = *first.get_or_insert(now.ledger.total());
-        worst = worst.max((now.ledger.total() / first - 1.0).abs());
+        let first: f64 = *first.get_or_insert(now.energy.total());
+        worst = worst.max((now.energy.total() / first - 1.0).abs());
     });
     worst
 }

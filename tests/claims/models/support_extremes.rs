@@ -2,7 +2,7 @@
 //! rotor in its gap, the ring before its stop, and energy only goes.
 
 use touchdown_rotor::{Precision, Touch};
-use touchdown_run::model::support::watch;
+use touchdown_run::model::coupled::watch;
 use touchdown_scene::Scene;
 use touchdown_tests::ring_scenes::Fall;
 
@@ -32,17 +32,17 @@ fn check<R: Precision>(fall: &Fall, time: f64, limits: &Limits) -> Result<u32, S
     let (mut first, mut shortened, mut finite) = (None, 0, true);
     let mut worst = [0.0_f64; 4];
     fall.follow::<R>(time, |now| {
-        let (ledger, place) = (&now.ledger, now.displacement);
-        let first: f64 = *first.get_or_insert(ledger.total());
+        let (energy, place) = (&now.energy, now.displacement);
+        let first: f64 = *first.get_or_insert(energy.total());
         let travel = fall.mount.and_then(|mount| mount.travel);
         let distance = place[0].hypot(place[1]) / fall.rigid.clearance - 1.0;
         let stop = travel.map_or(0.0, |travel| now.ring[0].hypot(now.ring[1]) / travel - 1.0);
         let held = now.touch != Touch::None;
-        let moved = ledger.stored().abs() + ledger.dissipated().abs();
+        let moved = energy.stored().abs() + (energy.total() - energy.stored()).abs();
         let size = first.abs() + moved + f64::MIN_POSITIVE;
         let broken = [
-            (ledger.total() - first).abs() / (limits.balance * size),
-            (ledger.stored() - first) / (limits.growth * size),
+            (energy.total() - first).abs() / (limits.balance * size),
+            (energy.stored() - first) / (limits.growth * size),
             if held { distance.abs() } else { distance } / limits.gap,
             stop / limits.stop,
         ];
@@ -150,8 +150,8 @@ fn a_ring_that_wedges_makes_no_energy() {
             watch(&scene, &mut |sight| {
                 let stored = sight.energy.stored();
                 least = least.min(stored);
-                gained = gained.max((stored - least) / sight.total.abs());
-                stopped |= sight.energy.stop > 0.0;
+                gained = gained.max((stored - least) / sight.energy.total().abs());
+                stopped |= sight.energy.stops > 0.0;
             })
             .expect("valid scene");
             println!("{precision:?} {step}: {gained:.1e} of all energy");

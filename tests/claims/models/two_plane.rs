@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use touchdown_base::history::Recorder;
-use touchdown_models::{MagnetConfig, Placement, TwoPlane};
+use touchdown_models::{ActuatorConfig, Coupled, CoupledConfig, Placement, RingEvent};
 use touchdown_rotor::Change;
 use touchdown_rotor::error::ConfigError;
 use touchdown_run::model::simulate;
@@ -20,16 +20,16 @@ fn turned(angle: f64) -> [f64; 2] {
 }
 
 /// A scene's rotor in one ring at its centre of mass, as in the plane.
-fn of_scene(scene: &Scene, step: f64) -> TwoPlane<f64, 1> {
+fn of_scene(scene: &Scene, step: f64) -> Coupled<f64, 1, 2> {
     let retainer = scene.retainer;
     let mut config = rotor([ring(0.0)], 1.0, step);
     config.mass = scene.rotor.mass;
     config.polar_inertia = scene.rotor.polar_inertia;
     config.transverse_inertia = scene.rotor.polar_inertia;
-    config.rings[0].clearance = retainer.clearance;
-    config.rings[0].radius = scene.rotor.radius;
-    config.rings[0].friction = retainer.friction;
-    config.rings[0].restitution = retainer.restitution;
+    config.rings[0].ring.clearance = retainer.clearance;
+    config.rings[0].ring.radius = scene.rotor.radius;
+    config.rings[0].ring.friction = retainer.friction;
+    config.rings[0].ring.restitution = retainer.restitution;
     config.gravity = [0.0, -scene.run.gravity];
     built(&config)
 }
@@ -41,8 +41,8 @@ fn a_symmetric_drop_is_the_drop_in_the_plane() {
         for (friction, spin) in [(0.1, -1390.0), (0.3, -20.0), (0.0, 50.0)] {
             let like = |place| {
                 let mut ring = ring(place);
-                (ring.friction, ring.restitution) = (friction, 0.8);
-                ring.radius = 80.0;
+                (ring.ring.friction, ring.ring.restitution) = (friction, 0.8);
+                ring.ring.radius = 80.0;
                 ring
             };
             let mut one = rotor([like(0.0)], 1.0, 1.8e-3);
@@ -54,18 +54,18 @@ fn a_symmetric_drop_is_the_drop_in_the_plane() {
                 position: [0.02, 0.0],
                 ..Placement::default()
             };
-            let (one, two) = (built(&one), built(&two));
-            let mut plane = one.start(&start, spin, |_, _| {}).expect("valid");
-            let mut space = two.start(&start, spin, |_, _| {}).expect("valid");
+            let (one, two) = (built::<1, 2>(&one), built::<2, 2>(&two));
+            let mut plane = one.start(&start, spin, |_| {}).expect("valid");
+            let mut space = two.start(&start, spin, |_| {}).expect("valid");
             let (mut worst, mut tilt) = (0.0_f64, 0.0_f64);
             // Contact begins after 10 T. Friction drives the tilt of rings that are close together.
             let steps = if place < 1.0 { 9_000 } else { 20_000 };
             for _ in 0..steps {
-                one.step(&mut plane, |_, _| {});
-                two.step(&mut space, |_, _| {});
+                one.step(&mut plane, |_| {});
+                two.step(&mut space, |_| {});
                 worst = worst.max(distance(plane.centre().0, space.centre().0));
                 worst = worst.max((plane.spin() - space.spin()).abs() / spin.abs());
-                tilt = tilt.max(space.tilt().0[0].hypot(space.tilt().0[1]));
+                tilt = tilt.max(space.coordinate(1).0[0].hypot(space.coordinate(1).0[1]));
             }
             let a = one.kinematics_at(&plane, 0);
             let b = two.kinematics_at(&space, 1);
@@ -106,7 +106,7 @@ fn drops_of_the_plane_converge_to_the_reference() {
             let spin = scene.rotor.spin / model.scales().spin;
             let mut times = Vec::new();
             let mut contact = None;
-            let mut keep = |_: usize, h: touchdown_rotor::ModelEvent<f64>| {
+            let mut keep = |RingEvent { event: h, .. }: RingEvent<f64>| {
                 let time = (h.at.tick as f64 + h.at.fraction) * step;
                 match h.change {
                     Change::Impact { .. } => times.push(time),
@@ -154,7 +154,7 @@ fn free_tilt_nutates_at_the_gyroscopic_rate() {
         // psi = psi'(0) (exp(i n t) - 1)/(i n).
         let [cos, sin] = turned(nutation);
         let want = [0.1 * sin, 0.1 * (1.0 - cos)];
-        let off = distance(state.tilt().0, want);
+        let off = distance(state.coordinate(1).0, want);
         let bound = 0.1 * nutation * (nutation * step).powi(2) / 12.0;
         println!("J_p/J_t {polar}: {off:.1e} of {bound:.1e}");
         assert!(off <= 1.2 * bound + 1e-12, "{polar}: {off:e}");
@@ -168,10 +168,10 @@ fn magnets_that_hold_split_the_conical_modes() {
         let (polar, step) = (0.6, 1e-4);
         let mut config = rotor([ring(1.5)], polar, step);
         config.gravity = [0.0; 2];
-        config.magnets = [1.5, -1.5].map(|place| MagnetConfig {
+        config.magnets = [1.5, -1.5].map(|place| ActuatorConfig {
             place,
             stiffness: -4.0,
-            force: [0.0; 2],
+            force: [0.0; 2], ..ActuatorConfig::default()
         });
         let half = 0.5 * polar * spin;
         let root = (half * half + 18.0_f64).sqrt();
@@ -184,7 +184,7 @@ fn magnets_that_hold_split_the_conical_modes() {
             };
             let state = run(&config, &start, spin, 3.0);
             let tilt = turned(3.0 * mode).map(|x| 0.1 * x);
-            let off = distance(state.tilt().0, tilt);
+            let off = distance(state.coordinate(1).0, tilt);
             let swing = (state.centre().0[0] - 0.3 * (3.0 * 8f64.sqrt()).cos()).abs();
             println!("spin {spin}: mode {mode:.3}, {off:.1e}; in the plane {swing:.1e}");
             // (mode h)^2/12 of the phase each.
@@ -201,10 +201,10 @@ fn magnets_that_hold_split_the_conical_modes() {
 #[test]
 fn magnets_that_pull_and_push_follow_their_closed_form() {
     let mut config = rotor([ring(0.0)], 0.5, 1e-4);
-    config.magnets[0] = MagnetConfig {
+    config.magnets[0] = ActuatorConfig {
         place: 0.0,
         stiffness: 2.0,
-        force: [0.3, 0.1],
+        force: [0.3, 0.1], ..ActuatorConfig::default()
     };
     let state = run(&config, &Placement::default(), 3.0, 0.8);
     let grown = ((0.8 * 2f64.sqrt()).cosh() - 1.0) / 2.0;
@@ -248,12 +248,12 @@ fn unbalance_in_flight_follows_its_closed_form() {
         size * (sum[0] * cos - sum[1] * sin),
         size * (sum[0] * sin + sum[1] * cos),
     ];
-    let skew = distance(state.tilt().0, tilt);
+    let skew = distance(state.coordinate(1).0, tilt);
     println!("static {off:.1e}, couple {skew:.1e}");
     assert!(
         off < 1e-8 && skew < 1e-8,
         "{off:e} {skew:e}: {tilt:?} {:?}",
-        state.tilt().0
+        state.coordinate(1).0
     );
 }
 
@@ -262,9 +262,9 @@ fn unbalance_in_flight_follows_its_closed_form() {
 fn tilted_ends_land_at_their_times() {
     for (tilt, near, far) in [(0.3, 0.7, 1.8), (-0.2, 1.2, 0.4), (0.05, 2.0, 2.0)] {
         let mut config = rotor([ring(near), ring(-far)], 0.4, 1e-3);
-        config.rings[0].restitution = 0.0;
-        config.rings[1].clearance = 1.3;
-        let model = built(&config);
+        config.rings[0].ring.restitution = 0.0;
+        config.rings[1].ring.clearance = 1.3;
+        let model = built::<2, 2>(&config);
         let start = Placement {
             tilt: [0.0, tilt],
             ..Placement::default()
@@ -275,7 +275,7 @@ fn tilted_ends_land_at_their_times() {
         ];
         let first = if want[0] < want[1] { 0 } else { 1 };
         let mut landed = None;
-        let mut keep = |ring: usize, h: touchdown_rotor::ModelEvent<f64>| {
+        let mut keep = |RingEvent { ring, event: h }: RingEvent<f64>| {
             if let (Change::Impact { .. }, None) = (h.change, landed) {
                 landed = Some((ring, (h.at.tick as f64 + h.at.fraction) * 1e-3));
             }
@@ -299,7 +299,7 @@ fn an_impact_reaches_the_other_end_by_its_mobility() {
     for zeta in [0.5, 1.0, 2.5] {
         let mut config = rotor([ring(zeta)], 0.4, 1e-3);
         config.gravity = [0.0; 2];
-        config.rings[0].restitution = 0.7;
+        config.rings[0].ring.restitution = 0.7;
         let start = Placement {
             position: [0.0, -0.5],
             velocity: [0.0, -0.6],
@@ -310,13 +310,13 @@ fn an_impact_reaches_the_other_end_by_its_mobility() {
         let before = |place: f64| -0.6 - 0.2 * place;
         for place in [zeta, 0.0, -1.0 / zeta, -zeta] {
             let gained = -1.7 * before(zeta) * (1.0 + zeta * place) / (1.0 + zeta * zeta);
-            let now = state.axis_at(place).1[1];
+            let now = state.axis_at(&[1.0, place]).1[1];
             assert!(
                 (now - before(place) - gained).abs() < 1e-14,
                 "{zeta} {place}"
             );
         }
-        let other = state.axis_at(-1.0 / zeta).1[1];
+        let other = state.axis_at(&[1.0, -1.0 / zeta]).1[1];
         assert!((other - before(-1.0 / zeta)).abs() < 1e-14);
     }
 }
@@ -340,10 +340,10 @@ fn a_vertical_rotor_drifts() {
 #[test]
 fn bad_values_are_refused_by_name() {
     let good = rotor([ring(1.0), ring(-1.0)], 0.4, 1e-3);
-    let name = |change: fn(&mut touchdown_models::TwoPlaneConfig<f64, 2>)| {
+    let name = |change: fn(&mut CoupledConfig<f64, 2>)| {
         let mut config = good;
         change(&mut config);
-        let error: ConfigError = TwoPlane::try_new(&config).expect_err("refused");
+        let error: ConfigError = Coupled::<f64, 2, 2>::try_new(&config).expect_err("refused");
         error.parameter()
     };
     assert_eq!(name(|c| c.mass = 0.0), "mass");
@@ -352,27 +352,27 @@ fn bad_values_are_refused_by_name() {
         name(|c| c.transverse_inertia = f64::NAN),
         "transverse_inertia"
     );
-    assert_eq!(name(|c| c.rings[1].clearance = -1.0), "clearance");
-    assert_eq!(name(|c| c.rings[1].restitution = 1.1), "restitution");
-    assert_eq!(name(|c| c.rings[0].place = f64::INFINITY), "place");
+    assert_eq!(name(|c| c.rings[1].ring.clearance = -1.0), "clearance");
+    assert_eq!(name(|c| c.rings[1].ring.restitution = 1.1), "restitution");
+    assert_eq!(name(|c| c.rings[0].ring.place = f64::INFINITY), "place");
     assert_eq!(name(|c| c.gravity[0] = f64::NAN), "gravity");
     assert_eq!(name(|c| c.unbalance.skew = f64::NAN), "unbalance");
     assert_eq!(name(|c| c.magnets[1].force[0] = f64::NAN), "magnets");
     assert_eq!(name(|c| c.magnets[1].stiffness = 2e6), "step");
-    let model = built(&good);
+    let model = built::<2, 2>(&good);
     let outside = Placement {
         position: [0.0, 0.9],
         tilt: [0.0, 0.2],
         ..Placement::default()
     };
-    assert!(model.start(&outside, 0.0, |_, _| {}).is_err());
+    assert!(model.start(&outside, 0.0, |_| {}).is_err());
     assert!(
         model
-            .start(&Placement::default(), f64::NAN, |_, _| {})
+            .start(&Placement::default(), f64::NAN, |_| {})
             .is_err()
     );
-    assert!(TwoPlane::try_new(&rotor([], 0.4, 1e-3)).is_err());
-    assert!(TwoPlane::try_new(&rotor([ring(0.0); 5], 0.4, 1e-3)).is_err());
+    assert!(Coupled::<f64, 0, 2>::try_new(&rotor([], 0.4, 1e-3)).is_err());
+    assert!(Coupled::<f64, 5, 2>::try_new(&rotor([ring(0.0); 5], 0.4, 1e-3)).is_err());
 }
 
 #[test]

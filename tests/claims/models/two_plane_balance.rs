@@ -1,7 +1,7 @@
 //! Rung `two-plane`: energy and angular momentum, the ledger, contact in each ring, and the extremes.
 
 use proptest::prelude::*;
-use touchdown_models::{MagnetConfig, Placement, TwoPlane, TwoPlaneConfig, TwoPlaneState};
+use touchdown_models::{ActuatorConfig, Coupled, CoupledConfig, CoupledState, Placement};
 use touchdown_rotor::{Change, Precision, Touch};
 use touchdown_tests::rotors::{built, ring, rotor, run};
 
@@ -10,27 +10,27 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// About the axis z, per mass: of the centre, of the tilt, and the gyroscopic part -n |psi|^2/2.
-fn momentum<R: Precision, const N: usize>(state: &TwoPlaneState<R, N>, nutation: f64) -> f64 {
+fn momentum<R: Precision, const N: usize>(state: &CoupledState<R, N, 2>, nutation: f64) -> f64 {
     let f64s = |(a, b): ([R; 2], [R; 2])| (a.map(R::to_f64), b.map(R::to_f64));
     let (p, v) = f64s(state.centre());
-    let (psi, rate) = f64s(state.tilt());
+    let (psi, rate) = f64s(state.coordinate(1));
     cross(p, v) + cross(psi, rate) - 0.5 * nutation * (psi[0] * psi[0] + psi[1] * psi[1])
 }
 
 /// Largest change of energy (without the spin's) and of angular momentum, and the impacts.
 fn swing<R: Precision>(
-    config: &TwoPlaneConfig<f64, 2>,
+    config: &CoupledConfig<f64, 2>,
     start: &Placement<f64>,
     spin: f64,
     steps: u32,
 ) -> (f64, f64, u32) {
-    let model = built(config).rounded::<R>();
+    let model = built::<2, 2>(config).rounded::<R>();
     let mut impacts = 0;
     let mut state = model
-        .start(&start.rounded(), R::lit(spin), |_, _| {})
+        .start(&start.rounded(), R::lit(spin), |_| {})
         .expect("valid start");
     let nutation = config.polar_inertia * spin;
-    let energy = |state: &TwoPlaneState<R, 2>| {
+    let energy = |state: &CoupledState<R, 2, 2>| {
         let energy = model.energy(state);
         [energy.motion, energy.height, energy.magnets]
             .map(R::to_f64)
@@ -40,7 +40,7 @@ fn swing<R: Precision>(
     let (first, round) = (energy(&state), momentum(&state, nutation));
     let (mut worst, mut turned) = (0.0_f64, 0.0_f64);
     for _ in 0..steps {
-        model.step(&mut state, |_, h| match h.change {
+        model.step(&mut state, |it| match it.event.change {
             Change::Impact { .. } => impacts += 1,
             change => panic!("{change:?}"),
         });
@@ -64,10 +64,10 @@ fn energy_and_angular_momentum_are_kept_in_bounces() {
             let mut config = rotor([ring(1.2), ring(-0.7)], polar, step);
             config.gravity = [0.0; 2];
             for (place, magnet) in [0.9, -0.9].iter().zip(&mut config.magnets) {
-                *magnet = MagnetConfig {
+                *magnet = ActuatorConfig {
                     place: *place,
                     stiffness: 0.5,
-                    force: [0.0; 2],
+                    force: [0.0; 2], ..ActuatorConfig::default()
                 };
             }
             let (energy, turned, impacts) = swing::<f64>(&config, &start, 20.0, 20_000);
@@ -101,7 +101,7 @@ fn a_held_ring_does_no_work_without_friction() {
     for (step, polar) in [(1e-3, 0.4), (0.02, 0.4), (1e-3, 2.0)] {
         let mut config = rotor([ring(1.2), ring(-0.7)], polar, step);
         for ring in &mut config.rings {
-            ring.restitution = 0.0;
+            ring.ring.restitution = 0.0;
         }
         let start = Placement {
             position: [0.0, -0.9],
@@ -109,17 +109,17 @@ fn a_held_ring_does_no_work_without_friction() {
             velocity: [0.3, 0.0],
             ..Placement::default()
         };
-        let model = built(&config);
+        let model = built::<2, 2>(&config);
         let mut starts = [0; 2];
         let mut state = model
-            .start(&start, 5.0, |ring, _| starts[ring] += 1)
+            .start(&start, 5.0, |it| starts[it.ring] += 1)
             .expect("valid");
         assert_eq!(starts, [1, 0]);
         let mut last = model.energy(&state);
         let first = last;
         let mut worst = 0.0_f64;
         for _ in 0..(60.0 / step) as u32 {
-            model.step(&mut state, |_, _| {});
+            model.step(&mut state, |_| {});
             let now = model.energy(&state);
             // Whatever goes is booked, and goes in impacts alone.
             assert!(now.lost >= last.lost - 1e-14);
@@ -147,24 +147,24 @@ fn the_ledger_closes() {
         for step in [1e-3, 1e-2] {
             let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, step);
             for ring in &mut config.rings {
-                (ring.friction, ring.restitution) = (friction, 0.6);
+                (ring.ring.friction, ring.ring.restitution) = (friction, 0.6);
             }
-            config.rings[1].clearance = 0.8;
-            config.magnets[0] = MagnetConfig {
+            config.rings[1].ring.clearance = 0.8;
+            config.magnets[0] = ActuatorConfig {
                 place: 0.9,
                 stiffness: 0.3,
-                force: [0.05, 0.1],
+                force: [0.05, 0.1], ..ActuatorConfig::default()
             };
             let start = Placement {
                 tilt: [0.1, -0.2],
                 ..Placement::default()
             };
-            let model = built(&config);
-            let mut state = model.start(&start, spin, |_, _| {}).expect("valid");
+            let model = built::<2, 2>(&config);
+            let mut state = model.start(&start, spin, |_| {}).expect("valid");
             let first = model.energy(&state);
             let mut worst = 0.0_f64;
             for _ in 0..(60.0 / step) as u32 {
-                model.step(&mut state, |_, _| {});
+                model.step(&mut state, |_| {});
                 let off = model.energy(&state).total() - first.total();
                 worst = worst.max(off.abs() / first.total());
             }
@@ -186,17 +186,17 @@ fn the_ledger_closes() {
 fn the_ledger_closes_with_unbalance() {
     let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, 1e-3);
     for ring in &mut config.rings {
-        (ring.friction, ring.restitution) = (0.2, 0.6);
+        (ring.ring.friction, ring.ring.restitution) = (0.2, 0.6);
     }
     config.unbalance.eccentricity = 0.02;
     config.unbalance.skew = 0.01;
-    let model = built(&config);
+    let model = built::<2, 2>(&config);
     let mut state = model
-        .start(&Placement::default(), 30.0, |_, _| {})
+        .start(&Placement::default(), 30.0, |_| {})
         .expect("valid");
     let first = model.energy(&state).total();
     for _ in 0..20_000 {
-        model.step(&mut state, |_, _| {});
+        model.step(&mut state, |_| {});
     }
     let end = model.energy(&state);
     let off = (end.total() - first).abs() / first;
@@ -210,7 +210,7 @@ fn whirl_without_gravity_grows_by_its_law() {
     let off = |step: f64| {
         let mut config = rotor([ring(0.0)], 0.5, step);
         config.gravity = [0.0; 2];
-        config.rings[0].friction = 0.1;
+        config.rings[0].ring.friction = 0.1;
         let start = Placement {
             position: [0.0, -1.0],
             velocity: [1.0, 0.0],
@@ -235,7 +235,7 @@ fn contact_is_of_second_order() {
     let end = |step: f64| {
         let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, step);
         for ring in &mut config.rings {
-            (ring.friction, ring.restitution) = (0.0, 0.0);
+            (ring.ring.friction, ring.ring.restitution) = (0.0, 0.0);
         }
         // Both on the wall, one end 0.2 rad further round.
         let (a, b) = (
@@ -249,15 +249,15 @@ fn contact_is_of_second_order() {
             ..Placement::default()
         };
         let mut lifted = 0;
-        let model = built(&config);
-        let mut state = model.start(&start, -6.0, |_, _| {}).expect("valid");
+        let model = built::<2, 2>(&config);
+        let mut state = model.start(&start, -6.0, |_| {}).expect("valid");
         for _ in 0..(1.0 / step).round() as u32 {
-            model.step(&mut state, |_, h| {
-                lifted += u32::from(h.change == Change::LiftsOff)
+            model.step(&mut state, |it| {
+                lifted += u32::from(it.event.change == Change::LiftsOff)
             });
         }
         assert_eq!(lifted, 0);
-        state.axis_at(1.2).0
+        state.axis_at(&[1.0, 1.2]).0
     };
     let finest = end(1.25e-4);
     let off = |step| {
@@ -274,22 +274,22 @@ fn contact_is_of_second_order() {
 fn single_precision_follows_double() {
     let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, 1.8e-3);
     for ring in &mut config.rings {
-        (ring.friction, ring.restitution) = (0.1, 0.5);
+        (ring.ring.friction, ring.ring.restitution) = (0.1, 0.5);
     }
     let start = Placement {
         tilt: [0.1, -0.2],
         ..Placement::default()
     };
-    let model = built(&config);
+    let model = built::<2, 2>(&config);
     let single = model.rounded::<f32>();
-    let mut a = model.start(&start, 40.0, |_, _| {}).expect("valid");
+    let mut a = model.start(&start, 40.0, |_| {}).expect("valid");
     let mut b = single
-        .start(&start.rounded(), 40.0, |_, _| {})
+        .start(&start.rounded(), 40.0, |_| {})
         .expect("valid");
     let mut worst = 0.0_f64;
     for tick in 1..=2800 {
-        model.step(&mut a, |_, _| {});
-        single.step(&mut b, |_, _| {});
+        model.step(&mut a, |_| {});
+        single.step(&mut b, |_| {});
         for k in 0..2 {
             let (p, q) = (model.kinematics_at(&a, k), single.kinematics_at(&b, k));
             let off = (p.position[0] - f64::from(q.position[0]))
@@ -305,7 +305,7 @@ fn single_precision_follows_double() {
 
 #[derive(Clone, Copy, Debug)]
 struct Case {
-    config: TwoPlaneConfig<f64, 3>,
+    config: CoupledConfig<f64, 3>,
     spin: f64,
     start: Placement<f64>,
 }
@@ -325,11 +325,11 @@ prop_compose! {
                -> Case {
         let mut config = rotor(places.map(ring), polar, step);
         for ring in &mut config.rings {
-            (ring.friction, ring.restitution, ring.radius) = (friction, restitution, 1.0);
+            (ring.ring.friction, ring.ring.restitution, ring.ring.radius) = (friction, restitution, 1.0);
         }
-        config.rings[2].clearance = clearance;
+        config.rings[2].ring.clearance = clearance;
         config.gravity = gravity;
-        config.magnets[0] = MagnetConfig { place: 1.0, stiffness, force: [0.0, 0.1] };
+        config.magnets[0] = ActuatorConfig { place: 1.0, stiffness, force: [0.0, 0.1], ..ActuatorConfig::default() };
         Case { config, spin, start: Placement {
             position: [moves[0], moves[1]], velocity: [moves[2], moves[3]],
             tilt: [tilts[0], tilts[1]], tilt_rate: [tilts[2], tilts[3]],
@@ -339,10 +339,10 @@ prop_compose! {
 
 /// All stays finite, in the gap and within its energy.
 fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), TestCaseError> {
-    let model = TwoPlane::try_new(&case.config)
+    let model = Coupled::<f64, 3, 2>::try_new(&case.config)
         .expect("valid")
         .rounded::<R>();
-    let Ok(mut state) = model.start(&case.start.rounded(), R::lit(case.spin), |_, _| {}) else {
+    let Ok(mut state) = model.start(&case.start.rounded(), R::lit(case.spin), |_| {}) else {
         return Ok(());
     };
     let first = model.energy(&state).total().to_f64();
@@ -350,7 +350,7 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
     let mut speeds = [0.0_f64; 3];
     for _ in 0..steps {
         let mut changes = 0;
-        model.step(&mut state, |_, _| changes += 1);
+        model.step(&mut state, |_| changes += 1);
         let energy = model.energy(&state);
         let total = energy.total().to_f64();
         prop_assert!(
@@ -366,7 +366,7 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
             let at = model.kinematics_at(&state, k);
             let [x, y] = at.position.map(R::to_f64);
             let [u, v] = at.velocity.map(R::to_f64);
-            let beyond = x.hypot(y) - ring.clearance;
+            let beyond = x.hypot(y) - ring.ring.clearance;
             let speed = u.hypot(v);
             // Beyond its wall until the end of the step that turned it round.
             let path = case.config.step * (speed.max(speeds[k]) + case.config.step);

@@ -408,7 +408,11 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
                 (mounts, "damper", end.mounts),
                 (stops, "hard stop", end.stops),
                 (races, "drag", end.drag),
-                (bends || magnets, "damping of bending and magnets", end.damped),
+                (
+                    bends || magnets,
+                    "damping of bending and magnets",
+                    end.damped,
+                ),
                 (driven, "by the drive of the spin", -end.driven),
             ],
         ),

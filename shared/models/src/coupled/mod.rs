@@ -39,10 +39,10 @@ pub use whole::Whole;
 use config::MODES;
 use mount::Sprung;
 use race::BallBearing;
-use vector::Vector;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
+use vector::Vector;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ring<R, const Q: usize> {

@@ -170,7 +170,12 @@ impl<R: Real> BallBearing<R> {
         }
     }
 
-    pub(super) fn turning(&self, state: &BallBearingState<R>, time: R, drag: Drag<R>) -> Turning<R> {
+    pub(super) fn turning(
+        &self,
+        state: &BallBearingState<R>,
+        time: R,
+        drag: Drag<R>,
+    ) -> Turning<R> {
         let Drag::Runs(sign) = drag else {
             return Turning::default();
         };
@@ -218,7 +223,14 @@ impl<R: Real> BallBearing<R> {
         }
     }
 
-    pub(super) fn advance(&self, state: &mut BallBearingState<R>, time: R, turned: R, rub: R, heat: R) {
+    pub(super) fn advance(
+        &self,
+        state: &mut BallBearingState<R>,
+        time: R,
+        turned: R,
+        rub: R,
+        heat: R,
+    ) {
         let mean = state.surface.value() + R::HALF * turned;
         state.surface.add(turned);
         let drag_heat = (-self.inertia * turned - rub) * mean;
