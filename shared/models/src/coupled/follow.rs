@@ -11,6 +11,7 @@ use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent, at};
 use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
 
 /// Stretches in a step, tried ones included; beyond, the rest of the step is left out. Chosen, because 20
 /// turns of whirl fit in.
@@ -21,6 +22,11 @@ const MOST_IMPACTS: usize = 16;
 const MOST_CROSSINGS: usize = 4;
 /// Distance from a wall, in units of epsilon and its radius, that counts as on it.
 const ON_WALL: f64 = 64.0;
+
+/// What the square of the distance from a wall of radius 1 may lack of being on it.
+pub(super) fn on_wall<R: Real>() -> R {
+    R::lit(ON_WALL) * R::EPSILON
+}
 
 /// Who arrived at which wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +62,7 @@ impl<R: Precision> Flyer<R> {
         let end = self.place + self.moved;
         let over = end.square() - square;
         let value = self.place.square() - square;
-        let near = R::lit(ON_WALL) * R::EPSILON * square;
+        let near = on_wall::<R>() * square;
         let inward = end.dot(self.velocity + self.kick) <= R::ZERO;
         if over <= R::ZERO || (inward && over <= value.most(R::ZERO) + near) {
             return None;

@@ -4,6 +4,9 @@
 //! In what a link's impulse moves all is linear: the motion into its wall, and the slip along it. Which
 //! links press, and which of them slide, is found by trial: a link that would pull is opened, one that
 //! would go through is closed, friction that is too large slides, a slip that friction would drive sticks.
+//!
+//! Friction takes energy, however coarse the step: it ends the slip, but gives no more than what makes the mean of
+//! the slips before and after 0, and nothing where the slip turns round by itself.
 
 use super::vector::Vector;
 use touchdown_rotor::real::Real;
@@ -28,7 +31,10 @@ pub(super) enum Grip<R> {
     Open,
     /// Signed friction coefficient: this part of the normal impulse, counter-clockwise.
     Slides(R),
+    /// No slip after.
     Sticks,
+    /// The slip after is that before, turned round.
+    Turns,
 }
 
 /// A wall that is touched.
@@ -42,6 +48,8 @@ pub(super) struct Link<R> {
     pub(super) wanted: R,
     /// Of the slip, what is not motion within the wall, without any impulse.
     pub(super) surface: R,
+    /// Slip before.
+    pub(super) before: R,
     pub(super) friction: R,
     pub(super) grip: Grip<R>,
     /// Impulse towards the centre.
@@ -57,10 +65,20 @@ impl<R: Real> Link<R> {
             free,
             wanted: R::ZERO,
             surface: R::ZERO,
+            before: R::ZERO,
             friction: R::ZERO,
             grip: Grip::Slides(R::ZERO),
             pressed: R::ZERO,
             rubbed: R::ZERO,
+        }
+    }
+
+    /// Whether friction is not at its limit.
+    pub(super) fn is_stuck(&self) -> bool {
+        match self.grip {
+            Grip::Sticks | Grip::Turns => true,
+            Grip::Slides(friction) => friction == R::ZERO && self.friction > R::ZERO,
+            Grip::Open => false,
         }
     }
 
@@ -197,23 +215,30 @@ impl<R: Real> Links<R> {
     fn corrected(&self, place: usize, close: R) -> Option<Grip<R>> {
         let link = self.get(place)?;
         let motion = self.motion(place);
+        let slip = link.normal.cross(motion) + self.surface(place);
+        let most = link.friction * link.pressed;
         match link.grip {
             Grip::Open => {
                 let through = link.normal.dot(motion) - link.wanted > close;
-                let slip = link.normal.cross(motion) + self.surface(place);
                 through.then(|| Link::sliding(link.friction, slip))
             }
             _ if link.pressed < R::ZERO => Some(Grip::Open),
-            Grip::Sticks => {
-                let most = link.friction * link.pressed;
-                (link.rubbed.abs() > most).then(|| Link::sliding(link.friction, -link.rubbed))
+            Grip::Sticks | Grip::Turns if link.rubbed.abs() > most => {
+                Some(Link::sliding(link.friction, -link.rubbed))
             }
+            Grip::Sticks => (link.rubbed * link.before > R::ZERO).then_some(Grip::Turns),
+            Grip::Turns => (link.rubbed * link.before < R::ZERO).then_some(Grip::Slides(R::ZERO)),
             Grip::Slides(friction) if friction != R::ZERO => {
-                let slip = link.normal.cross(motion) + self.surface(place);
-                let along = if friction > R::ZERO { slip } else { -slip };
-                (along > close).then_some(Grip::Sticks)
+                let along = |slip: R| if friction > R::ZERO { slip } else { -slip };
+                if along(slip) > close {
+                    return Some(Grip::Sticks);
+                }
+                (along(slip + link.before) > close).then_some(Grip::Turns)
             }
-            Grip::Slides(_) => None,
+            Grip::Slides(_) => {
+                let turns_by_itself = slip * link.before <= close * close;
+                (most > R::ZERO && !turns_by_itself).then(|| Link::sliding(link.friction, slip))
+            }
         }
     }
 
@@ -226,9 +251,12 @@ impl<R: Real> Links<R> {
             let one = match link.map(|link| link.grip) {
                 None | Some(Grip::Open) => continue,
                 Some(Grip::Slides(friction)) => Vector::new([-R::ONE, friction]),
-                Some(Grip::Sticks) => Vector::new([-R::ONE, R::ZERO]),
+                Some(Grip::Sticks | Grip::Turns) => Vector::new([-R::ONE, R::ZERO]),
             };
-            let also = matches!(link.map(|link| link.grip), Some(Grip::Sticks));
+            let also = matches!(
+                link.map(|link| link.grip),
+                Some(Grip::Sticks | Grip::Turns)
+            );
             let slip = Vector::new([R::ZERO, R::ONE]);
             for unit in [Some(one), also.then_some(slip)].into_iter().flatten() {
                 if let Some(slot) = unknowns.get_mut(count) {
@@ -277,7 +305,11 @@ impl<R: Real> Links<R> {
             };
         }
         row[UNKNOWNS] = if slips {
-            -(link.normal.cross(link.free) + link.surface)
+            let after = match link.grip {
+                Grip::Turns => -link.before,
+                _ => R::ZERO,
+            };
+            after - link.normal.cross(link.free) - link.surface
         } else {
             link.wanted - link.normal.dot(link.free)
         };

@@ -231,7 +231,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     pressed: link.pressed,
                     rubbed: link.rubbed,
                     normal: link.normal,
-                    stuck: link.grip == Grip::Sticks,
+                    stuck: link.is_stuck(),
                 });
                 for (sum, b) in pushes.iter_mut().zip(&ring.shape) {
                     *sum = *sum + push.times(*b);
@@ -341,12 +341,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let link = walls.contacts[i].and_then(|it| walls.links.get(it));
             link.map_or(R::ZERO, |link| link.surface)
         });
+        let starts: [R; N] = core::array::from_fn(|i| R::HALF * time * self.surface(state, i));
         let mut changed = R::INFINITY;
         for _ in 0..NORMALS {
             for i in 0..N {
                 if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get_mut(it)) {
                     // Friction is for the slip at the end: twice the mean less that at the start.
-                    link.surface = surfaces[i] - half_velocity(i, link.normal, time);
+                    let along = half_velocity(i, link.normal, time);
+                    link.surface = surfaces[i] - along;
+                    link.before = starts[i] + along;
                 }
             }
             if !walls.links.solve() {

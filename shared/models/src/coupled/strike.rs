@@ -4,7 +4,7 @@
 //! into them without giving it back. Where friction would gain energy it follows the normal impulses; where
 //! unlike restitutions would, there is none.
 
-use super::follow::Arrival;
+use super::follow::{Arrival, on_wall};
 use super::links::{Grip, Link, Links};
 use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent};
@@ -46,8 +46,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         part: R,
         on_event: &mut impl FnMut(RingEvent<R>),
     ) {
+        // As near to its wall as the axis that arrived is by the step's error.
+        let mut near = R::ONE;
+        if let Some(Arrival::Axis(i)) = arrived {
+            near = near.least(self.reach_at(state, i));
+        }
+        near -= Self::together();
         let mut meetings: [Meeting<R>; N] =
-            core::array::from_fn(|i| self.meeting(state, i, arrived));
+            core::array::from_fn(|i| self.meeting(state, i, arrived, near));
         if !meetings.iter().any(|it| it.new || it.stops) {
             return;
         }
@@ -99,24 +105,26 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &CoupledState<R, N, Q>,
         i: usize,
         arrived: Option<Arrival>,
+        near: R,
     ) -> Meeting<R> {
-        let near = R::ONE - Self::together();
         let ring = &self.rings[i];
         let within = self.within(state, i);
         let held = state.is_held(i);
         let arrives = arrived == Some(Arrival::Axis(i));
-        let touches = held || arrives || within.length() >= near * ring.limit;
-        let outward = if touches {
-            within.dot(self.relative(state, i)) / within.length()
-        } else {
-            R::ZERO
-        };
+        let mut touches = held || arrives || within.length() >= near * ring.limit;
+        let mut outward = R::ZERO;
+        if touches {
+            outward = within.dot(self.relative(state, i)) / within.length();
+            touches = held || arrives || outward >= R::ZERO;
+        }
         let travel = ring.mount.and_then(|mount| mount.travel());
-        let at_stop = travel.is_some_and(|it| state.ring_place(i).length() >= near * it);
+        let at_stop = travel.is_some_and(|it| {
+            state.ring_place(i).square() >= (R::ONE - on_wall()) * it * it
+        });
         Meeting {
             touches,
             stops: at_stop || state.is_stopped(i) || arrived == Some(Arrival::Ring(i)),
-            new: touches && !held && (arrives || outward >= R::ZERO),
+            new: touches && !held,
             outward,
             restitution: if held { R::ZERO } else { ring.restitution },
             ..Meeting::default()
@@ -181,11 +189,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 link.wanted = -(meeting.restitution * outward.most(R::ZERO));
                 link.surface = self.surface(state, i);
                 link.friction = self.rings[i].friction;
-                let slip = normal.cross(link.free) + link.surface;
+                link.before = normal.cross(link.free) + link.surface;
                 link.grip = if outward < R::ZERO {
                     Grip::Open
                 } else {
-                    Link::sliding(link.friction, slip)
+                    Link::sliding(link.friction, link.before)
                 };
                 places[i] = Some(links.add(link));
             }
@@ -248,7 +256,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     race.strike(&mut state.seats[i].race, link.rubbed, heat);
                 }
                 meetings[i].impulse = link.pressed;
-                meetings[i].stuck = link.grip == Grip::Sticks;
+                meetings[i].stuck = link.is_stuck();
             }
             if let Some(mount) = &ring.mount {
                 let back = Vector::default() - push;
