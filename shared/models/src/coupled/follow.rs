@@ -204,6 +204,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for i in 0..N {
             self.advance_ring(state, passage, i, spin);
         }
+        for i in 0..N {
+            if state.is_held(i) && passage.presses[i].is_none() {
+                state.seats[i].held = None;
+                self.tell(state, i, part, Change::LiftsOff, on_event);
+            }
+        }
         self.calm(&before, state);
         if !passage.rubs {
             self.rub_in_turn(state, passage);
@@ -212,12 +218,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let place = self.within(&before, i);
             let end = self.within(state, i);
             let seat = &mut state.seats[i];
-            let Some(held) = &mut seat.held else {
-                continue;
-            };
-            let Some(press) = &passage.presses[i] else {
-                seat.held = None;
-                self.tell(state, i, part, Change::LiftsOff, on_event);
+            let (Some(held), Some(press)) = (&mut seat.held, &passage.presses[i]) else {
                 continue;
             };
             held.turns.add(place.cross(end).atan2(place.dot(end)));
