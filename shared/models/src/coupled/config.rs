@@ -157,8 +157,9 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
         }
         finite("gravity", &self.gravity)?;
         let unbalance = &self.unbalance;
-        finite("unbalance", &[unbalance.eccentricity, unbalance.angle])?;
-        finite("skew", &[unbalance.skew, unbalance.skew_angle])?;
+        let angles = [unbalance.angle, unbalance.skew_angle];
+        finite("unbalance", &[unbalance.eccentricity, unbalance.skew])?;
+        finite("unbalance", &angles)?;
         for magnet in &self.magnets {
             finite("magnets", &[magnet.place, magnet.stiffness])?;
             finite("magnets", &magnet.force)?;

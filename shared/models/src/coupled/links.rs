@@ -219,7 +219,7 @@ impl<R: Real> Links<R> {
         let most = link.friction * link.pressed;
         match link.grip {
             Grip::Open => {
-                let through = link.normal.dot(motion) - link.wanted > close;
+                let through = link.normal.dot(motion) - link.wanted > R::ZERO;
                 through.then(|| Link::sliding(link.friction, slip))
             }
             _ if link.pressed < R::ZERO => Some(Grip::Open),
