@@ -211,19 +211,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         self.calm(&before, state);
+        let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.stuck));
         if !passage.rubs {
-            self.rub_in_turn(state, passage);
+            stuck = self.rub_in_turn(state, passage);
         }
         for i in 0..N {
             let place = self.within(&before, i);
             let end = self.within(state, i);
             let seat = &mut state.seats[i];
-            let (Some(held), Some(press)) = (&mut seat.held, &passage.presses[i]) else {
+            let Some(held) = &mut seat.held else {
                 continue;
             };
             held.turns.add(place.cross(end).atan2(place.dot(end)));
-            let rolled = core::mem::replace(&mut held.rolling, press.stuck);
-            let change = match (rolled, press.stuck) {
+            let rolled = core::mem::replace(&mut held.rolling, stuck[i]);
+            let change = match (rolled, stuck[i]) {
                 (false, true) => Change::RollingStarts,
                 (true, false) => Change::SlidingStarts,
                 _ => continue,

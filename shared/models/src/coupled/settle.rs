@@ -2,7 +2,8 @@
 //!
 //! The mean of two velocities along a wall does not turn with it: what is missing, of the square of the
 //! step, is put into one stretch and taken from the next, and friction lets that swing grow. The mean of the
-//! speeds across the wall before and after a stretch has no swing.
+//! speeds across the wall before and after a stretch has no swing. What that takes is given back along the
+//! motion, so that the energy stays.
 
 use super::links::{Link, Links};
 use super::passage::Passage;
@@ -13,6 +14,9 @@ use touchdown_rotor::precision::Precision;
 /// Distance from the wall, in units of epsilon and the clearance, from which a held ring is put back.
 /// Chosen, because rounding needs thousands of steps to go so far.
 const OFF: f64 = 64.0;
+
+/// Part of the energy up to which it is given back; more is no error of a stretch, and stays.
+const MOST_RETURNED: f64 = 0.01;
 
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Links of the held rings; each is to change by `wanted` along its normal, and rings move by `yields`.
@@ -66,12 +70,40 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         links.solve_linear();
-        state.books.lost.add(-links.gained());
         for (i, place) in places.iter().enumerate() {
             if let Some(link) = place.and_then(|place| links.get(place)) {
                 self.give(state, i, link.push());
             }
         }
+        let gone = self.give_back(state, -links.gained());
+        state.books.lost.add(gone);
+    }
+
+    /// Gives energy to what the rotor's motion and that of the rings that hold it have; what is left of it.
+    fn give_back(&self, state: &mut CoupledState<R, N, Q>, taken: R) -> R {
+        let velocities = state.velocities();
+        let mut motion = velocities.iter().fold(R::ZERO, |sum, v| sum + v.square());
+        for (i, ring) in self.rings.iter().enumerate() {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| state.is_held(i)) {
+                motion += state.ring_velocity(i).square() / mount.mobility();
+            }
+        }
+        let left = R::HALF * motion;
+        if left <= R::ZERO || taken.abs() > R::lit(MOST_RETURNED) * left {
+            return taken;
+        }
+        let part = taken / left;
+        let more = part / (R::ONE + (R::ONE + part).sqrt());
+        for (sums, velocity) in state.velocity.iter_mut().zip(velocities) {
+            sums.add(velocity.times(more));
+        }
+        for (i, ring) in self.rings.iter().enumerate() {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| state.is_held(i)) {
+                let push = state.ring_velocity(i).times(more / mount.mobility());
+                mount.kick(&mut state.seats[i].mount, push);
+            }
+        }
+        R::ZERO
     }
 
     /// Gives an impulse to the rotor at a ring, and its counterpart to the ring.
@@ -128,17 +160,19 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             })
     }
 
-    /// Friction of a stretch that was gone without it, limited by the normal impulses there.
+    /// Friction of a stretch that was gone without it, limited by the normal impulses there; where it stopped the slip.
     pub(super) fn rub_in_turn(
         &self,
         state: &mut CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,
-    ) {
+    ) -> [bool; N] {
+        let mut stuck = [false; N];
         for (i, press) in passage.presses.iter().enumerate() {
             if let Some(press) = press {
-                self.rub(state, i, R::TWO * press.pressed / passage.time);
+                stuck[i] = self.rub(state, i, R::TWO * press.pressed / passage.time);
             }
         }
+        stuck
     }
 
     /// Friction by a normal impulse that is past; whether it stopped the slip. A ring at its stop is taken to
