@@ -19,6 +19,7 @@ mod energy;
 mod follow;
 mod links;
 mod mount;
+mod normals;
 mod passage;
 mod race;
 mod settle;

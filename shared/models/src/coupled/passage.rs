@@ -12,12 +12,10 @@ use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
-/// Repetitions for the normals; each gains the angle of the stretch.
-const NORMALS: usize = 20;
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
 /// How far round a wall in a stretch, rad.
-const REACH: f64 = 0.25;
+pub(super) const REACH: f64 = 0.25;
 /// Heat below 0, in friction times speed, from which walls jam. Chosen, because a ring that rolls a quarter of
 /// a radian in a stretch slips by less in its mean.
 const MOST_GAINED: f64 = 0.01;
@@ -71,11 +69,11 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
 }
 
 /// Links and whose they are.
-struct Walls<R, const N: usize> {
-    time: R,
-    links: Links<R>,
-    contacts: [Option<usize>; N],
-    stops: [Option<usize>; N],
+pub(super) struct Walls<R, const N: usize> {
+    pub(super) time: R,
+    pub(super) links: Links<R>,
+    pub(super) contacts: [Option<usize>; N],
+    pub(super) stops: [Option<usize>; N],
 }
 
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
@@ -329,67 +327,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         walls
-    }
-
-    /// Finds impulses and normals; false where there are none, or a wall is gone round too far.
-    fn settle(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> bool {
-        let half_velocity = |i: usize, normal: Vector<R>, time: R| {
-            normal.cross(self.relative(state, i)) * R::HALF * time
-        };
-        let time = walls.time;
-        let surfaces: [R; N] = core::array::from_fn(|i| {
-            let link = walls.contacts[i].and_then(|it| walls.links.get(it));
-            link.map_or(R::ZERO, |link| link.surface)
-        });
-        let starts: [R; N] = core::array::from_fn(|i| R::HALF * time * self.surface(state, i));
-        let mut changed = R::INFINITY;
-        for _ in 0..NORMALS {
-            for i in 0..N {
-                if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get_mut(it)) {
-                    // Friction is for the slip at the end: twice the mean less that at the start.
-                    let along = half_velocity(i, link.normal, time);
-                    link.surface = surfaces[i] - along;
-                    link.before = starts[i] + along;
-                }
-            }
-            if !walls.links.solve() {
-                return false;
-            }
-            changed = R::ZERO;
-            for i in 0..N {
-                let of = [
-                    (
-                        walls.contacts[i],
-                        self.within(state, i),
-                        self.rings[i].limit,
-                    ),
-                    (
-                        walls.stops[i],
-                        state.ring_place(i),
-                        state.ring_place(i).length(),
-                    ),
-                ];
-                for (place, from, limit) in of {
-                    let Some(place) = place else {
-                        continue;
-                    };
-                    let moved = walls.links.motion(place);
-                    if moved.length() > R::TWO * R::lit(REACH) * limit {
-                        return false;
-                    }
-                    let sum = from.times(R::TWO) + moved;
-                    let normal = sum.times(R::ONE / sum.length());
-                    if let Some(link) = walls.links.get_mut(place) {
-                        changed = changed.most((normal - link.normal).length());
-                        link.normal = normal;
-                    }
-                }
-            }
-            if changed <= R::TWO * R::EPSILON {
-                return true;
-            }
-        }
-        changed * changed <= R::EPSILON
     }
 
     /// Whether friction gives more than what its sticking is uncertain by.
