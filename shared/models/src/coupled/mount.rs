@@ -11,6 +11,7 @@
 //! from the energy is 0 or more, of second order in the step, and booked to the support.
 
 use super::config::Units;
+use super::settle::OFF;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
@@ -196,13 +197,17 @@ impl<R: Real> Sprung<R> {
             .add(-(rate / ride.mobility * by_stop.dot(mean)));
     }
 
-    /// Puts the ring onto its stop.
+    /// Puts the ring onto its stop, where it is not but for rounding.
     pub(super) fn seat(&self, state: &mut SprungState<R>) {
-        let place = state.place.value();
-        let (Some(travel), false) = (self.travel, state.stopped) else {
+        let Some(travel) = self.travel else {
             return;
         };
-        let moved = place.times(travel / place.length() - R::ONE);
+        let place = state.place.value();
+        let off = travel / place.length() - R::ONE;
+        if state.stopped && off.abs() <= R::lit(OFF) * R::EPSILON {
+            return;
+        }
+        let moved = place.times(off);
         let middle = place + moved.times(R::HALF);
         state.place.add(moved);
         state.stopped = true;

@@ -1,7 +1,8 @@
 //! The normals of the walls in a stretch, which act along the middle of the places before and after.
 //!
 //! What a wall presses depends on its normal, and where the stretch ends on what it presses: a light ring goes
-//! round by more than its normal turns. The angle of each normal is found by a secant of its own.
+//! round by more than its normal turns. Each normal is turned to where it should be, by a secant where that gains
+//! little.
 
 use super::passage::{REACH, Walls};
 use super::vector::Vector;
@@ -24,9 +25,9 @@ struct Search<R> {
 impl<R: Real> Search<R> {
     /// By how much to turn it, `off` from where it should be.
     fn next(&mut self, off: R) -> R {
+        let slow = self.turn != R::ZERO && off.abs() > R::HALF * self.off.abs();
         let slope = (off - self.off) / self.turn;
-        // Without a turn before there is none, which compares as false.
-        let turn = if slope.abs() > R::lit(LEAST_SLOPE) {
+        let turn = if slow && slope.abs() > R::lit(LEAST_SLOPE) {
             (-off / slope).within(R::lit(REACH))
         } else {
             off

@@ -13,7 +13,7 @@ use touchdown_rotor::precision::Precision;
 
 /// Distance from the wall, in units of epsilon and the clearance, from which a held ring is put back.
 /// Chosen, because rounding needs thousands of steps to go so far.
-const OFF: f64 = 64.0;
+pub(super) const OFF: f64 = 64.0;
 
 /// Part of the energy up to which it is given back; more is no error of a stretch, and stays.
 const MOST_RETURNED: f64 = 0.01;
@@ -115,8 +115,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Puts the axis onto the walls of held rings, where it is not but for rounding.
+    /// Puts rings onto stops that hold them, and the axis onto the walls of rings that hold it, where they are not but for
+    /// rounding.
     pub(super) fn seat(&self, state: &mut CoupledState<R, N, Q>) {
+        for (ring, seat) in self.rings.iter().zip(&mut state.seats) {
+            if let Some(mount) = ring.mount.filter(|_| seat.mount.is_stopped()) {
+                mount.seat(&mut seat.mount);
+            }
+        }
         let off = self.off(state);
         if off <= R::lit(OFF) * R::EPSILON {
             return;
