@@ -54,7 +54,8 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
 
 impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
     pub(super) fn ring_moved(&self, ring: usize) -> Vector<R> {
-        self.rides[ring].moved + self.pushed[ring][0] + self.pushed[ring][1]
+        // Rotor and stop push a light ring by far more than it moves.
+        self.rides[ring].moved + (self.pushed[ring][0] + self.pushed[ring][1])
     }
 
     pub(super) fn ring_kick(&self, ring: usize) -> Vector<R> {
