@@ -1,9 +1,10 @@
 //! The normals of the walls in a stretch, which act along the middle of the places before and after.
 //!
-//! What a wall presses depends on its normal, and where the stretch ends on what it presses: a light ring goes
-//! round by more than its normal turns. Each normal is turned to where it should be, by a secant where that gains
-//! little.
+//! What a wall presses depends on its normal, and where the stretch ends on what it presses. Normals are put where the
+//! stretch asks for them, again and again; where that gains little, as for a light ring between rotor and stop, by
+//! Broyden's method (Broyden, "A class of methods for solving nonlinear simultaneous equations", 1965).
 
+use super::links::MOST;
 use super::passage::{REACH, Walls};
 use super::vector::Vector;
 use super::{Coupled, CoupledState};
@@ -12,28 +13,67 @@ use touchdown_rotor::real::Real;
 
 /// Repetitions.
 const NORMALS: usize = 20;
-/// Least change of what is off by a turn for a secant.
-const LEAST_SLOPE: f64 = 0.1;
 
-/// The last turn of a normal, and how far off it was before, rad.
-#[derive(Clone, Copy, Debug, Default)]
+/// An angle of each wall, rad.
+type Angles<R> = [R; MOST];
+
+fn dot<R: Real>(a: &Angles<R>, b: &Angles<R>) -> R {
+    a.iter().zip(b).fold(R::ZERO, |sum, (a, b)| sum + *a * *b)
+}
+
+/// How far the normals were off before the last turn, and what turn that calls for.
 struct Search<R> {
-    turn: R,
-    off: R,
+    off: Angles<R>,
+    turn: Angles<R>,
+    /// Turn by what is off, once it is not just that.
+    inverse: Option<[Angles<R>; MOST]>,
 }
 
 impl<R: Real> Search<R> {
-    /// By how much to turn it, `off` from where it should be.
-    fn next(&mut self, off: R) -> R {
-        let slow = self.turn != R::ZERO && off.abs() > R::HALF * self.off.abs();
-        let slope = (off - self.off) / self.turn;
-        let turn = if slow && slope.abs() > R::lit(LEAST_SLOPE) {
-            (-off / slope).within(R::lit(REACH))
-        } else {
-            off
+    fn new() -> Self {
+        Self {
+            off: [R::INFINITY; MOST],
+            turn: [R::ZERO; MOST],
+            inverse: None,
+        }
+    }
+
+    fn size(off: &Angles<R>) -> R {
+        off.iter().fold(R::ZERO, |most, it| most.most(it.abs()))
+    }
+
+    /// By how much to turn the normals, `off` from where they should be; none for just that.
+    fn next(&mut self, off: Angles<R>) -> Option<Angles<R>> {
+        let gains = Self::size(&off) <= R::HALF * Self::size(&self.off);
+        if gains && self.inverse.is_none() {
+            (self.off, self.turn) = (off, off);
+            return None;
+        }
+        let mut inverse = self.inverse.unwrap_or_else(|| {
+            let one = |i| core::array::from_fn(|j| if i == j { R::ONE } else { R::ZERO });
+            core::array::from_fn(one)
+        });
+        let changed: Angles<R> = core::array::from_fn(|i| off[i] - self.off[i]);
+        let told: Angles<R> = core::array::from_fn(|i| dot(&inverse[i], &changed));
+        let weight: Angles<R> = core::array::from_fn(|j| {
+            (0..MOST).fold(R::ZERO, |sum, i| sum + self.turn[i] * inverse[i][j])
+        });
+        let size = dot(&self.turn, &told);
+        if size != R::ZERO {
+            for (i, row) in inverse.iter_mut().enumerate() {
+                let missing = -(self.turn[i] + told[i]) / size;
+                for (value, weight) in row.iter_mut().zip(&weight) {
+                    *value += missing * *weight;
+                }
+            }
+        }
+        let turn = core::array::from_fn(|i| dot(&inverse[i], &off).within(R::lit(REACH)));
+        *self = Self {
+            off,
+            turn,
+            inverse: Some(inverse),
         };
-        *self = Self { turn, off };
-        turn
+        Some(turn)
     }
 }
 
@@ -45,7 +85,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let link = walls.contacts[i].and_then(|it| walls.links.get(it));
             link.map_or(R::ZERO, |link| link.surface)
         });
-        let mut searches = [[Search::default(); 2]; N];
+        let mut search = Search::new();
         let (mut changed, mut farthest) = (R::INFINITY, R::INFINITY);
         for _ in 0..NORMALS {
             for i in 0..N {
@@ -59,23 +99,36 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             if !walls.links.solve() {
                 return false;
             }
-            (changed, farthest) = (R::ZERO, R::ZERO);
-            for (i, searches) in searches.iter_mut().enumerate() {
+            let mut off = [R::ZERO; MOST];
+            let mut wanted = [Vector::default(); MOST];
+            farthest = R::ZERO;
+            for i in 0..N {
                 let places = [walls.contacts[i], walls.stops[i]];
                 let from = [self.within(state, i), state.ring_place(i)];
-                for ((place, from), search) in places.into_iter().zip(from).zip(searches) {
-                    let Some(place) = place else {
+                for (place, from) in places.into_iter().zip(from) {
+                    let Some((place, link)) = place.and_then(|it| Some((it, walls.links.get(it)?)))
+                    else {
                         continue;
                     };
                     let moved = walls.links.motion(place);
                     farthest = farthest.most(moved.length() / from.length());
                     let sum = from.times(R::TWO) + moved;
-                    if let Some(link) = walls.links.get_mut(place) {
-                        let off = link.normal.cross(sum).atan2(link.normal.dot(sum));
-                        changed = changed.most(off.abs());
-                        let (sin, cos) = search.next(off).sin_cos();
-                        link.normal = link.normal * Vector::new([cos, sin]);
-                    }
+                    wanted[place] = sum.times(R::ONE / sum.length());
+                    let now = link.normal;
+                    off[place] = now.cross(wanted[place]).atan2(now.dot(wanted[place]));
+                }
+            }
+            changed = Search::size(&off);
+            let turns = search.next(off);
+            for (place, wanted) in wanted.into_iter().enumerate() {
+                if let Some(link) = walls.links.get_mut(place) {
+                    link.normal = match turns {
+                        None => wanted,
+                        Some(turns) => {
+                            let (sin, cos) = turns[place].sin_cos();
+                            link.normal * Vector::new([cos, sin])
+                        }
+                    };
                 }
             }
             if changed <= R::TWO * R::EPSILON {
