@@ -253,10 +253,7 @@ impl<R: Real> Links<R> {
                 Some(Grip::Slides(friction)) => Vector::new([-R::ONE, friction]),
                 Some(Grip::Sticks | Grip::Turns) => Vector::new([-R::ONE, R::ZERO]),
             };
-            let also = matches!(
-                link.map(|link| link.grip),
-                Some(Grip::Sticks | Grip::Turns)
-            );
+            let also = matches!(link.map(|link| link.grip), Some(Grip::Sticks | Grip::Turns));
             let slip = Vector::new([R::ZERO, R::ONE]);
             for unit in [Some(one), also.then_some(slip)].into_iter().flatten() {
                 if let Some(slot) = unknowns.get_mut(count) {

@@ -11,8 +11,8 @@ use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
-/// Repetitions.
-const NORMALS: usize = 20;
+/// Repetitions; a ring of a millionth of the rotor between rotor and stop takes nearly as many.
+const NORMALS: usize = 40;
 
 /// An angle of each wall, rad.
 type Angles<R> = [R; MOST];

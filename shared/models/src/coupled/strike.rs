@@ -118,9 +118,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             touches = held || arrives || outward >= R::ZERO;
         }
         let travel = ring.mount.and_then(|mount| mount.travel());
-        let at_stop = travel.is_some_and(|it| {
-            state.ring_place(i).square() >= (R::ONE - on_wall()) * it * it
-        });
+        let at_stop =
+            travel.is_some_and(|it| state.ring_place(i).square() >= (R::ONE - on_wall()) * it * it);
         Meeting {
             touches,
             stops: at_stop || state.is_stopped(i) || arrived == Some(Arrival::Ring(i)),
