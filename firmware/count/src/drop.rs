@@ -16,7 +16,7 @@ pub(super) const STEPS: [u32; 2] = [10, 1_000];
 /// 30 000 rpm, clockwise, rad/s.
 const SPIN: f64 = -1_000.0 * core::f64::consts::PI;
 /// Start, m.
-const POSITION: [f64; 2] = [20e-6, 0.0];
+pub(super) const POSITION: [f64; 2] = [20e-6, 0.0];
 
 /// What a step did.
 #[derive(Clone, Copy)]

@@ -1,13 +1,13 @@
 //! The drop of [`super::drop`] by every model but the rigid one.
 
 use touchdown_models::{
-    BallBearing, Ends, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement, Point,
-    RaceConfig, RingConfig, Scheme, Sprung, Support, SupportConfig, TwoPlane, TwoPlaneConfig,
-    UnbalanceConfig, Verlet,
+    ActuatorConfig, Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau,
+    MountConfig, Placement, Point, RaceConfig, RingConfig, Scheme, SeatConfig, UnbalanceConfig,
+    Verlet, Whole,
 };
 use touchdown_rotor::Precision;
 
-use super::drop::{Run, STEPS, config};
+use super::drop::{POSITION, Run, STEPS, config};
 use touchdown_firmware::board::qemu::Counter;
 
 use crate::table::{Name, Table};
@@ -29,7 +29,7 @@ pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Na
         let scales = moreau.scales();
         run.of_model::<R, _>(&moreau.rounded(), scales)
             .write(table, "moreau", "midpoint", &run);
-        run.of_model::<R, _>(&support(step).rounded(), scales)
+        run.of_model::<R, _>(&support::<R>(step), scales)
             .write(table, "support", "midpoint", &run);
         run.of_model::<R, _>(&ends::<R>(step), scales)
             .write(table, "two-plane", "midpoint", &run);
@@ -60,56 +60,75 @@ impl Run<'_> {
     }
 }
 
-/// All parts of the rung: the scenes `soft-support` and `ball-bearing` in one.
-fn support(step: u32) -> Support<f64, Sprung<f64>, BallBearing<f64>> {
-    Support::try_new(&SupportConfig {
-        rigid: config(step),
-        mount: MountConfig {
-            mass: 0.5,
-            stiffness: 2.6e6,
-            damping: 320.0,
-            travel: Some(0.5e-3),
-        },
-        race: RaceConfig {
-            inertia: 3e-5,
-            dry_drag: 0.005,
-            viscous_drag: 1e-5,
-            cage_ratio: 0.44,
-            heat_capacity: 50.0,
-            heat_loss: 0.5,
-        },
-    })
-    .expect("a valid configuration")
-}
-
-/// The scene `two-plane` without its third ring.
-fn ends<R: Precision>(step: u32) -> Ends<R, 2> {
+/// A rotor in rigid rings at these places, for the step.
+fn rotor<const N: usize>(step: u32, places: [f64; N]) -> CoupledConfig<f64, N> {
     let plane = config(step);
-    let ring = |place| RingConfig {
-        place,
-        clearance: plane.clearance,
-        radius: plane.radius,
-        friction: plane.friction,
-        restitution: plane.restitution,
-    };
-    let model = TwoPlane::try_new(&TwoPlaneConfig {
+    CoupledConfig {
         mass: plane.mass,
         polar_inertia: plane.polar_inertia,
         transverse_inertia: 0.03078,
-        rings: [ring(-0.12), ring(0.12)],
+        rings: places.map(|place| SeatConfig {
+            ring: RingConfig {
+                place,
+                clearance: plane.clearance,
+                radius: plane.radius,
+                friction: plane.friction,
+                restitution: plane.restitution,
+            },
+            mount: None,
+            race: None,
+            shape: [0.0; 3],
+        }),
         gravity: [0.0, -plane.gravity],
         speed: plane.speed,
-        unbalance: UnbalanceConfig {
-            eccentricity: 1.1e-6 / plane.mass,
-            ..UnbalanceConfig::default()
-        },
-        magnets: Default::default(),
+        unbalance: UnbalanceConfig::default(),
+        magnets: [ActuatorConfig::default(); 2],
+        modes: [None; 3],
         step: plane.step,
-    })
-    .expect("a valid configuration");
+    }
+}
+
+/// All parts of the rung: the scenes `soft-support` and `ball-bearing` in one.
+fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
+    let mut config = rotor(step, [0.0]);
+    let [seat] = &mut config.rings;
+    seat.mount = Some(MountConfig {
+        mass: 0.5,
+        stiffness: 2.6e6,
+        damping: 320.0,
+        travel: Some(0.5e-3),
+    });
+    seat.race = Some(RaceConfig {
+        inertia: 3e-5,
+        dry_drag: 0.005,
+        viscous_drag: 1e-5,
+        cage_ratio: 0.44,
+        heat_capacity: 50.0,
+        heat_loss: 0.5,
+    });
+    let model = Coupled::try_new(&config).expect("a valid configuration");
+    let length = model.scales().length;
+    let start = Placement {
+        position: POSITION.map(|x| x / length),
+        ..Placement::default()
+    };
+    Whole {
+        model: model.rounded(),
+        start: start.rounded(),
+    }
+}
+
+/// The scene `two-plane` without its third ring.
+fn ends<R: Precision>(step: u32) -> Whole<R, 2, 2> {
+    let mut config = rotor(step, [-0.12, 0.12]);
+    config.unbalance.eccentricity = 1.1e-6 / config.mass;
+    let model = Coupled::try_new(&config).expect("a valid configuration");
     let start = Placement {
         tilt: [0.0, 0.6e-3 / model.tilt_scale()],
         ..Placement::default()
     };
-    Ends::new(model.rounded(), start.rounded())
+    Whole {
+        model: model.rounded(),
+        start: start.rounded(),
+    }
 }

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use touchdown_models::{
-    BallBearing, Bushing, Ends, Euler, Fixed, Hertz, HertzConfig, MagnetConfig, Materials, Moreau,
-    MountConfig, Placement, Point, RaceConfig, RingConfig, Sprung, Support, SupportConfig,
-    TwoPlane, TwoPlaneConfig, UnbalanceConfig, Verlet,
+    ActuatorConfig, Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig,
+    Moreau, MountConfig, Placement, Point, RaceConfig, RingConfig, SeatConfig, UnbalanceConfig,
+    Verlet, Whole,
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
@@ -161,100 +161,112 @@ fn by_steps(text: &mut String) {
     run::<f64, _>(text, "hertz, euler: drop", &hertz, &DROP, SPIN, 20_000);
 }
 
-fn rings(text: &mut String) {
-    let rigid = RigidConfig { step: STEP, ..RIG };
-    let mount = MountConfig {
-        mass: 0.5,
-        stiffness: 2.6e6,
-        damping: 320.0,
-        travel: Some(5e-4),
-    };
-    let race = RaceConfig {
-        inertia: 3e-5,
-        dry_drag: 0.005,
-        viscous_drag: 1e-5,
-        cage_ratio: 0.44,
-        heat_capacity: 50.0,
-        heat_loss: 0.5,
-    };
-    let soft = Support::<f64, Sprung<f64>, Bushing>::try_new(&SupportConfig {
-        rigid,
-        mount,
-        race: Bushing,
-    });
-    let soft = soft.expect("a valid machine");
-    run::<f64, _>(text, "support, sprung: drop", &soft, &DROP, SPIN, STEPS);
-    run::<f64, _>(
-        text,
-        "support, sprung: whirl",
-        &soft,
-        &at_bottom(2.2),
-        SPIN,
-        STEPS,
-    );
-    let bearing = Support::<f64, Fixed, BallBearing<f64>>::try_new(&SupportConfig {
-        rigid,
-        mount: Fixed,
-        race,
-    });
-    let bearing = bearing.expect("a valid machine");
-    run::<f64, _>(
-        text,
-        "support, ball bearing: drop",
-        &bearing,
-        &DROP,
-        SPIN / 10.0,
-        STEPS,
-    );
-    run::<f64, _>(
-        text,
-        "support, ball bearing: spun up",
-        &bearing,
-        &at_bottom(0.5),
-        SPIN / 200.0,
-        20_000,
-    );
-    two_plane(text);
-}
-
-fn two_plane(text: &mut String) {
-    let ring = |place| RingConfig {
-        place,
-        clearance: RIG.clearance,
-        radius: RIG.radius,
-        friction: RIG.friction,
-        restitution: RIG.restitution,
-    };
-    let config = TwoPlaneConfig {
+/// The rig in rigid rings at these places, SI.
+fn rotor<const N: usize>(places: [f64; N]) -> CoupledConfig<f64, N> {
+    CoupledConfig {
         mass: RIG.mass,
         polar_inertia: RIG.polar_inertia,
         transverse_inertia: 0.0308,
-        rings: [ring(-0.12), ring(0.12)],
+        rings: places.map(|place| SeatConfig {
+            ring: RingConfig {
+                place,
+                clearance: RIG.clearance,
+                radius: RIG.radius,
+                friction: RIG.friction,
+                restitution: RIG.restitution,
+            },
+            mount: None,
+            race: None,
+            shape: [0.0; 3],
+        }),
         gravity: [0.0, -RIG.gravity],
         speed: RIG.speed,
-        unbalance: UnbalanceConfig {
-            eccentricity: 3.2e-7,
-            ..UnbalanceConfig::default()
-        },
-        magnets: [MagnetConfig::default(); 2],
+        unbalance: UnbalanceConfig::default(),
+        magnets: [ActuatorConfig::default(); 2],
+        modes: [None; 3],
         step: STEP,
+    }
+}
+
+const MOUNT: MountConfig<f64> = MountConfig {
+    mass: 0.5,
+    stiffness: 2.6e6,
+    damping: 320.0,
+    travel: Some(5e-4),
+};
+const RACE: RaceConfig<f64> = RaceConfig {
+    inertia: 3e-5,
+    dry_drag: 0.005,
+    viscous_drag: 1e-5,
+    cage_ratio: 0.44,
+    heat_capacity: 50.0,
+    heat_loss: 0.5,
+};
+
+/// Beside the centre, as [`DROP`].
+const BESIDE: Placement<f64> = Placement {
+    position: [0.066_7, 0.0],
+    velocity: [0.0; 2],
+    tilt: [0.0; 2],
+    tilt_rate: [0.0; 2],
+};
+
+/// As [`at_bottom`].
+fn low(tangential: f64) -> Placement<f64> {
+    Placement {
+        position: [0.0, -1.0],
+        velocity: [tangential, 0.0],
+        ..Placement::default()
+    }
+}
+
+fn rings(text: &mut String) {
+    let mut soft = rotor([0.0]);
+    soft.rings[0].mount = Some(MOUNT);
+    let mut drop = |name: &str, config: &CoupledConfig<f64, 1>, start, spin, steps| {
+        let model = Coupled::<f64, 1, 1>::try_new(config).expect("a valid machine");
+        run::<f64, _>(text, name, &Whole { model, start }, &DROP, spin, steps);
     };
-    let model = TwoPlane::<f64, 2>::try_new(&config).expect("a valid machine");
-    let askew = Placement {
+    drop("support, sprung: drop", &soft, BESIDE, SPIN, STEPS);
+    drop("support, sprung: whirl", &soft, low(2.2), SPIN, STEPS);
+    let mut bearing = rotor([0.0]);
+    bearing.rings[0].race = Some(RACE);
+    let (slow, slower) = (SPIN / 10.0, SPIN / 200.0);
+    drop("support, ball bearing: drop", &bearing, BESIDE, slow, STEPS);
+    let spun_up = "support, ball bearing: spun up";
+    drop(spun_up, &bearing, low(0.5), slower, 20_000);
+    ends(text);
+}
+
+fn ends(text: &mut String) {
+    let mut config = rotor([-0.12, 0.12]);
+    config.unbalance.eccentricity = 3.2e-7;
+    let model = Coupled::<f64, 2, 2>::try_new(&config).expect("a valid machine");
+    let start = Placement {
         tilt: [0.0, 6e-4 / model.tilt_scale()],
         ..Placement::default()
     };
-    let ends = Ends::new(model, askew);
-    run::<f64, _>(text, "two-plane: askew", &ends, &DROP, SPIN, STEPS);
-    let ends = Ends::new(model.rounded::<f32>(), askew.rounded());
-    run::<f32, _>(
-        text,
-        "two-plane, f32: askew",
-        &ends,
-        &DROP.rounded(),
-        SPIN,
-        STEPS,
-    );
+    let whole = Whole { model, start };
+    run::<f64, _>(text, "two-plane: askew", &whole, &DROP, SPIN, STEPS);
+    let whole = Whole {
+        model: model.rounded::<f32>(),
+        start: start.rounded(),
+    };
+    let name = "two-plane, f32: askew";
+    run::<f32, _>(text, name, &whole, &DROP.rounded(), SPIN, STEPS);
+    for seat in &mut config.rings {
+        (seat.mount, seat.race) = (Some(MOUNT), Some(RACE));
+        seat.shape = [0.8, 0.0, 0.0];
+    }
+    config.modes[0] = Some(ModeConfig {
+        speed: 600.0,
+        damping_ratio: 0.01,
+        mass: 1.5,
+        centre: -0.6,
+    });
+    let model = Coupled::<f64, 2, 3>::try_new(&config).expect("a valid machine");
+    let whole = Whole { model, start };
+    run::<f64, _>(text, "coupled: askew", &whole, &DROP, SPIN, STEPS);
 }
 
 /// The first changes of motion, how many there were, and the end.
