@@ -126,7 +126,7 @@ fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
         radius: scene.rotor.radius,
         retainer: scene.retainer,
         support: scene.support,
-        ball_bearing: scene.ball_bearing.clone(),
+        ball_bearing: scene.ball_bearing,
     };
     let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
     let moves = scene.model.rung != Fidelity::TwoPlane;
