@@ -127,10 +127,6 @@ impl<R: Real> Links<R> {
         place
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
     pub(super) fn get(&self, place: usize) -> Option<&Link<R>> {
         self.link.get(place)?.as_ref()
     }

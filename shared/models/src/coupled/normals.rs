@@ -14,11 +14,24 @@ use touchdown_rotor::real::Real;
 /// Repetitions; a ring of a millionth of the rotor between rotor and stop takes nearly as many.
 const NORMALS: usize = 40;
 
+/// Angle up to which its sine stands for it, rad: off by 2e-7 of it.
+const SMALL: f64 = 1e-3;
+
 /// An angle of each wall, rad.
 type Angles<R> = [R; MOST];
 
 fn dot<R: Real>(a: &Angles<R>, b: &Angles<R>) -> R {
     a.iter().zip(b).fold(R::ZERO, |sum, (a, b)| sum + *a * *b)
+}
+
+/// Angle from one direction to another. Both have length 1: its sine tells a small one.
+fn apart<R: Real>(from: Vector<R>, to: Vector<R>) -> R {
+    let sine = from.cross(to);
+    if sine.abs() <= R::lit(SMALL) && from.dot(to) > R::ZERO {
+        sine
+    } else {
+        sine.atan2(from.dot(to))
+    }
 }
 
 /// How far the normals were off before the last turn, and what turn that calls for.
@@ -114,8 +127,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     farthest = farthest.most(moved.length() / from.length());
                     let sum = from.times(R::TWO) + moved;
                     wanted[place] = sum.times(R::ONE / sum.length());
-                    let now = link.normal;
-                    off[place] = now.cross(wanted[place]).atan2(now.dot(wanted[place]));
+                    off[place] = apart(link.normal, wanted[place]);
                 }
             }
             changed = Search::size(&off);

@@ -201,10 +201,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &CoupledState<R, N, Q>,
         free: Passage<R, N, Q>,
     ) -> Option<Passage<R, N, Q>> {
-        let mut walls = self.walls(state, &free);
-        if walls.links.is_empty() {
+        if !(0..N).any(|i| state.is_held(i) || state.is_stopped(i)) {
             return Some(free);
         }
+        let mut walls = self.walls(state, &free);
         let smooth = match self.settle(state, &mut walls) {
             true => self.gains(state, &walls, free.time),
             false => true,

@@ -54,14 +54,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Takes the swing across the walls from the velocities, after a stretch.
     pub(super) fn calm(&self, before: &CoupledState<R, N, Q>, state: &mut CoupledState<R, N, Q>) {
+        if !(0..N).any(|i| state.is_held(i)) {
+            return;
+        }
         let (mut links, places) = self.held(
             state,
             |i| self.relative(state, i),
             |i| self.ring_mobility(i),
         );
-        if links.is_empty() {
-            return;
-        }
         for (i, place) in places.iter().enumerate() {
             if let Some(link) = place.and_then(|place| links.get_mut(place)) {
                 let within = self.within(before, i);
