@@ -19,12 +19,13 @@ const FASTEST: f64 = 0.0767;
 
 /// Counts their drops in one kind of number.
 pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+    let with_step = |step| Run {
+        counter,
+        name,
+        step,
+    };
     for step in STEPS {
-        let run = Run {
-            counter,
-            name,
-            step,
-        };
+        let run = with_step(step);
         let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
         let scales = moreau.scales();
         run.of_model::<R, _>(&moreau.rounded(), scales)
@@ -35,11 +36,7 @@ pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Na
             .write(table, "two-plane", "midpoint", &run);
     }
     for step in SHORT_STEPS {
-        let run = Run {
-            counter,
-            name,
-            step,
-        };
+        let run = with_step(step);
         run.of_hertz::<R, Euler>(table, "euler");
         run.of_hertz::<R, Verlet>(table, "verlet");
     }
@@ -106,25 +103,26 @@ fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
         heat_capacity: 50.0,
         heat_loss: 0.5,
     });
-    let model = Coupled::try_new(&config).expect("a valid configuration");
-    let length = model.scales().length;
-    let start = Placement {
-        position: POSITION.map(|x| x / length),
-        ..Placement::default()
-    };
-    Whole {
-        model: model.rounded(),
-        start: start.rounded(),
-    }
+    started(&config, POSITION, 0.0)
 }
 
 /// The scene `two-plane` without its third ring.
 fn ends<R: Precision>(step: u32) -> Whole<R, 2, 2> {
     let mut config = rotor(step, [-0.12, 0.12]);
     config.unbalance.eccentricity = 1.1e-6 / config.mass;
-    let model = Coupled::try_new(&config).expect("a valid configuration");
+    started(&config, [0.0; 2], 0.6e-3)
+}
+
+/// From this place of the centre (m) and this slope (rad).
+fn started<R: Precision, const N: usize, const Q: usize>(
+    config: &CoupledConfig<f64, N>,
+    position: [f64; 2],
+    slope: f64,
+) -> Whole<R, N, Q> {
+    let model = Coupled::try_new(config).expect("a valid configuration");
     let start = Placement {
-        tilt: [0.0, 0.6e-3 / model.tilt_scale()],
+        position: position.map(|x| x / model.scales().length),
+        tilt: [0.0, slope / model.tilt_scale()],
         ..Placement::default()
     };
     Whole {

@@ -11,10 +11,6 @@
 use super::vector::Vector;
 use touchdown_rotor::real::Real;
 
-/// Most links: a contact and a stop in each of four rings.
-pub(super) const MOST: usize = 8;
-/// Most unknowns: normal and friction of each contact, normal of each stop.
-const UNKNOWNS: usize = 12;
 /// Trials in which all links change that are wrong, and trials in all; the rest change one link each.
 const TOGETHER: usize = 8;
 const TRIALS: usize = 40;
@@ -95,32 +91,45 @@ impl<R: Real> Link<R> {
 
 /// All walls that are touched.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Links<R> {
+pub(super) struct Links<R, const N: usize> {
     count: usize,
-    link: [Option<Link<R>>; MOST],
+    link: Pairs<Option<Link<R>>, N>,
     /// Motion of the first by an impulse in the second.
-    response: [[Vector<R>; MOST]; MOST],
+    response: Pairs<Pairs<Vector<R>, N>, N>,
     /// Of the slip, by a tangential impulse, what is not motion.
-    spin: [[R; MOST]; MOST],
+    spin: Pairs<Pairs<R, N>, N>,
 }
 
-/// Rows of a linear system with its right side.
-type Rows<R> = [[R; UNKNOWNS + 1]; UNKNOWNS];
+/// For each link; `N` rings have a contact and a stop each.
+type Pairs<T, const N: usize> = [[T; 2]; N];
 
-impl<R: Real> Links<R> {
+/// For each unknown: normal and friction of the contacts, normal of the stops.
+type Unknowns<T, const N: usize> = [[T; 3]; N];
+
+/// A linear system and its right side.
+struct System<R, const N: usize> {
+    rows: Unknowns<Unknowns<R, N>, N>,
+    right: Unknowns<R, N>,
+}
+
+impl<R: Real, const N: usize> Links<R, N> {
     pub(super) fn new() -> Self {
         Self {
             count: 0,
-            link: [None; MOST],
-            response: [[Vector::default(); MOST]; MOST],
-            spin: [[R::ZERO; MOST]; MOST],
+            link: [[None; 2]; N],
+            response: [[[[Vector::default(); 2]; N]; 2]; N],
+            spin: [[[[R::ZERO; 2]; N]; 2]; N],
         }
+    }
+
+    fn links(&self) -> impl Iterator<Item = &Link<R>> {
+        self.link.as_flattened().iter().flatten()
     }
 
     /// Adds a link; its place in the order.
     pub(super) fn add(&mut self, link: Link<R>) -> usize {
         let place = self.count;
-        if let Some(slot) = self.link.get_mut(place) {
+        if let Some(slot) = self.link.as_flattened_mut().get_mut(place) {
             *slot = Some(link);
             self.count += 1;
         }
@@ -128,25 +137,25 @@ impl<R: Real> Links<R> {
     }
 
     pub(super) fn get(&self, place: usize) -> Option<&Link<R>> {
-        self.link.get(place)?.as_ref()
+        self.link.as_flattened().get(place)?.as_ref()
     }
 
     pub(super) fn get_mut(&mut self, place: usize) -> Option<&mut Link<R>> {
-        self.link.get_mut(place)?.as_mut()
+        self.link.as_flattened_mut().get_mut(place)?.as_mut()
     }
 
     pub(super) fn all(&mut self) -> impl Iterator<Item = &mut Link<R>> {
-        self.link.iter_mut().flatten()
+        self.link.as_flattened_mut().iter_mut().flatten()
     }
 
     pub(super) fn respond(&mut self, to: usize, from: usize, motion: Vector<R>, spin: R) {
-        if let Some(row) = self.response.get_mut(to)
-            && let Some(slot) = row.get_mut(from)
+        if let Some(row) = self.response.as_flattened_mut().get_mut(to)
+            && let Some(slot) = row.as_flattened_mut().get_mut(from)
         {
             *slot = motion;
         }
-        if let Some(row) = self.spin.get_mut(to)
-            && let Some(slot) = row.get_mut(from)
+        if let Some(row) = self.spin.as_flattened_mut().get_mut(to)
+            && let Some(slot) = row.as_flattened_mut().get_mut(from)
         {
             *slot = spin;
         }
@@ -154,10 +163,11 @@ impl<R: Real> Links<R> {
 
     /// Motion with all impulses.
     pub(super) fn motion(&self, place: usize) -> Vector<R> {
-        let (Some(link), Some(row)) = (self.get(place), self.response.get(place)) else {
+        let (Some(link), Some(row)) = (self.get(place), self.response.as_flattened().get(place))
+        else {
             return Vector::default();
         };
-        let others = self.link.iter().flatten().zip(row);
+        let others = self.links().zip(row.as_flattened());
         others.fold(link.free, |sum, (other, response)| {
             sum + *response * other.push()
         })
@@ -165,10 +175,10 @@ impl<R: Real> Links<R> {
 
     /// Of the slip, what is not motion, with all impulses.
     pub(super) fn surface(&self, place: usize) -> R {
-        let (Some(link), Some(row)) = (self.get(place), self.spin.get(place)) else {
+        let (Some(link), Some(row)) = (self.get(place), self.spin.as_flattened().get(place)) else {
             return R::ZERO;
         };
-        let others = self.link.iter().flatten().zip(row);
+        let others = self.links().zip(row.as_flattened());
         others.fold(link.surface, |sum, (other, response)| {
             sum + *response * other.rubbed
         })
@@ -184,7 +194,7 @@ impl<R: Real> Links<R> {
                 let Some(grip) = self.corrected(place, close) else {
                     continue;
                 };
-                if let Some(Some(link)) = self.link.get_mut(place) {
+                if let Some(link) = self.get_mut(place) {
                     link.grip = grip;
                 }
                 holds = false;
@@ -201,8 +211,7 @@ impl<R: Real> Links<R> {
 
     /// Size of the motion.
     fn size(&self) -> R {
-        let links = self.link.iter().flatten();
-        links.fold(R::ZERO, |most, link| {
+        self.links().fold(R::ZERO, |most, link| {
             most.most(link.free.length() + link.wanted.abs() + link.surface.abs())
         })
     }
@@ -241,71 +250,76 @@ impl<R: Real> Links<R> {
     /// The impulses of links that do what they are taken to do.
     pub(super) fn solve_linear(&mut self) {
         // Of each unknown: its link, and the impulse of a unit of it as (-normal, tangential).
-        let mut unknowns = [(0, Vector::<R>::default()); UNKNOWNS];
+        let mut all: Unknowns<(usize, Vector<R>), N> = [[(0, Vector::default()); 3]; N];
         let mut count = 0;
-        for (place, link) in self.link.iter().enumerate() {
-            let one = match link.map(|link| link.grip) {
-                None | Some(Grip::Open) => continue,
-                Some(Grip::Slides(friction)) => Vector::new([-R::ONE, friction]),
-                Some(Grip::Sticks | Grip::Turns) => Vector::new([-R::ONE, R::ZERO]),
+        for (place, link) in self.links().enumerate() {
+            let (one, also) = match link.grip {
+                Grip::Open => continue,
+                Grip::Slides(friction) => (Vector::new([-R::ONE, friction]), false),
+                Grip::Sticks | Grip::Turns => (Vector::new([-R::ONE, R::ZERO]), true),
             };
-            let also = matches!(link.map(|link| link.grip), Some(Grip::Sticks | Grip::Turns));
             let slip = Vector::new([R::ZERO, R::ONE]);
             for unit in [Some(one), also.then_some(slip)].into_iter().flatten() {
-                if let Some(slot) = unknowns.get_mut(count) {
+                if let Some(slot) = all.as_flattened_mut().get_mut(count) {
                     *slot = (place, unit);
                     count += 1;
                 }
             }
         }
-        let mut rows: Rows<R> = [[R::ZERO; UNKNOWNS + 1]; UNKNOWNS];
-        for (row, (place, unit)) in rows.iter_mut().zip(unknowns).take(count) {
-            self.fill(row, place, unit.x == R::ZERO, &unknowns, count);
+        let mut system = System {
+            rows: [[[[R::ZERO; 3]; N]; 3]; N],
+            right: [[R::ZERO; 3]; N],
+        };
+        let unknowns = &all.as_flattened()[..count];
+        let rows = system.rows.as_flattened_mut().iter_mut();
+        let rights = system.right.as_flattened_mut();
+        for ((row, right), unknown) in rows.zip(rights).zip(unknowns) {
+            *right = self.fill(row.as_flattened_mut(), unknown, unknowns);
         }
-        let found = eliminate(&mut rows, count);
-        for link in self.link.iter_mut().flatten() {
+        let found = system.solved(count);
+        for link in self.all() {
             (link.pressed, link.rubbed) = (R::ZERO, R::ZERO);
         }
-        for ((place, unit), value) in unknowns.iter().zip(found).take(count) {
-            if let Some(Some(link)) = self.link.get_mut(*place) {
-                link.pressed += -(unit.x * value);
-                link.rubbed += unit.y * value;
+        for ((place, unit), value) in unknowns.iter().zip(found.as_flattened()) {
+            if let Some(link) = self.get_mut(*place) {
+                link.pressed += -(unit.x * *value);
+                link.rubbed += unit.y * *value;
             }
         }
     }
 
-    /// The equation of a link: of its slip, or of its motion along the normal.
+    /// The equation of an unknown's link, of its slip or of its motion along the normal; its right side.
     fn fill(
         &self,
-        row: &mut [R; UNKNOWNS + 1],
-        place: usize,
-        slips: bool,
-        unknowns: &[(usize, Vector<R>); UNKNOWNS],
-        count: usize,
-    ) {
+        row: &mut [R],
+        (place, unit): &(usize, Vector<R>),
+        unknowns: &[(usize, Vector<R>)],
+    ) -> R {
+        let (place, slips) = (*place, unit.x == R::ZERO);
         let Some(link) = self.get(place) else {
-            return;
+            return R::ZERO;
         };
-        for (slot, (from, unit)) in row.iter_mut().zip(unknowns).take(count) {
+        let response = self.response[place / 2][place % 2].as_flattened();
+        let spin = self.spin[place / 2][place % 2].as_flattened();
+        for (slot, (from, unit)) in row.iter_mut().zip(unknowns) {
             let Some(other) = self.get(*from) else {
                 continue;
             };
-            let moved = self.response[place][*from] * (*unit * other.normal);
+            let moved = response[*from] * (*unit * other.normal);
             *slot = if slips {
-                link.normal.cross(moved) + self.spin[place][*from] * unit.y
+                link.normal.cross(moved) + spin[*from] * unit.y
             } else {
                 link.normal.dot(moved)
             };
         }
-        row[UNKNOWNS] = if slips {
-            let after = match link.grip {
-                Grip::Turns => -link.before,
-                _ => R::ZERO,
-            };
-            after - link.normal.cross(link.free) - link.surface
-        } else {
-            link.wanted - link.normal.dot(link.free)
+        if !slips {
+            return link.wanted - link.normal.dot(link.free);
+        }
+        let after = match link.grip {
+            Grip::Turns => -link.before,
+            _ => R::ZERO,
         };
+        after - link.normal.cross(link.free) - link.surface
     }
 
     /// Energy that the impulses give, where motions are velocities.
@@ -336,8 +350,8 @@ impl<R: Real> Links<R> {
         for _ in 0..TURNS {
             for place in 0..self.count {
                 let motion = self.motion(place);
-                let own = self.response[place][place].x;
-                if let Some(Some(link)) = self.link.get_mut(place) {
+                let own = self.response[place / 2][place % 2].as_flattened()[place].x;
+                if let Some(link) = self.get_mut(place) {
                     link.pressed += link.normal.dot(motion).most(R::ZERO) / own;
                 }
             }
@@ -345,47 +359,55 @@ impl<R: Real> Links<R> {
     }
 }
 
-/// Solves by elimination; unknowns that the others tell already are 0.
-fn eliminate<R: Real>(rows: &mut Rows<R>, count: usize) -> [R; UNKNOWNS] {
-    let mut largest = R::ZERO;
-    for row in rows.iter().take(count) {
-        for value in row.iter().take(count) {
-            largest = largest.most(value.abs());
-        }
-    }
-    let least = R::lit(TOLD) * R::EPSILON * largest;
-    // Of each unknown, the row that tells it.
-    let mut told = [None; UNKNOWNS];
-    let mut next = 0;
-    for column in 0..count {
-        let mut best = next;
-        for row in next..count {
-            if rows[row][column].abs() > rows[best][column].abs() {
-                best = row;
+impl<R: Real, const N: usize> System<R, N> {
+    /// Solves the first `count` by elimination; unknowns that the others tell already are 0.
+    fn solved(mut self, count: usize) -> Unknowns<R, N> {
+        let rows = self.rows.as_flattened_mut();
+        let right = self.right.as_flattened_mut();
+        let mut largest = R::ZERO;
+        for row in rows.iter().take(count) {
+            for value in row.as_flattened().iter().take(count) {
+                largest = largest.most(value.abs());
             }
         }
-        if next >= count || rows[best][column].abs() <= least {
-            continue;
-        }
-        rows.swap(best, next);
-        let pivot = rows[next];
-        for (index, row) in rows.iter_mut().enumerate().take(count) {
-            let factor = row[column] / pivot[column];
-            if index == next || factor == R::ZERO {
+        let least = R::lit(TOLD) * R::EPSILON * largest;
+        let mut found = [[R::ZERO; 3]; N];
+        // Of each unknown, the row that tells it.
+        let mut told = [[None; 3]; N];
+        let mut next = 0;
+        for column in 0..count {
+            let at = |row: &Unknowns<R, N>| row[column / 3][column % 3];
+            let mut best = next;
+            for row in next..count {
+                if at(&rows[row]).abs() > at(&rows[best]).abs() {
+                    best = row;
+                }
+            }
+            if next >= count || at(&rows[best]).abs() <= least {
                 continue;
             }
-            for (value, take) in row.iter_mut().zip(&pivot) {
-                *value -= factor * *take;
+            rows.swap(best, next);
+            right.swap(best, next);
+            let (pivot, pivot_right) = (rows[next], right[next]);
+            for index in 0..count {
+                let factor = at(&rows[index]) / at(&pivot);
+                if index == next || factor == R::ZERO {
+                    continue;
+                }
+                let values = rows[index].as_flattened_mut().iter_mut();
+                for (value, take) in values.zip(pivot.as_flattened()).take(count) {
+                    *value -= factor * *take;
+                }
+                right[index] -= factor * pivot_right;
+            }
+            told[column / 3][column % 3] = Some(next);
+            next += 1;
+        }
+        for column in 0..count {
+            if let Some(row) = told[column / 3][column % 3] {
+                found[column / 3][column % 3] = right[row] / rows[row][column / 3][column % 3];
             }
         }
-        told[column] = Some(next);
-        next += 1;
+        found
     }
-    let mut found = [R::ZERO; UNKNOWNS];
-    for (column, slot) in found.iter_mut().enumerate().take(count) {
-        if let Some(row) = told[column] {
-            *slot = rows[row][UNKNOWNS] / rows[row][column];
-        }
-    }
-    found
 }

@@ -11,12 +11,15 @@
 //! from the energy is 0 or more, of second order in the step, and booked to the support.
 
 use super::config::Units;
-use super::settle::OFF;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::{not_negative, positive};
 use touchdown_rotor::sum::Sum;
+
+/// Distance from the wall, in units of epsilon and the clearance, from which what is held there is put back.
+/// Chosen, because rounding needs thousands of steps to go so far.
+pub(super) const OFF: f64 = 64.0;
 
 /// A ring on a spring and a damper, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]

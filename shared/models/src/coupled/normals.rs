@@ -4,13 +4,14 @@
 //! stretch asks for them, again and again; where that gains little, as for a light ring between rotor and stop, by
 //! Broyden's method (Broyden, "A class of methods for solving nonlinear simultaneous equations", 1965).
 
-use super::links::MOST;
 use super::passage::{REACH, Walls};
 use super::vector::Vector;
 use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
+/// Most walls: a contact and a stop in each of four rings.
+const MOST: usize = 8;
 /// Repetitions; a ring of a millionth of the rotor between rotor and stop takes nearly as many.
 const NORMALS: usize = 40;
 

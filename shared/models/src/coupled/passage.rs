@@ -72,7 +72,7 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
 /// Links and whose they are.
 pub(super) struct Walls<R, const N: usize> {
     pub(super) time: R,
-    pub(super) links: Links<R>,
+    pub(super) links: Links<R, N>,
     pub(super) contacts: [Option<usize>; N],
     pub(super) stops: [Option<usize>; N],
 }

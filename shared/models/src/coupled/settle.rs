@@ -6,14 +6,11 @@
 //! motion, so that the energy stays.
 
 use super::links::{Link, Links};
+use super::mount::OFF;
 use super::passage::Passage;
 use super::vector::Vector;
 use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
-
-/// Distance from the wall, in units of epsilon and the clearance, from which a held ring is put back.
-/// Chosen, because rounding needs thousands of steps to go so far.
-pub(super) const OFF: f64 = 64.0;
 
 /// Part of the energy up to which it is given back; more is no error of a stretch, and stays.
 const MOST_RETURNED: f64 = 0.01;
@@ -25,7 +22,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &CoupledState<R, N, Q>,
         motion: impl Fn(usize) -> Vector<R>,
         yields: impl Fn(usize) -> R,
-    ) -> (Links<R>, [Option<usize>; N]) {
+    ) -> (Links<R, N>, [Option<usize>; N]) {
         let mut links = Links::new();
         let mut places = [None; N];
         for (i, place) in places.iter_mut().enumerate() {

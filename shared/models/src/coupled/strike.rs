@@ -165,7 +165,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Size of the energy that the impact is about.
-    fn size(&self, links: &Links<R>, places: &[Option<usize>; N]) -> R {
+    fn size(&self, links: &Links<R, N>, places: &[Option<usize>; N]) -> R {
         let all = places.iter().flatten().filter_map(|it| links.get(*it));
         all.fold(R::ZERO, |sum, link| sum + link.free.square())
     }
@@ -176,7 +176,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         &self,
         state: &CoupledState<R, N, Q>,
         meetings: &[Meeting<R>; N],
-    ) -> (Links<R>, [Option<usize>; N], [Option<usize>; N]) {
+    ) -> (Links<R, N>, [Option<usize>; N], [Option<usize>; N]) {
         let mut links = Links::new();
         let (mut places, mut stops) = ([None; N], [None; N]);
         for (i, meeting) in meetings.iter().enumerate() {
@@ -232,7 +232,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         &self,
         state: &mut CoupledState<R, N, Q>,
         meetings: &mut [Meeting<R>; N],
-        links: &Links<R>,
+        links: &Links<R, N>,
         [places, stops]: [&[Option<usize>; N]; 2],
     ) {
         for (i, ring) in self.rings.iter().enumerate() {
