@@ -3,8 +3,7 @@
 use crate::moment::{Moment, scaled};
 use touchdown_base::machine::Machine;
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Load, MountConfig, Placement, RaceConfig,
-    RingConfig, RingEvent, SeatConfig, UnbalanceConfig,
+    Coupled, CoupledConfig, CoupledState, Load, MountConfig, Placement, RaceConfig, RingEvent,
 };
 use touchdown_rotor::{Change, Precision, RigidConfig};
 use touchdown_truth::reference;
@@ -181,31 +180,9 @@ impl Fall {
     }
 
     fn built(&self) -> Coupled<f64, 1, 1> {
-        let rigid = &self.rigid;
-        Coupled::try_new(&CoupledConfig {
-            mass: rigid.mass,
-            polar_inertia: rigid.polar_inertia,
-            transverse_inertia: rigid.polar_inertia,
-            rings: [SeatConfig {
-                ring: RingConfig {
-                    place: 0.0,
-                    clearance: rigid.clearance,
-                    radius: rigid.radius,
-                    friction: rigid.friction,
-                    restitution: rigid.restitution,
-                },
-                mount: self.mount,
-                race: self.race,
-                shape: [0.0; 3],
-            }],
-            gravity: [0.0, -rigid.gravity],
-            speed: rigid.speed,
-            unbalance: UnbalanceConfig::default(),
-            magnets: [ActuatorConfig::default(); 2],
-            modes: [None; 3],
-            step: rigid.step,
-        })
-        .expect("valid configuration")
+        let mut config = CoupledConfig::of_plane(&self.rigid, [0.0]);
+        (config.rings[0].mount, config.rings[0].race) = (self.mount, self.race);
+        Coupled::try_new(&config).expect("valid configuration")
     }
 
     fn moment<R: Precision>(

@@ -1,9 +1,8 @@
 //! The drop of [`super::drop`] by every model but the rigid one.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau,
-    MountConfig, Placement, Point, RaceConfig, RingConfig, Scheme, SeatConfig, UnbalanceConfig,
-    Verlet, Whole,
+    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
+    Point, RaceConfig, Scheme, Verlet, Whole,
 };
 use touchdown_rotor::Precision;
 
@@ -57,37 +56,9 @@ impl Run<'_> {
     }
 }
 
-/// A rotor in rigid rings at these places, for the step.
-fn rotor<const N: usize>(step: u32, places: [f64; N]) -> CoupledConfig<f64, N> {
-    let plane = config(step);
-    CoupledConfig {
-        mass: plane.mass,
-        polar_inertia: plane.polar_inertia,
-        transverse_inertia: 0.03078,
-        rings: places.map(|place| SeatConfig {
-            ring: RingConfig {
-                place,
-                clearance: plane.clearance,
-                radius: plane.radius,
-                friction: plane.friction,
-                restitution: plane.restitution,
-            },
-            mount: None,
-            race: None,
-            shape: [0.0; 3],
-        }),
-        gravity: [0.0, -plane.gravity],
-        speed: plane.speed,
-        unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); 2],
-        modes: [None; 3],
-        step: plane.step,
-    }
-}
-
 /// All parts of the rung: the scenes `soft-support` and `ball-bearing` in one.
 fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
-    let mut config = rotor(step, [0.0]);
+    let mut config = CoupledConfig::of_plane(&config(step), [0.0]);
     let [seat] = &mut config.rings;
     seat.mount = Some(MountConfig {
         mass: 0.5,
@@ -108,7 +79,8 @@ fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
 
 /// The scene `two-plane` without its third ring.
 fn ends<R: Precision>(step: u32) -> Whole<R, 2, 2> {
-    let mut config = rotor(step, [-0.12, 0.12]);
+    let mut config = CoupledConfig::of_plane(&config(step), [-0.12, 0.12]);
+    config.transverse_inertia = 0.03078;
     config.unbalance.eccentricity = 1.1e-6 / config.mass;
     started(&config, [0.0; 2], 0.6e-3)
 }

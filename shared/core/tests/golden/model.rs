@@ -3,9 +3,8 @@
 use std::fmt::Write;
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig,
-    Moreau, MountConfig, Placement, Point, RaceConfig, RingConfig, SeatConfig, UnbalanceConfig,
-    Verlet, Whole,
+    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig, Moreau, MountConfig,
+    Placement, Point, RaceConfig, Verlet, Whole,
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
@@ -164,27 +163,8 @@ fn by_steps(text: &mut String) {
 /// The rig in rigid rings at these places, SI.
 fn rotor<const N: usize>(places: [f64; N]) -> CoupledConfig<f64, N> {
     CoupledConfig {
-        mass: RIG.mass,
-        polar_inertia: RIG.polar_inertia,
         transverse_inertia: 0.0308,
-        rings: places.map(|place| SeatConfig {
-            ring: RingConfig {
-                place,
-                clearance: RIG.clearance,
-                radius: RIG.radius,
-                friction: RIG.friction,
-                restitution: RIG.restitution,
-            },
-            mount: None,
-            race: None,
-            shape: [0.0; 3],
-        }),
-        gravity: [0.0, -RIG.gravity],
-        speed: RIG.speed,
-        unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); 2],
-        modes: [None; 3],
-        step: STEP,
+        ..CoupledConfig::of_plane(&RigidConfig { step: STEP, ..RIG }, places)
     }
 }
 

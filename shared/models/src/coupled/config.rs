@@ -2,8 +2,10 @@
 
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
+use super::units::Units;
 use super::vector::Vector;
 use super::{Coupled, Magnet, Ring};
+use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -42,19 +44,6 @@ pub struct UnbalanceConfig<R> {
     pub skew: R,
     /// Of the skew.
     pub skew_angle: R,
-}
-
-/// What turns SI into the model's units.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Units<R> {
-    pub(super) mass: R,
-    /// Of the rotor at the first ring, m.
-    pub(super) radius: R,
-    /// Of the retainer, m.
-    pub(super) bore: R,
-    /// Length of a step, T.
-    pub(super) step: R,
-    pub(super) scales: Scales<R>,
 }
 
 /// A retainer ring, what it stands on and what turns in it.
@@ -132,6 +121,34 @@ fn finite<R: Real>(name: &'static str, values: &[R]) -> Result<(), ConfigError> 
 }
 
 impl<R: Precision, const N: usize> CoupledConfig<R, N> {
+    /// The plane's rotor in rings like the plane's, at these places (m), with all other parts left out; it does not tilt.
+    pub fn of_plane(plane: &RigidConfig<R>, places: [R; N]) -> Self {
+        let ring = |place| RingConfig {
+            place,
+            clearance: plane.clearance,
+            radius: plane.radius,
+            friction: plane.friction,
+            restitution: plane.restitution,
+        };
+        Self {
+            mass: plane.mass,
+            polar_inertia: plane.polar_inertia,
+            transverse_inertia: plane.polar_inertia,
+            rings: places.map(|place| SeatConfig {
+                ring: ring(place),
+                mount: None,
+                race: None,
+                shape: [R::ZERO; MODES],
+            }),
+            gravity: [R::ZERO, -plane.gravity],
+            speed: plane.speed,
+            unbalance: UnbalanceConfig::default(),
+            magnets: [ActuatorConfig::default(); 2],
+            modes: [None; MODES],
+            step: plane.step,
+        }
+    }
+
     fn check(&self, modes: usize) -> Result<(), ConfigError> {
         positive("mass", self.mass)?;
         positive("transverse_inertia", self.transverse_inertia)?;

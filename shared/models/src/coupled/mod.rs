@@ -25,6 +25,7 @@ mod race;
 mod settle;
 mod state;
 mod strike;
+mod units;
 mod vector;
 mod whole;
 

@@ -10,7 +10,7 @@
 //! speed. So a stiff support is a fixed ring, and a light ring as heavy as its damper; what they take
 //! from the energy is 0 or more, of second order in the step, and booked to the support.
 
-use super::config::Units;
+use super::units::Units;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
