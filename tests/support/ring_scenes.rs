@@ -7,7 +7,7 @@ use touchdown_models::{
 };
 use touchdown_rotor::{Change, Precision, RigidConfig};
 use touchdown_truth::reference;
-use touchdown_truth::reference::coupled::{SupportMachine, SupportReference, SupportStart};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
 
 /// A rotor, what it falls into, and how.
 #[derive(Clone, Copy, Debug)]
@@ -230,30 +230,30 @@ impl Fall {
     }
 
     /// The same machine by the reference.
-    pub fn reference(&self) -> SupportReference {
+    pub fn reference(&self) -> CoupledReference {
         let rigid = &self.rigid;
-        let machine = SupportMachine {
-            rotor: Machine {
-                mass: rigid.mass,
-                radius: rigid.radius,
-                polar_inertia: rigid.polar_inertia,
-                clearance: rigid.clearance,
-                friction: rigid.friction,
-                restitution: rigid.restitution,
-                gravity: rigid.gravity,
-            },
-            mount: self.mount.map(|mount| reference::coupled::Mount {
-                mass: mount.mass,
-                stiffness: mount.stiffness,
-                damping: mount.damping,
-                travel: mount.travel,
-            }),
-            race: self.race.map(|race| reference::coupled::Race {
-                inertia: race.inertia,
-                dry_drag: race.dry_drag,
-                viscous_drag: race.viscous_drag,
-            }),
+        let rotor = Machine {
+            mass: rigid.mass,
+            radius: rigid.radius,
+            polar_inertia: rigid.polar_inertia,
+            clearance: rigid.clearance,
+            friction: rigid.friction,
+            restitution: rigid.restitution,
+            gravity: rigid.gravity,
         };
-        SupportReference::new(&machine, &SupportStart::new(self.start, self.spin))
+        let mount = self.mount.map(|mount| reference::coupled::Mount {
+            mass: mount.mass,
+            stiffness: mount.stiffness,
+            damping: mount.damping,
+            travel: mount.travel,
+        });
+        let race = self.race.map(|race| reference::coupled::Race {
+            inertia: race.inertia,
+            dry_drag: race.dry_drag,
+            viscous_drag: race.viscous_drag,
+        });
+        let machine = CoupledMachine::level(&rotor, mount, race);
+        let start = CoupledStart::level(&self.start, rotor.clearance);
+        CoupledReference::new(&machine, &start, self.spin)
     }
 }

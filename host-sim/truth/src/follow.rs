@@ -6,8 +6,7 @@ use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
     Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mount, Race,
-    Retainer, Ring, SupportMachine, SupportReference, SupportStart, SupportState, TwoPlaneMachine,
-    TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
+    Retainer, Ring, RingState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
@@ -49,8 +48,6 @@ pub struct TrueState {
 
 enum Source {
     Planar(Box<Reference>),
-    Support(Box<SupportReference>),
-    TwoPlane(Box<TwoPlaneReference>),
     Coupled(Box<CoupledReference>),
 }
 
@@ -89,34 +86,16 @@ impl<'a> Truth<'a> {
                 let state = reference.advance(time, &mut |happening| whole.take(happening));
                 (state, [state.position; PLANES], Moving::Nothing)
             }
-            Source::Support(reference) => {
-                let whole = &mut self.whole;
-                // The ring at its stop is no matter of the rotor.
-                let state = reference.advance(time, &mut |contact, happening| {
-                    if contact == 0 {
-                        whole.take(happening);
-                    }
-                });
-                of_support(&state)
-            }
-            Source::TwoPlane(reference) => {
-                let (whole, rings, merge) = (&mut self.whole, &mut self.rings, &mut self.merge);
-                let state = reference.advance(time, &mut |ring, happening: ModelEvent| {
-                    rings[ring].take(happening);
-                    if let Some(happening) = merge.take(ring, happening) {
-                        whole.take(happening);
-                    }
-                });
-                of_ends(self.scene.two_plane.as_ref(), &state)
-            }
             Source::Coupled(reference) => {
                 let (whole, rings, merge) = (&mut self.whole, &mut self.rings, &mut self.merge);
+                let contacts = rings.len().max(1);
                 let state = reference.advance(time, &mut |contact, happening: ModelEvent| {
-                    // A ring at its stop is no matter of the rotor.
-                    let Some(ring) = rings.get_mut(contact) else {
+                    if let Some(ring) = rings.get_mut(contact) {
+                        ring.take(happening);
+                    } else if contact >= contacts {
+                        // A ring at its stop is no matter of the rotor.
                         return;
-                    };
-                    ring.take(happening);
+                    }
                     if let Some(happening) = merge.take(contact, happening) {
                         whole.take(happening);
                     }
@@ -136,8 +115,6 @@ impl<'a> Truth<'a> {
     pub fn given_up(&self) -> Option<f64> {
         match &self.source {
             Source::Planar(_) => None,
-            Source::Support(reference) => reference.given_up(),
-            Source::TwoPlane(reference) => reference.given_up(),
             Source::Coupled(reference) => reference.given_up(),
         }
     }
@@ -146,38 +123,21 @@ impl<'a> Truth<'a> {
     pub fn finish(mut self) -> Histories {
         let duration = self.scene.run.duration;
         let end = self.advance(duration).rotor;
-        let still = match &self.source {
-            Source::Planar(reference) => reference.still_speed(),
-            _ => STILL * Units::of(self.scene).speed,
-        };
-        let ends = match (&mut self.source, &self.scene.two_plane) {
-            (Source::TwoPlane(reference), Some(machine)) => {
-                let state = reference.advance(duration, &mut |_, _| ());
-                let rings = machine.rings.iter().enumerate();
-                rings
-                    .map(|(index, ring)| RotorState {
-                        time: duration,
-                        position: state.displacement(ring.place),
-                        velocity: state.displacement_rate(ring.place),
-                        spin: state.spin,
-                        turns_in_contact: state.turns_in_contact[index],
-                    })
-                    .collect()
-            }
-            (Source::Coupled(reference), Some(_)) => {
+        let (still, ends) = match &mut self.source {
+            Source::Planar(reference) => (reference.still_speed(), Vec::new()),
+            Source::Coupled(reference) => {
                 let state = reference.advance(duration, &mut |_, _| ());
                 let rings = state.rings.iter().zip(&state.turns_in_contact);
-                rings
-                    .map(|(ring, turns)| RotorState {
-                        time: duration,
-                        position: ring.displacement,
-                        velocity: ring.displacement_rate,
-                        spin: state.spin,
-                        turns_in_contact: *turns,
-                    })
-                    .collect()
+                let end = |(ring, turns): (&RingState, &f64)| RotorState {
+                    time: duration,
+                    position: ring.displacement,
+                    velocity: ring.displacement_rate,
+                    spin: state.spin,
+                    turns_in_contact: *turns,
+                };
+                let still = STILL * Units::of(self.scene).speed;
+                (still, rings.map(end).collect())
             }
-            _ => Vec::new(),
         };
         let rings = self.rings.into_iter().zip(ends);
         Histories {
@@ -189,24 +149,24 @@ impl<'a> Truth<'a> {
 
 fn source(scene: &Scene) -> Source {
     let spin = scene.rotor.spin;
-    if let Some(machine) = &scene.two_plane {
-        return if machine.is_coupled() {
-            Source::Coupled(Box::new(coupled(scene, machine)))
-        } else {
-            Source::TwoPlane(Box::new(two_plane(scene, machine)))
-        };
-    }
-    if scene.support.is_none() && scene.ball_bearing.is_none() {
-        let reference = Reference::new(&scene.machine(), &scene.start, spin);
-        return Source::Planar(Box::new(reference));
-    }
-    let machine = SupportMachine {
-        rotor: scene.machine(),
-        mount: scene.support.as_ref().map(mount),
-        race: scene.ball_bearing.as_ref().map(race),
+    let machine = match (&scene.two_plane, scene.support, scene.ball_bearing) {
+        (Some(machine), ..) => tilting(scene, machine),
+        (None, None, None) => {
+            let reference = Reference::new(&scene.machine(), &scene.start, spin);
+            return Source::Planar(Box::new(reference));
+        }
+        (None, support, bearing) => {
+            let (support, bearing) = (support.as_ref().map(mount), bearing.as_ref().map(race));
+            CoupledMachine::level(&scene.machine(), support, bearing)
+        }
     };
-    let start = SupportStart::new(scene.start, spin);
-    Source::Support(Box::new(SupportReference::new(&machine, &start)))
+    let tilted = scene.two_plane.as_ref();
+    let start = CoupledStart {
+        tilt: tilted.map_or([0.0; 2], |it| it.tilt),
+        tilt_rate: tilted.map_or([0.0; 2], |it| it.tilt_rate),
+        ..CoupledStart::level(&scene.start, scene.retainer.clearance)
+    };
+    Source::Coupled(Box::new(CoupledReference::new(&machine, &start, spin)))
 }
 
 fn mount(support: &touchdown_scene::Support) -> Mount {
@@ -258,39 +218,7 @@ fn unbalance(scene: &Scene, machine: &TwoPlane) -> Unbalance {
     }
 }
 
-/// Position and velocity of the centre of mass.
-fn centre(scene: &Scene) -> [[f64; 2]; 2] {
-    match scene.start {
-        Start::Free { position, velocity } => [position, velocity],
-        // No valid scene of a rotor that tilts starts so.
-        Start::Wall { .. } => [[0.0; 2]; 2],
-    }
-}
-
-fn two_plane(scene: &Scene, machine: &TwoPlane) -> TwoPlaneReference {
-    let [position, velocity] = centre(scene);
-    TwoPlaneReference::new(
-        &TwoPlaneMachine {
-            mass: scene.rotor.mass,
-            polar_inertia: scene.rotor.polar_inertia,
-            transverse_inertia: machine.transverse_inertia,
-            gravity: gravity(scene, machine),
-            rings: machine.rings.iter().map(ring).collect(),
-            unbalance: unbalance(scene, machine),
-            magnets: machine.magnets.iter().map(magnet).collect(),
-        },
-        &TwoPlaneStart {
-            position,
-            velocity,
-            tilt: machine.tilt,
-            tilt_rate: machine.tilt_rate,
-        },
-        scene.rotor.spin,
-    )
-}
-
-fn coupled(scene: &Scene, machine: &TwoPlane) -> CoupledReference {
-    let [position, velocity] = centre(scene);
+fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
         ring: ring(it),
         mount: it.support.as_ref().map(mount),
@@ -305,26 +233,16 @@ fn coupled(scene: &Scene, machine: &TwoPlane) -> CoupledReference {
         at_centre: mode.at(0.0),
     };
     let magnets = machine.magnets.iter().map(|it| (magnet(it), it.damping));
-    CoupledReference::new(
-        &CoupledMachine {
-            mass: scene.rotor.mass,
-            polar_inertia: scene.rotor.polar_inertia,
-            transverse_inertia: machine.transverse_inertia,
-            gravity: gravity(scene, machine),
-            retainers: machine.rings.iter().map(retainer).collect(),
-            unbalance: unbalance(scene, machine),
-            magnets: magnets.collect(),
-            bending: machine.modes.iter().map(bending).collect(),
-        },
-        &CoupledStart {
-            position,
-            velocity,
-            tilt: machine.tilt,
-            tilt_rate: machine.tilt_rate,
-            ..CoupledStart::default()
-        },
-        scene.rotor.spin,
-    )
+    CoupledMachine {
+        mass: scene.rotor.mass,
+        polar_inertia: scene.rotor.polar_inertia,
+        transverse_inertia: machine.transverse_inertia,
+        gravity: gravity(scene, machine),
+        retainers: machine.rings.iter().map(retainer).collect(),
+        unbalance: unbalance(scene, machine),
+        magnets: magnets.collect(),
+        bending: machine.modes.iter().map(bending).collect(),
+    }
 }
 
 /// By the magnetic bearings, before the release.
@@ -346,7 +264,7 @@ fn held(scene: &Scene, time: f64) -> TrueState {
             it.sensors.map(|place| at(it, place))
         }),
         moving: match (&scene.two_plane, scene.support, scene.ball_bearing) {
-            (Some(it), ..) => Moving::Ends(in_rings(it, |place| at(it, place))),
+            (Some(it), ..) => in_rings(it.rings.iter().map(|ring| at(it, ring.place))),
             (None, None, None) => Moving::Nothing,
             _ => Moving::Ring {
                 position: [0.0; 2],
@@ -357,35 +275,12 @@ fn held(scene: &Scene, time: f64) -> TrueState {
     }
 }
 
-fn in_rings(machine: &TwoPlane, at: impl Fn(f64) -> [f64; 2]) -> [[f64; 2]; RINGS] {
+fn in_rings(of: impl Iterator<Item = [f64; 2]>) -> Moving {
     let mut ends = [[0.0; 2]; RINGS];
-    for (end, ring) in ends.iter_mut().zip(&machine.rings) {
-        *end = at(ring.place);
+    for (end, displacement) in ends.iter_mut().zip(of) {
+        *end = displacement;
     }
-    ends
-}
-
-fn of_ends(
-    machine: Option<&TwoPlane>,
-    state: &TwoPlaneState,
-) -> (RotorState, [[f64; 2]; PLANES], Moving) {
-    let most = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
-    let rotor = RotorState {
-        time: state.time,
-        position: state.position,
-        velocity: state.velocity,
-        spin: state.spin,
-        turns_in_contact: state.turns_in_contact.iter().fold(0.0, most),
-    };
-    let Some(machine) = machine else {
-        return (rotor, [state.position; PLANES], Moving::Nothing);
-    };
-    let at = |place| state.displacement(place);
-    (
-        rotor,
-        machine.sensors.map(at),
-        Moving::Ends(in_rings(machine, at)),
-    )
+    Moving::Ends(ends)
 }
 
 fn of_machine(
@@ -402,31 +297,19 @@ fn of_machine(
         spin: state.spin,
         turns_in_contact: turns,
     };
-    let sensed = machine.map_or([state.position; PLANES], |machine| {
-        machine.sensors.map(|place| {
-            let shapes: Vec<f64> = machine.modes.iter().map(|mode| mode.at(place)).collect();
-            state.displacement(place, &shapes)
-        })
+    let Some(machine) = machine else {
+        let ring = state.rings[0];
+        let moving = Moving::Ring {
+            position: ring.position,
+            race_spin: ring.race_spin,
+            race_angle: ring.race_angle,
+        };
+        return (rotor, [state.position; PLANES], moving);
+    };
+    let sensed = machine.sensors.map(|place| {
+        let shapes: Vec<f64> = machine.modes.iter().map(|mode| mode.at(place)).collect();
+        state.displacement(place, &shapes)
     });
-    let mut ends = [[0.0; 2]; RINGS];
-    for (end, ring) in ends.iter_mut().zip(&state.rings) {
-        *end = ring.displacement;
-    }
-    (rotor, sensed, Moving::Ends(ends))
-}
-
-fn of_support(state: &SupportState) -> (RotorState, [[f64; 2]; PLANES], Moving) {
-    let rotor = RotorState {
-        time: state.time,
-        position: state.position,
-        velocity: state.velocity,
-        spin: state.spin,
-        turns_in_contact: state.turns_in_contact,
-    };
-    let moving = Moving::Ring {
-        position: state.ring_position,
-        race_spin: state.race_spin,
-        race_angle: state.race_angle,
-    };
-    (rotor, [state.position; PLANES], moving)
+    let ends = state.rings.iter().map(|ring| ring.displacement);
+    (rotor, sensed, in_rings(ends))
 }

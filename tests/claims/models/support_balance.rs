@@ -49,10 +49,10 @@ fn error(fall: &Fall, time: f64) -> f64 {
     let speed = (length * fall.rigid.gravity).sqrt();
     [
         apart(end.position, truth.position) / length,
-        apart(end.ring, truth.ring_position) / length,
+        apart(end.ring, truth.rings[0].position) / length,
         apart(end.velocity, truth.velocity) / speed,
         (end.spin - truth.spin).abs() * fall.rigid.radius / speed,
-        (end.race[0] - truth.race_spin).abs() * fall.rigid.radius / speed,
+        (end.race[0] - truth.rings[0].race_spin).abs() * fall.rigid.radius / speed,
     ]
     .into_iter()
     .fold(0.0, f64::max)

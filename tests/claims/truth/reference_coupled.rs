@@ -7,8 +7,8 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_truth::reference::Reference;
 use touchdown_truth::reference::coupled::{
-    Magnet, Mode, Mount, Race, Ring, SupportMachine, SupportReference, SupportStart,
-    TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, Unbalance,
+    CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mode, Mount, Race,
+    Retainer, Ring, Unbalance,
 };
 
 const RIG: Machine = Machine {
@@ -42,27 +42,51 @@ fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
     Start::Free { position, velocity }
 }
 
-fn support(rotor: Machine, mount: Option<Mount>, race: Option<Race>) -> SupportMachine {
-    SupportMachine { rotor, mount, race }
+fn support(
+    rotor: Machine,
+    mount: Option<Mount>,
+    race: Option<Race>,
+    start: &CoupledStart,
+    spin: f64,
+) -> CoupledReference {
+    CoupledReference::new(&CoupledMachine::level(&rotor, mount, race), start, spin)
+}
+
+/// In the gap of the rig, all around at rest.
+fn released(start: Start) -> CoupledStart {
+    CoupledStart::level(&start, RIG.clearance)
 }
 
 /// The rig's rotor, in rings that are like its own.
-fn long(rotor: &Machine, places: &[f64]) -> TwoPlaneMachine {
-    let ring = |place: &f64| Ring {
-        place: *place,
-        radius: rotor.radius,
-        clearance: rotor.clearance,
-        friction: rotor.friction,
-        restitution: rotor.restitution,
+fn long(rotor: &Machine, places: &[f64]) -> CoupledMachine {
+    let level = CoupledMachine::level(rotor, None, None);
+    let retainer = |place: &f64| Retainer {
+        ring: Ring {
+            place: *place,
+            ..level.retainers[0].ring
+        },
+        ..level.retainers[0]
     };
-    TwoPlaneMachine {
-        mass: rotor.mass,
-        polar_inertia: rotor.polar_inertia,
+    CoupledMachine {
         transverse_inertia: TRANSVERSE_INERTIA,
-        gravity: [0.0, -rotor.gravity],
-        rings: places.iter().map(ring).collect(),
-        unbalance: Unbalance::default(),
-        magnets: Vec::new(),
+        retainers: places.iter().map(retainer).collect(),
+        ..level.clone()
+    }
+}
+
+/// Touching two rings at an angle from the bottom, moving round at `rate` (rad/s), counter-clockwise
+/// positive.
+fn on_walls(a: &Ring, b: &Ring, angle: f64, rate: f64) -> CoupledStart {
+    let slope = (b.clearance - a.clearance) / (b.place - a.place);
+    let middle = a.clearance - slope * a.place;
+    let (sine, cosine) = angle.sin_cos();
+    let (outward, along) = ([sine, -cosine], [cosine, sine]);
+    CoupledStart {
+        position: outward.map(|e| e * middle),
+        velocity: along.map(|e| e * middle * rate),
+        tilt: outward.map(|e| e * slope),
+        tilt_rate: along.map(|e| e * slope * rate),
+        ..CoupledStart::default()
     }
 }
 
@@ -131,8 +155,7 @@ fn without_support_it_is_the_planar_reference() {
         let start = free(position, [0.0; 2]);
         let (mut want, mut have) = (Vec::new(), Vec::new());
         let planar = Reference::new(&rotor, &start, spin).advance(end, &mut |h| want.push((0, h)));
-        let mut reference =
-            SupportReference::new(&support(rotor, None, None), &SupportStart::new(start, spin));
+        let mut reference = support(rotor, None, None, &released(start), spin);
         let state = reference.advance(end, &mut |i, h| have.push((i, h)));
         let worst = worst_difference(&impacts(&have, 0), &impacts(&want, 0), 1.0);
         let place = [0, 1].map(|k| (state.position[k] - planar.position[k]) / rotor.clearance);
@@ -142,7 +165,7 @@ fn without_support_it_is_the_planar_reference() {
         assert_eq!(have.len(), want.len());
         // The series is cut at 1e-10 of the unit of speed.
         close_pair(place, [0.0; 2], 1e-9);
-        close(state.turns_in_contact, planar.turns_in_contact, 1e-9);
+        close(state.turns_in_contact[0], planar.turns_in_contact, 1e-9);
     }
 }
 
@@ -157,11 +180,11 @@ fn two_like_ends_are_the_planar_reference() {
         let (mut want, mut have) = (Vec::new(), Vec::new());
         let planar = Reference::new(&rotor, &free(position, [0.0; 2]), spin)
             .advance(end, &mut |h| want.push((0, h)));
-        let start = TwoPlaneStart {
+        let start = CoupledStart {
             position,
-            ..TwoPlaneStart::default()
+            ..CoupledStart::default()
         };
-        let mut reference = TwoPlaneReference::new(&long(&rotor, &[-0.1, 0.1]), &start, spin);
+        let mut reference = CoupledReference::new(&long(&rotor, &[-0.1, 0.1]), &start, spin);
         let state = reference.advance(end, &mut |i, h| have.push((i, h)));
         for ring in 0..2 {
             let worst = worst_difference(&impacts(&have, ring), &impacts(&want, 0), 2.0);
@@ -187,10 +210,7 @@ fn rotor_and_ring_swing_on_the_mount() {
             angle: 0.0,
             tangential: 0.0,
         };
-        let mut reference = SupportReference::new(
-            &support(RIG, Some(mount), None),
-            &SupportStart::new(start, 0.0),
-        );
+        let mut reference = support(RIG, Some(mount), None, &released(start), 0.0);
         let mass = RIG.mass + mount.mass;
         let sag = RIG.mass * RIG.gravity / mount.stiffness;
         let decay = damping / (2.0 * mass);
@@ -200,9 +220,9 @@ fn rotor_and_ring_swing_on_the_mount() {
             let state = reference.advance(time, &mut |_, _| {});
             let (sine, cosine) = (rate * time).sin_cos();
             let left = (-decay * time).exp() * (cosine + decay / rate * sine);
-            close_pair(state.ring_position, [0.0, -sag * (1.0 - left)], 1e-12 * sag);
+            close_pair(state.rings[0].position, [0.0, -sag * (1.0 - left)], 1e-12 * sag);
             close_pair(
-                state.displacement(),
+                state.rings[0].displacement,
                 [0.0, -RIG.clearance],
                 1e-14 * RIG.clearance,
             );
@@ -237,28 +257,23 @@ fn whirl_on_the_mount_keeps_its_circle() {
         let pull = rotor.mass * rate * rate * rotor.clearance;
         let out = pull / (mount.stiffness * (1.0 - part * part));
         let load = rotor.mass * rate * rate * (rotor.clearance + out);
-        let start = SupportStart {
-            ring_position: [out, 0.0],
-            ring_velocity: [0.0, rate * out],
-            ..SupportStart::new(
-                Start::Wall {
-                    angle: 0.5 * PI,
-                    tangential: rate * rotor.clearance,
-                },
-                0.0,
-            )
+        let start = CoupledStart {
+            position: [out + rotor.clearance, 0.0],
+            velocity: [0.0, rate * (out + rotor.clearance)],
+            rings: vec![[[out, 0.0], [0.0, rate * out]]],
+            ..CoupledStart::default()
         };
-        let mut reference = SupportReference::new(&support(rotor, Some(mount), None), &start);
+        let mut reference = support(rotor, Some(mount), None, &start, 0.0);
         for k in 0..100 {
             let time = f64::from(k) * 1e-3;
             let state = reference.advance(time, &mut |_, _| {});
             close_pair(
-                state.ring_position,
+                state.rings[0].position,
                 turned([1.0, 0.0], out, rate * time),
                 1e-10 * out,
             );
             close(state.normal_forces[0], load, 1e-10 * load);
-            close(state.turns_in_contact, rate * time / (2.0 * PI), 1e-10);
+            close(state.turns_in_contact[0], rate * time / (2.0 * PI), 1e-10);
         }
     }
 }
@@ -271,13 +286,14 @@ fn hard_stop_holds_the_ring() {
         travel: Some(travel),
         ..MOUNT
     };
-    let start = SupportStart::new(free([0.0; 2], [0.0; 2]), 0.0);
-    let mut reference = SupportReference::new(&support(RIG, Some(mount), None), &start);
+    let start = CoupledStart::default();
+    let mut reference = support(RIG, Some(mount), None, &start, 0.0);
     let mut happenings = Vec::new();
     let mut worst = 0.0_f64;
     for k in 0..10_000 {
         let state = reference.advance(f64::from(k) * 1e-4, &mut |i, h| happenings.push((i, h)));
-        worst = worst.max(f64::hypot(state.ring_position[0], state.ring_position[1]) / travel);
+        let [x, y] = state.rings[0].position;
+        worst = worst.max(f64::hypot(x, y) / travel);
     }
     let state = reference.advance(1.0, &mut |_, _| {});
     println!(
@@ -287,7 +303,7 @@ fn hard_stop_holds_the_ring() {
         worst - 1.0
     );
     assert!(!impacts(&happenings, 1).is_empty() && worst <= 1.0 + 1e-13);
-    close_pair(state.ring_position, [0.0, -travel], 1e-13 * travel);
+    close_pair(state.rings[0].position, [0.0, -travel], 1e-13 * travel);
     close_pair(
         state.position,
         [0.0, -travel - RIG.clearance],
@@ -312,13 +328,13 @@ fn impacts_with_a_free_ring_keep_momentum() {
         damping: 0.0,
         ..MOUNT
     };
-    let start = SupportStart {
-        ring_velocity: [0.01, -0.02],
-        ..SupportStart::new(free([1e-4, 5e-5], [0.03, 0.04]), SPIN)
+    let start = CoupledStart {
+        rings: vec![[[0.0; 2], [0.01, -0.02]]],
+        ..released(free([1e-4, 5e-5], [0.03, 0.04]))
     };
-    let mut reference = SupportReference::new(&support(rotor, Some(mount), None), &start);
-    let momentum = |state: &touchdown_truth::reference::coupled::SupportState| {
-        [0, 1].map(|k| rotor.mass * state.velocity[k] + mount.mass * state.ring_velocity[k])
+    let mut reference = support(rotor, Some(mount), None, &start, SPIN);
+    let momentum = |state: &CoupledState| {
+        [0, 1].map(|k| rotor.mass * state.velocity[k] + mount.mass * state.rings[0].velocity[k])
     };
     let first = momentum(&reference.advance(0.0, &mut |_, _| {}));
     let mut happenings = Vec::new();
@@ -348,8 +364,8 @@ fn elastic_impacts_keep_energy() {
         ..MOUNT
     };
     let unit = rotor.mass * rotor.gravity * rotor.clearance;
-    let start = SupportStart::new(free([1e-4, 2e-5], [0.0; 2]), 0.0);
-    let mut reference = SupportReference::new(&support(rotor, Some(mount), None), &start);
+    let start = released(free([1e-4, 2e-5], [0.0; 2]));
+    let mut reference = support(rotor, Some(mount), None, &start, 0.0);
     let first = reference.advance(0.0, &mut |_, _| {});
     let first = reference.energy(&first);
     let mut count = 0;
@@ -359,17 +375,18 @@ fn elastic_impacts_keep_energy() {
     assert!(count > 500 && lost.abs() < 1e-11);
 
     let mut machine = long(&rotor, &[-0.08, 0.13]);
-    machine.magnets.push(Magnet {
+    let magnet = Magnet {
         place: 0.1,
         stiffness: 2e4,
         force: [3.0, -2.0],
-    });
-    let start = TwoPlaneStart {
+    };
+    machine.magnets.push((magnet, 0.0));
+    let start = CoupledStart {
         position: [1e-4, 2e-5],
         tilt: [2e-4, 1e-3],
-        ..TwoPlaneStart::default()
+        ..CoupledStart::default()
     };
-    let mut reference = TwoPlaneReference::new(&machine, &start, 0.2 * SPIN);
+    let mut reference = CoupledReference::new(&machine, &start, 0.2 * SPIN);
     let first = reference.advance(0.0, &mut |_, _| {});
     let (spin, first) = (first.spin, reference.energy(&first));
     let mut count = 0;
@@ -387,13 +404,14 @@ fn angular_momentum_is_kept_without_friction() {
         restitution: 0.95,
         ..RIG
     };
-    let start = TwoPlaneStart {
+    let start = CoupledStart {
         position: [1e-4, 2e-5],
         velocity: [0.05, -0.03],
         tilt: [2e-4, 1e-3],
         tilt_rate: [0.1, 0.3],
+        ..CoupledStart::default()
     };
-    let mut reference = TwoPlaneReference::new(&long(&rotor, &[-0.08, 0.13]), &start, 0.2 * SPIN);
+    let mut reference = CoupledReference::new(&long(&rotor, &[-0.08, 0.13]), &start, 0.2 * SPIN);
     let mut count = 0;
     let mut momentum = |time: f64, count: &mut i32| {
         let state = reference.advance(time, &mut |_, _| *count += 1);
@@ -418,26 +436,23 @@ fn inner_ring_spins_up_to_the_rotor() {
     };
     // Where friction holds the rotor's weight on the slope it stays until slip ends.
     let angle = -RIG.friction.atan();
-    let start = SupportStart::new(
-        Start::Wall {
-            angle,
-            tangential: 0.0,
-        },
-        SPIN,
-    );
-    let mut reference = SupportReference::new(&support(RIG, None, Some(race)), &start);
+    let start = released(Start::Wall {
+        angle,
+        tangential: 0.0,
+    });
+    let mut reference = support(RIG, None, Some(race), &start, SPIN);
     let mut rolling = Vec::new();
     let bore = RIG.radius + RIG.clearance;
     let force = RIG.friction * RIG.mass * RIG.gravity * angle.cos();
     let together = RIG.radius * SPIN
         / (force * (RIG.radius.powi(2) / RIG.polar_inertia + bore.powi(2) / race.inertia));
-    let momentum = |state: &touchdown_truth::reference::coupled::SupportState| {
-        RIG.polar_inertia * state.spin / RIG.radius + race.inertia * state.race_spin / bore
+    let momentum = |state: &CoupledState| {
+        RIG.polar_inertia * state.spin / RIG.radius + race.inertia * state.rings[0].race_spin / bore
     };
     let first = reference.advance(0.0, &mut |_, _| {});
     let middle = reference.advance(0.5 * together, &mut |_, h| rolling.push(h));
     close(
-        middle.race_spin,
+        middle.rings[0].race_spin,
         0.5 * together * bore * force / race.inertia,
         1e-9,
     );
@@ -475,11 +490,11 @@ fn drag_stops_the_inner_ring() {
         ..RIG
     };
     for spin in [300.0, -300.0] {
-        let start = SupportStart {
-            race_spin: spin,
-            ..SupportStart::new(free([0.0; 2], [0.0; 2]), 0.0)
+        let start = CoupledStart {
+            race_spins: vec![spin],
+            ..CoupledStart::default()
         };
-        let mut reference = SupportReference::new(&support(rotor, None, Some(race)), &start);
+        let mut reference = support(rotor, None, Some(race), &start, 0.0);
         let rate = race.viscous_drag / race.inertia;
         let least = race.dry_drag / race.viscous_drag;
         let stops = (1.0 + 300.0 / least).ln() / rate;
@@ -487,7 +502,7 @@ fn drag_stops_the_inner_ring() {
             let time = f64::from(k) * 0.01 * stops;
             let left = ((300.0 + least) * (-rate * time).exp() - least).max(0.0);
             let state = reference.advance(time, &mut |_, _| panic!("no contact"));
-            close(state.race_spin, left * spin.signum(), 1e-10);
+            close(state.rings[0].race_spin, left * spin.signum(), 1e-10);
         }
     }
 }
@@ -500,12 +515,12 @@ fn free_tilt_nutates_and_held_tilt_splits() {
         ..RIG
     };
     let mut machine = long(&rotor, &[-0.1, 0.1]);
-    let start = TwoPlaneStart {
+    let start = CoupledStart {
         tilt_rate: [0.0, size * ratio * SPIN],
         tilt: [size, 0.0],
-        ..TwoPlaneStart::default()
+        ..CoupledStart::default()
     };
-    let mut reference = TwoPlaneReference::new(&machine, &start, SPIN);
+    let mut reference = CoupledReference::new(&machine, &start, SPIN);
     for k in 0..100 {
         let time = f64::from(k) * 0.01;
         let state = reference.advance(time, &mut |_, _| panic!("no contact"));
@@ -516,21 +531,22 @@ fn free_tilt_nutates_and_held_tilt_splits() {
         );
     }
     for place in [-0.1, 0.1] {
-        machine.magnets.push(Magnet {
+        let magnet = Magnet {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
-        });
+        };
+        machine.magnets.push((magnet, 0.0));
     }
     let half = 0.5 * ratio * SPIN;
     let split = (half * half + 2.0 * 2e4 * 0.1 * 0.1 / TRANSVERSE_INERTIA).sqrt();
     for rate in [half + split, half - split] {
-        let start = TwoPlaneStart {
+        let start = CoupledStart {
             tilt: [size, 0.0],
             tilt_rate: [0.0, size * rate],
-            ..TwoPlaneStart::default()
+            ..CoupledStart::default()
         };
-        let mut reference = TwoPlaneReference::new(&machine, &start, SPIN);
+        let mut reference = CoupledReference::new(&machine, &start, SPIN);
         for k in 0..100 {
             let time = f64::from(k) * 0.01;
             let state = reference.advance(time, &mut |_, _| panic!("no contact"));
@@ -557,24 +573,26 @@ fn unbalance_drives_the_held_rotor() {
         skew_angle: -1.0,
     };
     for place in [-0.1, 0.1] {
-        machine.magnets.push(Magnet {
+        let magnet = Magnet {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
-        });
+        };
+        machine.magnets.push((magnet, 0.0));
     }
     let square = SPIN * SPIN;
     let out = 2e-6 * rotor.mass * square / (2.0 * 2e4 - rotor.mass * square);
     let couple = 3e-5 * (TRANSVERSE_INERTIA - rotor.polar_inertia) * square
         / (2.0 * 2e4 * 0.01 - (TRANSVERSE_INERTIA - rotor.polar_inertia) * square);
     let at = |size: f64, angle: f64| turned([1.0, 0.0], size, angle);
-    let start = TwoPlaneStart {
+    let start = CoupledStart {
         position: at(out, 0.4),
         velocity: at(out * SPIN, 0.4 + 0.5 * PI),
         tilt: at(couple, -1.0),
         tilt_rate: at(couple * SPIN, -1.0 + 0.5 * PI),
+        ..CoupledStart::default()
     };
-    let mut reference = TwoPlaneReference::new(&machine, &start, SPIN);
+    let mut reference = CoupledReference::new(&machine, &start, SPIN);
     for k in 0..100 {
         let time = f64::from(k) * 5e-3;
         let state = reference.advance(time, &mut |_, _| panic!("no contact"));
@@ -594,11 +612,11 @@ fn unbalance_drives_the_held_rotor() {
 #[test]
 fn one_end_lands_first_and_its_percussion_centre_feels_nothing() {
     let machine = long(&RIG, &[0.1, -TRANSVERSE_INERTIA / RIG.mass / 0.1]);
-    let start = TwoPlaneStart {
+    let start = CoupledStart {
         tilt: [0.0, -1e-3],
-        ..TwoPlaneStart::default()
+        ..CoupledStart::default()
     };
-    let mut reference = TwoPlaneReference::new(&machine, &start, 0.0);
+    let mut reference = CoupledReference::new(&machine, &start, 0.0);
     let lands = (2.0 * (RIG.clearance - 1e-4) / RIG.gravity).sqrt();
     let mut happenings = Vec::new();
     let after = reference.advance(lands * (1.0 + 1e-9), &mut |i, h| happenings.push((i, h)));
@@ -611,7 +629,7 @@ fn one_end_lands_first_and_its_percussion_centre_feels_nothing() {
     close(impact.normal_impulse, 1.8 * speed / mobility, 1e-14);
     close_pair(impact.state.velocity, [0.0, 0.8 * speed], 1e-15);
     close_pair(
-        after.displacement_rate(machine.rings[1].place),
+        after.rings[1].displacement_rate,
         [0.0, -speed],
         2e-9 * speed,
     );
@@ -620,11 +638,12 @@ fn one_end_lands_first_and_its_percussion_centre_feels_nothing() {
 #[test]
 fn walls_are_started_on() {
     let mut machine = long(&RIG, &[-0.1, 0.15]);
-    machine.rings[1].clearance = 2e-4;
+    machine.retainers[1].ring.clearance = 2e-4;
     let (angle, rate) = (0.3, 20.0);
-    let start = TwoPlaneStart::on_walls(&machine, [0, 1], angle, rate);
+    let [a, b] = [0, 1].map(|k| machine.retainers[k].ring);
+    let start = on_walls(&a, &b, angle, rate);
     let mut happenings = Vec::new();
-    let mut reference = TwoPlaneReference::new(&machine, &start, SPIN);
+    let mut reference = CoupledReference::new(&machine, &start, SPIN);
     let state = reference.advance(0.0, &mut |i, h| happenings.push((i, h)));
     let started = |ring| {
         let time = 0.0;
@@ -649,7 +668,7 @@ fn walls_are_started_on() {
 
 #[test]
 fn heavy_rings_are_fixed_ones() {
-    let start = SupportStart::new(free([1e-4, 5e-5], [0.0; 2]), SPIN);
+    let start = free([1e-4, 5e-5], [0.0; 2]);
     let mount = Mount {
         mass: 1e15,
         stiffness: 1e12,
@@ -661,9 +680,9 @@ fn heavy_rings_are_fixed_ones() {
         dry_drag: 1e-3,
         viscous_drag: 1e-3,
     };
-    let machine = support(RIG, Some(mount), Some(race));
-    let fixed = Reference::new(&RIG, &start.rotor, SPIN).advance(0.3, &mut |_| {});
-    let heavy = SupportReference::new(&machine, &start).advance(0.3, &mut |_, _| {});
+    let fixed = Reference::new(&RIG, &start, SPIN).advance(0.3, &mut |_| {});
+    let mut heavy = support(RIG, Some(mount), Some(race), &released(start), SPIN);
+    let heavy = heavy.advance(0.3, &mut |_, _| {});
     for k in 0..2 {
         let error = (heavy.position[k] - fixed.position[k]) / RIG.clearance;
         close(error, 0.0, 1e-9);
@@ -673,26 +692,26 @@ fn heavy_rings_are_fixed_ones() {
 
 #[test]
 fn sampling_does_not_matter() {
-    let start = SupportStart::new(free([1e-4, 0.0], [0.0; 2]), SPIN);
+    let start = released(free([1e-4, 0.0], [0.0; 2]));
     let race = Race {
         inertia: 2e-4,
         dry_drag: 0.01,
         viscous_drag: 1e-5,
     };
-    let machine = support(RIG, Some(MOUNT), Some(race));
-    let mut reference = SupportReference::new(&machine, &start);
+    let new = || support(RIG, Some(MOUNT), Some(race), &start, SPIN);
+    let mut reference = new();
     for k in 0..14_000 {
         reference.advance(f64::from(k) * 1e-5, &mut |_, _| {});
     }
-    let whole = SupportReference::new(&machine, &start).advance(0.14, &mut |_, _| {});
+    let whole = new().advance(0.14, &mut |_, _| {});
     assert_eq!(reference.advance(0.14, &mut |_, _| {}), whole);
 }
 
 #[test]
 fn series_converge() {
-    let start = SupportStart::new(free([1e-4, 0.0], [0.0; 2]), SPIN);
+    let start = released(free([1e-4, 0.0], [0.0; 2]));
     let run = |accuracy: f64| {
-        let mut reference = SupportReference::new(&support(RIG, Some(MOUNT), None), &start);
+        let mut reference = support(RIG, Some(MOUNT), None, &start, SPIN);
         reference.set_accuracy(accuracy);
         reference.advance(0.05, &mut |_, _| {}).position
     };
@@ -757,17 +776,18 @@ proptest! {
         let race = has_race.then_some(Race { inertia: 10_f64.powf(inertia), dry_drag, viscous_drag });
         let out = part * rotor.clearance;
         let start = free([out * angle.sin(), -out * angle.cos()], [vx, vy]);
-        let mut reference = SupportReference::new(&support(rotor, mount, race), &SupportStart::new(start, spin));
+        let mut reference = support(rotor, mount, race, &released(start), spin);
         let mut before = f64::INFINITY;
         let unit = 1e-12 * (rotor.mass * (0.04 + gravity * rotor.clearance) + rotor.polar_inertia * spin * spin);
         let mut count = 0;
         for k in 0..=100 {
             let state = reference.advance(f64::from(k) * 1e-3, &mut |_, _| count += 1);
-            let (q, w) = (state.displacement(), state.displacement_rate());
+            let ring = &state.rings[0];
+            let (q, w) = (ring.displacement, ring.displacement_rate);
             let gap = f64::hypot(q[0], q[1]) / rotor.clearance;
-            let [u, v] = state.ring_position;
+            let [u, v] = ring.position;
             let stop = travel.filter(|_| has_mount).map_or(0.0, |travel| f64::hypot(u, v) / travel);
-            let rubbing = rotor.radius * state.spin - (rotor.radius + rotor.clearance) * state.race_spin;
+            let rubbing = rotor.radius * state.spin - (rotor.radius + rotor.clearance) * ring.race_spin;
             let size = 1.0 + rotor.radius * spin.abs();
             let slip = if friction > 0.0 { (cross(q, w) / rotor.clearance + rubbing) / size } else { 0.0 };
             laws(reference.energy(&state), &mut before, unit, &[gap, stop], &[(state.modes[0], slip)])?;
@@ -791,14 +811,14 @@ proptest! {
         let rotor = Machine { friction, restitution, gravity, ..RIG };
         let mut machine = long(&rotor, &places);
         machine.transverse_inertia = 10_f64.powf(transverse);
-        for (ring, clearance) in machine.rings.iter_mut().zip(clearances) {
-            ring.clearance = clearance;
+        for (it, clearance) in machine.retainers.iter_mut().zip(clearances) {
+            it.ring.clearance = clearance;
         }
-        machine.magnets.push(Magnet { place: 0.05, stiffness, force: [0.0; 2] });
+        machine.magnets.push((Magnet { place: 0.05, stiffness, force: [0.0; 2] }, 0.0));
         // Inside every ring.
-        let inside = |t: f64| 0.5 * t * machine.rings.iter().map(|r| r.clearance / 1e-3 / r.place.abs().max(0.01)).fold(1.0, f64::min);
-        let start = TwoPlaneStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry] };
-        let mut reference = TwoPlaneReference::new(&machine, &start, spin);
+        let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.ring.clearance / 1e-3 / it.ring.place.abs().max(0.01)).fold(1.0, f64::min);
+        let start = CoupledStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry], ..CoupledStart::default() };
+        let mut reference = CoupledReference::new(&machine, &start, spin);
         let mut before = f64::INFINITY;
         let unit = 1e-12 * (rotor.mass * (0.04 + gravity * rotor.clearance) + rotor.polar_inertia * spin * spin + machine.transverse_inertia + 0.01);
         let mut count = 0;
@@ -807,8 +827,8 @@ proptest! {
             let mut gaps = Vec::new();
             let mut slips = Vec::new();
             let size = 1.0 + rotor.radius * spin.abs();
-            for (ring, mode) in machine.rings.iter().zip(&state.modes) {
-                let (q, w) = (state.displacement(ring.place), state.displacement_rate(ring.place));
+            for ((it, at), mode) in machine.retainers.iter().zip(&state.rings).zip(&state.modes) {
+                let (ring, q, w) = (&it.ring, at.displacement, at.displacement_rate);
                 gaps.push(f64::hypot(q[0], q[1]) / ring.clearance);
                 let slip = cross(q, w) / ring.clearance + ring.radius * state.spin;
                 slips.push((*mode, if friction > 0.0 { slip / size } else { 0.0 }));

@@ -2,20 +2,55 @@
 //!
 //! The axis at the place z is displaced by r(z) = p + z a + sum of phi_k(z) eta_k, with the tilt
 //! a = (theta_y, -theta_x) and the modes' coordinates eta_k. A ring's place u counts from where it
-//! rests under its own weight; r - u is what its clearance bounds.
+//! rests under its own weight; r - u is what its clearance bounds. Free tilt turns as a'' = i g w a',
+//! g = J_p/J_t, x + iy: forward nutation.
 //!
 //! Limits: the damping of bending is taken in the frame that does not turn (no instability above a
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
 //! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
 
-use super::jet::constants;
-use super::mode::Mode;
-use super::motion::{Moment, Motion};
-use super::support::{Mount, Race};
 use super::surroundings::{Body, Magnet, Surroundings};
-use super::system::{Hold, Law, Link, System};
-use super::two_plane::{Ring, Unbalance};
-use touchdown_base::history::ModelEvent;
+use super::system::{Hold, Link, System};
+use touchdown_base::machine::Machine;
+
+/// A retainer's bore.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ring {
+    /// Along the axis from the centre of mass, m.
+    pub place: f64,
+    /// Of the rotor there, m.
+    pub radius: f64,
+    /// Radial gap, m.
+    pub clearance: f64,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Coefficient of restitution, 0 to 1.
+    pub restitution: f64,
+}
+
+/// What the retainer ring stands on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mount {
+    /// Of the ring, kg.
+    pub mass: f64,
+    /// Spring, N/m.
+    pub stiffness: f64,
+    /// Damper, N s/m.
+    pub damping: f64,
+    /// Way of the ring from its rest place to a hard stop, m: without friction and rebound.
+    pub travel: Option<f64>,
+}
+
+/// Inner ring of a ball bearing, with the clearance added to the rotor's radius as its bore.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Race {
+    /// kg m^2.
+    pub inertia: f64,
+    /// Drag that doesn't depend on the speed, and holds at rest, N m.
+    pub dry_drag: f64,
+    /// Drag over speed, N m s.
+    pub viscous_drag: f64,
+}
 
 /// A ring and what holds it; without mount it is fixed, without race it doesn't turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +61,19 @@ pub struct Retainer {
     pub mount: Option<Mount>,
     /// In the ring.
     pub race: Option<Race>,
+}
+
+/// Directions are those at spin angle 0, counter-clockwise from x.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unbalance {
+    /// Of the centre of mass, m: the force m e w^2.
+    pub eccentricity: f64,
+    /// rad.
+    pub angle: f64,
+    /// Of the axis of inertia, rad: the moment (J_t - J_p) chi w^2.
+    pub skew: f64,
+    /// rad.
+    pub skew_angle: f64,
 }
 
 /// A bending mode of the free rotor.
@@ -66,97 +114,28 @@ pub struct CoupledMachine {
     pub bending: Vec<Bending>,
 }
 
-/// The release; places outside a ring are taken back to its wall. The rotor is straight, and all that
-/// surrounds it at rest, where a list is shorter than the machine's.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CoupledStart {
-    /// Of the centre of mass, m.
-    pub position: [f64; 2],
-    /// m/s.
-    pub velocity: [f64; 2],
-    /// a, rad.
-    pub tilt: [f64; 2],
-    /// rad/s.
-    pub tilt_rate: [f64; 2],
-    /// Of each mode, and their rates.
-    pub bending: Vec<[[f64; 2]; 2]>,
-    /// Of each ring with a mount (the others are fixed), m, and their rates.
-    pub rings: Vec<[[f64; 2]; 2]>,
-    /// Of each inner ring (those without a race don't turn), rad/s.
-    pub race_spins: Vec<f64>,
-}
-
-/// A ring at one moment, SI; zeros where it can't move.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RingState {
-    /// From its rest place, m.
-    pub position: [f64; 2],
-    /// m/s.
-    pub velocity: [f64; 2],
-    /// Of the rotor in it, m.
-    pub displacement: [f64; 2],
-    /// m/s.
-    pub displacement_rate: [f64; 2],
-    /// Inner ring, rad/s.
-    pub race_spin: f64,
-    /// Turned by the inner ring since the release, rad.
-    pub race_angle: f64,
-}
-
-/// Everything at one moment, SI.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CoupledState {
-    /// s.
-    pub time: f64,
-    /// Centre of mass, m.
-    pub position: [f64; 2],
-    /// m/s.
-    pub velocity: [f64; 2],
-    /// a, rad.
-    pub tilt: [f64; 2],
-    /// rad/s.
-    pub tilt_rate: [f64; 2],
-    /// Counter-clockwise positive, rad/s.
-    pub spin: f64,
-    /// Since the release, rad.
-    pub spin_angle: f64,
-    /// Of each mode.
-    pub bending: Vec<[f64; 2]>,
-    /// Of each ring.
-    pub rings: Vec<RingState>,
-    /// In each ring, then at each stop.
-    pub modes: Vec<Mode>,
-    /// Of the same, N.
-    pub normal_forces: Vec<f64>,
-    /// Signed turns round each of them since contact began; 0 in flight.
-    pub turns_in_contact: Vec<f64>,
-    moment: Moment,
-}
-
-impl CoupledState {
-    /// Displacement of the axis at a place where the modes have these shapes, m.
-    pub fn displacement(&self, place: f64, shapes: &[f64]) -> [f64; 2] {
-        let straight = [0, 1].map(|k| self.position[k] + place * self.tilt[k]);
-        let modes = self.bending.iter().zip(shapes);
-        modes.fold(straight, |[x, y], (bent, shape)| {
-            [x + shape * bent[0], y + shape * bent[1]]
-        })
-    }
-}
-
-/// A drop, followed from its release.
-///
-/// Happenings of contact i are those of the rotor in ring i, told with the axis' displacement there in
-/// space; then come the stops, of the rings that have one, told with the ring's position.
-#[derive(Clone, Debug)]
-pub struct CoupledReference {
-    motion: Motion<Surroundings>,
-    /// Displacements in the rings.
-    rings: Vec<Link>,
-    bending: usize,
-}
-
 impl CoupledMachine {
+    /// A rotor in one ring, at its centre of mass: it never tilts.
+    pub fn level(rotor: &Machine, mount: Option<Mount>, race: Option<Race>) -> Self {
+        let ring = Ring {
+            place: 0.0,
+            radius: rotor.radius,
+            clearance: rotor.clearance,
+            friction: rotor.friction,
+            restitution: rotor.restitution,
+        };
+        Self {
+            mass: rotor.mass,
+            polar_inertia: rotor.polar_inertia,
+            transverse_inertia: rotor.polar_inertia,
+            gravity: [0.0, -rotor.gravity],
+            retainers: vec![Retainer { ring, mount, race }],
+            unbalance: Unbalance::default(),
+            magnets: Vec::new(),
+            bending: Vec::new(),
+        }
+    }
+
     fn bodies(&self) -> usize {
         2 + self.bending.len() + self.retainers.len()
     }
@@ -213,7 +192,8 @@ impl CoupledMachine {
         [walls, stops, brakes].concat()
     }
 
-    fn surroundings(&self) -> Surroundings {
+    /// What acts on it.
+    pub(super) fn surroundings(&self) -> Surroundings {
         let centre = self.mass * self.unbalance.eccentricity;
         let angle = self.unbalance.angle;
         let couple = (self.transverse_inertia - self.polar_inertia) * self.unbalance.skew;
@@ -255,7 +235,8 @@ impl CoupledMachine {
         }
     }
 
-    fn system(&self, length: f64) -> System {
+    /// Its masses and links; `length` is the least clearance, m.
+    pub(super) fn system(&self, length: f64) -> System {
         let both = |values: Vec<f64>| values.into_iter().flat_map(|value| [value; 2]);
         let over = |of: Option<f64>| of.map_or(0.0, |of| 1.0 / of);
         let reach = |parts: &mut dyn Iterator<Item = f64>| {
@@ -287,114 +268,5 @@ impl CoupledMachine {
                 .collect(),
             links: self.links(),
         }
-    }
-
-    /// Coordinates and their rates.
-    fn coordinates(&self, start: &CoupledStart, spin: f64) -> [Vec<f64>; 2] {
-        [0, 1].map(|rate| {
-            let rotor = [
-                [start.position, start.tilt],
-                [start.velocity, start.tilt_rate],
-            ][rate];
-            let mut of = rotor.concat();
-            for k in 0..self.bending.len() {
-                of.extend(start.bending.get(k).map_or([0.0; 2], |it| it[rate]));
-            }
-            for (k, it) in self.retainers.iter().enumerate() {
-                let ring = start.rings.get(k).filter(|_| it.mount.is_some());
-                of.extend(ring.map_or([0.0; 2], |it| it[rate]));
-            }
-            let turning = rate as f64;
-            of.push(turning * spin);
-            for (k, it) in self.retainers.iter().enumerate() {
-                let race = start.race_spins.get(k).filter(|_| it.race.is_some());
-                of.push(turning * race.copied().unwrap_or(0.0));
-            }
-            of
-        })
-    }
-}
-
-impl CoupledReference {
-    /// At the release; `spin` is counter-clockwise, rad/s.
-    pub fn new(machine: &CoupledMachine, start: &CoupledStart, spin: f64) -> Self {
-        let rings = || machine.retainers.iter().map(|it| it.ring);
-        let length = rings()
-            .map(|ring| ring.clearance)
-            .fold(f64::INFINITY, f64::min);
-        let (law, system) = (machine.surroundings(), machine.system(length));
-        let [place, speed] = machine.coordinates(start, spin);
-        let pulled = law.forces(&constants(&place), &constants(&speed));
-        let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
-        let walls = system.links[..machine.retainers.len()].to_vec();
-        let moving = walls.iter().map(|link| {
-            let [x, y] = link.lateral(&speed);
-            f64::hypot(x, y)
-        });
-        let unit = [
-            (pull * length).sqrt(),
-            moving.fold(0.0, f64::max),
-            rings()
-                .map(|ring| (ring.radius * spin).abs())
-                .fold(0.0, f64::max),
-        ];
-        let unit = unit.into_iter().find(|speed| *speed > 0.0).unwrap_or(1.0);
-        Self {
-            motion: Motion::new(system, law, (length / unit, unit), (place, speed)),
-            rings: walls,
-            bending: machine.bending.len(),
-        }
-    }
-
-    /// Advances to `time` (finite, s since the release; times must not decrease), reporting every
-    /// happening on the way in order.
-    pub fn advance(
-        &mut self,
-        time: f64,
-        on_event: &mut impl FnMut(usize, ModelEvent),
-    ) -> CoupledState {
-        let moment = self.motion.advance(time, on_event);
-        let (place, speed) = (&moment.place, &moment.speed);
-        let of = |of: &[f64], body: usize| [of[2 * body], of[2 * body + 1]];
-        let (first, walls) = (2 + self.bending, self.motion.walls());
-        let spins = 2 * (first + self.rings.len());
-        let ring = |(i, link): (usize, &Link)| RingState {
-            position: of(place, first + i),
-            velocity: of(speed, first + i),
-            displacement: link.lateral(place),
-            displacement_rate: link.lateral(speed),
-            race_spin: speed[spins + 1 + i],
-            race_angle: place[spins + 1 + i],
-        };
-        CoupledState {
-            time: moment.time,
-            position: of(place, 0),
-            velocity: of(speed, 0),
-            tilt: of(place, 1),
-            tilt_rate: of(speed, 1),
-            spin: speed[spins],
-            spin_angle: place[spins],
-            bending: (2..first).map(|k| of(place, k)).collect(),
-            rings: self.rings.iter().enumerate().map(ring).collect(),
-            modes: moment.modes[..walls].to_vec(),
-            normal_forces: moment.normal[..walls].to_vec(),
-            turns_in_contact: moment.turns[..walls].to_vec(),
-            moment,
-        }
-    }
-
-    /// Translation, tilt, bending, rings, spins, gravity, mounts and magnets, J.
-    pub fn energy(&self, state: &CoupledState) -> f64 {
-        self.motion.energy(&state.moment)
-    }
-
-    /// When its steps were spent, s; it stays there.
-    pub fn given_up(&self) -> Option<f64> {
-        self.motion.given_up()
-    }
-
-    /// Size of the last terms of the series (1e-18 of the clearance if not set).
-    pub fn set_accuracy(&mut self, accuracy: f64) {
-        self.motion.set_accuracy(accuracy);
     }
 }

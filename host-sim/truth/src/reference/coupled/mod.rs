@@ -23,6 +23,7 @@
 //! Accuracy: in drops without support, or of a rotor with two like ends, impacts differ from the
 //! planar reference by less than 1e-12 in units of the scale law, and what follows by 1e-10.
 
+mod drop;
 mod fall;
 mod forces;
 mod impact;
@@ -30,18 +31,13 @@ mod jet;
 mod machine;
 mod mode;
 mod motion;
+mod start;
 mod step;
-mod support;
 mod surroundings;
 mod system;
-mod two_plane;
 
-pub use machine::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, RingState,
-};
+pub use drop::{CoupledReference, CoupledState, RingState};
+pub use machine::{Bending, CoupledMachine, Mount, Race, Retainer, Ring, Unbalance};
 pub use mode::Mode;
-pub use support::{Mount, Race, SupportMachine, SupportReference, SupportStart, SupportState};
+pub use start::CoupledStart;
 pub use surroundings::Magnet;
-pub use two_plane::{
-    Ring, TwoPlaneMachine, TwoPlaneReference, TwoPlaneStart, TwoPlaneState, Unbalance,
-};
