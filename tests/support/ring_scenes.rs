@@ -229,10 +229,10 @@ impl Fall {
         (last.expect("the start at least"), told)
     }
 
-    /// The same machine by the reference.
-    pub fn reference(&self) -> CoupledReference {
+    /// Rotor and gap, for the reference.
+    pub fn machine(&self) -> Machine {
         let rigid = &self.rigid;
-        let rotor = Machine {
+        Machine {
             mass: rigid.mass,
             radius: rigid.radius,
             polar_inertia: rigid.polar_inertia,
@@ -240,7 +240,12 @@ impl Fall {
             friction: rigid.friction,
             restitution: rigid.restitution,
             gravity: rigid.gravity,
-        };
+        }
+    }
+
+    /// The same machine by the reference.
+    pub fn reference(&self) -> CoupledReference {
+        let rotor = self.machine();
         let mount = self.mount.map(|mount| reference::coupled::Mount {
             mass: mount.mass,
             stiffness: mount.stiffness,

@@ -4,7 +4,6 @@
 use std::iter::zip;
 
 use touchdown_base::history::ModelEvent;
-use touchdown_base::machine::Machine;
 use touchdown_models::Moreau;
 use touchdown_rotor::{Change, Precision, Start, Stepper};
 use touchdown_tests::moment::Moment;
@@ -108,23 +107,9 @@ fn impacts_are_those_of_the_reference() {
     }
 }
 
-fn planar(fall: &Fall) -> Reference {
-    let rigid = &fall.rigid;
-    let machine = Machine {
-        mass: rigid.mass,
-        radius: rigid.radius,
-        polar_inertia: rigid.polar_inertia,
-        clearance: rigid.clearance,
-        friction: rigid.friction,
-        restitution: rigid.restitution,
-        gravity: rigid.gravity,
-    };
-    Reference::new(&machine, &fall.start, fall.spin)
-}
-
 /// Largest distance from the drop into a fixed ring, in clearances, of the support and of `moreau`.
 fn beside(fall: &Fall, time: f64) -> [f64; 2] {
-    let mut truth = planar(fall);
+    let mut truth = Reference::new(&fall.machine(), &fall.start, fall.spin);
     let mut path = Vec::new();
     let mut worst = 0.0_f64;
     fall.follow::<f64>(time, |now| {

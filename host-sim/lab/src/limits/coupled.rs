@@ -170,7 +170,7 @@ fn rotor_lever(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> f64 {
 fn lever(scene: &Scene) -> f64 {
     let yields = |it: Option<Support>| it.map_or(0.0, |it| scene.rotor.mass / it.mass).sqrt();
     let Some(machine) = &scene.two_plane else {
-        return yields(scene.support).hypot(1.0);
+        return yields(scene.support).max(1.0);
     };
     let of = |ring: &Ring| {
         let part = scene.retainer.clearance / ring.retainer.clearance;
