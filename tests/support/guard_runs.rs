@@ -1,39 +1,14 @@
 //! Runs of the whole controller on a machine of [`crate::plant`], told more or less wrong: what must hold of its guard.
 
-use rayon::prelude::*;
-use serde::Serialize;
-use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
-use touchdown_core::event::{Notice, Notices};
-use touchdown_core::guard::GuardConfig;
-use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_core::sensing::SensingConfig;
-use touchdown_firmware::app::App;
-use touchdown_firmware::board::Board;
-use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
-use touchdown_protocol::controller::{Cause, Faults, Shown};
+use touchdown_core::event::Notice;
+use touchdown_protocol::controller::Cause;
 
-use crate::plant::{Chain, Disturbance, Machine, Phase, Plant, Rng, Truth};
+use crate::family::{Family, seeds};
+use crate::plant::{Disturbance, Machine, Phase, Rng, Truth};
+use crate::told_machine::{ROTOR_RADIUS, Run, Told};
 
-const GRAVITY: f64 = 9.81;
-const ROTOR_RADIUS: f64 = 0.024;
 /// Longest time from a reading beyond a limit to outputs that are off, s.
 const ANSWER: f64 = 1e-3;
-
-/// What a family of runs must show, and what it showed.
-#[derive(Clone, Debug, Serialize)]
-pub struct Family {
-    /// What was run.
-    pub name: &'static str,
-    /// Runs in which it could be judged.
-    pub runs: usize,
-    /// Of them, those in which it did not hold.
-    pub failed: usize,
-    /// Above this rate at 95 %, if it fails at all.
-    pub rate_below: f64,
-    /// The first seeds that failed, and how.
-    pub failures: Vec<String>,
-}
 
 /// A run, if it can be judged.
 type Judged = fn(&mut Rng) -> Option<Result<(), String>>;
@@ -77,94 +52,10 @@ const FAMILIES: [(&str, u64, Judged); 5] = [
 pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
     let chosen = FAMILIES.into_iter().filter(|it| it.0.contains(only));
     chosen
-        .map(|(name, part, judged)| family(name, runs.div_ceil(part), first_seed, judged))
-        .collect()
-}
-
-/// `None` where a run cannot be judged.
-fn family(name: &'static str, runs: u64, first_seed: u64, run: Judged) -> Family {
-    let seeds = first_seed..first_seed + runs;
-    let outcomes: Vec<(u64, Result<(), String>)> = seeds
-        .into_par_iter()
-        .filter_map(|seed| {
-            Some((
-                seed,
-                run(&mut Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d)))?,
-            ))
+        .map(|(name, part, judged)| {
+            Family::of(name, &seeds(runs.div_ceil(part), first_seed, judged))
         })
-        .collect();
-    let failures: Vec<String> = outcomes
-        .iter()
-        .filter_map(|(seed, outcome)| Some(format!("seed {seed}: {}", outcome.as_ref().err()?)))
-        .collect();
-    Family {
-        name,
-        runs: outcomes.len(),
-        failed: failures.len(),
-        rate_below: upper_bound(failures.len(), outcomes.len()),
-        failures: failures.into_iter().take(10).collect(),
-    }
-}
-
-/// One-sided Clopper-Pearson bound at 95 %, by bisection.
-fn upper_bound(failed: usize, runs: usize) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let rate: f64 = 0.5 * (low + high);
-        // Probability of so few failures, term by term.
-        let mut term = (1.0 - rate).powi(runs as i32);
-        let mut sum = term;
-        for k in 0..failed {
-            term *= rate / (1.0 - rate) * (runs - k) as f64 / (k + 1) as f64;
-            sum += term;
-        }
-        if sum > 0.05 { low = rate } else { high = rate }
-    }
-    high
-}
-
-/// What the controller is told, against what is.
-struct Told {
-    /// Told over true gap.
-    gap: f64,
-    chain: Chain,
-}
-
-impl Told {
-    /// Each plane differently, all wrong by up to `part`; gain by up to two thirds of it.
-    fn wrong(rng: &mut Rng, part: f64) -> Self {
-        let mut chain = Chain::new(rng.next_u64(), 20_000.0);
-        let gain = part.min(0.2);
-        chain.gain_error = std::array::from_fn(|_| rng.uniform(-gain, gain));
-        // In parts of the gap here; see `on`.
-        chain.zero = std::array::from_fn(|_| {
-            let (far, angle) = (
-                rng.uniform(0.0, part),
-                rng.uniform(0.0, std::f64::consts::TAU),
-            );
-            [far * angle.cos(), far * angle.sin()]
-        });
-        chain.noise = rng.uniform(0.3, 3.0);
-        Self {
-            gap: 1.0 + rng.uniform(-part, part),
-            chain,
-        }
-    }
-
-    fn right(rng: &mut Rng) -> Self {
-        Self {
-            gap: 1.0,
-            chain: Chain::new(rng.next_u64(), 20_000.0),
-        }
-    }
-
-    /// Zero errors in micrometres on this machine.
-    fn on(&self, machine: &Machine) -> Chain {
-        let mut chain = self.chain.clone();
-        let micro = machine.gap * 1e6;
-        chain.zero = chain.zero.map(|it| it.map(|part| part * micro));
-        chain
-    }
+        .collect()
 }
 
 fn machine(rng: &mut Rng) -> Machine {
@@ -179,109 +70,6 @@ fn machine(rng: &mut Rng) -> Machine {
         damping: rng.uniform(0.4, 0.8),
         orbit: rng.uniform(0.0, 0.04) * gap,
         ..Machine::default()
-    }
-}
-
-/// A controller over a run.
-struct Run {
-    app: App,
-    board: Desk,
-    plant: Plant,
-    chain: Chain,
-    rate: f64,
-    told_gap: f64,
-    /// Readings of the last sample, as parts of the told gap: the plane further out.
-    reading: f64,
-    notices: Notices,
-}
-
-struct Desk(Block);
-
-impl Board for Desk {
-    fn report(&mut self, _: &Notice) {}
-    fn drive(&mut self, _: Shown) {}
-    fn config(&self) -> &[u8] {
-        &self.0
-    }
-    fn service(&self) -> bool {
-        false
-    }
-
-    fn feed(&mut self) {}
-}
-
-impl Run {
-    /// Switched on with the first sample.
-    fn new(machine: &Machine, phases: &[Phase], told: &Told, rate: f64) -> Self {
-        let told_gap = machine.gap * told.gap;
-        let config = config(machine, told_gap, rate);
-        let settings = Settings {
-            monitor: config,
-            wiring: Wiring::default(),
-            key: None,
-        };
-        let mut chain = told.on(machine);
-        chain.rate = rate;
-        Self {
-            app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
-            board: Desk(config_block::encode(&settings)),
-            plant: Plant::new(machine, phases),
-            chain,
-            rate,
-            told_gap,
-            reading: 0.0,
-            notices: Notices::new(),
-        }
-    }
-
-    fn step(&mut self, spin: f64) -> Option<(Truth, Shown)> {
-        let truth = self.plant.next_sample(self.rate)?;
-        let counts = self.chain.counts(truth.place);
-        let sample = Sample {
-            counts,
-            valid: 0b1111,
-            spin: Some(spin as f32),
-            levitated: None,
-            edges: [None; TACHOMETERS],
-        };
-        let place = |count: u16| (f64::from(count) - 2_048.0) * 2_000e-6 / 4_096.0;
-        let [a, b] = [[counts[0], counts[1]], [counts[2], counts[3]]]
-            .map(|[x, y]| place(x).hypot(place(y)) / self.told_gap);
-        self.reading = a.max(b);
-        self.app
-            .tick(&mut self.board, &sample, 0, &mut self.notices);
-        Some((truth, self.app.shown()))
-    }
-}
-
-/// What a machine of this kind is told.
-pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
-    MonitorConfig {
-        fitted: 0b1111,
-        sensing: SensingConfig {
-            resolution: 2_000e-6 / 4_096.0,
-            zero_count: 2_048.0,
-            full_scale: 4_095,
-            mounting_angle: [0.0; 2],
-            calibration: None,
-        },
-        tachometers: None,
-        detector: DetectorConfig {
-            sample_rate: rate as f32,
-            machine: MachineConfig {
-                mass: 3.0,
-                clearance: told_gap as f32,
-                gravity: GRAVITY as f32,
-                rotor_radius: ROTOR_RADIUS as f32,
-                inertia_ratio: 0.5,
-                friction: machine.friction as f32,
-                restitution: machine.restitution as f32,
-                spin: machine.spin as f32,
-            },
-            tuning: Tuning::default(),
-        },
-        guard: GuardConfig::default(),
-        commissioned: false,
     }
 }
 

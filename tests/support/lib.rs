@@ -8,6 +8,8 @@ pub mod controller;
 pub mod counting;
 pub mod drops;
 pub mod episode;
+pub mod fall_runs;
+pub mod family;
 #[cfg(unix)]
 pub mod file_options;
 pub mod growth;
@@ -19,3 +21,4 @@ pub mod plant;
 pub mod ring_scenes;
 pub mod rotors;
 pub mod sweep_runs;
+pub mod told_machine;

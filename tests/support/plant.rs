@@ -54,10 +54,19 @@ pub struct Machine {
     pub float_place: [f64; 2],
     /// Largest AMB acceleration, gravity support included, m/s^2.
     pub force_limit: f64,
-    /// Whether the unbalance acts while the AMB is off too. If so, `spin^2 * orbit` above 1 g
-    /// makes a lying rotor jump; if not, the orbit fades in with the lift and its velocity is
-    /// taken away at a drop (the rotor then falls like its centre of mass).
-    pub unbalance_in_drop: bool,
+    /// What becomes of the orbit while the AMB is off.
+    pub after: Orbit,
+}
+
+/// What becomes of the orbit while the AMB is off. Unless it goes on, it fades in with the lift.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orbit {
+    /// Its velocity is taken away at a drop: the rotor falls like its centre of mass.
+    Ends,
+    /// The rotor leaves it in its tangent.
+    Throws,
+    /// The unbalance goes on; `spin^2 * orbit` above 1 g makes a lying rotor jump.
+    GoesOn,
 }
 
 impl Default for Machine {
@@ -73,7 +82,7 @@ impl Default for Machine {
             orbit: 0.0,
             float_place: [0.0, 0.0],
             force_limit: 3.0 * GRAVITY,
-            unbalance_in_drop: false,
+            after: Orbit::Ends,
         }
     }
 }
@@ -396,7 +405,7 @@ impl Plant {
         }
         self.index = index;
         let (was_on, on) = (self.on, self.phases[index].amb_on());
-        if was_on && !on && !self.m.unbalance_in_drop {
+        if was_on && !on && self.m.after == Orbit::Ends {
             let ov = self.orbit(self.t).1;
             self.v = [self.v[0] - ov[0], self.v[1] - ov[1]];
         }
@@ -420,7 +429,7 @@ impl Plant {
     /// Orbit and its velocity at time `t` (within the present phase).
     fn orbit(&self, t: f64) -> ([f64; 2], [f64; 2]) {
         let (m, w) = (&self.m, self.m.spin);
-        let amp = match (m.unbalance_in_drop, self.on) {
+        let amp = match (m.after == Orbit::GoesOn, self.on) {
             (true, _) => m.orbit,
             (false, false) => 0.0,
             (false, true) if self.orbit_fade => m.orbit * smooth((t - self.begin) / self.glide),
@@ -577,8 +586,12 @@ pub struct Chain {
     pub noise: f64,
     /// Per plane: zero drift in x and y, micrometres a second.
     pub drift: [[f64; 2]; 2],
-    /// Chance that a sample is four random counts during the burst.
+    /// Chance that a sample is disturbed during the burst: four random counts, or
+    /// `burst_height`.
     pub burst: f64,
+    /// Common to all channels of a disturbed sample, micrometres, up to this and of either sign;
+    /// 0: random counts.
+    pub burst_height: f64,
     /// Start and end of the burst, s.
     pub burst_time: [f64; 2],
     /// Samples per second. The n-th call (from 1) is taken to be at n / rate, as in `Plant`.
@@ -596,6 +609,7 @@ impl Chain {
             drift: [[0.0; 2]; 2],
             noise: 0.0,
             burst: 0.0,
+            burst_height: 0.0,
             burst_time: [0.0; 2],
             rate,
             rng: Rng(seed),
@@ -608,6 +622,10 @@ impl Chain {
         let time = self.calls as f64 / self.rate;
         let is_burst = (self.burst_time[0]..self.burst_time[1]).contains(&time);
         let is_hit = is_burst && self.rng.uniform(0.0, 1.0) < self.burst;
+        let mut height = 0.0;
+        if is_hit && self.burst_height > 0.0 {
+            height = self.rng.uniform(-self.burst_height, self.burst_height);
+        }
         std::array::from_fn(|i| {
             let (plane, axis) = (i / 2, i % 2);
             let mut um = place[axis] * 1e6 * (1.0 + self.gain_error[plane])
@@ -616,9 +634,10 @@ impl Chain {
             if self.noise > 0.0 {
                 um += self.noise * self.rng.normal();
             }
-            if is_hit {
+            if is_hit && self.burst_height == 0.0 {
                 return (self.rng.next_u64() % 4096) as u16;
             }
+            um += height;
             (2048.0 + um / (2000.0 / 4096.0)).round().clamp(0.0, 4095.0) as u16
         })
     }

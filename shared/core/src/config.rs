@@ -80,7 +80,7 @@ impl Default for Tuning {
             false_alarm: 1e-11,
             arming_time: 0.14,
             release_horizon: 4e-3,
-            release_instants: 16,
+            release_instants: 8,
             impact_horizon: 0.8e-3,
             impact_instants: 16,
             confirm_travel: 0.17,

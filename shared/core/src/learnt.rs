@@ -22,8 +22,8 @@ pub const PARTS: u8 = 8;
 pub const RING_PARTS: u8 = TACHOMETERS as u8;
 
 /// Instants of the release's bank that a part has, and the first part that has some.
-const INSTANTS: usize = 12;
-const FIRST_INSTANTS: u8 = 2;
+const INSTANTS: usize = 16;
+const FIRST_INSTANTS: u8 = 3;
 
 /// What has been learnt.
 #[derive(Clone, Debug, Default)]
@@ -77,7 +77,8 @@ impl Learnt {
         match number {
             0 => put(to, &(&self.told, &self.detector.place, release)),
             1 => put(to, &self.detector.orbit),
-            2..=4 => {
+            2 => put(to, release.levels()),
+            3 | 4 => {
                 let from = INSTANTS * usize::from(number - FIRST_INSTANTS);
                 let rest = release.candidates().get(from..).unwrap_or_default();
                 put(to, rest.get(..INSTANTS).unwrap_or(rest))
@@ -98,7 +99,8 @@ impl Learnt {
         match number {
             0 => (self.told, self.detector.place, self.detector.release) = get(body)?,
             1 => self.detector.orbit = get(body)?,
-            2..=4 => {
+            2 => *self.detector.release.levels_mut() = get(body)?,
+            3 | 4 => {
                 let from = INSTANTS * usize::from(number - FIRST_INSTANTS);
                 let instants: Vec<_, INSTANTS> = get(body)?;
                 let places = self.detector.release.candidates_mut();

@@ -105,11 +105,19 @@ impl Reading {
 
     /// Mean over the usable planes, m, and how many they are.
     pub fn mean(&self) -> Option<([f32; 2], u8)> {
-        match self.planes {
-            [Some(a), Some(b)] => Some(([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], 2)),
-            [Some(one), None] | [None, Some(one)] => Some((one, 1)),
-            [None, None] => None,
-        }
+        mean(&self.planes)
+    }
+}
+
+/// Position of each plane, m, where it is seen.
+pub(crate) type PlanePositions = [Option<[f32; 2]>; PLANES];
+
+/// Mean over the planes that are seen, m, and how many they are.
+pub(crate) fn mean(planes: &PlanePositions) -> Option<([f32; 2], u8)> {
+    match *planes {
+        [Some(a), Some(b)] => Some(([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], 2)),
+        [Some(one), None] | [None, Some(one)] => Some((one, 1)),
+        [None, None] => None,
     }
 }
 

@@ -18,6 +18,11 @@ pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
     dx * dx + dy * dy
 }
 
+/// The way from `b` to `a`, m.
+pub(crate) fn less(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
 /// Sum of two displacements, m.
 pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0] + b[0], a[1] + b[1]]

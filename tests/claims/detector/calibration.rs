@@ -7,7 +7,7 @@ use touchdown_core::event::{EventKind, Moment, Notice};
 use touchdown_core::monitor::Monitor;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::{Calibration, PlaneCalibration};
-use touchdown_tests::guard_runs::config;
+use touchdown_tests::told_machine::config;
 use touchdown_tests::led_rounds::{RESOLUTION, Truth, readings};
 use touchdown_tests::plant::{Machine, Phase, Plant, Rng};
 

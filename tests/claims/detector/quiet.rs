@@ -93,12 +93,12 @@ fn straight_drop(mut time: f64) -> f64 {
 }
 
 #[test]
-fn a_drop_before_arming_is_followed_from_the_wall() {
+fn a_drop_before_arming_is_found() {
     let notices = watched(0.5, |t| [0.0, straight_drop(t - 0.02) - CLEARANCE]);
     let kinds = kinds(&notices);
-    assert!(!kinds.contains(&EventKind::FreeFall), "{kinds:?}");
-    assert!(kinds.contains(&EventKind::Impact), "{kinds:?}");
-    assert!(kinds.contains(&EventKind::Sliding), "{kinds:?}");
+    for kind in [EventKind::FreeFall, EventKind::Impact, EventKind::Sliding] {
+        assert!(kinds.contains(&kind), "{kinds:?}");
+    }
 }
 
 #[test]

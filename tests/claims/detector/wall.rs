@@ -8,7 +8,7 @@ use touchdown_core::health::FaultKind;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::Calibration;
-use touchdown_tests::guard_runs::config;
+use touchdown_tests::told_machine::config;
 use touchdown_tests::plant::{Chain, Disturbance, Machine, Phase, Plant, Rng};
 
 const RATE: f64 = 20_000.0;

@@ -128,7 +128,6 @@ fn the_page_has_a_picture_of_each_kind_and_loads_nothing() {
         "Latency of an impact over the bound",
         "Phases over time",
         "Regime at the end",
-        "Confirmation: latency against false trips",
     ] {
         assert!(page.contains(title), "{title}");
     }
@@ -180,15 +179,16 @@ fn a_nervous_detector_does_not_hold() {
     assert!(quiet.fails() && quiet.measured() > Some(0.0), "{quiet:?}");
 }
 
+/// It finds a fall by the last 4 ms alone, which is late.
 #[test]
-fn a_deaf_detector_does_not_hold() {
-    let deaf = Tuning {
+fn a_detector_that_never_arms_does_not_hold() {
+    let unarmed = Tuning {
         arming_time: 10.0,
         ..Tuning::default()
     };
-    let score = of(&["fall", "quiet"], deaf);
+    let score = of(&["fall", "quiet"], unarmed);
     let fall = case(&score, FALL);
-    assert!(fall.fails() && fall.values["missed"] == 4, "{fall:?}");
+    assert!(fall.fails() && fall.measured() > Some(3.0), "{fall:?}");
     let quiet = case(&score, QUIET);
     assert!(quiet.fails() && quiet.measured() == Some(0.0), "{quiet:?}");
 }

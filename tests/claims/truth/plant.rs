@@ -170,8 +170,8 @@ fn whole_script() {
     for gap in [1e-4, 5e-4] {
         for spin in [0.0, 3000.0, -3000.0] {
             for mu in [0.05, 0.1, 0.2, 0.3] {
-                for (unbalance_in_drop, restitution) in [(false, 0.5), (false, 0.8), (true, 0.5)] {
-                    let m = Machine { gap, restitution, spin, friction: mu, orbit: 0.03 * gap, unbalance_in_drop, ..Machine::default() };
+                for (after, restitution) in [(Orbit::Ends, 0.5), (Orbit::Ends, 0.8), (Orbit::GoesOn, 0.5)] {
+                    let m = Machine { gap, restitution, spin, friction: mu, orbit: 0.03 * gap, after, ..Machine::default() };
                     let script = [
                         Phase::Rest { time: 0.2 },
                         Phase::Lift { time: 0.2 },
@@ -190,10 +190,10 @@ fn whole_script() {
                     });
                     let turns = whirl.sum::<f64>() / std::f64::consts::TAU;
                     println!(
-                        "gap {gap} spin {spin} mu {mu} e {restitution} unbalance_in_drop {unbalance_in_drop}: first {} second {} turns in drop {turns:.1} contacts {} excursions {}",
+                        "gap {gap} spin {spin} mu {mu} e {restitution} orbit {after:?}: first {} second {} turns in drop {turns:.1} contacts {} excursions {}",
                         at(0.7).afloat, at(1.8).afloat, all[17999].contacts, all[17999].excursions
                     );
-                    if !unbalance_in_drop {
+                    if after == Orbit::Ends {
                         assert!(at(0.7).afloat);
                         assert!(spin != 0.0 && turns.abs() > 2.0 || at(1.8).afloat);
                         count += 1;

@@ -6,7 +6,6 @@
 mod bound;
 mod campaign;
 mod compare;
-mod confirmation;
 mod contact;
 mod disturbance;
 mod fall;

@@ -10,27 +10,32 @@ use crate::config::DetectorConfig;
 use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
 use crate::detect::estimate::Estimate;
-use crate::detect::event_writer::{EventWriter, Pending};
+use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
+use crate::detect::fall::{Blocks, FallTest, FallVerdict};
 use crate::detect::flight::{FlightTest, NoiseFloor};
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::measurement::Measurement;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
-use crate::detect::phase_machine::{Fall, PhaseMachine, PhaseState};
-use crate::detect::release::{Release, ReleaseBank};
+use crate::detect::pending::Pending;
+use crate::detect::phase_machine::{PhaseMachine, PhaseState};
+use crate::detect::possible::{Possible, PossibleTest};
+use crate::detect::release::{Release, ReleaseBank, Released};
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
 use crate::fault::SPEED;
 use crate::phase::Phase;
-use crate::sensing::{PLANES, Reading};
-use crate::vector::{direction, square, sum};
+use crate::sensing::{PLANES, PlanePositions, Reading, mean};
+use crate::vector::{direction, less, square, sum};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::ln;
 
 /// Standard deviations by which a rotor has moved for certain.
 const MOVED: f32 = 8.0;
+/// Time after a withdrawn fall, or a change of what is taken off, for which no fall is declared, s.
+const HOLD: f32 = 30e-3;
 /// Angle beyond that of friction, rad, up to which a rotor at the wall may lie there still.
 const RESTING_ANGLE: f32 = 0.1;
 /// Times the mean square of their wavering that sensors may be off on the wall, where that is less than while it floated.
@@ -41,14 +46,17 @@ const WAVERING: f32 = 2.0;
 pub struct Detector {
     config: DetectorConfig,
     resolution: f32,
+    possible: PossibleTest,
     learning: Learning,
     orbiting: Orbiting,
     release: Release,
+    falls: FallTest,
     /// Of the floating rotor.
     flight: FlightTest,
     phase_machine: PhaseMachine,
     ends: EndsTest,
     start_samples: u32,
+    hold_samples: u32,
 }
 
 /// What the detector carries from sample to sample.
@@ -56,10 +64,14 @@ pub struct Detector {
 pub struct DetectorState {
     sample: u64,
     next_number: u16,
+    possible: Possible,
     noise: Noise,
     levitation: Levitation,
     orbit: OrbitState,
     release: ReleaseBank,
+    blocks: Blocks,
+    /// Samples for which no fall is declared.
+    hold: u32,
     listener: NoiseFloor,
     pending: Option<Pending>,
     /// The rotor as a whole.
@@ -80,9 +92,12 @@ impl Detector {
         Ok(Self {
             config: *config,
             resolution,
+            possible: PossibleTest::new(config),
             learning: Learning::new(tuning, rate),
-            orbiting: Orbiting::new(tuning.arming_time, rate),
+            orbiting: Orbiting::new(config),
             release: Release::new(tuning, rate, config.machine.gravity, threshold),
+            falls: FallTest::new(config),
+            hold_samples: (HOLD * rate) as u32,
             flight: FlightTest::new(config, threshold),
             phase_machine: PhaseMachine::new(config, threshold),
             ends: EndsTest::new(config, threshold),
@@ -112,49 +127,68 @@ impl Detector {
             next_number: &mut next_number,
             notices,
         };
-        for (channel, found) in (0..).zip(reading.found) {
+        for (channel, found) in (0..).zip(&reading.found) {
             if let Some(found) = found {
                 writer.tell_fault(channel, found);
             }
         }
         if let Some(found) = signals.spin_fault {
-            writer.tell_fault(SPEED, found);
+            writer.tell_fault(SPEED, &found);
         }
         if reading.moved != [0.0; 2] {
             state.shift(reading.moved);
         }
         self.orbiting.advance(&mut state.orbit, signals.spin);
-        let measurement = reading.mean().map(|(position, planes)| {
-            state.noise.take(position, planes);
-            Measurement {
-                now: Moment::of_sample(sample),
-                position,
-                variance: state.noise.variance(planes, self.resolution),
-            }
-        });
-        if measurement.is_none() {
-            state.noise.skip();
-        }
-        let known = state.noise.is_known();
-        let measurement = measurement.filter(|_| known);
-        match reading.planes {
-            [Some(a), Some(b)] if known => {
+        let planes = self.possible(state, &reading.planes);
+        let measurement = self.measurement(state, &planes);
+        match planes {
+            [Some(a), Some(b)] if state.noise.is_known() => {
                 let floats = state.rotor.phase == Phase::Levitated;
                 let variance = state.noise.variance(1, self.resolution);
                 self.ends.take(&mut state.ends, a, b, variance, floats);
                 writer.motion = state.ends.motion();
             }
-            _ => state.ends.lose_sight(),
+            _ if planes == reading.planes => state.ends.lose_sight(),
+            _ => {}
         }
         if state.ends.are_alone() {
-            self.apart(state, reading, signals, &mut writer);
+            self.apart(state, measurement.as_ref(), &planes, signals, &mut writer);
         } else {
             self.together(state, measurement.as_ref(), signals, &mut writer);
             if state.ends.have_parted() {
-                self.part(state, reading, &mut writer);
+                self.part(state, &planes, &mut writer);
             }
         }
         state.next_number = next_number;
+    }
+
+    /// The planes' positions, m: none where a rotor that floats cannot be.
+    fn possible(&self, state: &mut DetectorState, planes: &PlanePositions) -> PlanePositions {
+        let floats = state.rotor.phase == Phase::Levitated || state.pending.is_some();
+        let variance = state.noise.variance(1, self.resolution);
+        let is_known = state.noise.is_known();
+        if is_known && !(self.possible).take(&mut state.possible, planes, variance, floats) {
+            return [None; PLANES];
+        }
+        *planes
+    }
+
+    /// Mean of the planes, once the noise is known.
+    fn measurement(
+        &self,
+        state: &mut DetectorState,
+        planes: &PlanePositions,
+    ) -> Option<Measurement> {
+        let Some((position, planes)) = mean(planes) else {
+            state.noise.skip();
+            return None;
+        };
+        state.noise.take(position, planes);
+        state.noise.is_known().then(|| Measurement {
+            now: Moment::of_sample(state.sample.saturating_sub(1)),
+            position,
+            variance: state.noise.variance(planes, self.resolution),
+        })
     }
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
@@ -177,13 +211,17 @@ impl Detector {
     }
 
     /// Each end's position, where seen.
-    fn fixes(&self, state: &DetectorState, reading: &Reading) -> [Option<Measurement>; PLANES] {
+    fn fixes(
+        &self,
+        state: &DetectorState,
+        planes: &PlanePositions,
+    ) -> [Option<Measurement>; PLANES] {
         let measurement = |position| Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(1, self.resolution),
         };
-        reading.planes.map(|position| position.map(measurement))
+        planes.map(|position| position.map(measurement))
     }
 
     /// The rotor as a whole.
@@ -205,8 +243,11 @@ impl Detector {
             (Phase::Sliding | Phase::Rolling, measurement) => {
                 self.touching(state, measurement, signals, writer)
             }
-            (Phase::FreeFall | Phase::Impact, None) => self.phase_machine.skip(&mut state.rotor),
-            (Phase::Starting | Phase::Levitated, None) => {}
+            (Phase::FreeFall | Phase::Impact, None) => {
+                self.phase_machine.skip(&mut state.rotor);
+                self.falls.skip(&mut state.blocks);
+            }
+            (Phase::Starting | Phase::Levitated, None) => self.falls.skip(&mut state.blocks),
         }
     }
 
@@ -244,63 +285,92 @@ impl Detector {
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        self.learning
-            .take(&mut state.levitation, measurement.position);
-        if state.levitation.is_fresh() {
-            // It still moved: what the tests learnt of it goes as well.
-            state.listener.forget();
-            state.release.forget();
-            state.orbit.forget();
-        }
-        let floats = (state.levitation.mean, state.levitation.variance);
-        let residual = self.orbiting.take(
-            &mut state.orbit,
-            measurement.position,
-            floats,
-            measurement.variance,
-        );
-        if residual.first {
-            state.release.restart();
-        }
-        let is_known = self.learning.has_position(&state.levitation)
-            && (state.levitation.is_armed() || state.orbit.is_fitted(&self.orbiting));
-        let released = is_known
-            .then(|| {
-                self.release
-                    .take(&mut state.release, residual.way, residual.variance)
-            })
-            .flatten();
-        if !state.levitation.is_armed() && is_known {
-            let [x, y] = state.orbit.ending();
-            let position = [measurement.position[0] - x, measurement.position[1] - y];
-            self.flight.listen(
-                &mut state.listener,
-                &Measurement {
-                    position,
-                    ..*measurement
-                },
-            );
-        }
+        let before = state.levitation.variance;
+        let (released, is_full) = self.watch(state, measurement, (before, true));
+        let is_armed = state.levitation.is_armed();
+        self.listen(state, measurement);
         let threshold_scale = state.listener.threshold_scale();
-        if !state.levitation.is_armed() {
-            // Fell before anything was learnt: the wall shows it.
-            let (_, radius) = direction(measurement.position);
-            if state.off_wall && radius >= self.phase_machine.near {
-                self.phase_machine
-                    .fly(&mut state.rotor, measurement, None, threshold_scale);
+        let variance = measurement.variance;
+        let unforeseen = is_full
+            .then(|| (self.falls).unforeseen(&state.blocks, variance, state.orbit.is_certain()))
+            .flatten();
+        let is_near = is_full && {
+            let (_, radius) = direction(state.blocks.newest());
+            radius >= self.phase_machine.near
+        };
+        state.off_wall |= is_full && !is_near;
+        let touches = is_near && state.off_wall;
+        state.hold = state.hold.saturating_sub(1);
+        let may_declare = is_armed && state.hold == 0;
+        let declared = match (unforeseen, released.filter(|_| may_declare)) {
+            (Some(age), _) => Some((age, Default::default())),
+            (None, Some(it)) => {
+                let period = 1.0 / self.config.sample_rate;
+                let taken = [it.taken[0], it.taken[1] * period];
+                let paths = state.orbit.paths(it.age, it.acceleration, taken);
+                Some((it.age, paths))
             }
+            (None, None) => None,
+        };
+        if declared.is_none() && !touches {
             return;
         }
-        let Some(age) = released else {
-            return;
-        };
+        state.listener.interrupt();
         self.phase_machine
             .fly(&mut state.rotor, measurement, None, threshold_scale);
-        let number = writer.declare(EventKind::FreeFall, age, 0.0);
-        state.pending = Some(Pending::new(number, measurement.now.later(-age)));
-        if signals.levitated == Some(false) {
+        if let Some((age, paths)) = declared {
+            state.pending = Some(Pending {
+                number: writer.declare(EventKind::FreeFall, age, 0.0),
+                since: measurement.now.later(-age),
+                declared: measurement.now,
+                paths,
+                back: 0,
+            });
+        }
+        if unforeseen.is_some() || signals.levitated == Some(false) {
             writer.resolve(&mut state.pending, true);
         }
+    }
+
+    /// How loud the impact test is, with the orbit taken off that ends with the levitation.
+    fn listen(&self, state: &mut DetectorState, measurement: &Measurement) {
+        let is_known = self.learning.has_position(&state.levitation) && state.orbit.is_settled();
+        if is_known && !state.listener.is_known() {
+            let measurement = Measurement {
+                position: less(measurement.position, state.orbit.ending()),
+                ..*measurement
+            };
+            let (listener, flight) = (&mut state.listener, &mut state.rotor.flight);
+            self.flight.listen(listener, flight, &measurement);
+        }
+    }
+
+    /// Of a rotor that floats, for certain or perhaps: a release, and whether a block is full.
+    fn watch(
+        &self,
+        state: &mut DetectorState,
+        measurement: &Measurement,
+        (variance, floats): (f32, bool),
+    ) -> (Option<Released>, bool) {
+        let noise = measurement.variance;
+        let position = measurement.position;
+        let residual = (self.orbiting).take(&mut state.orbit, position, (variance, noise), floats);
+        if residual.first {
+            state.release.forget();
+            state.blocks.forget();
+            state.hold = self.hold_samples;
+        }
+        let released = floats
+            .then(|| {
+                let memory = self.orbiting.memory(&state.orbit);
+                (self.release).take(&mut state.release, residual.way, memory, noise)
+            })
+            .flatten();
+        let is_full = self.falls.take(&mut state.blocks, residual.parts);
+        if floats {
+            self.learning.take(&mut state.levitation, position);
+        }
+        (released, is_full)
     }
 
     fn airborne(
@@ -311,29 +381,65 @@ impl Detector {
         writer: &mut EventWriter,
     ) {
         let (rotor, pending) = (&mut state.rotor, &mut state.pending);
-        let centre = state.levitation.mean;
+        let home = state.levitation.mean;
+        let centre = pending.map_or(home, |pending| pending.would_be(measurement.now));
         self.phase_machine
             .land(rotor, measurement, centre, signals, pending, writer);
         if rotor.phase.is_contact() {
             return;
         }
-        let fall = pending.as_mut().map(|pending| {
-            self.phase_machine
-                .fall(rotor, measurement, &state.levitation, pending)
-        });
-        match fall {
-            Some(Fall::Certain) => writer.resolve(pending, true),
-            Some(Fall::Caught) => {
-                writer.resolve(pending, false);
-                state.release.restart();
-                rotor.phase = Phase::Levitated;
-            }
-            Some(Fall::Open) | None => {}
+        if self.resolve(state, measurement, writer) {
+            state.rotor.phase = Phase::Levitated;
+            return;
         }
-        if self.phase_machine.floats(rotor, measurement) {
+        if self.phase_machine.floats(&mut state.rotor, measurement) {
+            if state.pending.is_some() {
+                // It never fell: what is learnt of it holds.
+                writer.resolve(&mut state.pending, false);
+                state.release.restart();
+                state.rotor.phase = Phase::Levitated;
+                return;
+            }
             self.learn_again(state, writer);
             self.phase_machine.tell_levitated(writer);
         }
+    }
+
+    /// How a declared fall stands; true where it was none.
+    fn resolve(
+        &self,
+        state: &mut DetectorState,
+        measurement: &Measurement,
+        writer: &mut EventWriter,
+    ) -> bool {
+        if state.pending.is_none() {
+            return false;
+        }
+        let variance = state.levitation.variance;
+        let (_, is_full) = self.watch(state, measurement, (variance, false));
+        let (noise, orbits) = (measurement.variance, state.orbit.is_certain());
+        let Some(pending) = &mut state.pending else {
+            return false;
+        };
+        let is_unforeseen =
+            is_full && (self.falls.unforeseen(&state.blocks, noise, orbits)).is_some();
+        let fall = if is_unforeseen {
+            FallVerdict::Certain
+        } else if self.falls.judges(&state.blocks) {
+            (self.falls).judge(&state.blocks, pending, measurement.now, noise, orbits)
+        } else {
+            FallVerdict::Open
+        };
+        match fall {
+            FallVerdict::Open => return false,
+            FallVerdict::Certain => writer.resolve(&mut state.pending, true),
+            FallVerdict::Caught => {
+                writer.resolve(&mut state.pending, false);
+                state.release.restart();
+                state.hold = self.hold_samples;
+            }
+        }
+        fall == FallVerdict::Caught
     }
 
     /// Floats again: withdraws what is open.
@@ -341,9 +447,10 @@ impl Detector {
         writer.resolve(&mut state.pending, false);
         state.rotor.phase = Phase::Levitated;
         state.levitation = Levitation::default();
-        state.listener.forget();
+        state.listener = NoiseFloor::default();
         state.release.forget();
         state.orbit.forget();
+        state.blocks.forget();
         state.ends.forget();
     }
 
@@ -375,8 +482,8 @@ impl Detector {
     }
 
     /// Gives each end a ladder of its own where they have moved apart.
-    fn part(&self, state: &mut DetectorState, reading: &Reading, writer: &mut EventWriter) {
-        let [Some(a), Some(b)] = self.fixes(state, reading) else {
+    fn part(&self, state: &mut DetectorState, planes: &PlanePositions, writer: &mut EventWriter) {
+        let [Some(a), Some(b)] = self.fixes(state, planes) else {
             return;
         };
         let ends = [&a, &b];
@@ -396,7 +503,13 @@ impl Detector {
                     return;
                 }
                 let number = writer.declare_at(far, EventKind::FreeFall);
-                state.pending = Some(Pending::new(number, ends[0].now));
+                state.pending = Some(Pending {
+                    number,
+                    since: ends[0].now,
+                    declared: ends[0].now,
+                    paths: Default::default(),
+                    back: 0,
+                });
                 writer.resolve(&mut state.pending, true);
                 self.phase_machine
                     .fly(&mut state.rotor, ends[0], None, threshold_scale);
@@ -411,23 +524,24 @@ impl Detector {
     fn apart(
         &self,
         state: &mut DetectorState,
-        reading: &Reading,
+        measurement: Option<&Measurement>,
+        planes: &PlanePositions,
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        let fixes = &self.fixes(state, reading);
+        let fixes = &self.fixes(state, planes);
         let (ends, pending) = (&mut state.ends, &mut state.pending);
         let floating = (&state.levitation, state.listener.threshold_scale());
-        let is_caught = self
-            .ends
+        self.ends
             .step(ends, fixes, signals, floating, pending, writer);
-        if is_caught {
-            writer.resolve(pending, false);
-            ends.unite();
-            state.release.restart();
+        if let Some(measurement) = measurement
+            && self.resolve(state, measurement, writer)
+        {
+            state.ends.unite();
             state.rotor.phase = Phase::Levitated;
             return;
         }
+        let ends = &mut state.ends;
         if let Some(joined) = self.ends.join(ends, fixes) {
             state.rotor = *joined;
             if state.rotor.phase == Phase::Levitated {
@@ -442,7 +556,7 @@ impl DetectorState {
     fn shift(&mut self, way: [f32; 2]) {
         self.levitation.shift(way);
         self.orbit.shift(way);
-        self.listener.shift(way);
+        self.blocks.forget();
         if let Some(origin) = &mut self.origin {
             *origin = sum(*origin, way);
         }
@@ -500,7 +614,7 @@ impl DetectorState {
         put(self.rotor.phase as u32);
         put(u32::from(self.next_number));
         let [x, y] = self.levitation.mean;
-        let learnt = [x, y, self.levitation.variance, self.release.statistic];
+        let learnt = [x, y, self.levitation.variance, self.release.highest];
         let rotor = learnt.into_iter().chain(self.rotor.words());
         rotor.for_each(|value| put(bits(value)));
         for end in self.ends.alone() {

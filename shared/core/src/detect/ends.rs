@@ -10,10 +10,11 @@ mod learnt;
 pub(crate) use self::learnt::Together;
 use crate::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
-use crate::detect::event_writer::{EventWriter, Pending};
+use crate::detect::event_writer::EventWriter;
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::measurement::Measurement;
-use crate::detect::phase_machine::{Lifting, PhaseMachine, PhaseState, within_gate};
+use crate::detect::pending::Pending;
+use crate::detect::phase_machine::{Lifting, PhaseMachine, PhaseState};
 use crate::detect::signals::Signals;
 use crate::event::{Motion, Plane};
 use crate::phase::Phase;
@@ -144,7 +145,7 @@ impl EndsTest {
         ends.lifts = false;
     }
 
-    /// Each end takes its sample. True where a declared fall has been caught.
+    /// Each end takes its sample.
     pub(crate) fn step(
         &self,
         ends: &mut Ends,
@@ -153,9 +154,9 @@ impl EndsTest {
         floating: (&Levitation, f32),
         pending: &mut Option<Pending>,
         writer: &mut EventWriter,
-    ) -> bool {
+    ) {
         let (levitation, threshold_scale) = floating;
-        let (homes, variance) = ends.homes(levitation);
+        let (homes, _) = ends.homes(levitation);
         let whole = writer.plane;
         let alone = ends.alone.iter_mut();
         for (((phase_state, measurement), centre), plane) in
@@ -189,14 +190,6 @@ impl EndsTest {
                     if phase_state.phase.is_contact() {
                         continue;
                     }
-                    let at = phase_state.flight.track.position;
-                    let has_fallen = pending.as_ref().is_some_and(|open| {
-                        self.phase_machine.is_far(at, centre)
-                            && self.phase_machine.fell(open, measurement.now, at, centre)
-                    });
-                    if has_fallen {
-                        writer.resolve(pending, true);
-                    }
                     if self.phase_machine.floats(phase_state, measurement) {
                         phase_state.phase = Phase::Levitated;
                         self.phase_machine.tell_levitated(writer);
@@ -213,13 +206,6 @@ impl EndsTest {
             }
         }
         writer.plane = whole;
-        let mut seen = fixes.iter().zip(homes);
-        let are_home = seen.all(|(measurement, centre)| {
-            measurement.is_some_and(|measurement| within_gate(&measurement, centre, variance))
-        });
-        pending
-            .as_mut()
-            .is_some_and(|pending| self.phase_machine.is_caught(pending, are_home, variance))
     }
 
     /// The ladder of the rotor as a whole, where its ends do the same again, or only one is seen.

@@ -1,29 +1,9 @@
 //! What a tick says.
 
+use crate::detect::pending::Pending;
 use crate::event::{Event, EventKind, Moment, Motion, Notice, Notices, Plane};
 use crate::fault::{Fault, Found, SPEED};
 use crate::sensing::PLANES;
-
-/// A declared fall that is neither confirmed nor withdrawn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pending {
-    pub(crate) number: u16,
-    /// Its onset.
-    pub(crate) since: Moment,
-    /// Samples back within noise.
-    pub(crate) back: u32,
-}
-
-impl Pending {
-    /// Just declared.
-    pub(crate) fn new(number: u16, since: Moment) -> Self {
-        Self {
-            number,
-            since,
-            back: 0,
-        }
-    }
-}
 
 /// One tick's notices and what they need.
 pub(crate) struct EventWriter<'a> {
@@ -67,7 +47,7 @@ impl EventWriter<'_> {
     }
 
     /// Declares a fault.
-    pub(crate) fn tell_fault(&mut self, channel: u8, found: Found) {
+    pub(crate) fn tell_fault(&mut self, channel: u8, found: &Found) {
         let number = *self.next_number;
         *self.next_number = number.wrapping_add(1);
         let age = found.age as f32;

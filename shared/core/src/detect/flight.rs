@@ -1,16 +1,13 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
-#[cfg(feature = "serde")]
-mod learnt;
-
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
-use crate::detect::series::{Bounce, Known, Series};
+use crate::detect::series::{Bounce, Series};
 use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
-use crate::vector::{direction, sum};
+use crate::vector::direction;
 use touchdown_rotor::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
@@ -32,6 +29,8 @@ const CLEAR_OF_WALL: f32 = 3.0;
 
 /// Mean of the impact test's statistic in white noise, as the test below measures it.
 const WHITE_LEVEL: f32 = 0.6;
+/// Part of the arming time in which the loudness of the sensors is learnt.
+const LISTEN: f32 = 0.25;
 /// From this ratio to it on, the sensors are louder than white noise.
 const LOUD: f32 = 1.5;
 
@@ -65,6 +64,7 @@ pub(crate) struct FlightTest {
     slowest: f32,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
+    listen_samples: f32,
 }
 
 /// A flight under way.
@@ -106,24 +106,24 @@ impl Airborne {
 
 /// How loud the impact test is while the rotor floats.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct NoiseFloor {
-    track: Track,
-    bank: JumpBank,
     level: f32,
     count: f32,
+    is_known: bool,
 }
 
 impl NoiseFloor {
-    /// Forgets all.
-    pub(crate) fn forget(&mut self) {
-        self.bank.begin(0.0);
-        self.level = 0.0;
-        self.count = 0.0;
+    /// Whether enough has been heard.
+    pub(crate) fn is_known(&self) -> bool {
+        self.is_known
     }
 
-    /// What is measured has moved by `way`, m.
-    pub(crate) fn shift(&mut self, way: [f32; 2]) {
-        self.track.position = sum(self.track.position, way);
+    /// Listens anew, unless enough has been heard.
+    pub(crate) fn interrupt(&mut self) {
+        if !self.is_known {
+            *self = Self::default();
+        }
     }
 
     /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
@@ -194,6 +194,7 @@ impl FlightTest {
             uneven: UNEVEN * tolerance,
             slowest,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
+            listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
         }
     }
 
@@ -239,26 +240,26 @@ impl FlightTest {
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
-    /// much so is learnt.
-    pub(crate) fn listen(&self, listener: &mut NoiseFloor, measurement: &Measurement) {
+    /// much so is learnt. `flight` is not under way.
+    pub(crate) fn listen(
+        &self,
+        listener: &mut NoiseFloor,
+        flight: &mut Airborne,
+        measurement: &Measurement,
+    ) {
+        let Measurement {
+            position, variance, ..
+        } = *measurement;
         if listener.count == 0.0 {
-            listener.track = Track::new(
-                measurement.position,
-                measurement.variance,
-                [0.0; 2],
-                UNKNOWN_SPEED,
-            );
+            flight.track = Track::new(position, variance, [0.0; 2], UNKNOWN_SPEED);
+            flight.bank.begin(0.0);
         }
-        self.calm.predict(&mut listener.track);
-        let innovation = self.calm.correct(
-            &mut listener.track,
-            measurement.position,
-            measurement.variance,
-        );
-        self.jumps
-            .update(&mut listener.bank, &innovation, [0.0, 1.0]);
+        self.calm.predict(&mut flight.track);
+        let innovation = self.calm.correct(&mut flight.track, position, variance);
+        self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
-        listener.level += (listener.bank.statistic - listener.level) / listener.count;
+        listener.level += (flight.bank.statistic - listener.level) / listener.count;
+        listener.is_known = listener.count >= self.listen_samples;
     }
 
     /// To the next sample without a usable position.
@@ -350,8 +351,7 @@ impl FlightTest {
         let flown = measurement.now.since(last.at);
         if flown >= after {
             let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            let error = flight.track.speed_error();
-            (flight.series).relaunch(velocity, error, &self.machine, self.period);
+            (flight.series).relaunch(velocity, &self.machine, self.period);
         }
     }
 
@@ -370,7 +370,6 @@ impl FlightTest {
         let mut bounce = Bounce {
             at: measurement.now.later(-jump.age),
             normal_speed,
-            known: Known::to(normal_speed, flight.track.speed_error()),
             along,
             outward,
             normal_acceleration: along * along / self.machine.clearance
@@ -385,7 +384,7 @@ impl FlightTest {
         let mut foreseen = false;
         if let Some(last) = flight.series.last() {
             let flown = bounce.at.since(last.at) * self.period;
-            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch().speed) {
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
                 return None;
             }
             let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
@@ -401,11 +400,8 @@ impl FlightTest {
                 if foreseen {
                     age = next.age(measurement.now, age);
                     bounce.at = measurement.now.later(-age);
-                    bounce.known = next.known();
-                    bounce.normal_speed = bounce.known.speed;
+                    bounce.normal_speed = next.speed();
                     least *= FAINTER;
-                } else {
-                    bounce.known = next.known().and(bounce.known);
                 }
             }
         }
@@ -492,13 +488,7 @@ impl FlightTest {
         }
         flight.lying += 1;
         let age = flight.lying as f32;
-        // A wall that presses less lets it fly for longer.
-        let normal_acceleration = self
-            .normal_acceleration(&flight.track)
-            .max(LEAST_PRESSING * self.slowest);
-        let part = age / self.dwell as f32;
-        let lies = part * part * normal_acceleration.min(self.slowest) > self.slowest;
-        lies.then_some(Landing::Contact { age })
+        (flight.lying > self.dwell).then_some(Landing::Contact { age })
     }
 }
 
@@ -522,6 +512,7 @@ mod tests {
     fn level(sample_rate: f32, runout: f32) -> f32 {
         let test = test(sample_rate);
         let (mut listener, mut seed) = (NoiseFloor::default(), 1);
+        let mut flight = Airborne::default();
         for k in 0..50_000_u16 {
             let (sin, cos) = libm::sincosf(3141.6 * f32::from(k) / sample_rate);
             let measurement = Measurement {
@@ -532,7 +523,7 @@ mod tests {
                 ],
                 variance: 1e-12,
             };
-            test.listen(&mut listener, &measurement);
+            test.listen(&mut listener, &mut flight, &measurement);
         }
         listener.level
     }
@@ -560,7 +551,6 @@ mod tests {
         let bounce = Bounce {
             at: Moment::of_sample(1_000),
             normal_speed: 5e-3,
-            known: Known::to(5e-3, 1e-4),
             normal_acceleration: 9.81,
             outward: [0.0, -1.0],
             ..Bounce::default()

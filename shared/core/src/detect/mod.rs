@@ -3,9 +3,12 @@
 //! | file | says |
 //! |---|---|
 //! | `noise` | how large the sensors' white noise is, whatever the rotor does |
+//! | `possible` | whether the rotor can be where a sample shows it |
 //! | `levitation` | where the rotor floats, and whether the monitor is armed |
+//! | `trend` | where it goes |
 //! | `orbit` | in what orbit, and what of its motion is none |
 //! | `release` | whether it still floats |
+//! | `fall` | whether it falls |
 //! | `track` | position and velocity in flight |
 //! | `impact_test` | whether the velocity jumped: an impact |
 //! | `series` | when the bounces will have died out |
@@ -17,6 +20,7 @@
 //! | `ends` | whether the two ends move as one, and what each does |
 //! | `detector` | what is learnt, the release, and who follows from there |
 //! | `signals` | what it is told besides the position |
+//! | `pending` | the fall that is open |
 //! | `event_writer` | the notices of a tick |
 
 mod contact;
@@ -25,6 +29,7 @@ mod ends;
 mod estimate;
 mod event_writer;
 mod exposure;
+mod fall;
 mod flight;
 mod impact_test;
 mod levitation;
@@ -33,13 +38,16 @@ mod measurement;
 mod next_impact;
 mod noise;
 mod orbit;
+mod pending;
 mod phase_machine;
+mod possible;
 mod release;
 mod series;
 mod signals;
 mod slip;
 mod still;
 mod track;
+mod trend;
 mod wall;
 
 pub use crate::config::{DetectorConfig, MachineConfig, Tuning};

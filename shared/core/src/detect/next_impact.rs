@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use crate::config::MachineConfig;
-use crate::detect::series::{Bounce, Known, Series};
+use crate::detect::series::{Bounce, Series};
 use crate::event::Moment;
 
 /// Parts of the flight by which it may be early and late; by which it may seem late where the impact after it has already
@@ -23,8 +23,8 @@ pub(crate) struct NextImpact {
     last: Moment,
     /// Samples from there to it.
     flight: f32,
-    /// Into the wall.
-    known: Known,
+    /// Into the wall, m/s.
+    speed: f32,
     /// Of the series.
     end: Option<Moment>,
 }
@@ -40,10 +40,7 @@ impl NextImpact {
         period: f32,
     ) -> Option<Self> {
         let last = series.last()?;
-        let Known {
-            speed: launch,
-            doubt,
-        } = series.launch();
+        let launch = series.launch();
         // The wall bends towards the rotor.
         let bend = launch * launch / machine.clearance;
         let (first, then) = (last.normal_acceleration + bend, normal_acceleration + bend);
@@ -51,10 +48,7 @@ impl NextImpact {
         (first > 0.0 && then > 0.0).then(|| Self {
             last: last.at,
             flight: 6.0 * launch / (early * period),
-            known: Known {
-                speed: launch * (first + 2.0 * then) / early,
-                doubt,
-            },
+            speed: launch * (first + 2.0 * then) / early,
             end: series.end(),
         })
     }
@@ -64,18 +58,18 @@ impl NextImpact {
         let late = seen.at.since(self.last) - self.flight;
         let latest = (LATE * self.flight).max(age.min(MERGED * self.flight));
         (-EARLY * self.flight..latest).contains(&late)
-            && ALIKE.contains(&(seen.normal_speed / self.known.speed))
+            && ALIKE.contains(&(seen.normal_speed / self.speed))
     }
 
     /// Whether, before the series ends, it was seen or foreseen weaker than `faintest`, m/s.
     pub(crate) fn is_weak(&self, seen: &Bounce, min_detectable_speed: f32) -> bool {
-        seen.normal_speed.min(self.known.speed) < min_detectable_speed
+        seen.normal_speed.min(self.speed) < min_detectable_speed
             && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
     }
 
-    /// Speed into the wall.
-    pub(crate) fn known(&self) -> Known {
-        self.known
+    /// Speed into the wall, m/s.
+    pub(crate) fn speed(&self) -> f32 {
+        self.speed
     }
 
     /// Samples since, where it seems to be `seen` samples old.
@@ -97,7 +91,6 @@ mod tests {
         let first = Bounce {
             at: Moment::of_sample(1000),
             normal_speed: 0.02,
-            known: Known::to(0.02, 1e-4),
             normal_acceleration: 50.0,
             outward: [0.0, -1.0],
             ..Bounce::default()
@@ -125,7 +118,7 @@ mod tests {
                 "{next:?}"
             );
             assert!(
-                (-speed / f64::from(next.known.speed) - 1.0).abs() < 2e-3,
+                (-speed / f64::from(next.speed) - 1.0).abs() < 2e-3,
                 "{next:?}"
             );
         }
@@ -136,7 +129,7 @@ mod tests {
         let next = next(50.0);
         let at = |part: f32, speed: f32| Bounce {
             at: next.last.later(part * next.flight),
-            normal_speed: speed * next.known.speed,
+            normal_speed: speed * next.speed,
             ..Bounce::default()
         };
         assert!(next.is(&at(1.0, 1.0), 0.0));

@@ -5,11 +5,11 @@
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::contact::{ContactTest, Finding, Regime, Touching};
 use crate::detect::estimate::{Estimate, Place};
-use crate::detect::event_writer::{EventWriter, Pending};
+use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
-use crate::detect::levitation::Levitation;
 use crate::detect::measurement::Measurement;
+use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
 use crate::detect::slip::Kind;
 use crate::detect::still::Still;
@@ -18,8 +18,6 @@ use crate::phase::Phase;
 use crate::vector::{direction, square};
 use touchdown_rotor::real::sqrt;
 
-/// Standard deviations within which a caught rotor has come back.
-const RECOVERY_GATE_SIGMA: f32 = 4.0;
 /// Part of gravity's way that is less than any fall goes, whatever forces are left.
 const FALLS: f32 = 0.5;
 /// Faster than a controller puts a rotor down, m/s.
@@ -38,7 +36,6 @@ pub(crate) struct PhaseMachine {
     flight: FlightTest,
     contact: ContactTest,
     still_samples: u32,
-    catch_samples: u32,
 }
 
 /// Where on the ladder it is.
@@ -48,16 +45,6 @@ pub(crate) struct PhaseState {
     pub(crate) flight: Airborne,
     pub(crate) contact: Touching,
     pub(crate) still: Still,
-}
-
-/// How a declared fall stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fall {
-    Open,
-    /// No caught disturbance goes so far.
-    Certain,
-    /// It came back.
-    Caught,
 }
 
 /// What a lift-off is that of.
@@ -103,7 +90,6 @@ impl PhaseMachine {
             flight: FlightTest::new(config, threshold),
             contact: ContactTest::new(config, threshold),
             still_samples: samples(tuning.still_time).max(16),
-            catch_samples: samples(tuning.catch_time),
         }
     }
 
@@ -252,49 +238,6 @@ impl PhaseMachine {
         }
     }
 
-    /// Whether a fall goes too far to be a caught disturbance, or has come back.
-    pub(crate) fn fall(
-        &self,
-        phase_state: &PhaseState,
-        measurement: &Measurement,
-        levitation: &Levitation,
-        pending: &mut Pending,
-    ) -> Fall {
-        let centre = levitation.mean;
-        let at = phase_state.flight.track.position;
-        if self.is_far(at, centre) && self.fell(pending, measurement.now, at, centre) {
-            return Fall::Certain;
-        }
-        let variance = levitation.variance;
-        if self.is_caught(
-            pending,
-            within_gate(measurement, centre, variance),
-            variance,
-        ) {
-            return Fall::Caught;
-        }
-        Fall::Open
-    }
-
-    /// Takes whether the rotor is where it floated, with this variance (m^2); whether it has been for long enough.
-    pub(crate) fn is_caught(
-        &self,
-        pending: &mut Pending,
-        within_gate: bool,
-        variance: f32,
-    ) -> bool {
-        pending.back = if within_gate { pending.back + 1 } else { 0 };
-        pending.back >= self.catch_samples && !self.may_fall_for(pending.back, variance)
-    }
-
-    /// Whether a rotor that was thrown up, and falls, may be within noise of home for so many samples: one that goes
-    /// through a circle of radius r from below and back is in it for up to 4 sqrt(r/g).
-    fn may_fall_for(&self, samples: u32, variance: f32) -> bool {
-        let time = samples as f32 * self.period;
-        let way = self.machine.gravity * time * time / 16.0;
-        way * way < RECOVERY_GATE_SIGMA * RECOVERY_GATE_SIGMA * variance && way > 0.0
-    }
-
     /// Whether no caught disturbance goes from `home` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], centre: [f32; 2]) -> bool {
         square(position, centre) > self.travel * self.travel
@@ -314,7 +257,7 @@ impl PhaseMachine {
         square(at, centre) >= least * least
     }
 
-    /// In flight: whether it floats again, clear of the wall and quiet.
+    /// In flight: whether it floats again: clear of the wall, and still, or off the wall for longer than any flight.
     pub(crate) fn floats(&self, phase_state: &mut PhaseState, measurement: &Measurement) -> bool {
         let block = phase_state
             .still
@@ -324,7 +267,8 @@ impl PhaseMachine {
             let (_, radius) = direction(block.mean);
             radius < self.near
                 && block.variance < 0.0625 * clearance * clearance
-                && block.moved < 0.02 * clearance
+                && (block.moved < 0.02 * clearance
+                    || self.machine.gravity > 0.0 && block.farthest < self.near * self.near)
         });
         quiet.is_some()
     }
@@ -403,10 +347,4 @@ impl PhaseMachine {
         }
         true
     }
-}
-
-/// Whether `measurement` is within noise of `centre` (m), around which the rotor floats with this variance (m^2).
-pub(crate) fn within_gate(measurement: &Measurement, centre: [f32; 2], variance: f32) -> bool {
-    square(measurement.position, centre)
-        <= RECOVERY_GATE_SIGMA * RECOVERY_GATE_SIGMA * variance.max(measurement.variance)
 }

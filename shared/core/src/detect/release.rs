@@ -1,17 +1,15 @@
 //! Loss of levitation: a generalised likelihood ratio test of "since t0 the rotor accelerates,
 //! wherever to" against "it floats", for a bank of instants t0.
 //!
-//! Residuals r from the learnt position, a signature w = t^2: with A = sum r w and E = sum w^2 the
-//! statistic is |A|^2/(2 sigma^2 E), which needs neither direction nor size of the acceleration.
+//! Residuals r of the trend, which an acceleration a since t0 makes a w: with A = sum r w and E = sum w^2 the statistic
+//! is |A|^2/(2 E), which needs neither direction nor size of the acceleration. In white noise its mean is the variance.
 //!
-//! What a healthy machine does is no white noise: an unbalance orbit, runout or hum raise the statistic
-//! as a whole. Its mean while levitated is learnt, and the threshold raised in proportion.
+//! What a healthy machine does is no white noise: runout, hum, wander raise the statistic, and more so for old instants.
+//! Its mean while levitated is learnt at each age.
 
 use crate::config::{MOST_INSTANTS, Tuning};
 use touchdown_rotor::real::sqrt;
 
-/// Mean of the largest statistic of the bank in white noise, as the test below measures it.
-const WHITE_LEVEL: f32 = 1.8;
 /// Most that one sample can say, in standard deviations of what the residuals have been: a fall is found long
 /// before it is that far in a sample.
 const MAX_RESIDUAL_SIGMA: f32 = 6.0;
@@ -20,8 +18,14 @@ const MAX_RESIDUAL_SIGMA: f32 = 6.0;
 /// the mean of two planes of 1 um and 12 bits over 2 mm: 0.69) and z = 4.3, (0.745 s sqrt(n) + z)^2/2 over 25.3, between
 /// n = 30 and 80.
 const SHIFTED: [f32; 2] = [0.66, 0.011];
-/// Seconds over which the mean is learnt.
-const LEVEL_TIME: f32 = 0.2;
+/// Seconds over which the mean is learnt: a fall of 3 ms is 1 % of it.
+const LEVEL_TIME: f32 = 0.3;
+/// Most of the mean that one value counts for.
+const CLIP: f32 = 9.0;
+/// Values that a mean begins with.
+const FIRST: f32 = 8.0;
+/// Acceleration, m/s^2, that a rotor which floats may have: 50 um in 20 ms are 5.77 d/T^2 at the most, 0.074 g.
+const FLOATING: f32 = 0.981;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +42,6 @@ pub(crate) struct Release {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Candidate {
-    /// Samples since its instant.
-    age: f32,
     sum: [f32; 2],
     energy: f32,
 }
@@ -48,34 +50,39 @@ pub(crate) struct Candidate {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ReleaseBank {
+    /// The newest first.
     #[cfg_attr(feature = "serde", serde(skip))]
     candidates: [Candidate; MOST_INSTANTS],
+    /// Mean of the statistic by age, in steps from one instant to the next, m^2.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    levels: [f32; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
-    next: usize,
     wait: u16,
-    /// Largest statistic of the last sample.
-    pub(crate) statistic: f32,
-    level: f32,
+    /// exp(-t/tau) of the trend's memory tau, for the newest instant and from one to the next.
+    left: f32,
+    fading: f32,
     count: f32,
+    /// Largest of the levels, m^2.
+    pub(crate) highest: f32,
+}
+
+/// A release that was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Released {
+    /// Samples since the most likely instant.
+    pub(crate) age: f32,
+    /// Since then, m/s^2.
+    pub(crate) acceleration: [f32; 2],
+    /// What the trend has taken of a unit of it: place, s^2, and speed, s.
+    pub(crate) taken: [f32; 2],
 }
 
 impl ReleaseBank {
     /// Forgets what was under way, not what was learnt.
     pub(crate) fn restart(&mut self) {
         self.live = 0;
-        self.next = 0;
         self.wait = 0;
-        self.statistic = 0.0;
-    }
-
-    /// Whether an instant is above the threshold, and above what readings that jump by a count may do.
-    fn is_more_than_a_shift(&self, threshold: f32, threshold_scale: f32, scale: f32) -> bool {
-        let mut candidates = self.candidates.iter().take(self.live);
-        candidates.any(|it| {
-            let part = threshold_scale.max(SHIFTED[0] + SHIFTED[1] * it.age);
-            it.statistic(scale) > threshold * part
-        })
     }
 
     /// The instants, used or not.
@@ -90,98 +97,181 @@ impl ReleaseBank {
         &mut self.candidates
     }
 
+    /// The levels, used or not.
+    #[cfg(feature = "serde")]
+    pub(crate) fn levels_mut(&mut self) -> &mut [f32; MOST_INSTANTS] {
+        &mut self.levels
+    }
+
+    /// The levels, used or not.
+    #[cfg(feature = "serde")]
+    pub(crate) fn levels(&self) -> &[f32; MOST_INSTANTS] {
+        &self.levels
+    }
+
     /// Forgets what was learnt as well.
     pub(crate) fn forget(&mut self) {
         self.restart();
-        self.level = 0.0;
+        self.levels = [0.0; MOST_INSTANTS];
         self.count = 0.0;
+        self.highest = 0.0;
+    }
+
+    /// Learns the levels, where the instants are whole steps old.
+    fn learn(&mut self, memory: f32, variance: f32) {
+        self.count = (self.count + 1.0).min(memory);
+        let gain = 1.0 / (self.count + FIRST);
+        self.highest = variance;
+        for (level, it) in (self.levels.iter_mut().zip(&self.candidates)).take(self.live) {
+            let known = level.max(variance);
+            *level = (known + gain * (it.statistic().min(CLIP * known) - known)).max(variance);
+            self.highest = self.highest.max(*level);
+        }
+    }
+
+    /// The instants, the newest first.
+    fn instants(&self) -> impl Iterator<Item = &Candidate> {
+        self.candidates.iter().take(self.live)
     }
 }
 
+/// At most so far from 0; without the care that `clamp` takes of what is no number.
+fn within(value: f32, most: f32) -> f32 {
+    if value > most {
+        most
+    } else if value < -most {
+        -most
+    } else {
+        value
+    }
+}
+
+/// The instant with the most of something above `least`.
+fn top(bank: &ReleaseBank, least: f32, what: impl Fn(&Candidate) -> f32) -> Option<usize> {
+    let mut best = (least, None);
+    for (number, it) in bank.instants().enumerate() {
+        if what(it) > best.0 {
+            best = (what(it), Some(number));
+        }
+    }
+    best.1
+}
+
 impl Candidate {
-    /// `scale`: half over the variance, 1/m^2.
-    fn statistic(&self, scale: f32) -> f32 {
+    /// m^2.
+    fn statistic(&self) -> f32 {
         let [a, b] = self.sum;
-        (a * a + b * b) * scale / self.energy
+        0.5 * (a * a + b * b) / self.energy
     }
 }
 
 impl Release {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, gravity: f32, threshold: f32) -> Self {
         let horizon = tuning.release_horizon * sample_rate;
+        let stride = (horizon / f32::from(tuning.release_instants)).max(1.0) as u16;
         Self {
             period: 1.0 / sample_rate,
             instants: usize::from(tuning.release_instants),
-            stride: (horizon / f32::from(tuning.release_instants)).max(1.0) as u16,
+            stride,
             threshold,
             gravity,
-            memory: LEVEL_TIME * sample_rate,
+            memory: (LEVEL_TIME * sample_rate / f32::from(stride)).max(1.0),
         }
     }
 
-    /// Takes a residual (m) whose axes have this variance (m^2). Where the test fires: samples since
-    /// the most likely release.
+    /// Takes a residual (m) of a trend with this memory (s), whose axes have this variance (m^2). Where the test fires,
+    /// what it found.
     pub(crate) fn take(
         &self,
         bank: &mut ReleaseBank,
         [x, y]: [f32; 2],
+        memory: f32,
         variance: f32,
-    ) -> Option<f32> {
+    ) -> Option<Released> {
         if bank.wait == 0 {
             bank.wait = self.stride;
-            if let Some(slot) = bank.candidates.get_mut(bank.next) {
-                *slot = Candidate::default();
+            if bank.live > 0 {
+                bank.learn(self.memory, variance);
             }
-            bank.live = bank.live.max(bank.next + 1);
-            bank.next = if bank.next + 1 < self.instants {
-                bank.next + 1
-            } else {
-                0
-            };
+            bank.live = (bank.live + 1).min(self.instants);
+            let mut newer = Candidate::default();
+            for it in bank.candidates.iter_mut().take(bank.live) {
+                newer = core::mem::replace(it, newer);
+            }
+            bank.fading = bank.left;
+            bank.left = 1.0;
         }
         bank.wait -= 1;
-        let threshold_scale = (bank.level / WHITE_LEVEL).max(1.0);
-        let most = MAX_RESIDUAL_SIGMA * sqrt(variance * threshold_scale);
-        let (x, y) = (x.min(most).max(-most), y.min(most).max(-most));
-        let scale = 0.5 / variance;
-        let mut best = (0.0, 0.0);
-        for candidate in bank.candidates.iter_mut().take(bank.live) {
-            candidate.age += 1.0;
-            let time = candidate.age * self.period;
-            let w = time * time;
-            candidate.sum[0] += x * w;
-            candidate.sum[1] += y * w;
-            candidate.energy += w * w;
-            let any = candidate.statistic(scale);
-            if any > best.0 {
-                best = (any, candidate.age);
-            }
+        let most = MAX_RESIDUAL_SIGMA * sqrt(variance.max(bank.highest));
+        let (x, y) = (within(x, most), within(y, most));
+        let step = self.period / memory;
+        bank.left /= 1.0 + step + 0.5 * step * step;
+        let (square, threshold) = (memory * memory, 2.0 * self.threshold);
+        let every = f32::from(self.stride) * step;
+        // Since the instant over the memory, and exp of its negative.
+        let (mut time, mut left) = (self.age(bank, 0) * step, bank.left);
+        let mut most = 0.0;
+        for (it, level) in (bank.candidates.iter_mut().zip(&bank.levels)).take(bank.live) {
+            let w = square * (1.0 - (1.0 + time) * left);
+            it.sum[0] += x * w;
+            it.sum[1] += y * w;
+            it.energy += w * w;
+            let [a, b] = it.sum;
+            let above = a * a + b * b - it.energy * level * threshold;
+            most = if above > most { above } else { most };
+            time += every;
+            left *= bank.fading;
         }
-        bank.statistic = best.0;
-        let threshold = self.threshold * threshold_scale;
-        bank.count = (bank.count + 1.0).min(self.memory);
-        bank.level += (best.0 - bank.level) / bank.count;
-        if best.0 <= threshold || !bank.is_more_than_a_shift(self.threshold, threshold_scale, scale)
-        {
+        if most <= 0.0 || !self.is_found(bank, variance) {
             return None;
         }
-        // With gravity known, the instant follows from the fall's shape far better.
-        let (likelihood, age) = self.fall(bank);
-        let is_a_fall = likelihood > 0.5 * self.threshold * variance;
-        Some(if is_a_fall { age } else { best.1 })
+        // A fall is known by its shape, with gravity, which dates it far better.
+        let g = self.gravity;
+        let fall = |it: &Candidate| -it.sum[1] * g - 0.5 * g * g * it.energy;
+        let falls = top(bank, 0.5 * self.threshold * variance, fall);
+        let number = falls.or_else(|| top(bank, 0.0, Candidate::statistic))?;
+        let it = bank.candidates.get(number)?;
+        let acceleration = it.sum.map(|sum| sum / it.energy);
+        let age = self.age(bank, number);
+        let time = age * self.period;
+        // To 1 % up to where a fall is found.
+        let x = time / memory;
+        let left = 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0))));
+        let w = memory * memory * (1.0 - (1.0 + x) * left);
+        Some(Released {
+            age: falls.map_or(age, |_| self.date(age, -acceleration[1] / g)),
+            acceleration,
+            taken: [0.5 * time * time - w, time * (1.0 - left)],
+        })
     }
 
-    /// Log likelihood of the likeliest fall, times the variance, and its age in samples.
-    fn fall(&self, bank: &ReleaseBank) -> (f32, f32) {
-        let half_gravity = 0.5 * self.gravity;
-        let mut best = (0.0, 0.0);
-        for Candidate { age, sum, energy } in bank.candidates.iter().take(bank.live) {
-            let fall = -sum[1] * half_gravity - 0.5 * half_gravity * half_gravity * energy;
-            if fall > best.0 {
-                best = (fall, *age);
+    /// Samples since an instant, the newest first.
+    fn age(&self, bank: &ReleaseBank, number: usize) -> f32 {
+        f32::from(self.stride) * (number as f32 + 1.0) - f32::from(bank.wait)
+    }
+
+    /// Whether an instant is above its threshold: a multiple of the level of its age, beyond what a floating rotor's
+    /// acceleration makes, and above what readings that jump by a count may do.
+    fn is_found(&self, bank: &ReleaseBank, variance: f32) -> bool {
+        let mut instants = bank.instants().zip(&bank.levels).enumerate();
+        instants.any(|(number, (it, level))| {
+            let shifted = (SHIFTED[0] + SHIFTED[1] * self.age(bank, number)) * variance;
+            let statistic = it.statistic();
+            let threshold = self.threshold * level.max(variance).max(shifted);
+            statistic > threshold && {
+                let least = sqrt(threshold) + FLOATING * sqrt(0.5 * it.energy);
+                statistic > least * least
             }
-        }
-        best
+        })
+    }
+
+    /// Samples since the onset of a fall that seems to be of so many times gravity since an instant of this age. Of a fall
+    /// since T an instant of age a shows 1 + 5/2 d + 5/3 d^2, with d = T/a - 1: the sum of t^2 (t + T - a)^2 over that of t^4.
+    fn date(&self, age: f32, times: f32) -> f32 {
+        let root = sqrt((20.0 / 3.0 * times - 5.0 / 12.0).max(0.0));
+        let later = age * 0.3 * (root - 2.5);
+        let stride = f32::from(self.stride);
+        age + later.min(stride).max(-stride)
     }
 }
 
@@ -189,27 +279,20 @@ impl Release {
 mod tests {
     use super::*;
     use crate::detect::noise::white;
-
-    fn level(sample_rate: f32) -> f32 {
-        let release = Release::new(&Tuning::default(), sample_rate, 9.81, 25.3);
-        let (mut bank, mut seed) = (ReleaseBank::default(), 1);
-        let mut sum = 0.0;
-        for _ in 0..200_000 {
-            let residual = [1e-6 * white(&mut seed), 1e-6 * white(&mut seed)];
-            assert_eq!(release.take(&mut bank, residual, 1e-12), None);
-            sum += f64::from(bank.statistic);
-        }
-        (sum / 200_000.0) as f32
-    }
+    use crate::detect::trend::MEMORY;
 
     #[test]
-    fn the_level_of_white_noise() {
+    fn the_levels_of_white_noise_are_its_variance() {
         for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
-            let level = level(sample_rate);
-            assert!(
-                (level / WHITE_LEVEL - 1.0).abs() < 0.1,
-                "{sample_rate} {level}"
-            );
+            let release = Release::new(&Tuning::default(), sample_rate, 9.81, 25.3);
+            let (mut bank, mut seed) = (ReleaseBank::default(), 1);
+            for _ in 0..200_000 {
+                let residual = [1e-6 * white(&mut seed), 1e-6 * white(&mut seed)];
+                assert!(release.take(&mut bank, residual, MEMORY, 1e-12).is_none());
+            }
+            for level in bank.levels.iter().take(bank.live) {
+                assert!((level / 1e-12 - 1.0).abs() < 0.2, "{sample_rate}: {level}");
+            }
         }
     }
 
@@ -226,14 +309,16 @@ mod tests {
             let [x, y] = orbit(k);
             let residual = [x + 1e-6 * white(&mut seed), y + 1e-6 * white(&mut seed)];
             // The first samples teach the level.
-            let found = release.take(&mut bank, residual, variance);
+            let found = release.take(&mut bank, residual, MEMORY, variance);
             assert!(k < 1_000 || found.is_none(), "{k}");
         }
         let found = (1..160).find(|&k| {
             let [x, y] = orbit(k);
             let time = k as f32 / 20_000.0;
             let residual = [x, y - 0.5 * 9.81 * time * time];
-            release.take(&mut bank, residual, variance).is_some()
+            release
+                .take(&mut bank, residual, MEMORY, variance)
+                .is_some()
         });
         assert!(found.is_some(), "a fall of 0.3 mm in 7.8 ms");
     }
@@ -248,19 +333,19 @@ mod tests {
         for drop in 0..400 {
             let mut bank = ReleaseBank::default();
             for _ in 0..400 + drop {
-                let found = release.take(&mut bank, [noise(), noise()], 0.56e-12);
-                assert_eq!(found, None);
+                let found = release.take(&mut bank, [noise(), noise()], MEMORY, 0.56e-12);
+                assert!(found.is_none());
             }
             let (fallen, age) = (1..100)
                 .find_map(|k| {
                     let time = k as f32 / 20_000.0;
                     let residual = [noise(), noise() - 0.5 * 9.81 * time * time];
-                    let found = release.take(&mut bank, residual, 0.56e-12);
-                    found.map(|age| (k as f32, age))
+                    let found = release.take(&mut bank, residual, MEMORY, 0.56e-12);
+                    found.map(|it| (k as f32, it.age))
                 })
                 .expect("a fall of 0.12 mm");
             off += (age - fallen).abs() / 400.0;
         }
-        assert!(off < 1.6, "{off} samples");
+        assert!(off < 1.0, "{off} samples");
     }
 }

@@ -11,48 +11,10 @@ const PRIOR_WEIGHT: f32 = 1.0;
 /// Speed into the wall, m/s, whose rebound shows the restitution to a few per cent at 1 um noise.
 const CLEAR_SPEED: f32 = 0.02;
 
-/// Standard deviations by which a flight contradicts what restitution lets expect of its launch, and the speed,
-/// m/s, from which on it may.
-const CONTRADICTS: f32 = 4.0;
-const CLEAR_LAUNCH: f32 = 0.01;
 /// Part of the first flight after an impact that shows well how the rotor left the wall.
 const SHOWN: f32 = 0.6;
 /// Samples that this must take: fewer show it no better than the impact did.
 const LONG_ENOUGH: f32 = 16.0;
-
-/// Parts by which the speed foreseen of an impact may be off: for the wall's pressing, and for a restitution that no
-/// impact has shown yet.
-const UNEVEN: f32 = 0.02;
-const UNTAUGHT: f32 = 0.1;
-
-/// A speed, as well as it is known.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Known {
-    /// m/s.
-    pub(crate) speed: f32,
-    /// Variance of its logarithm.
-    pub(crate) doubt: f32,
-}
-
-impl Known {
-    /// Known to `error`, m/s.
-    pub(crate) fn to(speed: f32, error: f32) -> Self {
-        let part = error / speed;
-        Self {
-            speed,
-            doubt: part * part,
-        }
-    }
-
-    /// The same speed known twice.
-    pub(crate) fn and(self, other: Self) -> Self {
-        let part = self.doubt / (self.doubt + other.doubt);
-        Self {
-            speed: self.speed + part * (other.speed - self.speed),
-            doubt: part * other.doubt,
-        }
-    }
-}
 
 /// An impact, as far as the series needs it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -61,8 +23,6 @@ pub(crate) struct Bounce {
     pub(crate) at: Moment,
     /// Speed into the wall, m/s.
     pub(crate) normal_speed: f32,
-    /// The same, as the impacts before it say as well.
-    pub(crate) known: Known,
     /// Velocity along the wall after it, counter-clockwise, m/s.
     pub(crate) along: f32,
     /// Outward unit vector at the contact.
@@ -137,7 +97,7 @@ pub(crate) struct Series {
     last: Option<Bounce>,
     ends: Option<Moment>,
     /// Speed with which the rotor left the wall at the last impact.
-    launch: Known,
+    launch: f32,
     /// Whether its velocity along the wall is still that which followed from the impact.
     assumed: bool,
 }
@@ -178,21 +138,15 @@ impl Series {
     /// has been taken from there.
     pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
         let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.launch.speed / last.normal_acceleration;
+        let flight = 2.0 * self.launch / last.normal_acceleration;
         let after = SHOWN * flight / period;
         (last.normal_acceleration > 0.0 && after >= LONG_ENOUGH).then_some(after)
     }
 
-    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall, known to `error`. Just
-    /// after an impact that along the wall is hardly known, and the wall's pressing grows with its square. How
-    /// fast it left the wall is known better from the impacts, unless the flight contradicts them.
-    pub(crate) fn relaunch(
-        &mut self,
-        [u, v]: [f32; 2],
-        error: f32,
-        machine: &MachineConfig,
-        period: f32,
-    ) {
+    /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall. Just after an impact that along
+    /// the wall is hardly known, and the wall's pressing grows with its square. How fast it left the wall is known better
+    /// from the impacts.
+    pub(crate) fn relaunch(&mut self, [u, v]: [f32; 2], machine: &MachineConfig, period: f32) {
         self.assumed = false;
         let restitution = self.restitution(machine);
         let Some(last) = self.last.as_mut() else {
@@ -202,22 +156,13 @@ impl Series {
         last.along = v * x - u * y;
         last.normal_acceleration =
             last.along * last.along / machine.clearance - machine.gravity * y;
-        let shown = -(u * x + v * y);
-        if (shown - self.launch.speed).abs() > CONTRADICTS * error && shown > CLEAR_LAUNCH {
-            self.launch = Known::to(shown, error);
-        }
-        let rest = last.rest(self.launch.speed, restitution, machine);
+        let rest = last.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| last.at.later(time / period));
     }
 
-    /// Speed with which the rotor left the wall at the last impact; it comes back with that, but for what the pressing
-    /// and the restitution leave open.
-    pub(crate) fn launch(&self) -> Known {
-        let untaught = UNTAUGHT / (self.seen[1] + PRIOR_WEIGHT);
-        Known {
-            doubt: self.launch.doubt + UNEVEN * UNEVEN + untaught * untaught,
-            ..self.launch
-        }
+    /// Speed with which the rotor left the wall at the last impact; it comes back with that.
+    pub(crate) fn launch(&self) -> f32 {
+        self.launch
     }
 
     /// The last impact.
@@ -254,11 +199,8 @@ impl Series {
     /// After an impact.
     fn leave(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
         let restitution = self.restitution(machine);
-        self.launch = Known {
-            speed: restitution * bounce.known.speed,
-            ..bounce.known
-        };
-        let rest = bounce.rest(self.launch.speed, restitution, machine);
+        self.launch = restitution * bounce.normal_speed;
+        let rest = bounce.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
@@ -298,7 +240,6 @@ pub(crate) mod tests {
         Bounce {
             at: Moment::default().later(samples),
             normal_speed,
-            known: Known::to(normal_speed, 1e-4),
             along: 0.0,
             outward: [0.0, -1.0],
             normal_acceleration: 9.81,
@@ -358,14 +299,6 @@ pub(crate) mod tests {
             }
         }
         time
-    }
-
-    #[test]
-    fn a_speed_known_twice_is_known_better() {
-        let both = Known::to(0.010, 1e-3).and(Known::to(0.013, 5e-4));
-        // Parts of 0.1 and 0.0385: weights of 100 and 676.
-        assert!((both.speed - 0.012_613).abs() < 1e-6, "{both:?}");
-        assert!((both.doubt - 1.0 / 776.0).abs() < 1e-6, "{both:?}");
     }
 
     #[test]

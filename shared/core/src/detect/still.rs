@@ -10,6 +10,8 @@ pub(crate) struct Still {
     sum: [f32; 2],
     square: f32,
     last: Option<[f32; 2]>,
+    /// Square of the largest distance from the centre in this block, and in the one before, m^2.
+    farthest: [f32; 2],
 }
 
 /// A finished block.
@@ -21,6 +23,8 @@ pub(crate) struct Block {
     pub(crate) variance: f32,
     /// Way from the mean of the block before, m; infinite for the first.
     pub(crate) moved: f32,
+    /// Square of the largest distance from the centre in it and the one before, m^2; infinite for the first.
+    pub(crate) farthest: f32,
 }
 
 impl Still {
@@ -30,7 +34,10 @@ impl Still {
             self.origin = position;
             self.sum = [0.0; 2];
             self.square = 0.0;
+            self.farthest[0] = 0.0;
         }
+        let [x, y] = position;
+        self.farthest[0] = self.farthest[0].max(x * x + y * y);
         let dx = position[0] - self.origin[0];
         let dy = position[1] - self.origin[1];
         self.sum[0] += dx;
@@ -47,12 +54,20 @@ impl Still {
             let (dx, dy) = (mean[0] - x, mean[1] - y);
             sqrt(dx * dx + dy * dy)
         });
+        let [now, before] = self.farthest;
+        let farthest = if self.last.is_some() {
+            now.max(before)
+        } else {
+            f32::INFINITY
+        };
+        self.farthest[1] = now;
         self.last = Some(mean);
         self.count = 0;
         Some(Block {
             mean,
             variance: (0.5 * (self.square * scale - mx * mx - my * my)).max(0.0),
             moved,
+            farthest,
         })
     }
 }

@@ -6,7 +6,7 @@ use touchdown_core::learnt::{Learnt, PARTS, RING_PARTS};
 use super::block::{Block, Kind};
 
 /// Version of the parts.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 
 /// Part `number` of `learnt`, from 0, as a block; nothing beyond the last.
 pub fn part(learnt: &Learnt, number: u8) -> Option<Block> {

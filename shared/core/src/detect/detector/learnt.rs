@@ -25,8 +25,7 @@ pub(crate) struct Place {
     next_number: u16,
     noise: Noise,
     levitation: Levitation,
-    /// Of the impact test.
-    level: f32,
+    listener: NoiseFloor,
     ends: Together,
 }
 
@@ -34,7 +33,8 @@ impl DetectorState {
     /// Whether the rotor floats as one, and all of it has been learnt.
     pub(crate) fn is_afloat(&self) -> bool {
         let floats = self.rotor.phase == Phase::Levitated && self.levitation.is_armed();
-        floats && !self.ends.are_alone() && self.pending.is_none()
+        let is_known = self.listener.is_known();
+        floats && is_known && !self.ends.are_alone() && self.pending.is_none()
     }
 }
 
@@ -45,7 +45,7 @@ impl Afloat {
             next_number: state.next_number,
             noise: state.noise,
             levitation: state.levitation,
-            level: state.listener.level(),
+            listener: state.listener,
             ends: state.ends.together(),
         };
         self.orbit = state.orbit.followed();
@@ -61,7 +61,7 @@ impl From<&Afloat> for DetectorState {
             levitation: it.place.levitation,
             orbit: it.orbit.into(),
             release: it.release,
-            listener: NoiseFloor::of_level(it.place.level),
+            listener: it.place.listener,
             rotor: PhaseState {
                 phase: Phase::Levitated,
                 ..PhaseState::default()

@@ -1,5 +1,6 @@
-//! The orbit of a floating rotor: a circle or ellipse at one frequency, by unbalance, and its harmonics,
-//! by runout. Searched for until found, then followed, so that what is left is noise.
+//! Where a floating rotor is and goes: a trend and, where there is one, an orbit, a circle or ellipse at one frequency, by
+//! unbalance, and its harmonics, by runout. The orbit is searched for until found, then followed, so that what is left is
+//! noise.
 
 mod follow;
 #[cfg(feature = "serde")]
@@ -10,17 +11,27 @@ use self::follow::{Follow, Orbit};
 #[cfg(feature = "serde")]
 pub(crate) use self::learnt::Followed;
 use self::search::{Search, Searching};
+use crate::config::DetectorConfig;
+use crate::detect::pending::StraightWay;
+use crate::detect::trend::{MEMORY, TrendObserver};
+use crate::vector::{less, sum};
 
 /// Parts of the arming time that an orbit is searched for and fitted in. The rest shows what is left of it.
 const SEARCH: f32 = 0.35;
 const FIT: f32 = 0.4;
+/// Turns that a trial lasts at least: harmonics come from nothing.
+const TRIAL: f32 = 6.0;
 /// Seconds over which the variance of the residual is learnt.
 const RESIDUAL_TIME: f32 = 0.03;
+/// Most of it that one value counts for: a fall is no other orbit.
+const CLIP: f32 = 9.0;
 /// Part of the variance that following an orbit may leave.
 const MOST_LEFT: f32 = 0.5;
 /// Radius from which on an orbit is the rotor's and ends with the levitation, m: sensors' runout, which goes
 /// on, is smaller.
 const RUNOUT: f32 = 8e-6;
+/// Slowest orbit, rad/s, that is followed: slower ones are a trend.
+const SLOWEST: f32 = 50.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -30,120 +41,233 @@ pub(crate) struct Orbiting {
     /// Samples of a search, and of a fit.
     search_samples: u32,
     fit_samples: u32,
-    memory: f32,
+    /// Samples of the residual's variance, and the part that one then counts for.
+    samples: u32,
+    gain: f32,
+    /// Samples of the trend's memory.
+    trend_memory: f32,
+    /// Least angle in a sample of an orbit, rad.
+    slowest: f32,
 }
 
-/// What is known of the orbit.
+/// What is known of trend and orbit.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct OrbitState {
     count: u32,
     searching: Searching,
     orbit: Option<Orbit>,
-    /// Of one axis about the orbit, m^2.
+    /// Whether the orbit has shown what it explains: it is on trial before.
+    is_certain: bool,
+    /// Alone, and beside the orbit.
+    alone: TrendObserver,
+    beside: TrendObserver,
+    /// Of one axis about trend and orbit, m^2.
     variance: f32,
 }
 
-/// What an orbit does not explain of a position.
+/// What trend and orbit do not explain of a position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Residual {
     /// m.
     pub(crate) way: [f32; 2],
-    /// Of one axis, m^2.
-    pub(crate) variance: f32,
     /// Whether it is the first of its kind: residuals before it are not comparable.
     pub(crate) first: bool,
+    /// The position without what goes on when the levitation ends, runout, and without the orbit as well, m.
+    pub(crate) parts: [[f32; 2]; 2],
 }
 
 impl Orbiting {
-    /// `time` is that of arming, s.
-    pub(crate) fn new(time: f32, sample_rate: f32) -> Self {
+    pub(crate) fn new(config: &DetectorConfig) -> Self {
+        let (time, sample_rate) = (config.tuning.arming_time, config.sample_rate);
         Self {
             search: Search::new(sample_rate),
             follow: Follow::new(sample_rate),
             search_samples: (SEARCH * time * sample_rate) as u32,
             fit_samples: (FIT * time * sample_rate) as u32,
-            memory: (RESIDUAL_TIME * sample_rate).max(1.0),
+            samples: (RESIDUAL_TIME * sample_rate) as u32,
+            gain: 1.0 / (RESIDUAL_TIME * sample_rate).max(1.0),
+            trend_memory: MEMORY * sample_rate,
+            slowest: SLOWEST / sample_rate,
         }
     }
 
     /// To the next sample, whatever the rotor does; `spin` as measured, rad/s.
     pub(crate) fn advance(&self, state: &mut OrbitState, spin: Option<f32>) {
+        state.alone.advance();
+        state.beside.advance();
         if let Some(orbit) = &mut state.orbit {
             self.follow.advance(orbit, spin);
         }
     }
 
-    /// Takes a position, m, of a rotor that floats about `mean` with this variance (m^2), of which
-    /// `noise` is white.
+    /// Takes a position, m, of a rotor that floats with this variance (m^2), of which `noise` is white. The orbit is
+    /// learnt only while it `floats` for certain.
     pub(crate) fn take(
         &self,
         state: &mut OrbitState,
         position: [f32; 2],
-        (mean, variance): ([f32; 2], f32),
-        noise: f32,
+        (variance, noise): (f32, f32),
+        floats: bool,
     ) -> Residual {
-        state.count = state.count.saturating_add(1);
-        let mut residual = Residual {
-            way: [position[0] - mean[0], position[1] - mean[1]],
-            variance: variance.max(noise),
-            first: false,
-        };
-        let Some(orbit) = &mut state.orbit else {
-            self.search.take(&mut state.searching, position);
-            if state.count >= self.search_samples {
-                let rate = self.search.rate(&state.searching, noise);
-                state.forget();
-                state.orbit = rate.map(|rate| self.follow.start(rate, mean));
+        if !state.alone.is_known() {
+            state.alone = TrendObserver::at(position);
+        }
+        let was_certain = state.is_certain;
+        let alone = less(position, state.alone.position);
+        state.alone.take(alone, self.trend_memory);
+        let (mut way, mut parts) = (alone, [position; 2]);
+        if let Some(orbit) = &mut state.orbit
+            && orbit.is_fitted()
+        {
+            let waves = orbit.waves();
+            let without = less(position, orbit.place(&waves));
+            let beside = less(without, state.beside.position);
+            if was_certain {
+                way = beside;
+                parts = [sum(without, orbit.fundamental()), without];
             }
-            return residual;
+            let memory = orbit.memory(self.trend_memory);
+            state.beside.take(beside, memory);
+            if floats {
+                self.follow.learn(orbit, &waves, beside, memory);
+                self.judge(state, beside, (variance, noise));
+            }
+        } else if floats {
+            self.seek(state, position, noise);
+        }
+        Residual {
+            way,
+            first: state.is_certain != was_certain,
+            parts,
+        }
+    }
+
+    /// Time constant of the trend, s.
+    pub(crate) fn memory(&self, state: &OrbitState) -> f32 {
+        let memory = state.certain().map(|it| it.memory(self.trend_memory));
+        memory.unwrap_or(self.trend_memory) / self.trend_memory * MEMORY
+    }
+
+    /// Searches for an orbit, and fits it.
+    fn seek(&self, state: &mut OrbitState, position: [f32; 2], noise: f32) {
+        state.count = state.count.saturating_add(1);
+        if let Some(orbit) = &mut state.orbit {
+            if let Some(centre) = self.follow.begin(orbit, position) {
+                state.beside = TrendObserver::at(centre);
+            }
+            return;
+        }
+        self.search.take(&mut state.searching, position);
+        if state.count >= self.search_samples {
+            let rate = self.search.rate(&state.searching, noise);
+            let rate = rate.filter(|rate| *rate > self.slowest);
+            state.begin_anew();
+            state.orbit = rate.map(|rate| self.follow.start(rate, state.alone.position));
+        }
+    }
+
+    /// Whether the orbit explains enough of how the rotor moves.
+    fn judge(&self, state: &mut OrbitState, [x, y]: [f32; 2], (variance, noise): (f32, f32)) {
+        state.count = state.count.saturating_add(1);
+        let turn = state.orbit.as_ref().map_or(0.0, Orbit::turn);
+        let trial = self.fit_samples.max((TRIAL * turn) as u32);
+        let gain = if state.count < self.samples {
+            1.0 / state.count as f32
+        } else {
+            self.gain
         };
-        let way @ [x, y] = self.follow.learn(orbit, position);
-        let gain = 1.0 / (state.count as f32).min(self.memory);
-        state.variance += gain * (0.5 * (x * x + y * y) - state.variance);
-        if state.count == self.fit_samples / 2 {
+        let mut square = 0.5 * (x * x + y * y);
+        if state.is_certain && square > CLIP * state.variance {
+            square = CLIP * state.variance;
+        }
+        state.variance += gain * (square - state.variance);
+        if state.count == trial / 2 {
             // What the fit did not know yet is no noise.
             state.variance = 0.0;
         }
-        let fitted = state.count >= self.fit_samples;
-        if fitted && state.variance > MOST_LEFT * variance + noise {
-            state.forget();
-            residual.first = true;
-        } else if fitted {
-            residual = Residual {
-                way,
-                variance: state.variance.max(noise),
-                first: state.count == self.fit_samples,
-            };
+        if state.count >= trial {
+            state.is_certain = state.variance <= MOST_LEFT * variance + noise;
+            if !state.is_certain {
+                state.begin_anew();
+            }
         }
-        residual
     }
 }
 
 impl OrbitState {
+    /// The orbit, once it is certain.
+    fn certain(&self) -> Option<&Orbit> {
+        self.orbit.as_ref().filter(|_| self.is_certain)
+    }
+
+    fn trend(&self) -> &TrendObserver {
+        if self.is_certain {
+            &self.beside
+        } else {
+            &self.alone
+        }
+    }
+
+    /// Where the rotor would be without this acceleration (m/s^2), of which the trend has taken so much since (place, s^2,
+    /// and step, s): with the orbit ended in its tangent so many samples ago, and without it.
+    pub(crate) fn paths(
+        &self,
+        age: f32,
+        acceleration: [f32; 2],
+        taken: [f32; 2],
+    ) -> [StraightWay; 2] {
+        let TrendObserver { position, step, .. } = *self.trend();
+        let path = StraightWay {
+            position: less(position, acceleration.map(|it| taken[0] * it)),
+            step: less(step, acceleration.map(|it| taken[1] * it)),
+        };
+        let orbit = self.certain();
+        let (place, way) = orbit.map_or(Default::default(), |it| it.before(age));
+        let tangent = StraightWay {
+            position: sum(path.position, sum(place, way.map(|it| it * age))),
+            step: sum(path.step, way),
+        };
+        [tangent, path]
+    }
+
     /// What is measured has moved by `way`, m: a search begins again.
     pub(crate) fn shift(&mut self, way: [f32; 2]) {
+        self.alone.position = sum(self.alone.position, way);
+        self.beside.position = sum(self.beside.position, way);
         match &mut self.orbit {
             Some(orbit) => orbit.shift(way),
-            None => self.forget(),
+            None => self.begin_anew(),
         }
+    }
+
+    /// Looks for an orbit anew.
+    fn begin_anew(&mut self) {
+        self.count = 0;
+        self.searching.forget();
+        self.orbit = None;
+        self.is_certain = false;
+        self.variance = 0.0;
     }
 
     /// Forgets all.
     pub(crate) fn forget(&mut self) {
-        self.count = 0;
-        self.searching.forget();
-        self.orbit = None;
-        self.variance = 0.0;
+        self.begin_anew();
+        self.alone = TrendObserver::default();
     }
 
-    /// Whether there is no orbit to be fitted first.
-    pub(crate) fn is_fitted(&self, orbiting: &Orbiting) -> bool {
-        self.orbit.is_none() || self.count >= orbiting.fit_samples
+    /// Whether there is an orbit for certain.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.is_certain
+    }
+
+    /// Whether there is no orbit on trial.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.orbit.is_none() || self.is_certain
     }
 
     /// What of the present position ends with the levitation, m.
     pub(crate) fn ending(&self) -> [f32; 2] {
-        let orbit = self.orbit.as_ref();
+        let orbit = self.certain();
         let orbit = orbit.filter(|it| it.square() > RUNOUT * RUNOUT);
         orbit.map_or([0.0; 2], |orbit| orbit.fundamental())
     }
@@ -152,43 +276,74 @@ impl OrbitState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{MachineConfig, Tuning};
     use crate::detect::noise::white;
+    use touchdown_rotor::real::sqrt;
+
+    fn orbiting(sample_rate: f32) -> Orbiting {
+        Orbiting::new(&DetectorConfig {
+            sample_rate,
+            machine: MachineConfig {
+                mass: 3.0,
+                clearance: 0.3e-3,
+                gravity: 9.81,
+                rotor_radius: 24e-3,
+                inertia_ratio: 0.5,
+                friction: 0.1,
+                restitution: 0.5,
+                spin: 1_000.0,
+            },
+            tuning: Tuning::default(),
+        })
+    }
+
+    /// Root mean square of what is left of one axis of an orbit of 30 um with runout of 5 um in so many waves and noise of
+    /// 1 um, from 0.85 s on, in um, and how often the residual became another.
+    fn left(hz: f64, sample_rate: f32, wave: f64) -> (f32, u32) {
+        let radius = 30e-6;
+        let orbiting = orbiting(sample_rate);
+        let (mut state, mut seed) = (OrbitState::default(), 1);
+        let (mut sum, mut count, mut firsts) = (0.0, 0.0, 0);
+        for k in 0..sample_rate as u32 {
+            let time = f64::from(k) / f64::from(sample_rate);
+            let (sin, cos) = libm::sincos(core::f64::consts::TAU * hz * time + 1.0);
+            let [x, y] = [white(&mut seed), white(&mut seed)].map(|it| 1e-6 * it);
+            let runout = 5e-6 * libm::cos(wave * (core::f64::consts::TAU * hz * time)) as f32;
+            let position = [
+                radius * cos as f32 + x + 5e-5 + runout,
+                radius * sin as f32 + y,
+            ];
+            orbiting.advance(&mut state, None);
+            let variance = 0.5 * radius * radius + 1e-12;
+            let residual = orbiting.take(&mut state, position, (variance, 1e-12), true);
+            firsts += u32::from(residual.first);
+            if time > 0.85 {
+                let [x, y] = residual.way;
+                sum += 0.5 * (x * x + y * y);
+                count += 1.0;
+            }
+        }
+        (1e6 * sqrt(sum / count), firsts)
+    }
 
     #[test]
     fn an_orbit_is_found_fitted_and_taken_off() {
-        for hz in [10.0, 20.0, 50.0, 100.0, 200.0, 500.0] {
-            let orbiting = Orbiting::new(0.14, 20_000.0);
-            let (mut state, mut seed) = (OrbitState::default(), 1);
-            let (mut sum, mut firsts) = (0.0, 0);
-            for k in 0..8_000 {
-                let angle = core::f64::consts::TAU * hz * f64::from(k) / 20_000.0 + 1.0;
-                let (sin, cos) = libm::sincos(angle);
-                let [x, y] = [white(&mut seed), white(&mut seed)].map(|it| 1e-6 * it);
-                let position = [30e-6 * cos as f32 + x, 30e-6 * sin as f32 + y];
-                orbiting.advance(&mut state, None);
-                let floats = ([0.0; 2], 450e-12);
-                let residual = orbiting.take(&mut state, position, floats, 1e-12);
-                firsts += u32::from(residual.first);
-                if k >= 2_800 {
-                    let [x, y] = residual.way;
-                    sum += 0.5 * (x * x + y * y) / 5_200.0;
+        for sample_rate in [10_000.0, 20_000.0, 50_000.0] {
+            for (hz, most) in [(10.0, 1.5), (30.0, 1.1), (100.0, 1.1), (500.0, 1.1)] {
+                for wave in [1.0, 2.0, 3.0] {
+                    let (left, firsts) = left(hz, sample_rate, wave);
+                    let case = (hz, sample_rate, wave);
+                    assert!(left < most && firsts == 1, "{case:?}: {left} um, {firsts}");
                 }
             }
-            assert_eq!(firsts, 1, "{hz} Hz");
-            assert!(sum < 1.1e-12, "{hz} Hz: {sum} m^2");
         }
     }
 
     #[test]
-    fn without_an_orbit_the_residual_is_that_of_the_mean() {
-        let orbiting = Orbiting::new(0.14, 20_000.0);
-        let (mut state, mut seed) = (OrbitState::default(), 1);
-        for _ in 0..20_000 {
-            let position = [1e-6 * white(&mut seed), 1e-6 * white(&mut seed)];
-            orbiting.advance(&mut state, None);
-            let residual = orbiting.take(&mut state, position, ([1e-6, 0.0], 1e-12), 1e-12);
-            assert_eq!(residual.way, [position[0] - 1e-6, position[1]]);
-            assert!(state.is_fitted(&orbiting) && !residual.first);
+    fn a_slow_orbit_is_a_trend() {
+        for (hz, most) in [(0.0, 1.1), (2.0, 1.1), (5.0, 1.3)] {
+            let (left, firsts) = left(hz, 20_000.0, 0.0);
+            assert!(left < most && firsts == 0, "{hz} Hz: {left} um, {firsts}");
         }
     }
 }

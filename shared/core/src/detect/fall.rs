@@ -1,0 +1,348 @@
+//! Whether a rotor falls, by the laws of a fall: place, speed, acceleration and time since one onset tell the same, or,
+//! where the onset is not known, acceleration and speed over a while are those of gravity.
+//!
+//! Positions are means of short blocks. Polynomials that are orthogonal over equally spaced blocks give place, speed,
+//! acceleration and its change with their errors. Both are looked at: the position as it is, for an orbit that ends with
+//! the levitation, and without the orbit.
+
+use crate::config::DetectorConfig;
+use crate::detect::pending::{Pending, StraightWay};
+use crate::event::Moment;
+use touchdown_rotor::real::sqrt;
+
+/// Length of a block, s.
+const BLOCK: f32 = 0.25e-3;
+/// Blocks that are kept, and those that place, speed and acceleration since an onset are fitted to.
+const BLOCKS: usize = 16;
+const SHORT: usize = 8;
+
+/// Least time since the onset, and speed as a time of fall, s: a loop of 60 Hz and more has lost half of the
+/// acceleration by then.
+const FALLEN: [f32; 2] = [2.5e-3, 2.25e-3];
+/// Least way, m: that of the time.
+const WAY: f32 = 30e-6;
+/// Most that the acceleration may differ from gravity since an onset, as a part of it, beside these standard deviations.
+const UNLIKE: [f32; 2] = [0.3, 3.0];
+/// Likewise the change of the acceleration over half of the time.
+const CHANGE: [f32; 2] = [0.1, 2.5];
+/// Part by which way and time may differ from those of the speed; standard deviations of the way.
+const APART: f32 = 0.25;
+const WAY_SIGMA: f32 = 5.0;
+/// Tangent of the angle between speed and gravity.
+const ASIDE: f32 = 0.3;
+/// Without an onset: most that the acceleration may differ from gravity, and change, as parts of it, beside these
+/// standard deviations.
+const FREE: [f32; 2] = [0.15, 3.0];
+/// Least speed then, as a time of fall, s.
+const FREE_SPEED: f32 = 3.2e-3;
+/// Part of gravity that the error of what is compared with it must stay below.
+const SHARP: f32 = 0.2;
+/// Part of the clearance beyond which a bounce may look like a fall, and how long it may after it, s.
+const NEAR: f32 = 0.67;
+const BOUNCES: f32 = 20e-3;
+/// Blocks in a row in which a rotor comes back that withdraw a declared fall: one that left an orbit may seem to for half
+/// as long.
+const BACK: u8 = 16;
+/// Part of gravity by which an acceleration is unlike it, beside three standard deviations.
+const OTHER: f32 = 0.4;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FallTest {
+    period: f32,
+    gravity: f32,
+    /// Samples of a block.
+    stride: u16,
+    /// Square of the distance beyond which a bounce may look like a fall, m^2, and samples that it may.
+    near: f32,
+    bounces: u32,
+}
+
+/// The last blocks: means of the position as it is, and without the orbit.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Blocks {
+    means: [[[f32; 2]; 2]; BLOCKS],
+    filled: usize,
+    next: usize,
+    sum: [[f32; 2]; 2],
+    samples: u16,
+    taken: u16,
+    since_wall: u32,
+}
+
+/// How a declared fall stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FallVerdict {
+    Open,
+    /// It is one.
+    Certain,
+    /// It is none.
+    Caught,
+}
+
+/// A polynomial through blocks, at the end of the last one.
+#[derive(Clone, Copy, Debug)]
+struct Cubic {
+    /// m, m/s, m/s^2; the last is the change of the acceleration over half of the blocks.
+    place: [f32; 2],
+    speed: [f32; 2],
+    acceleration: [f32; 2],
+    change: [f32; 2],
+    /// Standard deviations of place, acceleration and change on an axis.
+    place_error: f32,
+    error: f32,
+    change_error: f32,
+}
+
+impl FallTest {
+    pub(crate) fn new(config: &DetectorConfig) -> Self {
+        let (rate, machine) = (config.sample_rate, &config.machine);
+        let near = NEAR * machine.clearance;
+        Self {
+            period: 1.0 / rate,
+            gravity: machine.gravity,
+            stride: (BLOCK * rate).max(1.0) as u16,
+            near: near * near,
+            bounces: (BOUNCES * rate) as u32,
+        }
+    }
+
+    /// Takes a position (m), as it is and without the orbit; true where a block is full.
+    pub(crate) fn take(&self, blocks: &mut Blocks, parts: [[f32; 2]; 2]) -> bool {
+        for (sum, [x, y]) in blocks.sum.iter_mut().zip(parts) {
+            sum[0] += x;
+            sum[1] += y;
+        }
+        blocks.taken += 1;
+        self.end(blocks)
+    }
+
+    /// Without a position.
+    pub(crate) fn skip(&self, blocks: &mut Blocks) {
+        self.end(blocks);
+    }
+
+    fn end(&self, blocks: &mut Blocks) -> bool {
+        blocks.since_wall = blocks.since_wall.saturating_add(1);
+        blocks.samples += 1;
+        if blocks.samples < self.stride {
+            return false;
+        }
+        let is_full = blocks.taken > 0;
+        if is_full {
+            let scale = 1.0 / f32::from(blocks.taken);
+            let means = blocks.sum.map(|sum| sum.map(|it| it * scale));
+            let [[x, y], _] = means;
+            if x * x + y * y > self.near {
+                blocks.since_wall = 0;
+            }
+            if let Some(place) = blocks.means.get_mut(blocks.next) {
+                *place = means;
+            }
+            blocks.next = (blocks.next + 1) % BLOCKS;
+            blocks.filled = (blocks.filled + 1).min(BLOCKS);
+        } else {
+            // Across a block without a position nothing is equally spaced.
+            blocks.filled = 0;
+        }
+        blocks.sum = Default::default();
+        (blocks.samples, blocks.taken) = (0, 0);
+        is_full
+    }
+
+    /// After a full block, of positions with this variance on each axis (m^2), of a rotor that `orbits` or not: a fall that
+    /// nothing declared; samples since its onset.
+    pub(crate) fn unforeseen(&self, blocks: &Blocks, variance: f32, orbits: bool) -> Option<f32> {
+        if blocks.filled < BLOCKS || blocks.since_wall < self.bounces || self.gravity == 0.0 {
+            return None;
+        }
+        (usize::from(!orbits)..2).find_map(|part| {
+            // Gone down by half of what such a speed makes: cheaper than the fit.
+            let span = f32::from(self.stride) * self.period * (SHORT - 1) as f32;
+            let way = blocks.back(0, part)[1] - blocks.back(SHORT - 1, part)[1];
+            if way > -0.5 * FREE_SPEED * self.gravity * span {
+                return None;
+            }
+            let fit = self.fit(blocks, part, BLOCKS, None, variance);
+            let g = self.gravity;
+            let [part, sigmas] = FREE;
+            let falls = fit.change_error < SHARP * g
+                && fit.is_like(g, part * g + sigmas * fit.error)
+                && length(fit.change) < part * g + sigmas * fit.change_error
+                && -fit.speed[1] > FREE_SPEED * g
+                && fit.speed[0].abs() < -ASIDE * fit.speed[1];
+            falls.then(|| -fit.speed[1] / (g * self.period))
+        })
+    }
+
+    /// Whether it is time to judge a declared fall: in the tick after a full block, where there is one in between.
+    pub(crate) fn judges(&self, blocks: &Blocks) -> bool {
+        blocks.samples == 1.min(self.stride - 1)
+    }
+
+    /// How a declared fall stands; `variance` and `orbits` as above.
+    pub(crate) fn judge(
+        &self,
+        blocks: &Blocks,
+        pending: &mut Pending,
+        now: Moment,
+        variance: f32,
+        orbits: bool,
+    ) -> FallVerdict {
+        let late = f32::from(blocks.samples);
+        let since = (now.since(pending.since) - late) * self.period;
+        let passed = now.since(pending.declared) - late;
+        let since_onset = (since / (f32::from(self.stride) * self.period)) as usize;
+        let number = SHORT.min(since_onset).min(blocks.filled);
+        if number < SHORT {
+            return FallVerdict::Open;
+        }
+        let mut comes_back = true;
+        for (part, path) in pending.paths.iter().enumerate().skip(usize::from(!orbits)) {
+            let path = Some((path, passed));
+            let fit = self.fit(blocks, part, number, path, variance);
+            let whole = since_onset.min(blocks.filled);
+            let is_one = self.is_fall(&fit, since)
+                && self.is_steady(&self.fit(blocks, part, whole, path, variance));
+            if is_one {
+                return FallVerdict::Certain;
+            }
+            let ([x, y], [u, v]) = (fit.place, fit.speed);
+            let falls = fit.is_like(self.gravity, OTHER * self.gravity + 3.0 * fit.error);
+            comes_back &= u * x + v * y <= 0.0 && !(falls && self.gravity > 0.0);
+        }
+        pending.back = if comes_back { pending.back + 1 } else { 0 };
+        if pending.back >= BACK {
+            FallVerdict::Caught
+        } else {
+            FallVerdict::Open
+        }
+    }
+
+    /// Place, speed, acceleration and time tell the same fall.
+    fn is_fall(&self, fit: &Cubic, since: f32) -> bool {
+        let g = self.gravity;
+        let fallen = -fit.speed[1] / g;
+        let way = 0.5 * g * fallen * fallen;
+        let [part, sigmas] = UNLIKE;
+        let off = [fit.place[0], fit.place[1] + way];
+        g > 0.0
+            && since >= FALLEN[0]
+            && fallen >= FALLEN[1]
+            && length(fit.place) >= WAY
+            && fit.error < SHARP * g
+            && fit.is_like(g, part * g + sigmas * fit.error)
+            && length(off) < APART * way + WAY_SIGMA * fit.place_error
+            && fit.speed[0].abs() < -ASIDE * fit.speed[1]
+            && (fallen - since).abs() < APART * since + BLOCK
+    }
+
+    fn is_steady(&self, fit: &Cubic) -> bool {
+        let [part, sigmas] = CHANGE;
+        length(fit.change) < part * self.gravity + sigmas * fit.change_error
+    }
+
+    /// Through the last `number` blocks, of one part, less a path that so many samples have passed on.
+    fn fit(
+        &self,
+        blocks: &Blocks,
+        part: usize,
+        number: usize,
+        path: Option<(&StraightWay, f32)>,
+        variance: f32,
+    ) -> Cubic {
+        let n = number as f32;
+        let stride = f32::from(self.stride);
+        let (square, cube) = ((n * n - 1.0) / 12.0, (3.0 * n * n - 7.0) / 20.0);
+        let (mut mean, mut first, mut second, mut third) = ([0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]);
+        let end = 0.5 * (n - 1.0);
+        let origin = blocks.back(0, part);
+        for back in 0..number {
+            let u = end - back as f32;
+            let (p, q) = (u * u - square, u * (u * u - cube));
+            let it = blocks.back(back, part);
+            for axis in 0..2 {
+                let x = it[axis] - origin[axis];
+                mean[axis] += x;
+                first[axis] += u * x;
+                second[axis] += p * x;
+                third[axis] += q * x;
+            }
+        }
+        let n2 = n * n;
+        let by_first = 12.0 / (n * (n2 - 1.0));
+        let by_second = 180.0 / (n * (n2 - 1.0) * (n2 - 4.0));
+        let by_third = 2_800.0 / (n * (n2 - 1.0) * (n2 - 4.0) * (n2 - 9.0));
+        let span = stride * self.period;
+        let (p, square_span) = (end * end - square, span * span);
+        // The last block's middle lies half a block back.
+        let (path, passed) = path.map_or((StraightWay::default(), 0.0), |(path, passed)| {
+            (*path, passed - 0.5 * (stride - 1.0))
+        });
+        let mut fit = Cubic {
+            place: [0.0; 2],
+            speed: [0.0; 2],
+            acceleration: [0.0; 2],
+            change: [0.0; 2],
+            place_error: 0.0,
+            error: 0.0,
+            change_error: 0.0,
+        };
+        for axis in 0..2 {
+            let (b, c, d) = (
+                first[axis] * by_first,
+                second[axis] * by_second,
+                third[axis] * by_third,
+            );
+            let step = path.step[axis];
+            fit.place[axis] = origin[axis] + mean[axis] / n + b * end + c * p
+                - path.position[axis]
+                - step * passed;
+            fit.speed[axis] = (b + 2.0 * c * end) / span - step / self.period;
+            fit.acceleration[axis] = 2.0 * c / square_span;
+            fit.change[axis] = 6.0 * d * end / square_span;
+        }
+        let sigma = sqrt(variance / stride);
+        fit.place_error = sigma * sqrt(1.0 / n + end * end * by_first + p * p * by_second);
+        fit.error = 2.0 * sigma * sqrt(by_second) / square_span;
+        fit.change_error = 6.0 * end * sigma * sqrt(by_third) / square_span;
+        fit
+    }
+}
+
+impl Cubic {
+    /// Whether the acceleration is gravity, up to `most`, m/s^2.
+    fn is_like(&self, gravity: f32, most: f32) -> bool {
+        let [x, y] = self.acceleration;
+        length([x, y + gravity]) < most
+    }
+}
+
+impl Blocks {
+    /// Mean position of the newest block, m.
+    pub(crate) fn newest(&self) -> [f32; 2] {
+        self.back(0, 0)
+    }
+
+    /// One part of the mean so many blocks ago, less than all, m.
+    fn back(&self, blocks: usize, part: usize) -> [f32; 2] {
+        let parts = self
+            .means
+            .get((self.next + 2 * BLOCKS - 1 - blocks) % BLOCKS);
+        let it = parts.and_then(|it| it.get(part));
+        it.copied().unwrap_or_default()
+    }
+
+    /// What is measured has moved: begins anew.
+    pub(crate) fn forget(&mut self) {
+        let since_wall = self.since_wall;
+        *self = Self {
+            since_wall,
+            ..Self::default()
+        };
+    }
+}
+
+fn length([x, y]: [f32; 2]) -> f32 {
+    sqrt(x * x + y * y)
+}

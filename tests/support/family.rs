@@ -1,0 +1,70 @@
+//! Families of seeded runs, each with what it must show, and how often it did not.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::plant::Rng;
+
+/// What a family of runs must show, and what it showed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Family {
+    /// What was run.
+    pub name: &'static str,
+    /// Runs in which it could be judged.
+    pub runs: usize,
+    /// Of them, those in which it did not hold.
+    pub failed: usize,
+    /// Above this rate at 95 %, if it fails at all.
+    pub rate_below: f64,
+    /// The first seeds that failed, and how.
+    pub failures: Vec<String>,
+}
+
+impl Family {
+    /// Of seeds and what became of them.
+    pub fn of(name: &'static str, outcomes: &[(u64, Result<(), String>)]) -> Self {
+        let failures: Vec<String> = outcomes
+            .iter()
+            .filter_map(|(seed, outcome)| Some(format!("seed {seed}: {}", outcome.as_ref().err()?)))
+            .collect();
+        Self {
+            name,
+            runs: outcomes.len(),
+            failed: failures.len(),
+            rate_below: upper_bound(failures.len(), outcomes.len()),
+            failures: failures.into_iter().take(10).collect(),
+        }
+    }
+}
+
+/// What becomes of each seed; nothing where a run cannot be judged.
+pub fn seeds<T: Send>(
+    runs: u64,
+    first_seed: u64,
+    run: impl Fn(&mut Rng) -> Option<T> + Sync,
+) -> Vec<(u64, T)> {
+    (first_seed..first_seed + runs)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let outcome = run(&mut Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d)))?;
+            Some((seed, outcome))
+        })
+        .collect()
+}
+
+/// One-sided Clopper-Pearson bound at 95 %, by bisection.
+pub fn upper_bound(failed: usize, runs: usize) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let rate: f64 = 0.5 * (low + high);
+        // Probability of so few failures, term by term.
+        let mut term = (1.0 - rate).powi(runs as i32);
+        let mut sum = term;
+        for k in 0..failed {
+            term *= rate / (1.0 - rate) * (runs - k) as f64 / (k + 1) as f64;
+            sum += term;
+        }
+        if sum > 0.05 { low = rate } else { high = rate }
+    }
+    high
+}

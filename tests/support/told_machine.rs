@@ -1,0 +1,170 @@
+//! The whole controller over a machine of [`crate::plant`], told more or less wrong.
+
+use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::event::{Notice, Notices};
+use touchdown_core::guard::GuardConfig;
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sensing::SensingConfig;
+use touchdown_firmware::app::App;
+use touchdown_firmware::board::Board;
+use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
+use touchdown_protocol::controller::{Faults, Shown};
+
+use crate::plant::{Chain, GRAVITY, Machine, Phase, Plant, Rng, Truth};
+
+/// Of the shaft at the retainer, m.
+pub const ROTOR_RADIUS: f64 = 0.024;
+
+/// What the controller is told, against what is.
+pub struct Told {
+    /// Told over true gap.
+    pub gap: f64,
+    /// Its sensors.
+    pub chain: Chain,
+}
+
+impl Told {
+    /// Each plane differently, all wrong by up to `part`; gain by up to two thirds of it.
+    pub fn wrong(rng: &mut Rng, part: f64) -> Self {
+        let mut chain = Chain::new(rng.next_u64(), 20_000.0);
+        let gain = part.min(0.2);
+        chain.gain_error = std::array::from_fn(|_| rng.uniform(-gain, gain));
+        // In parts of the gap here; see `on`.
+        chain.zero = std::array::from_fn(|_| {
+            let (far, angle) = (
+                rng.uniform(0.0, part),
+                rng.uniform(0.0, std::f64::consts::TAU),
+            );
+            [far * angle.cos(), far * angle.sin()]
+        });
+        chain.noise = rng.uniform(0.3, 3.0);
+        Self {
+            gap: 1.0 + rng.uniform(-part, part),
+            chain,
+        }
+    }
+
+    /// All told right.
+    pub fn right(rng: &mut Rng) -> Self {
+        Self {
+            gap: 1.0,
+            chain: Chain::new(rng.next_u64(), 20_000.0),
+        }
+    }
+
+    /// Zero errors in micrometres on this machine.
+    fn on(&self, machine: &Machine) -> Chain {
+        let mut chain = self.chain.clone();
+        let micro = machine.gap * 1e6;
+        chain.zero = chain.zero.map(|it| it.map(|part| part * micro));
+        chain
+    }
+}
+
+/// A controller over a run.
+pub struct Run {
+    /// The controller.
+    pub app: App,
+    board: Desk,
+    plant: Plant,
+    /// The sensors.
+    pub chain: Chain,
+    rate: f64,
+    told_gap: f64,
+    /// Readings of the last sample, as parts of the told gap: the plane further out.
+    pub reading: f64,
+    /// Of the last sample.
+    pub notices: Notices,
+}
+
+struct Desk(Block);
+
+impl Board for Desk {
+    fn report(&mut self, _: &Notice) {}
+    fn drive(&mut self, _: Shown) {}
+    fn config(&self) -> &[u8] {
+        &self.0
+    }
+    fn service(&self) -> bool {
+        false
+    }
+
+    fn feed(&mut self) {}
+}
+
+impl Run {
+    /// Switched on with the first sample.
+    pub fn new(machine: &Machine, phases: &[Phase], told: &Told, rate: f64) -> Self {
+        let told_gap = machine.gap * told.gap;
+        let config = config(machine, told_gap, rate);
+        let settings = Settings {
+            monitor: config,
+            wiring: Wiring::default(),
+            key: None,
+        };
+        let mut chain = told.on(machine);
+        chain.rate = rate;
+        Self {
+            app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
+            board: Desk(config_block::encode(&settings)),
+            plant: Plant::new(machine, phases),
+            chain,
+            rate,
+            told_gap,
+            reading: 0.0,
+            notices: Notices::new(),
+        }
+    }
+
+    /// The next sample; the speed is measured, rad/s.
+    pub fn step(&mut self, spin: f64) -> Option<(Truth, Shown)> {
+        let truth = self.plant.next_sample(self.rate)?;
+        let counts = self.chain.counts(truth.place);
+        let sample = Sample {
+            counts,
+            valid: 0b1111,
+            spin: Some(spin as f32),
+            levitated: None,
+            edges: [None; TACHOMETERS],
+        };
+        let place = |count: u16| (f64::from(count) - 2_048.0) * 2_000e-6 / 4_096.0;
+        let [a, b] = [[counts[0], counts[1]], [counts[2], counts[3]]]
+            .map(|[x, y]| place(x).hypot(place(y)) / self.told_gap);
+        self.reading = a.max(b);
+        self.app
+            .tick(&mut self.board, &sample, 0, &mut self.notices);
+        Some((truth, self.app.shown()))
+    }
+}
+
+/// What a machine of this kind is told.
+pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
+    MonitorConfig {
+        fitted: 0b1111,
+        sensing: SensingConfig {
+            resolution: 2_000e-6 / 4_096.0,
+            zero_count: 2_048.0,
+            full_scale: 4_095,
+            mounting_angle: [0.0; 2],
+            calibration: None,
+        },
+        tachometers: None,
+        detector: DetectorConfig {
+            sample_rate: rate as f32,
+            machine: MachineConfig {
+                mass: 3.0,
+                clearance: told_gap as f32,
+                gravity: GRAVITY as f32,
+                rotor_radius: ROTOR_RADIUS as f32,
+                inertia_ratio: 0.5,
+                friction: machine.friction as f32,
+                restitution: machine.restitution as f32,
+                spin: machine.spin as f32,
+            },
+            tuning: Tuning::default(),
+        },
+        guard: GuardConfig::default(),
+        commissioned: false,
+    }
+}
