@@ -397,6 +397,7 @@ impl Detector {
                 // It never fell: what is learnt of it holds.
                 writer.resolve(&mut state.pending, false);
                 state.release.restart();
+                state.hold = self.hold_samples;
                 state.rotor.phase = Phase::Levitated;
                 return;
             }

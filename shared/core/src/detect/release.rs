@@ -135,17 +135,6 @@ impl ReleaseBank {
     }
 }
 
-/// At most so far from 0; without the care that `clamp` takes of what is no number.
-fn within(value: f32, most: f32) -> f32 {
-    if value > most {
-        most
-    } else if value < -most {
-        -most
-    } else {
-        value
-    }
-}
-
 /// The instant with the most of something above `least`.
 fn top(bank: &ReleaseBank, least: f32, what: impl Fn(&Candidate) -> f32) -> Option<usize> {
     let mut best = (least, None);
@@ -203,7 +192,13 @@ impl Release {
         }
         bank.wait -= 1;
         let most = MAX_RESIDUAL_SIGMA * sqrt(variance.max(bank.highest));
-        let (x, y) = (within(x, most), within(y, most));
+        let size = x * x + y * y;
+        let (x, y) = if size > most * most {
+            let part = most / sqrt(size);
+            (part * x, part * y)
+        } else {
+            (x, y)
+        };
         let step = self.period / memory;
         bank.left /= 1.0 + step + 0.5 * step * step;
         let (square, threshold) = (memory * memory, 2.0 * self.threshold);
