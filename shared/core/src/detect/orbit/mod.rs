@@ -21,7 +21,7 @@ const SEARCH: f32 = 0.35;
 const FIT: f32 = 0.4;
 /// Turns that a trial lasts at least: harmonics come from nothing.
 const TRIAL: f32 = 6.0;
-/// Seconds over which the variance of the residual is learnt.
+/// Seconds over which the variance of the residual is learnt, but for a turn where that is longer.
 const RESIDUAL_TIME: f32 = 0.03;
 /// Most of it that one value counts for: a fall is no other orbit.
 const CLIP: f32 = 9.0;
@@ -41,9 +41,8 @@ pub(crate) struct Orbiting {
     /// Samples of a search, and of a fit.
     search_samples: u32,
     fit_samples: u32,
-    /// Samples of the residual's variance, and the part that one then counts for.
+    /// Samples of the residual's variance.
     samples: u32,
-    gain: f32,
     /// Samples of the trend's memory.
     trend_memory: f32,
     /// Least angle in a sample of an orbit, rad.
@@ -85,7 +84,6 @@ impl Orbiting {
             search_samples: (SEARCH * time * sample_rate) as u32,
             fit_samples: (FIT * time * sample_rate) as u32,
             samples: (RESIDUAL_TIME * sample_rate) as u32,
-            gain: 1.0 / (RESIDUAL_TIME * sample_rate).max(1.0),
             trend_memory: MEMORY * sample_rate,
             slowest: SLOWEST / sample_rate,
         }
@@ -171,11 +169,8 @@ impl Orbiting {
         state.count = state.count.saturating_add(1);
         let turn = state.orbit.as_ref().map_or(0.0, Orbit::turn);
         let trial = self.fit_samples.max((TRIAL * turn) as u32);
-        let gain = if state.count < self.samples {
-            1.0 / state.count as f32
-        } else {
-            self.gain
-        };
+        let memory = self.samples.max(turn as u32);
+        let gain = 1.0 / state.count.min(memory) as f32;
         let mut square = 0.5 * (x * x + y * y);
         if state.is_certain && square > CLIP * state.variance {
             square = CLIP * state.variance;
