@@ -208,7 +208,7 @@ impl PhaseMachine {
     }
 
     /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
-    /// there from its place `home`, m.
+    /// there from `centre` (m), where it would be.
     pub(crate) fn land(
         &self,
         phase_state: &mut PhaseState,
@@ -238,12 +238,12 @@ impl PhaseMachine {
         }
     }
 
-    /// Whether no caught disturbance goes from `home` to `position`, m.
+    /// Whether no caught disturbance goes from `centre` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], centre: [f32; 2]) -> bool {
         square(position, centre) > self.travel * self.travel
     }
 
-    /// Whether a rotor that went from `home` to `at` (m) since the fall was declared went as fast as one
+    /// Whether a rotor that went from `centre` to `at` (m) since the fall was declared went as fast as one
     /// that falls.
     pub(crate) fn fell(
         &self,
