@@ -24,10 +24,15 @@ pub(super) struct Drawn {
 impl Plan {
     /// What is random of drop `index`.
     pub(super) fn draw(&self, index: u64) -> Drawn {
+        self.draw_at(index / self.drops, index)
+    }
+
+    /// The random numbers of drop `index` at a point of the grid.
+    pub(super) fn draw_at(&self, point: u64, index: u64) -> Drawn {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(index);
         Drawn {
-            point: index / self.drops,
+            point,
             values: (self.drawn.iter())
                 .map(|(_, distribution)| distribution.draw(&mut random))
                 .collect(),
@@ -42,7 +47,7 @@ impl Plan {
 
 /// Scenes of one drop after the other; what they share is read once.
 pub(super) struct Scenes<'a> {
-    plan: &'a Plan,
+    pub(super) plan: &'a Plan,
     last: Option<(u64, Table, Scene)>,
 }
 

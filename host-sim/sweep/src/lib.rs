@@ -5,6 +5,7 @@
 
 mod columns;
 mod draw;
+mod find;
 mod map;
 mod page;
 mod parameter;
@@ -16,6 +17,7 @@ mod run;
 mod summary;
 mod table;
 
+pub use find::{Find, Found, find};
 pub use part::Part;
 pub use plan::Plan;
 pub use results::{RESULTS, Results, found, write};

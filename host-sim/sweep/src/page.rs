@@ -3,10 +3,11 @@
 use maud::html;
 
 use super::columns::text;
+use super::find::Found;
 use super::map;
-use super::plan::Plan;
-use super::summary::Point;
-use super::table::short;
+use super::plan::{Plan, Until};
+use super::summary::{Point, total};
+use super::table::{NO_END, short};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 
@@ -14,7 +15,7 @@ use touchdown_chart::table::table;
 const SHOWN: usize = 1_000;
 
 /// Writes the page.
-pub(super) fn page(plan: &Plan, points: &[Point]) -> String {
+pub(super) fn page(plan: &Plan, points: &[Point], found: Option<&Found>) -> String {
     let tenth = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1}"));
     let thousand = |value: Option<f64>| tenth(value.map(|it| 1e3 * it));
     let mut table = table("Points of the grid", &points[..points.len().min(SHOWN)]);
@@ -53,11 +54,14 @@ pub(super) fn page(plan: &Plan, points: &[Point]) -> String {
             p.kind { "Sweep" }
             h1 { (plan.title) }
             p.note {
-                (plan.size()) " drops, seed " (plan.seed) ". " (start)
+                (total(points)) " drops, seed " (plan.seed) ". " (start)
                 @if !drawn.is_empty() { " Drawn for each drop: " (drawn.join(", ")) "." }
                 " Whirl: the rotor ends in a contact in which it has gone round the retainer, in either "
-                "direction; its interval is Wilson's."
+                "direction; its interval is "
+                (if found.is_some() { "that of the sequential test." } else { "Wilson's." })
+                @if plan.until == Until::Verdict { " " (NO_END) }
             }
+            @if let Some(found) = found { p { (found.told()) } }
         }
         section {
             h2 { "Whirl" }

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::{Spanned, Table, Value};
 
+use super::columns::as_number;
+use super::find::Find;
 use super::parameter::{Distribution, ParameterTable, Values};
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::Scene;
@@ -18,8 +20,10 @@ const MOST_DROPS: u64 = 1_000_000_000;
 struct PlanFile {
     title: Option<String>,
     scene: Spanned<String>,
-    #[serde(default = "default_drops")]
-    drops: Spanned<u64>,
+    drops: Option<Spanned<u64>>,
+    #[serde(default)]
+    until: Until,
+    find: Option<Spanned<String>>,
     #[serde(default = "default_seed")]
     seed: u64,
     start: Option<Spanned<StartTable>>,
@@ -35,9 +39,21 @@ struct StartTable {
     speed_mm_s: f64,
 }
 
-fn default_drops() -> Spanned<u64> {
-    Spanned::new(0..0, 1_000)
+/// How far each drop is followed.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Until {
+    /// To the end of the run.
+    #[default]
+    End,
+    /// To where its regime can no longer change.
+    Verdict,
 }
+
+/// Drops a point of the grid.
+const DROPS: u64 = 1_000;
+/// Most drops of a value where one is looked for.
+const DROPS_TO_FIND: u64 = 200_000;
 
 fn default_seed() -> u64 {
     1
@@ -54,6 +70,9 @@ pub struct Plan {
     pub title: String,
     /// Drops a point of the grid.
     pub drops: u64,
+    pub(super) until: Until,
+    /// What is looked for along the one axis of the grid.
+    pub find: Option<Find>,
     pub(super) seed: u64,
     pub(super) start: Option<RandomStart>,
     pub(super) listed: Vec<(String, Vec<Value>)>,
@@ -114,11 +133,23 @@ impl Plan {
                 format!("scene {scene_name:?}: {}", error.message()),
             )
         })?;
+        let find = match &file.find {
+            Some(rule) => Some(Find::parse(rule.get_ref()).map_err(|it| fail(rule.span(), it))?),
+            None => None,
+        };
+        let default = if find.is_some() { DROPS_TO_FIND } else { DROPS };
+        let drops = file.drops.unwrap_or(Spanned::new(0..0, default));
         let mut plan = Self {
             name: name.to_owned(),
             scene_file: None,
             title: file.title.unwrap_or(heading),
-            drops: *file.drops.get_ref(),
+            drops: *drops.get_ref(),
+            until: if find.is_some() {
+                Until::Verdict
+            } else {
+                file.until
+            },
+            find,
             seed: file.seed,
             start: None,
             listed: Vec::new(),
@@ -144,15 +175,18 @@ impl Plan {
             plan.add(key, table)
                 .map_err(|rule| fail(table.key.span(), format!("{key}: {rule}")))?;
         }
+        if let Some(rule) = &file.find {
+            plan.is_one_axis().map_err(|it| fail(rule.span(), it))?;
+        }
         let all_alike = plan.start.is_none() && plan.drawn.is_empty();
         if plan.drops == 0 || (all_alike && plan.drops > 1) {
             let rule = "drops must be 1 or more; above 1 they need something random: a [start], or a \
                         parameter that is drawn";
-            return Err(fail(file.drops.span(), rule.to_owned()));
+            return Err(fail(drops.span(), rule.to_owned()));
         }
         if plan.total().is_none_or(|total| total > MOST_DROPS) {
             let rule = format!("more than {MOST_DROPS} drops in all");
-            return Err(fail(file.drops.span(), rule));
+            return Err(fail(drops.span(), rule));
         }
         Ok(plan)
     }
@@ -184,6 +218,30 @@ impl Plan {
             Values::Drawn(drawn) => self.drawn.push((key.to_owned(), drawn)),
         }
         Ok(())
+    }
+
+    /// Whether what is looked for can be bracketed: one axis, of numbers in their order.
+    fn is_one_axis(&self) -> Result<(), String> {
+        let rule = "find needs one [[parameter]] with two or more numbers in their order, and no other list";
+        let [(_, values)] = self.listed.as_slice() else {
+            return Err(rule.to_owned());
+        };
+        let numbers: Option<Vec<f64>> = values.iter().map(as_number).collect();
+        let numbers = numbers.ok_or(rule)?;
+        let is_rising = numbers.is_sorted_by(|a, b| a < b);
+        if numbers.len() < 2 || !(is_rising || numbers.is_sorted_by(|a, b| a > b)) {
+            return Err(rule.to_owned());
+        }
+        Ok(())
+    }
+
+    /// The same plan with these of its one axis' values alone.
+    pub(super) fn of_values(&self, points: &[u64]) -> Self {
+        let mut plan = self.clone();
+        for (_, values) in &mut plan.listed {
+            *values = (points.iter().map(|it| values[*it as usize].clone())).collect();
+        }
+        plan
     }
 
     /// Points of the grid.
@@ -303,6 +361,13 @@ mod tests {
             ),
             ("scene = \"rig\"\n[start]\nwithin = 1.5\n", 2, "within"),
             ("scene = \"rig\"\nspeed = 1\n", 2, "unknown key"),
+            ("scene = \"rig\"\nfind = \"whirl < 2\"\n", 2, "0 to 1"),
+            (
+                "scene = \"rig\"\nfind = \"whirl < 0.1\"\n[start]\nwithin = 0.5\n",
+                2,
+                "one [[parameter]]",
+            ),
+            ("scene = \"rig\"\nuntil = \"noon\"\n", 2, "verdict"),
         ] {
             let error = plan(text).expect_err(text);
             assert_eq!(error.line(), Some(line), "{text}: {error}");

@@ -82,6 +82,15 @@ impl Record {
         }
     }
 
+    /// Without what only the end of the run shows.
+    pub fn without_end(self) -> Self {
+        Self {
+            end_load: f64::NAN,
+            whirl_frequency: f64::NAN,
+            ..self
+        }
+    }
+
     /// From the end of a row of the table; `None` where that is none of it.
     pub fn of_row(row: &StringRecord) -> Option<Self> {
         let mut cells = row.iter().skip(row.len().checked_sub(8)?);

@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::columns::{as_number, columns, text};
+use super::find::Found;
 use super::page::page;
 use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
-use super::plan::Plan;
+use super::plan::{Plan, Until};
 use super::record::Record;
-use super::summary::{Gathered, Point};
+use super::summary::{Gathered, Point, total};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, reason};
 use touchdown_base::output::Output;
@@ -28,6 +29,8 @@ pub struct Results {
     pub points: Vec<Point>,
     /// `sweep.json`.
     pub json: String,
+    /// What was looked for.
+    pub found: Option<Found>,
 }
 
 #[derive(Serialize)]
@@ -35,6 +38,9 @@ struct Json<'a> {
     title: &'a str,
     drops: u64,
     seed: u64,
+    until: Until,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    find: Option<&'a Found>,
     points: &'a [Point],
 }
 
@@ -80,8 +86,7 @@ pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Results, F
     let mut parts = (paths.iter())
         .map(|path| PartReader::open(path, plan))
         .collect::<Result<Vec<_>, _>>()?;
-    let create = |name: &str| Output::create(&folder.join(name).display().to_string());
-    let mut drops_out = create("drops.csv")?;
+    let mut drops_out = Output::create(&folder.join("drops.csv").display().to_string())?;
     let drops_name = drops_out.name().to_owned();
     let failed = |error: csv::Error| Failure::output(&drops_name)(error.into());
     let mut table = csv::Writer::from_writer(&mut drops_out);
@@ -107,25 +112,41 @@ pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Results, F
     bar.finish_and_clear();
     table.flush().map_err(Failure::output(&drops_name))?;
     drop(table);
-    let json = json(plan, &points)?;
-    let mut outputs = vec![drops_out];
-    for (name, text) in [
-        ("points.csv", points_csv(plan, &points)?),
-        ("sweep.json", json.clone()),
-        ("sweep.html", page(plan, &points)),
-    ] {
-        let mut out = create(name)?;
-        out.put(&text)?;
-        outputs.push(out);
-    }
-    Ok(Results {
-        outputs,
-        points,
-        json,
-    })
+    let mut results = Results::of(plan, points, None, folder)?;
+    results.outputs.insert(0, drops_out);
+    Ok(results)
 }
 
-fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_json::Value> {
+impl Results {
+    /// What is made of the points alone.
+    pub(super) fn of(
+        plan: &Plan,
+        points: Vec<Point>,
+        found: Option<Found>,
+        folder: &Path,
+    ) -> Result<Self, Failure> {
+        let json = json(plan, &points, found.as_ref())?;
+        let mut outputs = Vec::new();
+        for (name, text) in [
+            ("points.csv", points_csv(plan, &points)?),
+            ("sweep.json", json.clone()),
+            ("sweep.html", page(plan, &points, found.as_ref())),
+        ] {
+            let mut out = Output::create(&folder.join(name).display().to_string())?;
+            out.put(&text)?;
+            outputs.push(out);
+        }
+        Ok(Self {
+            outputs,
+            points,
+            json,
+            found,
+        })
+    }
+}
+
+/// Keys and values of a point of the grid.
+pub(super) fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_json::Value> {
     let values = plan.values(point);
     (plan.listed.iter().zip(values))
         .map(|((key, _), value)| {
@@ -178,11 +199,13 @@ fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn json(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
+fn json(plan: &Plan, points: &[Point], find: Option<&Found>) -> Result<String, Failure> {
     let json = Json {
         title: &plan.title,
-        drops: plan.size(),
+        drops: total(points),
         seed: plan.seed,
+        until: plan.until,
+        find,
         points,
     };
     let text = serde_json::to_string_pretty(&json).map_err(io::Error::from);

@@ -7,15 +7,15 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use super::columns::{cells, columns};
-use super::draw::Scenes;
+use super::draw::{Drawn, Scenes};
 use super::part::{Part, first_line};
-use super::plan::Plan;
+use super::plan::{Plan, Until};
 use super::record::Record;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
 use touchdown_base::output::Output;
 use touchdown_base::progress;
-use touchdown_run::model::simulate;
+use touchdown_run::model::{simulate, simulate_to_verdict};
 
 /// Blocks that are simulated together, in parallel, and held in memory.
 const TOGETHER: usize = 64;
@@ -68,11 +68,27 @@ fn write(plan: &Plan, part: Part, folder: &Path, bar: &ProgressBar) -> Result<()
 fn simulated(plan: &Plan, drops: Range<u64>, bar: &ProgressBar) -> Result<Vec<Record>, Failure> {
     let mut scenes = Scenes::new(plan);
     let record = |index| {
-        let scene = scenes.of(&plan.draw(index))?;
-        let history = simulate(&scene)
-            .map_err(|error| InputError::of_file(&plan.name, format!("drop {index}: {error}")))?;
+        let record = scenes.record(&plan.draw(index), index)?;
         bar.inc(1);
-        Ok(Record::of(index, &scene, &history))
+        Ok(record)
     };
     drops.map(record).collect()
+}
+
+impl Scenes<'_> {
+    /// What drop `index` of the plan comes to.
+    pub(super) fn record(&mut self, drawn: &Drawn, index: u64) -> Result<Record, Failure> {
+        let (scene, plan) = (self.of(drawn)?, self.plan);
+        let history = match plan.until {
+            Until::End => simulate(&scene),
+            Until::Verdict => simulate_to_verdict(&scene),
+        };
+        let history = history
+            .map_err(|error| InputError::of_file(&plan.name, format!("drop {index}: {error}")))?;
+        let record = Record::of(index, &scene, &history);
+        Ok(match plan.until {
+            Until::End => record,
+            Until::Verdict => record.without_end(),
+        })
+    }
 }

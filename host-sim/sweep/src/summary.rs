@@ -36,6 +36,11 @@ pub struct Point {
     pub end_load_max_n: Option<f64>,
 }
 
+/// Drops of all points.
+pub(super) fn total(points: &[Point]) -> u64 {
+    points.iter().map(|it| it.drops).sum()
+}
+
 /// Gathers the drops of a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
@@ -46,6 +51,15 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
+    /// Drops that whirled at the end, and all.
+    pub fn whirls(&self) -> [u64; 2] {
+        let of = |regime| self.counts[number(regime)];
+        [
+            of(Regime::ForwardWhirl) + of(Regime::BackwardWhirl),
+            self.counts.iter().sum(),
+        ]
+    }
+
     pub fn take(&mut self, record: &Record) {
         self.counts[number(record.regime)] += 1;
         if record.whirl_start.is_finite() {
@@ -60,10 +74,8 @@ impl Gathered {
     }
 
     pub fn finish(self, point: u64, values: serde_json::Map<String, serde_json::Value>) -> Point {
-        let drops: u64 = self.counts.iter().sum();
-        let of = |regime| self.counts[number(regime)];
-        let backward = of(Regime::BackwardWhirl);
-        let whirls = of(Regime::ForwardWhirl) + backward;
+        let [whirls, drops] = self.whirls();
+        let backward = self.counts[number(Regime::BackwardWhirl)];
         let (whirl_low, whirl_high) = wilson::interval(whirls, drops);
         let names = REGIMES.iter().map(|(_, name)| (*name).to_owned());
         let [impact_speed_max_m_s, impulse_max_n_s, end_load_max_n] = self.greatest;

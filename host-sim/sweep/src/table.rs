@@ -1,25 +1,35 @@
 //! The points as text.
 
 use super::columns::text;
-use super::plan::Plan;
-use super::summary::Point;
+use super::plan::{Plan, Until};
+use super::summary::{Point, total};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
 
 /// Points that are printed; all are in `points.csv`.
 const SHOWN: usize = 40;
 
+/// Of drops that end at their verdict.
+pub(super) const NO_END: &str = "Each drop ends where its regime can no longer change: end_load_n and whirl_frequency_hz need until = \"end\".";
+
 /// A line for each point.
 pub fn table(plan: &Plan, points: &[Point], paint: Paint) -> String {
     let names: Vec<_> = (plan.listed.iter())
         .map(|(key, _)| key.rsplit('.').next().unwrap_or(key))
         .collect();
-    let mut text = paint.bold(&format!("{}: {} drops\n", shown(&plan.title), plan.size()));
+    let mut text = paint.bold(&format!(
+        "{}: {} drops\n",
+        shown(&plan.title),
+        total(points)
+    ));
     let mut head: String = names.iter().map(|name| format!("{name:>16}")).collect();
     head += "   whirl %     95 % interval  backward %  after ms  impact mm/s";
     text += &(paint.bold(&head) + "\n");
     for point in points.iter().take(SHOWN) {
         text += &line(plan, point);
+    }
+    if plan.until == Until::Verdict {
+        text += &format!("{NO_END}\n");
     }
     if points.len() > SHOWN {
         text += &format!("... {} more points in points.csv\n", points.len() - SHOWN);

@@ -44,8 +44,28 @@ impl<R: Precision> Rigid<R> {
         &self,
         state: &mut RigidState<R>,
         until: Instant<R>,
-        mut on_event: impl FnMut(ModelEvent<R>),
+        on_event: impl FnMut(ModelEvent<R>),
     ) {
+        self.run_unless(state, until, on_event, |_| false);
+    }
+
+    /// As [`Self::run`], but ends after a step from which on the rotor whirls for ever; whether it does.
+    pub fn run_to_verdict(
+        &self,
+        state: &mut RigidState<R>,
+        until: Instant<R>,
+        on_event: impl FnMut(ModelEvent<R>),
+    ) -> bool {
+        self.run_unless(state, until, on_event, |state| self.whirls_for_ever(state))
+    }
+
+    fn run_unless(
+        &self,
+        state: &mut RigidState<R>,
+        until: Instant<R>,
+        mut on_event: impl FnMut(ModelEvent<R>),
+        ends: impl Fn(&RigidState<R>) -> bool,
+    ) -> bool {
         let mut round = Round::new(until);
         while state.ends.is_reached_at(until) {
             let eventful = state.ends.next_tick().max(state.now.tick + 1);
@@ -54,11 +74,15 @@ impl<R: Precision> Rigid<R> {
             }
             state.now = Instant::at_tick(eventful);
             self.follow(state, &mut on_event, |state| round.take(self, state));
+            if ends(state) {
+                return true;
+            }
         }
         if state.now != until {
             state.now = until;
             self.follow(state, &mut on_event, |_| false);
         }
+        false
     }
 
     /// Goes through the changes up to now. Before a stretch of contact ends, `watch` may put it off, and

@@ -150,6 +150,17 @@ impl<R: Precision> Stepper<R> for Rigid<R> {
         self.run(state, Instant { tick, fraction }, on_event);
     }
 
+    fn run_to_verdict(
+        &self,
+        state: &mut RigidState<R>,
+        steps: u64,
+        fraction: R,
+        on_event: impl FnMut(ModelEvent<R>),
+    ) -> bool {
+        let tick = state.now.tick.saturating_add(steps);
+        self.run_to_verdict(state, Instant { tick, fraction }, on_event)
+    }
+
     fn kinematics(&self, state: &RigidState<R>) -> Kinematics<R> {
         self.kinematics(state)
     }

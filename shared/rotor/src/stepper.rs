@@ -42,6 +42,18 @@ pub trait Stepper<R: Precision> {
         }
     }
 
+    /// As [`Self::run`], but may end before where the regime can no longer change; whether it did.
+    fn run_to_verdict(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        fraction: R,
+        on_event: impl FnMut(ModelEvent<R>),
+    ) -> bool {
+        self.run(state, steps, fraction, on_event);
+        false
+    }
+
     /// The rotor now.
     fn kinematics(&self, state: &Self::State) -> Kinematics<R>;
 

@@ -92,6 +92,8 @@ A plan:
   scene = \"rig\"                  a built-in scene, or a file beside the plan
   drops = 1000                   a point of the grid
   seed = 1
+  until = \"verdict\"            a drop ends where its regime is decided; default \"end\"
+  find = \"whirl < 0.01\"        looks along one axis, by a sequential test at each value
   [start]                        random starts; without it the scene's
   within = 0.5                   of the clearance
   speed_mm_s = 20                up to, in any direction

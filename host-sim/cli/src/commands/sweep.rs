@@ -1,11 +1,11 @@
 //! `touchdown sweep`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::{MergeArgs, SweepArgs, SweepCommand};
 use crate::gate::{Gate, Outputs, note};
 use touchdown_base::failure::Failure;
-use touchdown_sweep::{Part, Plan, RESULTS, found, run, table, write};
+use touchdown_sweep::{Part, Plan, RESULTS, Results, find, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
 pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
@@ -29,6 +29,18 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             .to_string_lossy();
         format!("{stem}-sweep")
     });
+    if let Some(rule) = plan.find {
+        if args.shard.is_some() {
+            let rule = "a search is not divided: run it without --shard";
+            return Err(Failure::Usage(rule.to_owned()));
+        }
+        let out = gate(&folder, &args.json)
+            .reads("PLAN", [name])
+            .reads("the plan's scene", &plan.scene_file)
+            .open()?;
+        let (tried, results) = find(&plan, rule, Path::new(&folder))?;
+        return finish(&tried, results, out);
+    }
     let parts = args.shard.map_or_else(|| Part::all(&plan), |it| vec![it]);
     let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
     let out = gate(&folder, &args.json)
@@ -46,14 +58,14 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         );
         return out.finish(&text);
     }
-    finish(&plan, &paths, &folder, out)
+    finish(&plan, write(&plan, &paths, Path::new(&folder))?, out)
 }
 
 fn merge(args: &MergeArgs) -> Result<(), Failure> {
     let (plan, parts) = found(&args.folders)?;
     let folder = args.folders.first().cloned().unwrap_or_default();
     let out = gate(&folder, &args.json).reads("FOLDER", &parts).open()?;
-    finish(&plan, &parts, &folder, out)
+    finish(&plan, write(&plan, &parts, Path::new(&folder))?, out)
 }
 
 /// Of what every sweep writes.
@@ -64,10 +76,12 @@ fn gate(folder: &str, json: &Option<String>) -> Gate {
         .writes("--json", json)
 }
 
-fn finish(plan: &Plan, parts: &[PathBuf], folder: &str, mut out: Outputs) -> Result<(), Failure> {
-    let results = write(plan, parts, Path::new(folder))?;
+fn finish(plan: &Plan, results: Results, mut out: Outputs) -> Result<(), Failure> {
+    let mut text = table(plan, &results.points, out.paint());
+    if let Some(found) = &results.found {
+        text += &format!("{}\n", found.told());
+    }
     out.put("--json", || results.json)?;
     out.add("--out", results.outputs);
-    let text = table(plan, &results.points, out.paint());
     out.finish(&text)
 }

@@ -7,7 +7,7 @@ mod simulate;
 
 use once::Once;
 pub use seen::{ModelRun, RingEnd, steps_of_run};
-pub use simulate::{run, simulate};
+pub use simulate::{run, simulate, simulate_to_verdict};
 
 use touchdown_models::{Euler, Hertz, Line, Moreau, Point, Scheme as ContactScheme, Shape, Verlet};
 use touchdown_rotor::error::ConfigError;

@@ -18,7 +18,13 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
         }
         _ => Ok(ModelRun {
             histories: Histories {
-                whole: with_model(scene, Simulate(scene))?,
+                whole: with_model(
+                    scene,
+                    Simulate {
+                        scene,
+                        to_verdict: false,
+                    },
+                )?,
                 rings: Vec::new(),
             },
             ledger: None,
@@ -33,7 +39,25 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
     run(scene).map(|run| run.histories.whole)
 }
 
-struct Simulate<'a>(&'a Scene);
+/// Likewise, but it may end where the regime can no longer change. Only the rigid rung does: a whirl that
+/// has gone round once and that nothing can end.
+pub fn simulate_to_verdict(scene: &Scene) -> Result<History, ConfigError> {
+    match scene.model.rung {
+        Fidelity::Rigid => with_model(
+            scene,
+            Simulate {
+                scene,
+                to_verdict: true,
+            },
+        ),
+        _ => simulate(scene),
+    }
+}
+
+struct Simulate<'a> {
+    scene: &'a Scene,
+    to_verdict: bool,
+}
 
 impl Use for Simulate<'_> {
     type Output = History;
@@ -42,7 +66,7 @@ impl Use for Simulate<'_> {
         self,
         subject: &Subject<R, M>,
     ) -> Result<History, ConfigError> {
-        let scene = self.0;
+        let scene = self.scene;
         let Subject {
             model,
             start,
@@ -58,7 +82,12 @@ impl Use for Simulate<'_> {
         let mut take = |happening: model::ModelEvent<R>| recorder.take(seen.happening(&happening));
         let mut state = model.start(start, *spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
-        model.run(&mut state, steps, R::lit(fraction), &mut take);
+        let fraction = R::lit(fraction);
+        if self.to_verdict {
+            model.run_to_verdict(&mut state, steps, fraction, &mut take);
+        } else {
+            model.run(&mut state, steps, fraction, &mut take);
+        }
         let last = Seen::state(&model.kinematics(&state), scene.run.duration, scales);
         Ok(recorder.finish(last, STILL * scales.speed))
     }
