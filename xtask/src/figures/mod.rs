@@ -1,13 +1,10 @@
 //! The measured tables of the documents, written from what was measured: `xtask/figures/README.md`.
 
 mod blocks;
-mod counted;
 mod number;
-mod peers;
 mod program;
 mod sources;
 mod stamp;
-mod template;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,7 +20,7 @@ use crate::workspace;
 pub const HELP: &str = "\
 A measured table of README.md or docs/ stands between `<!-- table: NAME -->` and `<!-- end -->`.
 It is one of these:
-  generated  xtask/figures/NAME.md is its template; a figure is written `{{SOURCE WORDS : FORMAT}}` there
+  generated  xtask/figures/NAME.md is its template; figures are written in the language of Jinja there
   stamped    the opening marker says where its figures come from:
              <!-- table: NAME; measured DATE at COMMIT on MACHINE; by: COMMAND -->
 Edit the template of a generated table, not the document. What a template may say: xtask/figures/README.md.
@@ -52,7 +49,7 @@ pub fn run(check: bool, program: Option<PathBuf>) -> anyhow::Result<()> {
             let Some(template) = templates.get(&block.name) else {
                 continue;
             };
-            let new = template::expand(template, |words| sources.figure(words))
+            let new = (sources.fill(template))
                 .with_context(|| format!("xtask/figures/{}.md", block.name))?;
             let old = &document.text[block.body.clone()];
             if new != old {

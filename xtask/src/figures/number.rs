@@ -1,43 +1,15 @@
-//! Numbers as the documents write them.
+//! Numbers as the documents write them: filters of the templates.
 
-use anyhow::{bail, ensure};
+use minijinja::{Error, ErrorKind};
 
-/// How a number is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Whole: `12 652`.
-    Count,
-    /// With so many digits: `0.054`, `2.2e-16`.
-    Digits(usize),
-    /// With so many after the point.
-    Fixed(usize),
+fn finite(number: f64) -> Result<f64, Error> {
+    let error = || Error::new(ErrorKind::InvalidOperation, "it is no number");
+    Some(number).filter(|it| it.is_finite()).ok_or_else(error)
 }
 
-impl Format {
-    /// `digits N` or `fixed N`.
-    pub fn parse(words: &[&str]) -> anyhow::Result<Self> {
-        match *words {
-            ["digits", digits] => Ok(Self::Digits(digits.parse()?)),
-            ["fixed", digits] => Ok(Self::Fixed(digits.parse()?)),
-            _ => bail!("\"{}\" is no format", words.join(" ")),
-        }
-    }
-
-    /// The number, written so.
-    pub fn of(self, number: f64) -> anyhow::Result<String> {
-        ensure!(number.is_finite(), "it is no number");
-        Ok(match self {
-            Self::Count => count(number),
-            Self::Digits(_) if number == 0.0 => "0".into(),
-            Self::Digits(most) => digits(number, most.max(1)),
-            Self::Fixed(after) => format!("{number:.after$}"),
-        })
-    }
-}
-
-/// Rounded, in groups of three.
-fn count(number: f64) -> String {
-    let digits = format!("{:.0}", number.abs());
+/// Rounded to a whole one, in groups of three: `12 652`.
+pub fn count(number: f64) -> Result<String, Error> {
+    let digits = format!("{:.0}", finite(number)?.abs());
     let mut text = String::from(if number <= -0.5 { "-" } else { "" });
     for (at, digit) in digits.chars().enumerate() {
         if at > 0 && (digits.len() - at) % 3 == 0 {
@@ -45,23 +17,29 @@ fn count(number: f64) -> String {
         }
         text.push(digit);
     }
-    text
+    Ok(text)
 }
 
-/// From 1e-4 to 1e6 without an exponent.
-fn digits(number: f64, most: usize) -> String {
-    let text = format!("{number:.*e}", most - 1);
-    let Some((_, exponent)) = text.split_once('e') else {
-        return text;
-    };
-    match exponent.parse::<i32>() {
-        Ok(exponent) if (-4..6).contains(&exponent) => {
-            let after = (most as i32 - 1 - exponent).max(0) as usize;
-            let rounded = text.parse::<f64>().unwrap_or(number);
+/// With so many digits, from 1e-4 to 1e6 without an exponent: `0.054`, `2.2e-16`.
+pub fn digits(number: f64, most: usize) -> Result<String, Error> {
+    if finite(number)? == 0.0 {
+        return Ok("0".into());
+    }
+    let text = format!("{number:.*e}", most.max(1) - 1);
+    let exponent = text.split_once('e').and_then(|it| it.1.parse().ok());
+    Ok(match exponent {
+        Some(exponent @ -4..6) => {
+            let after = (most.max(1) as i32 - 1 - exponent).max(0) as usize;
+            let rounded = text.parse().unwrap_or(number);
             format!("{rounded:.after$}")
         }
         _ => text,
-    }
+    })
+}
+
+/// With so many digits after the point.
+pub fn fixed(number: f64, after: usize) -> Result<String, Error> {
+    Ok(format!("{:.after$}", finite(number)?))
 }
 
 #[cfg(test)]
@@ -70,21 +48,21 @@ mod tests {
 
     #[test]
     fn numbers_are_written_as_in_the_documents() {
-        for (format, number, text) in [
-            (Format::Count, 12_652.4, "12 652"),
-            (Format::Count, 441.0, "441"),
-            (Format::Count, -1_174.6, "-1 175"),
-            (Format::Digits(2), 2.220_446e-16, "2.2e-16"),
-            (Format::Digits(2), 0.053_87, "0.054"),
-            (Format::Digits(2), 0.0, "0"),
-            (Format::Digits(3), 1_502.5, "1500"),
-            (Format::Digits(4), 334.588, "334.6"),
-            (Format::Digits(2), 0.000_13, "0.00013"),
-            (Format::Digits(1), 0.99, "1"),
-            (Format::Fixed(3), 0.069, "0.069"),
-        ] {
-            assert_eq!(format.of(number).unwrap(), text);
+        for (number, text) in [(12_652.4, "12 652"), (441.0, "441"), (-1_174.6, "-1 175")] {
+            assert_eq!(count(number).unwrap(), text);
         }
-        assert!(Format::Count.of(f64::NAN).is_err());
+        for (number, most, text) in [
+            (2.220_446e-16, 2, "2.2e-16"),
+            (0.053_87, 2, "0.054"),
+            (0.0, 2, "0"),
+            (1_502.5, 3, "1500"),
+            (334.588, 4, "334.6"),
+            (0.000_13, 2, "0.00013"),
+            (0.99, 1, "1"),
+        ] {
+            assert_eq!(digits(number, most).unwrap(), text);
+        }
+        assert_eq!(fixed(0.069, 3).unwrap(), "0.069");
+        assert!(count(f64::NAN).is_err());
     }
 }

@@ -1,79 +1,207 @@
-//! What a template may ask for.
+//! What a template may ask for: `xtask/figures/README.md`.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, bail, ensure};
-use serde_json::Value;
+use anyhow::{Context, ensure};
+use minijinja::{Environment, Error, ErrorKind, UndefinedBehavior, context};
+use serde_json::{Value, json};
 
 use super::blocks::Document;
-use super::counted::{self, Counts};
-use super::peers;
-use super::program::Program;
-use super::template::Figure;
+use super::{number, program};
 use crate::budget;
+use crate::faults;
 use crate::workspace;
 
-/// All that was measured.
-pub struct Sources<'a> {
-    steps: Counts,
-    functions: Counts,
-    measured: Value,
-    program: Program,
-    peers: String,
-    documents: &'a [Document],
+type Map<V> = BTreeMap<String, V>;
+
+/// All that was measured, for templates to be filled in with.
+pub struct Sources {
+    environment: Environment<'static>,
+    figures: minijinja::Value,
 }
 
-impl<'a> Sources<'a> {
+impl Sources {
     /// Reads what is kept, and runs the program.
-    pub fn read(program: &Path, documents: &'a [Document]) -> anyhow::Result<Self> {
-        let read = |file: &str| {
-            let text = fs::read_to_string(workspace().join(file));
-            text.with_context(|| format!("cannot read {file}"))
+    pub fn read(program: &Path, documents: &[Document]) -> anyhow::Result<Self> {
+        let [limits, paper, trade, drop] = program::printed(
+            program,
+            [
+                &["limits", "--json", "-"],
+                &["paper", "--json", "-"],
+                &["trade"],
+                &[],
+            ],
+        )?;
+        let limits: Value = serde_json::from_str(&limits).context("touchdown limits --json -")?;
+        let paper: Value = serde_json::from_str(&paper).context("touchdown paper --json -")?;
+        let measured: Value = serde_json::from_str(&read(budget::MEASURED)?)?;
+        let results = read("benches/peers/RESULTS.md")?;
+        let figures = context! {
+            steps => counts(&read("host-sim/data/instructions.csv")?),
+            functions => counts(&read("host-sim/data/functions.csv")?),
+            parts => by("part", &measured["parts"]),
+            budget => measured,
+            faults => planted()?,
+            limits => limits["rows"],
+            paper => by("item", &paper["rows"]),
+            random_drops => paper["drops"],
+            trade => program::trade(&trade),
+            drop,
+            peers => peers(&results)?,
         };
+        let mut environment = templates();
+        environment.add_function(
+            "worst",
+            move |of: &str, measure: &str, precision: &str, what: &str| {
+                program::worst(&limits, [of, measure, precision, what]).map_err(refused)
+            },
+        );
+        environment.add_function("claim", move |text: &str| {
+            claim(&results, text).map_err(refused)
+        });
+        let documents = documents.to_vec();
+        environment.add_function("cell", move |table: &str, row: &str, column: &str| {
+            cell(&documents, table, row, column).map_err(refused)
+        });
         Ok(Self {
-            steps: Counts::read("instructions.csv")?,
-            functions: Counts::read("functions.csv")?,
-            measured: serde_json::from_str(&read(budget::MEASURED)?)?,
-            peers: read("benches/peers/RESULTS.md")?,
-            program: Program::run(program)?,
-            documents,
+            environment,
+            figures,
         })
     }
 
-    /// The figure that these words ask for: a source, and what of it.
-    pub fn figure(&self, words: &[&str]) -> anyhow::Result<Figure> {
-        let (source, words) = words.split_first().context("no source is named")?;
-        match *source {
-            "step" => self.steps.step(words),
-            "function" => self.functions.function(words),
-            "budget" => counted::budget(&self.measured, words),
-            "modules" => counted::modules(&self.measured),
-            "faults" => counted::planted(),
-            "limits" => self.program.limits(words),
-            "paper" => self.program.paper(words),
-            "trade" => self.program.trade(words),
-            "drop" => Ok(self.program.drop()),
-            "peers" => peers::figure(&self.peers, words),
-            "cell" => self.cell(words),
-            _ => bail!("{source} is no source"),
+    /// The template with its figures.
+    pub fn fill(&self, template: &str) -> anyhow::Result<String> {
+        Ok(self.environment.render_str(template, &self.figures)?)
+    }
+}
+
+/// Lines of a template are lines of the document, those of statements alone left out.
+fn templates() -> Environment<'static> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_keep_trailing_newline(true);
+    environment.set_trim_blocks(true);
+    environment.set_lstrip_blocks(true);
+    environment.add_filter("count", number::count);
+    environment.add_filter("digits", number::digits);
+    environment.add_filter("fixed", number::fixed);
+    environment
+}
+
+fn refused(error: anyhow::Error) -> Error {
+    Error::new(ErrorKind::InvalidOperation, format!("{error:#}"))
+}
+
+fn read(file: &str) -> anyhow::Result<String> {
+    let text = fs::read_to_string(workspace().join(file));
+    text.with_context(|| format!("cannot read {file}"))
+}
+
+/// Rows of a list by what they have as `name`.
+fn by<'a>(name: &str, rows: &'a Value) -> Map<&'a Value> {
+    let rows = rows.as_array().into_iter().flatten();
+    rows.filter_map(|it| Some((it[name].as_str()?.to_owned(), it)))
+        .collect()
+}
+
+/// Mean and worst of a table of counts, by what stands before them.
+fn counts(text: &str) -> Map<Value> {
+    let row = |line: &str| {
+        let (rest, worst) = line.rsplit_once(',')?;
+        let (key, mean) = rest.rsplit_once(',')?;
+        let (mean, worst) = (mean.parse::<f64>().ok()?, worst.parse::<f64>().ok()?);
+        Some((
+            key.replace(',', " "),
+            json!({ "mean": mean, "worst": worst }),
+        ))
+    };
+    text.lines().filter_map(row).collect()
+}
+
+/// The planted faults: list, whether a test of its own is named, and whether it changes nothing.
+fn planted() -> anyhow::Result<Vec<Value>> {
+    let faults = faults::faults()?.into_iter();
+    let fault = |it: faults::Fault| {
+        let equivalent = it.equivalent.is_some();
+        json!({ "area": it.area, "other": it.test.is_some() && !equivalent, "equivalent": equivalent })
+    };
+    Ok(faults.map(fault).collect())
+}
+
+/// Rows of the peers' tables by setting, each with its cells by heading.
+fn peers(results: &str) -> anyhow::Result<Map<Map<&str>>> {
+    let (mut rows, mut heading) = (Map::new(), Vec::new());
+    for line in results.lines().filter(|it| it.starts_with("| ")) {
+        let cells: Vec<_> = line.trim_matches('|').split('|').map(str::trim).collect();
+        if cells[0] == "what" {
+            heading = cells;
+        } else if let Some(setting) = cells.get(1).copied() {
+            let named = heading.iter().map(|it| (*it).to_owned());
+            let twice = rows.insert(setting.to_owned(), named.zip(cells).collect());
+            ensure!(twice.is_none(), "two rows of peers are called {setting}");
         }
     }
+    Ok(rows)
+}
 
-    /// `TABLE ROW COLUMN`: text of a stamped table's cell.
-    fn cell(&self, words: &[&str]) -> anyhow::Result<Figure> {
-        let [table, row, column] = *words else {
-            bail!("it takes a table, a text of the row and a column");
-        };
-        let blocks = |document: &'a Document| document.blocks.iter().map(move |it| (document, it));
-        let mut blocks = self.documents.iter().flat_map(blocks);
-        let (document, block) = blocks
-            .find(|(_, block)| block.name == table)
-            .with_context(|| format!("no table is called {table}"))?;
-        ensure!(
-            block.stamped,
-            "{table} is generated: take the figure from its source"
-        );
-        Ok(Figure::Text(document.cell(block, row, column)?))
+/// The factor of the peers' claim that begins so, met or not.
+fn claim(results: &str, text: &str) -> anyhow::Result<f64> {
+    let start = format!("- {text}: ");
+    let claim = results.lines().find_map(|line| line.strip_prefix(&start));
+    let claim = claim.context("no claim begins so")?;
+    let claim = claim.split_once(", ").map_or(claim, |it| it.1);
+    let (factor, _) = claim
+        .split_once(" times")
+        .context("the claim has no factor")?;
+    Ok(factor.parse()?)
+}
+
+/// Text of a stamped table's cell.
+fn cell<'a>(
+    documents: &'a [Document],
+    table: &str,
+    row: &str,
+    column: &str,
+) -> anyhow::Result<String> {
+    let block_of = |it: &'a Document| Some((it, it.blocks.iter().find(|it| it.name == table)?));
+    let found = documents.iter().find_map(block_of);
+    let (document, block) = found.with_context(|| format!("no table is called {table}"))?;
+    ensure!(
+        block.stamped,
+        "{table} is generated: take the figure from its source"
+    );
+    document.cell(block, row, column)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RESULTS: &str = "\
+        | what | setting | time, us |\n|---|---|---|\n\
+        | Touchdown | f64 | 0 / 1e-11 |\n\
+        \n- With f64: met, 99.8 times (ours).\n\
+        - With f16: **not met**, 4.5 times (ours).\n";
+
+    #[test]
+    fn results_of_peers_are_found_by_setting_heading_and_claim() {
+        assert_eq!(peers(RESULTS).unwrap()["f64"]["time, us"], "0 / 1e-11");
+        assert_eq!(claim(RESULTS, "With f64").unwrap(), 99.8);
+        assert_eq!(claim(RESULTS, "With f16").unwrap(), 4.5);
+        assert!(claim(RESULTS, "With f32").is_err());
+    }
+
+    #[test]
+    fn figures_take_their_place_and_what_is_not_there_is_an_error() {
+        let figures =
+            context! { steps => counts("precision,mean,worst\nf32,flight,7272.4,8000\n") };
+        let fill = |text: &str| templates().render_str(text, &figures);
+        let text = fill("| {{ steps[\"f32 flight\"].mean|count }} |\n").unwrap();
+        assert_eq!(text, "| 7 272 |\n");
+        assert!(fill("{{ steps[\"f64 flight\"].mean|count }}").is_err());
+        assert!(fill("{{ step }}").is_err());
+        assert!(fill("{{ steps|count }}").is_err());
     }
 }

@@ -79,6 +79,7 @@ mod tests {
             functions: Vec::new(),
             types: Vec::new(),
             imports: imports.iter().map(|it| names(it)).collect(),
+            test_modules: Vec::new(),
         }
     }
 

@@ -23,6 +23,8 @@ pub struct Source {
     pub types: Vec<String>,
     /// Paths that it imports, or names from the root, as written.
     pub imports: Vec<Vec<String>>,
+    /// Module paths of its files that are for tests alone.
+    pub test_modules: Vec<Vec<String>>,
 }
 
 impl Source {
@@ -30,6 +32,11 @@ impl Source {
     pub fn of_crate(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let mut sources = Vec::new();
         collect(folder, folder, &mut sources)?;
+        let of_tests: Vec<_> = sources
+            .iter()
+            .flat_map(|it| it.test_modules.clone())
+            .collect();
+        sources.retain(|it| !of_tests.iter().any(|test| it.module.starts_with(test)));
         sources.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(sources)
     }
@@ -50,6 +57,9 @@ impl Source {
             functions: found.functions,
             types: found.types,
             imports: found.imports,
+            test_modules: (found.test_modules.into_iter())
+                .map(|it| [module_of(root, path), vec![it]].concat())
+                .collect(),
         })
     }
 }
@@ -59,9 +69,7 @@ fn collect(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> anyhow::Res
         let path = entry?.path();
         if path.is_dir() {
             collect(root, &path, sources)?;
-        } else if path.extension().is_some_and(|it| it == "rs")
-            && path.file_name().is_some_and(|it| it != "tests.rs")
-        {
+        } else if path.extension().is_some_and(|it| it == "rs") {
             sources.push(Source::read(root, &path)?);
         }
     }
@@ -88,6 +96,7 @@ struct Found {
     functions: Vec<(String, usize)>,
     types: Vec<String>,
     imports: Vec<Vec<String>>,
+    test_modules: Vec<String>,
 }
 
 impl Found {
@@ -124,6 +133,14 @@ impl<'a> Visit<'a> for Found {
         };
         if is_test(attributes) {
             self.test_lines += lines(item.span());
+            if let syn::Item::Mod(syn::ItemMod {
+                ident,
+                content: None,
+                ..
+            }) = item
+            {
+                self.test_modules.push(ident.to_string());
+            }
             return;
         }
         self.types.extend(name.map(ToString::to_string));
@@ -184,12 +201,13 @@ mod tests {
     #[test]
     fn tests_do_not_count_and_do_not_hide() {
         let text = "use super::b::{C, d::E};\nfn long() {\n    crate::x::y();\n}\n#[cfg(test)]\nmod tests {\n    \
-                    use super::*;\n    struct Hidden;\n}\nstruct After;\n";
+                    use super::*;\n    struct Hidden;\n}\nstruct After;\n#[cfg(test)]\nmod fixture;\n";
         let source = Source::parse(Path::new("src"), Path::new("src/a/mod.rs"), text).unwrap();
         assert_eq!(source.module, ["a"]);
         assert_eq!(source.lines, 5);
         assert_eq!(source.functions, [("long".to_owned(), 3)]);
         assert_eq!(source.types, ["After"]);
+        assert_eq!(source.test_modules, [["a", "fixture"]]);
         let imports: Vec<_> = source.imports.iter().map(|it| it.join("::")).collect();
         assert_eq!(imports, ["super::b::C", "super::b::d::E", "crate::x::y"]);
     }
