@@ -68,6 +68,13 @@ impl App {
         }
     }
 
+    /// Takes note of the coefficients where they lie: from now on a change of them is a fault. The first tick does it
+    /// for who did not, late as that tick is then.
+    #[inline(never)]
+    pub fn learn_memory(&mut self) {
+        self.coefficients.learn(&self.monitor);
+    }
+
     /// With the monitor of `config`. Nothing here can fail, so that it is made in its place.
     pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
@@ -109,6 +116,9 @@ impl App {
         lost: u32,
         notices: &mut Notices,
     ) {
+        if !self.coefficients.has_learnt() {
+            self.learn_memory();
+        }
         self.monitor.take(&mut self.state, sample, missed, notices);
         self.hear(board, notices);
         if !missed {
@@ -140,7 +150,7 @@ impl App {
 
     fn hear(&mut self, board: &mut impl Board, notices: &[Notice]) {
         for notice in notices {
-            // Whirl weighs most: it trips what has not been proven to float as well.
+            // Whirl weighs most: it takes the brake where nothing has been proven to float as well.
             if self.told != Some(Cause::Whirl) {
                 self.told = trip_of(notice).or(self.told);
             }
@@ -158,6 +168,7 @@ impl App {
             faulted: self.faults.trip(),
             tested: self.tested.config && self.tested.sensors,
             lies: self.state.phase().is_contact(),
+            lies_still: self.lies_still,
         });
         if self.safety.is_latched() && !was_latched {
             self.state.guard_mut().lose_proof();
@@ -264,7 +275,7 @@ impl App {
 
     /// What waits for an order to clear: a drop by its cause, or a fault.
     pub fn latched(&self) -> Option<Cause> {
-        self.safety.latched()
+        self.shown().latched()
     }
 
     /// The latched faults, after the last tick.
@@ -280,6 +291,7 @@ impl App {
                 mode,
                 faults: self.faults,
                 lies_still: self.lies_still,
+                whirls: self.safety.whirls(),
                 armed: self.state.is_armed(),
             }),
             mode,

@@ -50,7 +50,9 @@ pub fn application<'a>(
     found: Faults,
 ) -> Result<&'a mut App, ConfigError> {
     let monitor = Monitor::try_new(config)?;
-    Ok(place.write(App::new(monitor, config, found)))
+    let app = place.write(App::new(monitor, config, found));
+    app.learn_memory();
+    Ok(app)
 }
 
 /// The forecast, which whoever runs below the tick keeps.

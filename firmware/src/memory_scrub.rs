@@ -8,7 +8,7 @@ use touchdown_core::checksum::CRC;
 /// Bytes that a step takes in.
 pub const WORD_BYTES: usize = size_of::<u32>();
 
-/// Checks a value where it lies over and over, a word a step. The first pass learns its checksum.
+/// Checks a value where it lies over and over, a word a step, against what it was when [`MemoryScrub::learn`] saw it.
 pub struct MemoryScrub {
     at: usize,
     digest: Digest<'static, u32>,
@@ -33,8 +33,18 @@ impl Clone for MemoryScrub {
 }
 
 impl MemoryScrub {
-    /// Takes in the next word of `held`, the same at every step; at the end of a pass, whether it is what it was in the
-    /// first.
+    /// Takes in all of `held` at once, where it has just been made and stays.
+    pub fn learn<T>(&mut self, held: &T) {
+        *self = Self::default();
+        while self.step(held).is_none() {}
+    }
+
+    /// Whether it knows what it checks.
+    pub fn has_learnt(&self) -> bool {
+        self.known.is_some()
+    }
+
+    /// Takes in the next word of `held`, the same at every step; at the end of a pass, whether it is what it was.
     pub fn step<T>(&mut self, held: &T) -> Option<bool> {
         const {
             assert!(align_of::<T>() >= WORD_BYTES && size_of::<T>() > 0);
@@ -70,9 +80,11 @@ mod tests {
         let mut monitor = Box::new(Monitor::try_new(&default_config()).unwrap());
         let bits = 8 * size_of::<Monitor>();
         let pass = MemoryScrub::steps::<Monitor>();
-        let mut scrub = MemoryScrub::default();
         for bit in 0..bits {
-            for _ in 0..2 * pass + bit % pass {
+            let mut scrub = MemoryScrub::default();
+            scrub.learn(&*monitor);
+            // Also within the first pass.
+            for _ in 0..bit % (2 * pass) {
                 assert_ne!(scrub.step(&*monitor), Some(false), "nothing flipped");
             }
             let flip = |monitor: &mut Monitor| {
@@ -84,7 +96,6 @@ mod tests {
             let found = (0..2 * pass).any(|_| scrub.step(&*monitor) == Some(false));
             flip(&mut monitor);
             assert!(found, "bit {bit}");
-            scrub = MemoryScrub::default();
         }
         println!("{bits} bits");
     }

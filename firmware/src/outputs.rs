@@ -11,6 +11,8 @@ pub struct Condition {
     pub faults: Faults,
     /// Whether the rotor lies still enough on the retainer to be lifted.
     pub lies_still: bool,
+    /// Whether it whirls without having been proven to float.
+    pub whirls: bool,
     /// Whether the detector is armed.
     pub armed: bool,
 }
@@ -21,6 +23,7 @@ pub const fn outputs(condition: &Condition) -> Outputs {
         mode,
         faults,
         lies_still,
+        whirls,
         armed,
     } = *condition;
     if faults.trip() {
@@ -29,7 +32,7 @@ pub const fn outputs(condition: &Condition) -> Outputs {
     match mode {
         Mode::SelfTest | Mode::Faulted => Outputs::SAFE,
         Mode::Arming => Outputs {
-            no_brake: true,
+            no_brake: !whirls,
             permit: lies_still,
             ..Outputs::SAFE
         },
@@ -86,19 +89,20 @@ mod tests {
             let (_, cells) = row.expect("a row for each mode");
             // The seven bits of the faults: every set of them.
             for faults in (0..1 << 7).map(Faults) {
-                for (lies_still, armed) in
-                    [(false, false), (false, true), (true, false), (true, true)]
-                {
+                for bits in 0..8 {
+                    let [lies_still, whirls, armed] = [1, 2, 4].map(|it| bits & it != 0);
                     let condition = Condition {
                         mode,
                         faults,
                         lies_still,
+                        whirls,
                         armed,
                     };
                     let is_on = |cell: &String| match cell.as_str() {
                         "on" => true,
                         "off" => false,
                         "if it lies still" => lies_still,
+                        "unless it whirls" => !whirls,
                         "if armed and no fault" => armed && faults == Faults::NONE,
                         other => panic!("{other}"),
                     };
@@ -111,6 +115,6 @@ mod tests {
                 }
             }
         }
-        assert_eq!(conditions, 5 * 128 * 4);
+        assert_eq!(conditions, 5 * 128 * 8);
     }
 }

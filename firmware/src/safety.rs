@@ -18,6 +18,8 @@ pub struct Findings {
     pub tested: bool,
     /// Whether the detector takes the rotor for lying on the wall.
     pub lies: bool,
+    /// Whether it lies still there.
+    pub lies_still: bool,
 }
 
 /// Mode, cause and proof.
@@ -38,12 +40,6 @@ impl Default for Safety {
     }
 }
 
-impl Findings {
-    fn whirl(&self) -> Option<Cause> {
-        self.told.filter(|it| *it == Cause::Whirl)
-    }
-}
-
 impl Safety {
     /// One tick.
     pub fn step(&mut self, findings: &Findings) {
@@ -52,19 +48,27 @@ impl Safety {
             self.latch(Mode::Faulted, guard.unwrap_or(Cause::Fault));
             return;
         }
-        // What has not been proven to float may lie there, to be lifted, and a lift may fail: it does not run. Whirl
-        // asks for the brake all the same.
+        // What has not been proven to float may lie there, to be lifted, and a lift may fail: it does not run.
         let tripped = guard.or(findings.told);
-        if let Some(cause) = tripped.filter(|_| self.proven).or(findings.whirl()) {
+        if let Some(cause) = tripped.filter(|_| self.proven) {
             self.latch(Mode::Dropped, cause);
             return;
         }
-        if self.is_latched() || findings.told.is_some() {
+        if self.is_latched() {
+            return;
+        }
+        if findings.told == Some(Cause::Whirl) {
+            self.cause = findings.told;
+        } else if self.whirls() && findings.lies_still {
+            self.cause = Some(Cause::NoProof);
+        }
+        if findings.told.is_some() {
             return;
         }
         self.proven |= findings.guard.floats && guard.is_none();
         if self.mode == Mode::SelfTest && findings.tested {
-            (self.mode, self.cause) = (Mode::Arming, Some(Cause::NoProof));
+            let cause = self.cause.filter(|_| self.whirls());
+            (self.mode, self.cause) = (Mode::Arming, cause.or(Some(Cause::NoProof)));
         } else if self.mode == Mode::Arming && self.proven && !findings.lies {
             (self.mode, self.cause) = (Mode::Watching, None);
         }
@@ -96,13 +100,10 @@ impl Safety {
         self.proven
     }
 
-    /// What waits for an order to clear: a drop by its cause, or a fault.
-    pub fn latched(&self) -> Option<Cause> {
-        match self.mode {
-            Mode::Dropped => self.cause,
-            Mode::Faulted => Some(Cause::Fault),
-            Mode::SelfTest | Mode::Arming | Mode::Watching => None,
-        }
+    /// Whether it whirled before it was proven to float, and has neither lain still nor floated since: that takes the
+    /// brake, but no order.
+    pub fn whirls(&self) -> bool {
+        !self.is_latched() && self.cause == Some(Cause::Whirl)
     }
 
     /// Whether a trip waits for an order to clear.

@@ -28,7 +28,7 @@ pub fn tick(
         let sample = if missed { &before } else { sample };
         app.take(board, sample, missed, lost, notices);
         recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase(), app.latched());
+        recorder.set_phase(app.state().phase(), app.shown());
         recorder.take(sample, notices);
         recorder.keep(app.state());
         if !missed {

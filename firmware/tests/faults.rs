@@ -3,6 +3,7 @@
 mod common;
 
 use common::chip::{Chip, NoDelay, flash};
+use common::desk::Desk;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::fault::{Condition, FaultKind};
 use touchdown_core::monitor::{Monitor, MonitorConfig};
@@ -12,6 +13,7 @@ use touchdown_firmware::board::{
     Abilities, Board, SAMPLE_RATE_HZ, default_config, default_settings,
 };
 use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::memory;
 use touchdown_firmware::memory_scrub::MemoryScrub;
 use touchdown_firmware::recorder::Counted;
 use touchdown_firmware::w25q::W25q;
@@ -348,7 +350,7 @@ fn rotor_at_rest_from_the_start_may_be_lifted() {
 }
 
 #[test]
-fn whirl_from_a_cold_start_is_a_drop() {
+fn whirl_from_a_cold_start_takes_the_brake_until_it_lies_still() {
     let mut bench = Bench::new(Faults::NONE);
     let mut ticks = 0;
     while !(bench.told(EventKind::ForwardWhirl) || bench.told(EventKind::BackwardWhirl)) {
@@ -358,8 +360,15 @@ fn whirl_from_a_cold_start_is_a_drop() {
         bench.place([CLEARANCE * turn.cos(), CLEARANCE * turn.sin()]);
         ticks += 1;
     }
-    assert_eq!((bench.mode(), bench.outputs()), (Mode::Dropped, 0));
+    assert_eq!((bench.mode(), bench.outputs()), (Mode::Arming, 0));
+    assert_eq!(bench.cause(), Some(Cause::Whirl));
     assert_eq!(bench.app.clear(), Err(Busy::DropRuns));
+    ticks_until(40_000, || bench.place([0.0, -CLEARANCE]) == 0b0110);
+    assert_eq!(
+        (bench.mode(), bench.cause()),
+        (Mode::Arming, Some(Cause::NoProof))
+    );
+    bench.lie_clear_and_lift();
 }
 
 #[test]
@@ -574,6 +583,21 @@ fn coefficients_that_change_in_memory_trip_within_two_passes() {
         assert_eq!(bench.float() & 0b0001, 0);
     }
     assert_eq!(bench.mode(), Mode::Faulted);
+}
+
+#[test]
+fn coefficients_that_change_before_the_first_tick_trip_within_two_passes() {
+    let pass = MemoryScrub::steps::<Monitor>() as u32;
+    let mut place = core::mem::MaybeUninit::uninit();
+    let app = memory::application(&mut place, &default_config(), Faults::NONE);
+    let app = app.expect("a valid configuration");
+    flip_a_bit_of_the_coefficients(app);
+    let mut board = Desk(config_block::encode(&default_settings()));
+    let sample = Bench::new(Faults::NONE).at([0.0; 2]);
+    ticks_until(2 * pass, || {
+        app.tick(&mut board, &sample, 0, &mut Notices::new());
+        app.faults().contains(Fault::MemoryChanged)
+    });
 }
 
 #[test]

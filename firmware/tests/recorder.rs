@@ -239,15 +239,24 @@ fn a_withdrawn_fall_is_no_landing() {
 fn a_rotor_that_has_not_floated_yet_has_not_landed() {
     for lies in [EventKind::Sliding, EventKind::Rolling, EventKind::Pendulum] {
         let mut rig = Rig::switched_on(1_000.0, 8);
-        rig.recorder.set_phase(Phase::Sliding, None);
+        rig.recorder.set_phase(
+            Phase::Sliding,
+            touchdown_protocol::controller::Shown::default(),
+        );
         quiet(&mut rig, 50);
         rig.tick(&[lies]);
         rig.tick(&[EventKind::Rest]);
         quiet(&mut rig, 1_100);
         assert!(!ending(&fetch(&mut rig)).landing, "{lies:?}");
-        rig.recorder.set_phase(Phase::Levitated, None);
+        rig.recorder.set_phase(
+            Phase::Levitated,
+            touchdown_protocol::controller::Shown::default(),
+        );
         rig.tick(&[EventKind::FreeFall]);
-        rig.recorder.set_phase(Phase::Impact, None);
+        rig.recorder.set_phase(
+            Phase::Impact,
+            touchdown_protocol::controller::Shown::default(),
+        );
         rig.tick(&[EventKind::Impact]);
         quiet(&mut rig, 1_100);
         assert!(ending(&fetch(&mut rig)).landing, "{lies:?}");
@@ -267,7 +276,10 @@ fn a_landing_while_the_lying_is_still_recorded_counts() {
         quiet(&mut rig, 50);
         rig.tick(&[EventKind::Sliding]);
         rig.tick(&[EventKind::LiftOff, EventKind::Levitated]);
-        rig.recorder.set_phase(Phase::Levitated, None);
+        rig.recorder.set_phase(
+            Phase::Levitated,
+            touchdown_protocol::controller::Shown::default(),
+        );
         quiet(&mut rig, 10);
         rig.tick(&[EventKind::FreeFall]);
         rig.tick(&[after]);
@@ -380,7 +392,10 @@ fn ring_dropped(config: &MonitorConfig, every: [u16; TACHOMETERS], fetched: u16)
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let mut rig = Rig::new(20_000.0, 1);
     rig.recorder = Recorder::new(memory, config, IDENTITY);
-    rig.recorder.set_phase(Phase::Levitated, None);
+    rig.recorder.set_phase(
+        Phase::Levitated,
+        touchdown_protocol::controller::Shown::default(),
+    );
     let mut blocks = Vec::new();
     for tick in 0..30_000 {
         let sample = Sample {

@@ -38,6 +38,8 @@ struct World {
     tested: bool,
     /// A latch, its cause, and that no order came since.
     latched: Option<Cause>,
+    /// Whirl was told, and since then it has neither lain still nor been shown to float.
+    whirled: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +57,7 @@ struct Input {
     told: Option<Cause>,
     shows: bool,
     lies: bool,
+    still: bool,
     tested: bool,
     faulted: bool,
     clears: bool,
@@ -69,7 +72,7 @@ fn inputs() -> Vec<Input> {
             Some(Cause::Whirl),
             Some(Cause::Contact),
         ] {
-            for bits in 0..1 << 6 {
+            for bits in 0..1 << 7 {
                 let bit = |at: u8| bits >> at & 1 != 0;
                 all.push(Input {
                     reading,
@@ -80,6 +83,7 @@ fn inputs() -> Vec<Input> {
                     tested: bit(3),
                     faulted: bit(4),
                     clears: bit(5),
+                    still: bit(6),
                 });
             }
         }
@@ -98,6 +102,7 @@ impl World {
             mode: self.safety.mode(),
             faults,
             lies_still: true,
+            whirls: self.safety.whirls(),
             armed: true,
         })
     }
@@ -106,6 +111,8 @@ impl World {
         if input.clears {
             self.safety.clear();
             (self.tested, self.latched, self.shown) = (false, None, false);
+            // Whirl makes the application refuse it.
+            self.whirled = false;
         }
         match input.reading {
             Reading::Missing => self.lost = (self.lost + 1).min(WINDOW),
@@ -139,8 +146,12 @@ impl World {
             faulted: input.faulted,
             tested: input.tested,
             lies: input.lies,
+            lies_still: input.still,
         });
         self.tested |= input.tested;
+        let whirls = input.told == Some(Cause::Whirl);
+        let ends = input.still || self.safety.mode() == Mode::Watching;
+        self.whirled = whirls || self.whirled && !ends;
         let trips = guard.danger || guard.lost || guard.off;
         if self.safety.is_latched() {
             self.shown = false;
@@ -181,6 +192,9 @@ impl World {
         if run && !self.tested {
             because("runs without a self-test");
         }
+        if self.whirled && outputs.no_brake {
+            because("whirls without the brake");
+        }
         if run && outputs.permit {
             because("runs and permits a lift");
         }
@@ -192,9 +206,8 @@ impl World {
         }
         // What was proven to float and does not, has tripped; so has what the detector tells.
         let trips = guard.danger || guard.lost || guard.off;
-        let whirls = input.told == Some(Cause::Whirl);
         let told = input.told.is_some();
-        let must = input.faulted || whirls || before.safety.is_proven() && (trips || told);
+        let must = input.faulted || before.safety.is_proven() && (trips || told);
         if must && !self.safety.is_latched() {
             because("does not latch");
         }

@@ -35,6 +35,9 @@ fn main() {
                 "| {} | {} | {} | {:.2e} |",
                 it.name, it.runs, it.failed, it.rate_below
             );
+            if it.undecided > 0 {
+                println!("| undecided: {} | {} | | |", it.undecided_why, it.undecided);
+            }
         }
         for failure in families.iter().flat_map(|it| &it.failures) {
             eprintln!("{failure}");

@@ -14,13 +14,50 @@ pub struct Family {
     pub runs: usize,
     /// Of them, those in which it did not hold.
     pub failed: usize,
+    /// Runs, besides these, that no rule could tell, and why.
+    pub undecided: usize,
+    /// Why.
+    pub undecided_why: &'static str,
     /// Above this rate at 95 %, if it fails at all.
     pub rate_below: f64,
     /// The first seeds that failed, and how.
     pub failures: Vec<String>,
 }
 
+/// What became of a run.
+#[derive(Clone, Debug)]
+pub enum Verdict {
+    /// What must show was shown.
+    Held,
+    /// Not, and how.
+    Failed(String),
+    /// No rule could tell.
+    Undecided,
+}
+
 impl Family {
+    /// Of verdicts, and why some are undecided.
+    pub fn of_verdicts(
+        name: &'static str,
+        undecided_why: &'static str,
+        verdicts: Vec<(u64, Verdict)>,
+    ) -> Self {
+        let all = verdicts.len();
+        let decided = verdicts
+            .into_iter()
+            .filter_map(|(seed, verdict)| match verdict {
+                Verdict::Held => Some((seed, Ok(()))),
+                Verdict::Failed(why) => Some((seed, Err(why))),
+                Verdict::Undecided => None,
+            });
+        let decided: Vec<_> = decided.collect();
+        Self {
+            undecided: all - decided.len(),
+            undecided_why,
+            ..Self::of(name, &decided)
+        }
+    }
+
     /// Of seeds and what became of them.
     pub fn of(name: &'static str, outcomes: &[(u64, Result<(), String>)]) -> Self {
         let failures: Vec<String> = outcomes
@@ -31,6 +68,8 @@ impl Family {
             name,
             runs: outcomes.len(),
             failed: failures.len(),
+            undecided: 0,
+            undecided_why: "",
             rate_below: upper_bound(failures.len(), outcomes.len()),
             failures: failures.into_iter().take(10).collect(),
         }

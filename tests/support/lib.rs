@@ -22,3 +22,4 @@ pub mod ring_scenes;
 pub mod rotors;
 pub mod sweep_runs;
 pub mod told_machine;
+pub mod touch_runs;

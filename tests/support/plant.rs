@@ -56,6 +56,8 @@ pub struct Machine {
     pub force_limit: f64,
     /// What becomes of the orbit while the AMB is off.
     pub after: Orbit,
+    /// Along -y, m/s^2; 0 where the axis stands upright.
+    pub gravity: f64,
 }
 
 /// What becomes of the orbit while the AMB is off. Unless it goes on, it fades in with the lift.
@@ -83,6 +85,7 @@ impl Default for Machine {
             float_place: [0.0, 0.0],
             force_limit: 3.0 * GRAVITY,
             after: Orbit::Ends,
+            gravity: GRAVITY,
         }
     }
 }
@@ -305,7 +308,7 @@ impl Plant {
         let x = if floating {
             m.float_place
         } else {
-            [0.0, -m.gap - GRAVITY / (wall_w * wall_w)]
+            [0.0, -m.gap - m.gravity / (wall_w * wall_w)]
         };
         let mut plant = Plant {
             step: 5e-6,
@@ -502,14 +505,14 @@ impl Plant {
         let (m, v) = (&self.m, self.v);
         let x = [self.x[0] + 0.5 * h * v[0], self.x[1] + 0.5 * h * v[1]];
         a[0] -= m.spin * m.spin * o[0];
-        a[1] -= m.spin * m.spin * o[1] + GRAVITY;
+        a[1] -= m.spin * m.spin * o[1] + m.gravity;
         if self.on {
             let w = std::f64::consts::TAU * m.natural_hz;
             let pull = |i: usize| {
                 let set_speed = (set[i] - self.set[i]) / h;
                 w * w * (set[i] + o[i] - x[i]) + 2.0 * m.damping * w * (set_speed + ov[i] - v[i])
             };
-            let f = [pull(0), pull(1) + GRAVITY];
+            let f = [pull(0), pull(1) + m.gravity];
             let k = (m.force_limit / length(f).max(1e-12)).min(1.0);
             a[0] += k * f[0];
             a[1] += k * f[1];
@@ -618,6 +621,10 @@ impl Chain {
     }
     /// 12-bit counts over +-1000 micrometres for a place in m: plane a x, y, plane b x, y.
     pub fn counts(&mut self, place: [f64; 2]) -> [u16; 4] {
+        self.counts_of([place; 2])
+    }
+    /// The same of planes that are apart.
+    pub fn counts_of(&mut self, places: [[f64; 2]; 2]) -> [u16; 4] {
         self.calls += 1;
         let time = self.calls as f64 / self.rate;
         let is_burst = (self.burst_time[0]..self.burst_time[1]).contains(&time);
@@ -628,7 +635,7 @@ impl Chain {
         }
         std::array::from_fn(|i| {
             let (plane, axis) = (i / 2, i % 2);
-            let mut um = place[axis] * 1e6 * (1.0 + self.gain_error[plane])
+            let mut um = places[plane][axis] * 1e6 * (1.0 + self.gain_error[plane])
                 + self.zero[plane][axis]
                 + self.drift[plane][axis] * time;
             if self.noise > 0.0 {

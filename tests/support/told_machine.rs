@@ -11,7 +11,7 @@ use touchdown_firmware::board::Board;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 
-use crate::plant::{Chain, GRAVITY, Machine, Phase, Plant, Rng, Truth};
+use crate::plant::{Chain, Machine, Phase, Plant, Rng, Truth};
 
 /// Of the shaft at the retainer, m.
 pub const ROTOR_RADIUS: f64 = 0.024;
@@ -67,7 +67,10 @@ pub struct Run {
     /// The controller.
     pub app: App,
     board: Desk,
-    plant: Plant,
+    /// Of plane b, where the planes move each by itself.
+    plants: (Plant, Option<Plant>),
+    /// Whether the signal "levitation on" is wired.
+    pub has_signal: bool,
     /// The sensors.
     pub chain: Chain,
     rate: f64,
@@ -108,7 +111,8 @@ impl Run {
         Self {
             app: App::try_new(&config, Faults::NONE).expect("a valid configuration"),
             board: Desk(config_block::encode(&settings)),
-            plant: Plant::new(machine, phases),
+            plants: (Plant::new(machine, phases), None),
+            has_signal: false,
             chain,
             rate,
             told_gap,
@@ -117,15 +121,34 @@ impl Run {
         }
     }
 
-    /// The next sample; the speed is measured, rad/s.
+    /// The same of a rotor whose end at plane b moves by itself, as that of `other` does.
+    pub fn with_other_end(mut self, other: &Machine, phases: &[Phase]) -> Self {
+        self.plants.1 = Some(Plant::new(other, phases));
+        self
+    }
+
+    /// The next sample; the speed is measured, rad/s. Of ends that are apart what is true of either, and the place of
+    /// that in contact or farther out.
     pub fn step(&mut self, spin: f64) -> Option<(Truth, Shown)> {
-        let truth = self.plant.next_sample(self.rate)?;
-        let counts = self.chain.counts(truth.place);
+        let (a, b) = &mut self.plants;
+        let mut truth = a.next_sample(self.rate)?;
+        let mut places = [truth.place; 2];
+        if let Some(b) = b {
+            let other = b.next_sample(self.rate)?;
+            places[1] = other.place;
+            let far = |it: &Truth| it.place[0].hypot(it.place[1]);
+            if other.in_contact && !truth.in_contact || far(&other) > far(&truth) {
+                (truth.place, truth.velocity) = (other.place, other.velocity);
+            }
+            truth.in_contact |= other.in_contact;
+            truth.afloat &= other.afloat;
+        }
+        let counts = self.chain.counts_of(places);
         let sample = Sample {
             counts,
             valid: 0b1111,
             spin: Some(spin as f32),
-            levitated: None,
+            levitated: self.has_signal.then_some(truth.amb_on),
             edges: [None; TACHOMETERS],
         };
         let place = |count: u16| (f64::from(count) - 2_048.0) * 2_000e-6 / 4_096.0;
@@ -155,7 +178,7 @@ pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
             machine: MachineConfig {
                 mass: 3.0,
                 clearance: told_gap as f32,
-                gravity: GRAVITY as f32,
+                gravity: machine.gravity as f32,
                 rotor_radius: ROTOR_RADIUS as f32,
                 inertia_ratio: 0.5,
                 friction: machine.friction as f32,
@@ -165,6 +188,6 @@ pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
             tuning: Tuning::default(),
         },
         guard: GuardConfig::default(),
-        commissioned: false,
+        commissioned: machine.gravity == 0.0,
     }
 }

@@ -213,11 +213,15 @@ impl Capture {
         }
     }
 
-    pub(super) fn note(&mut self, notice: &Notice) {
-        let record = wire::encode_record(&Record::Notice(*notice));
-        if self.notices.push(record).is_err() {
+    /// A record, while there is room.
+    pub(super) fn push(&mut self, record: &Record) {
+        if self.notices.push(wire::encode_record(record)).is_err() {
             self.notices_lost = self.notices_lost.saturating_add(1);
         }
+    }
+
+    pub(super) fn note(&mut self, notice: &Notice) {
+        self.push(&Record::Notice(*notice));
         self.touched |= touches(notice);
         if let Notice::Declared(event) = notice {
             self.fastest = self.fastest.max(event.normal_speed);
@@ -227,9 +231,7 @@ impl Capture {
     /// An alarm or an order, while half of the room is left for what the detector says.
     pub(super) fn note_aside(&mut self, notice: &Notice) {
         if self.notices.len() < NOTICES / 2 {
-            let _ = self
-                .notices
-                .push(wire::encode_record(&Record::Notice(*notice)));
+            self.push(&Record::Notice(*notice));
         }
     }
 

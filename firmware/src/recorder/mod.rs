@@ -17,12 +17,13 @@ use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::severity::Severity;
-use touchdown_protocol::controller::Cause;
+use touchdown_protocol::controller::Shown;
 use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::ending::Closing;
 use touchdown_protocol::log::pulses::PULSE_BYTES;
 use touchdown_protocol::log::waveform::{self, Counts};
+use touchdown_protocol::wire::{Record, Switching};
 use touchdown_rotor::real;
 
 use self::capture::{Capture, Closed};
@@ -188,7 +189,8 @@ pub struct Recorder<'m> {
     last_notice: u64,
     /// It has floated since reset, and since it last touched the retainer: only then it lands.
     floated: bool,
-    latched: Option<Cause>,
+    /// The last change of what the controller shows.
+    switched: Switching,
     counted: Counted,
 }
 
@@ -218,7 +220,7 @@ impl<'m> Recorder<'m> {
             drop: Drop::None,
             last_notice: 0,
             floated: false,
-            latched: None,
+            switched: Switching::default(),
             counted: Counted::default(),
         }
     }
@@ -289,10 +291,23 @@ impl<'m> Recorder<'m> {
         }
     }
 
-    /// The rotor's phase and what waits for an order to clear, before the tick's [`Self::take`].
-    pub fn set_phase(&mut self, phase: Phase, latched: Option<Cause>) {
+    /// The rotor's phase and what the controller shows, before the tick's [`Self::take`].
+    pub fn set_phase(&mut self, phase: Phase, shown: Shown) {
         self.floated |= phase == Phase::Levitated;
-        self.latched = latched;
+        if shown != self.switched.shown {
+            let sample = self.tick;
+            self.switched = Switching { sample, shown };
+            self.note_switched();
+        }
+    }
+
+    #[inline(never)]
+    fn note_switched(&mut self) {
+        if let Drop::Recorded(at) = self.drop
+            && let Some(capture) = self.captures.get_mut(at)
+        {
+            capture.push(&Record::Switching(self.switched));
+        }
     }
 
     /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
@@ -385,6 +400,8 @@ impl<'m> Recorder<'m> {
         {
             capture.begin(kind, self.tick, self.floated, &self.plan);
             self.drop = Drop::Recorded(at);
+            // As it was when it began.
+            self.note_switched();
         } else if self.floated {
             let lost = &mut self.counted.lost;
             *lost = lost.saturating_add(1);
@@ -398,7 +415,7 @@ impl<'m> Recorder<'m> {
             capture.end(Closed {
                 why: closing,
                 tick: self.tick,
-                latched: self.latched,
+                latched: self.switched.shown.latched(),
             });
         }
         self.drop = Drop::None;

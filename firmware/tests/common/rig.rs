@@ -6,6 +6,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::board::default_config;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_protocol::controller::Shown;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::reader::{Item, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::Counts;
@@ -40,7 +41,7 @@ impl Rig {
     /// Of a rotor that has floated.
     pub fn new(rate: f32, seed: u64) -> Self {
         let mut rig = Self::switched_on(rate, seed);
-        rig.recorder.set_phase(Phase::Levitated, None);
+        rig.recorder.set_phase(Phase::Levitated, Shown::default());
         rig
     }
 
@@ -94,7 +95,7 @@ impl Rig {
             0 => self.tick(&[self.trigger]),
             _ if tick == length => {
                 self.tick(&[EventKind::LiftOff, EventKind::Levitated]);
-                self.recorder.set_phase(Phase::Levitated, None);
+                self.recorder.set_phase(Phase::Levitated, Shown::default());
             }
             _ if tick < length && tick % 37 == 36 => self.tick(&[EventKind::Impact]),
             _ => self.tick(&[]),
@@ -129,8 +130,8 @@ pub fn read(bytes: &[u8]) -> Read {
                 }
             }
             Item::Events(events) => {
-                assert!(events.notices().all(|it| it.is_some()));
-                read.notices += events.notices().count();
+                assert!(events.records().all(|it| it.is_some()));
+                read.notices += events.records().count();
             }
             Item::Learnt(_) | Item::Pulses(_) | Item::Severity(..) | Item::Ending(_) => {}
         }

@@ -5,6 +5,7 @@ pub mod stream;
 pub mod recording;
 
 pub mod configuration;
+pub mod controller;
 pub mod drop_log;
 pub mod link;
 pub mod ram_nor;

@@ -3,17 +3,15 @@
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Alarm, Level, Notice};
-use touchdown_protocol::controller::{Cause, Fault, Mode, Outputs};
+use touchdown_protocol::controller::{Fault, Mode};
 use touchdown_protocol::link::{Hello, State};
 use touchdown_protocol::wire::{Cleared, Switching};
 
 use crate::timebase::Timebase;
 use touchdown_base::paint::Paint;
+use touchdown_files::controller::{AlarmAt, OutputsFrom, table};
 use touchdown_files::drop_log::{Completeness, Dump, Episode};
-use touchdown_scene::names::{busy_name, cause_name, event_name, mode_name, plane_name};
-
-/// Changes of the outputs that the terminal shows.
-const LISTED: usize = 12;
+use touchdown_scene::names::{busy_name, event_name};
 
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,24 +42,6 @@ pub struct Controller {
     zones: Zones,
     log: Log,
     link: Link,
-}
-
-#[derive(Debug, Serialize)]
-struct OutputsFrom {
-    time_s: f64,
-    #[serde(flatten)]
-    outputs: Outputs,
-    mode: Mode,
-    cause: Option<Cause>,
-}
-
-/// A plane rose through a limit of the guard.
-#[derive(Debug, Serialize)]
-pub struct AlarmAt {
-    time_s: f64,
-    plane: &'static str,
-    level: Level,
-    fraction: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -133,12 +113,7 @@ impl ControllerTrace {
         let faults = Fault::ALL.into_iter();
         Controller {
             outputs: switchings
-                .map(|it| OutputsFrom {
-                    time_s: timebase.time(it.sample as f64),
-                    outputs: it.shown.outputs,
-                    mode: it.shown.mode,
-                    cause: it.shown.cause,
-                })
+                .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
                 .collect(),
             touches: state.touches,
             alarms: self.alarms.iter().map(|it| alarm(it, timebase)).collect(),
@@ -164,12 +139,7 @@ impl ControllerTrace {
 
 /// An alarm with its time.
 pub fn alarm(alarm: &Alarm, timebase: Timebase) -> AlarmAt {
-    AlarmAt {
-        time_s: timebase.time(alarm.sample as f64),
-        plane: plane_name(alarm.plane),
-        level: alarm.level,
-        fraction: f64::from(alarm.fraction),
-    }
+    AlarmAt::new(alarm, timebase.time(alarm.sample as f64))
 }
 
 fn order(order: &Cleared, timebase: Timebase) -> OrderAt {
@@ -190,29 +160,7 @@ fn zones(samples: [u64; 4]) -> Zones {
 impl Controller {
     /// For the terminal, in 80 columns.
     pub fn text(&self, paint: Paint) -> String {
-        let head = format!(
-            "\n{:<12}{:>6}{:>10}{:>8}{:>7}  {:<10} {}",
-            "outputs at ms", "run", "no brake", "permit", "ready", "mode", "cause"
-        );
-        let mut text = paint.bold(&head) + "\n";
-        let level = |on| if on { "on" } else { "off" };
-        for it in self.outputs.iter().take(LISTED) {
-            let outputs = it.outputs;
-            let line = format!(
-                "{:>13.4}{:>6}{:>10}{:>8}{:>7}  {:<10} {}",
-                it.time_s * 1e3,
-                level(outputs.run),
-                level(outputs.no_brake),
-                level(outputs.permit),
-                level(outputs.ready),
-                mode_name(it.mode),
-                it.cause.map_or("", cause_name),
-            );
-            text += &format!("{}\n", line.trim_end());
-        }
-        if self.outputs.len() > LISTED {
-            text += &format!("... {} more changes\n", self.outputs.len() - LISTED);
-        }
+        let mut text = table(&self.outputs, paint);
         let dangers = self.alarms.iter().filter(|it| it.level == Level::Danger);
         text += &format!(
             "guard: {} touches, {} alarms, {} of them danger\n",

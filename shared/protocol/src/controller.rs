@@ -96,6 +96,17 @@ pub struct Shown {
     pub cause: Option<Cause>,
 }
 
+impl Shown {
+    /// What waits for an order to clear: a drop by its cause, or a fault.
+    pub fn latched(&self) -> Option<Cause> {
+        match self.mode {
+            Mode::Dropped => self.cause,
+            Mode::Faulted => Some(Cause::Fault),
+            Mode::SelfTest | Mode::Arming | Mode::Watching => None,
+        }
+    }
+}
+
 /// The outputs, each `true` where its coil or lamp has current. Without current all are safe, so loss
 /// of power, reset and a trip look the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

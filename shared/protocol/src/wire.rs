@@ -103,7 +103,7 @@ pub fn has_service(bytes: &[u8; SAMPLE_BYTES]) -> bool {
 }
 
 /// A change of what the controller shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Switching {
     /// Number of the sample whose tick made it, from 0.
     pub sample: u64,

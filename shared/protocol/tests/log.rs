@@ -138,7 +138,10 @@ fn what_is_written_is_read() {
     let Item::Events(events) = items[4] else {
         panic!("no events");
     };
-    assert_eq!(events.notices().collect::<Vec<_>>(), [Some(IMPACT)]);
+    assert_eq!(
+        events.records().collect::<Vec<_>>(),
+        [Some(Record::Notice(IMPACT))]
+    );
     assert_eq!(items[5], Item::Severity(1, &[9, 8, 7]));
     assert_eq!(items[7], Item::Ending(ending(8)));
     let report = report(&bytes);
@@ -361,7 +364,7 @@ fn account(bytes: &[u8]) -> Report {
     for item in &mut reader {
         items += 1;
         if let Item::Events(events) = item {
-            let _ = events.notices().count();
+            let _ = events.records().count();
         }
         if let Item::Waveform(waveform) = item {
             let _ = waveform.samples().count();

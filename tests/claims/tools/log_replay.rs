@@ -6,10 +6,12 @@ use std::io::Sink;
 use touchdown_protocol::log::learnt::{of_parts, part};
 use touchdown_protocol::log::block::Kind;
 use touchdown_protocol::log::header::Header;
+use touchdown_core::event::EventKind;
 use touchdown_core::monitor::Monitor;
 use touchdown_core::sensing::{Calibration, PlaneCalibration, Sensing};
 use touchdown_files::drop_log::{Dump, Episode, comtrade, stream};
-use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample};
+use touchdown_files::recording::{Reading, Recording};
+use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample, without_record};
 use touchdown_run::drop;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::replay;
@@ -143,6 +145,34 @@ fn channels_of_an_exported_record_are_displacements_along_their_axes() {
             assert!((shown - 1e6 * along).abs() < 1e-3, "{line}: {shown} {along}");
         }
     }
+}
+
+/// Of a checked machine, from the file alone: the counts are those of the episode, with the scene's own record.
+#[test]
+fn an_export_as_comtrade_replays_with_the_record() {
+    let scene = checked();
+    let (dump, events) = dropped(&scene);
+    let episode = &dump.episodes[0];
+    let folder = tempfile::tempdir().expect("a folder");
+    let [cfg, dat] = comtrade(episode).expect("a header");
+    fs::write(folder.path().join("e.cfg"), cfg).expect("a file");
+    fs::write(folder.path().join("e.dat"), dat).expect("a file");
+    let path = folder.path().join("e.cfg");
+    let replay = replay::run(&path, &scene, &Target::Host).expect("replays");
+    let header = episode.header.as_ref().expect("a header");
+    let recording = Recording::open(&path, &Reading::default(), &scene).expect("opens");
+    assert!(recording.is_episode);
+    let (sensors, rate) = (&scene.sensors, f64::from(header.sample_rate));
+    for (row, counts) in recording.zip(&episode.samples) {
+        let mut row = row.expect("a row");
+        row.positions = without_record(&row.positions, sensors);
+        assert_eq!(Some(to_sample(&row, sensors, rate).counts), *counts);
+    }
+    let kinds = |events: &[DetectedEvent]| -> Vec<_> { events.iter().map(|it| it.event).collect() };
+    let impacts = |events: &[DetectedEvent]| kinds(events).iter().filter(|it| **it == EventKind::Impact).count();
+    let told = told(episode, events);
+    assert!(impacts(&told) > 3, "{told:?}");
+    assert_eq!(impacts(&replay.events), impacts(&told), "{:?}", replay.events);
 }
 
 /// The export has the very pulses that the monitor saw, and none where an episode has none, as in earlier formats.

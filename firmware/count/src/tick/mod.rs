@@ -134,7 +134,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
             recorder.set_severity(app.state().severity());
-            recorder.set_phase(app.state().phase(), app.latched());
+            recorder.set_phase(app.state().phase(), app.shown());
             recorder.take(sample, &notices);
         });
         let (outlook, forecast) =

@@ -4,6 +4,7 @@ use touchdown_core::sample::CHANNELS;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
 use super::episode::Episode;
+use crate::recording::{DEVICE, STATION};
 use touchdown_scene::names::channel_name;
 
 /// What stands for a missing value.
@@ -17,7 +18,7 @@ pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
         .filter(|it| header.fitted & (1 << it) != 0)
         .collect();
     let mut cfg = format!(
-        "touchdown,episode {},1999\r\n{},{}A,0D\r\n",
+        "{STATION},{DEVICE}{},1999\r\n{},{}A,0D\r\n",
         episode.sequence,
         fitted.len(),
         fitted.len()

@@ -10,7 +10,9 @@ use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::wire::Record;
 
+use crate::controller::{AlarmAt, OutputsFrom};
 use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
 use touchdown_scene::names::{act_name, channel_name};
@@ -40,6 +42,10 @@ pub struct Episode {
     pub ending: Option<Ending>,
     /// What was reported, in its order; those of an unknown kind left out.
     pub events: Vec<Event>,
+    /// What the controller showed when it began, and each change.
+    pub outputs: Vec<OutputsFrom>,
+    /// Of the guard, while there was room.
+    pub alarms: Vec<AlarmAt>,
     /// What was ordered over the link, and what came of it.
     pub orders: Vec<String>,
     /// Pages by their state.
@@ -99,7 +105,7 @@ impl Episode {
     pub fn of(pages: &[u8]) -> Self {
         let mut reader = Reader::new(pages);
         let (mut header, mut ending, mut severity) = (None, None, None);
-        let (mut notices, mut samples, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut records, mut samples, mut parts) = (Vec::new(), Vec::new(), Vec::new());
         let mut pulses = Vec::new();
         for item in reader.by_ref() {
             match item {
@@ -107,7 +113,7 @@ impl Episode {
                 Item::Ending(it) => ending = Some(it),
                 Item::Learnt(part) => parts.push(part),
                 Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
-                Item::Events(it) => notices.extend(it.notices().flatten()),
+                Item::Events(it) => records.extend(it.records().flatten()),
                 Item::Pulses(it) => take_pulses(&mut pulses, &it),
                 Item::Waveform(it) => take_samples(&mut samples, &it),
             }
@@ -127,12 +133,10 @@ impl Episode {
             damaged: report.verdict() == Verdict::Damaged,
             damage,
             flaws: Vec::new(),
-            events: header
-                .as_ref()
-                .map_or(Vec::new(), |it| events(it, &notices)),
-            orders: header
-                .as_ref()
-                .map_or(Vec::new(), |it| orders(it, &notices)),
+            events: told(&header, &records, event),
+            outputs: told(&header, &records, outputs),
+            alarms: told(&header, &records, alarm),
+            orders: told(&header, &records, order),
             learnt: learnt(&parts),
             ending,
             report,
@@ -267,35 +271,55 @@ fn impossible(header: &Header) -> Vec<String> {
         .collect()
 }
 
-fn orders(header: &Header, notices: &[Notice]) -> Vec<String> {
-    let order = |notice: &Notice| match notice {
-        Notice::Ordered(it) => {
-            let time = it.sample as f64 - header.trigger as f64;
-            let time = 1e3 * time / f64::from(header.sample_rate);
-            let came = refused_why(it.refused)
-                .map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
-            Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
-        }
-        _ => None,
+/// What of the records `one` tells, given a tick's time since the trigger, s.
+fn told<T>(
+    header: &Option<Header>,
+    records: &[Record],
+    one: fn(&Record, &dyn Fn(f64) -> f64) -> Option<T>,
+) -> Vec<T> {
+    let Some(header) = header else {
+        return Vec::new();
     };
-    notices.iter().filter_map(order).collect()
+    let since = |tick: f64| (tick - header.trigger as f64) / f64::from(header.sample_rate);
+    records.iter().filter_map(|it| one(it, &since)).collect()
 }
 
-fn events(header: &Header, notices: &[Notice]) -> Vec<Event> {
-    let rate = f64::from(header.sample_rate);
-    let since = |tick: f64| (tick - header.trigger as f64) / rate;
-    let event = |notice: &Notice| match notice {
-        Notice::Declared(event) => Some(Event {
-            event: event.kind,
-            onset_s: since(event.onset.samples()),
-            declared_s: since(event.declared as f64),
-            normal_speed_m_s: event.normal_speed,
-            fault: event.fault.map(|it| LoggedFault {
-                channel: channel_name(it.channel),
-                kind: it.kind,
-            }),
-        }),
+fn outputs(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<OutputsFrom> {
+    match record {
+        Record::Switching(it) => Some(OutputsFrom::new(it, since(it.sample as f64))),
         _ => None,
+    }
+}
+
+fn alarm(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<AlarmAt> {
+    match record {
+        Record::Notice(Notice::Alarm(it)) => Some(AlarmAt::new(it, since(it.sample as f64))),
+        _ => None,
+    }
+}
+
+fn order(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<String> {
+    let Record::Notice(Notice::Ordered(it)) = record else {
+        return None;
     };
-    notices.iter().filter_map(event).collect()
+    let time = 1e3 * since(it.sample as f64);
+    let came =
+        refused_why(it.refused).map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
+    Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
+}
+
+fn event(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<Event> {
+    let Record::Notice(Notice::Declared(event)) = record else {
+        return None;
+    };
+    Some(Event {
+        event: event.kind,
+        onset_s: since(event.onset.samples()),
+        declared_s: since(event.declared as f64),
+        normal_speed_m_s: event.normal_speed,
+        fault: event.fault.map(|it| LoggedFault {
+            channel: channel_name(it.channel),
+            kind: it.kind,
+        }),
+    })
 }

@@ -1,10 +1,12 @@
 //! The log for people.
 
+use touchdown_core::event::Level;
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::DamageKind;
 
 use super::dump::Dump;
 use super::episode::{Completeness, Episode};
+use crate::controller::table;
 use touchdown_base::paint::Paint;
 use touchdown_scene::names::{cause_name, event_name};
 
@@ -156,12 +158,25 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             event.declared_s * 1e3,
         );
     }
-    text + &orders(episode)
-}
-
-fn orders(episode: &Episode) -> String {
+    if !episode.outputs.is_empty() {
+        text += &table(&episode.outputs, paint);
+    }
+    for it in &episode.alarms {
+        let level = match it.level {
+            Level::Alert => "alert",
+            Level::Danger => "danger",
+        };
+        text += &format!(
+            "alarm: {level}, plane {} at {:.2} of the clearance, at {:.4} ms\n",
+            it.plane,
+            it.fraction,
+            it.time_s * 1e3
+        );
+    }
     let orders = episode.orders.iter();
-    orders.map(|it| format!("order: {it}\n")).collect()
+    text + &orders
+        .map(|it| format!("order: {it}\n"))
+        .collect::<String>()
 }
 
 fn ended(ending: &Ending) -> String {

@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-pub use comtrade::{Cfg, combined};
+pub use comtrade::{Cfg, DEVICE, STATION, combined};
 pub use mapping::Mapping;
 
 use comtrade::{ComtradeRows, is_comtrade};
@@ -26,7 +26,7 @@ use text::{Head, TextRows};
 
 use touchdown_core::learnt::Learnt;
 
-use crate::stream::{Before, Columns, Even, Meter, Records, Row, Stamped, is_rate};
+use crate::stream::{Before, Columns, Even, Meter, Records, Row, Stamped, is_rate, of_own_axes};
 use touchdown_base::input_error::{InputError, UTF_16, reason};
 use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
@@ -55,6 +55,8 @@ pub struct Recording {
     pub format: Option<String>,
     /// What the detector had learnt before the first sample, where the stream says.
     pub learnt: Option<Box<Learnt>>,
+    /// Whether it is the export of an episode, displacements with the record of a commissioning check.
+    pub is_episode: bool,
     /// Bytes of the file.
     pub size: u64,
     rows: Rows,
@@ -74,6 +76,7 @@ struct Opened {
     header: u64,
     format: Option<String>,
     learnt: Before,
+    is_episode: bool,
     size: u64,
 }
 
@@ -126,6 +129,7 @@ impl Recording {
                     header: layout.before.1.max(1),
                     format: Some(format_of(layout)),
                     learnt: Before::default(),
+                    is_episode: false,
                     size,
                     rows: Box::new(rows),
                 }
@@ -147,6 +151,7 @@ impl Recording {
                     header: 1,
                     format: None,
                     learnt: records.learnt(),
+                    is_episode: false,
                     size,
                     rows: Box::new(records),
                 }
@@ -205,13 +210,15 @@ impl Recording {
             (rate, start) = (even.rate(), even.start());
             rows = Box::new(even);
         }
+        // Another rate would make something else of it.
+        let learnt = (opened.learnt.take()).filter(|_| reading.resample.is_none());
         Ok(Self {
             columns: opened.columns,
             rate,
             start,
             format: opened.format,
-            // Another rate would make something else of it.
-            learnt: (opened.learnt.take()).filter(|_| reading.resample.is_none()),
+            is_episode: opened.is_episode || learnt.is_some(),
+            learnt,
             size: opened.size,
             rows,
             meter: opened.meter,
@@ -267,6 +274,8 @@ fn of_comtrade<R: Read + 'static>(
         );
         return Err(InputError::of_file(rows.dat().file(), rule));
     }
+    let is_episode = cfg.is_episode && reading.mapping.is_none();
+    let sensors = scene.sensors;
     Ok(Opened {
         columns: rows.pick().columns(),
         meter,
@@ -274,8 +283,16 @@ fn of_comtrade<R: Read + 'static>(
         header: 1,
         format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data.name())),
         learnt: Before::default(),
+        is_episode,
         size,
-        rows: Box::new(rows),
+        rows: Box::new(rows.map(move |it| {
+            let mut stamped = it?;
+            if is_episode {
+                let positions = &mut stamped.row.positions;
+                *positions = of_own_axes(positions, &sensors);
+            }
+            Ok(stamped)
+        })),
     })
 }
 

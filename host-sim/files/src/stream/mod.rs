@@ -125,6 +125,19 @@ pub fn to_sample(row: &Row, sensors: &SensorsConfig, rate: f64) -> Sample {
     sample
 }
 
+/// Displacements in the scene's axes, of those along the channels' own axes, as `sensors` are mounted.
+pub fn of_own_axes(along: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
+    let mut positions = *along;
+    let planes =
+        (sensors.mounting_angle.into_iter()).zip(sensors.calibration.unwrap_or_default().planes);
+    for (place, (angle, of)) in positions.chunks_exact_mut(2).zip(planes) {
+        let (sin, cos) = f64::from(of.skew).sin_cos();
+        let second = (place[1] + sin * place[0]) / cos;
+        place.copy_from_slice(&to_sensor_axes([place[0], second], -angle));
+    }
+    positions
+}
+
 /// The readings that the record of `sensors` made these displacements of: the export of an episode has it applied.
 pub fn without_record(positions: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
     let mut readings = *positions;

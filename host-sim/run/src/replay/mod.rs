@@ -136,14 +136,13 @@ pub fn recording(
         clear_at: orders.samples(recording.start, rate)?,
         zones: scene.zones,
     };
-    let is_episode = procedure.learnt.is_some();
+    let is_warm = procedure.learnt.is_some();
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
     let mut analyser = Analyser::new(rate);
     let samples = Samples {
         sensors: &sensors,
         flaw: &mut flaw,
-        is_episode,
         progress: Progress::of_bytes("replay", recording.size),
         recording: &mut recording,
         envelope: &mut envelope,
@@ -159,7 +158,7 @@ pub fn recording(
     match flaw {
         Some(flaw) => Err(flaw.into()),
         None => Ok(Replay {
-            format: if is_episode {
+            format: if is_warm {
                 Some(EPISODE.to_owned())
             } else {
                 recording.format.take()
@@ -201,8 +200,6 @@ struct Samples<'a> {
     recording: &'a mut Recording,
     sensors: &'a SensorsConfig,
     flaw: &'a mut Option<InputError>,
-    /// Displacements have the record applied.
-    is_episode: bool,
     progress: Progress,
     envelope: &'a mut Envelope,
     analyser: &'a mut Analyser,
@@ -221,7 +218,7 @@ impl Iterator for Samples<'_> {
                 self.envelope.take(&row.positions);
                 let [x, y, ..] = row.positions;
                 self.analyser.take(row.time, Some([x, y]));
-                if self.is_episode && self.sensors.calibration.is_some() {
+                if self.recording.is_episode && self.sensors.calibration.is_some() {
                     row.positions = without_record(&row.positions, self.sensors);
                 }
                 Some(to_sample(&row, self.sensors, self.recording.rate))

@@ -110,7 +110,7 @@ impl Health {
                 machine.gravity > 0.0 && machine.friction < STEEP,
                 looks as u16,
             ),
-            wall: WallCheck::new(machine.clearance, sensing.calibration.is_some()),
+            wall: WallCheck::new(machine, sensing.calibration.is_some()),
             look_every: every as u16,
             tolerance,
             spin: machine.spin,

@@ -1,8 +1,10 @@
 //! Whether wall and zero of a plane are still where the commissioning check found them: rest and touches show it.
 //!
 //! A touch that goes beyond the wall tells nothing, since a retainer gives way. One that ends short of it does, where
-//! no magnet can have turned the rotor back so fast.
+//! no magnet can have turned the rotor back so fast. A rotor rests where it is lowest, but for what friction holds it
+//! aside by: farther aside the zero has moved.
 
+use crate::config::MachineConfig;
 use touchdown_rotor::real::sqrt;
 
 /// Part of the clearance by which the wall may seem off. The check's own errors, 2 % of zero and of gain at 95 %, add up
@@ -21,6 +23,8 @@ const TOUCHES: u8 = 3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallCheck {
     per_clearance: f32,
+    /// Part of the clearance by which friction holds a rotor aside, at most.
+    aside: f32,
     /// Only what has been checked can have moved.
     is_on: bool,
 }
@@ -33,10 +37,16 @@ pub(crate) struct WallCheckState {
 }
 
 impl WallCheck {
-    /// For a `clearance` (m).
-    pub(crate) fn new(clearance: f32, is_on: bool) -> Self {
+    /// Of a `machine`.
+    pub(crate) fn new(machine: &MachineConfig, is_on: bool) -> Self {
+        let friction = machine.friction;
         Self {
-            per_clearance: 1.0 / clearance,
+            per_clearance: 1.0 / machine.clearance,
+            aside: if machine.gravity > 0.0 {
+                friction / sqrt(1.0 + friction * friction)
+            } else {
+                f32::INFINITY
+            },
             is_on,
         }
     }
@@ -48,7 +58,9 @@ impl WallCheck {
             .iter()
             .all(|[x, y]| far([x - mean[0], y - mean[1]]) < STILL);
         let distance = far(mean);
-        let is_off = is_still && distance > AT_WALL && (distance - 1.0).abs() > OFF;
+        let aside = (mean[0] * self.per_clearance).abs();
+        let is_elsewhere = (distance - 1.0).abs() > OFF || aside > self.aside + OFF;
+        let is_off = is_still && distance > AT_WALL && is_elsewhere;
         it.rests = if is_off {
             it.rests.saturating_add(1)
         } else {

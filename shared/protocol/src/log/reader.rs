@@ -6,7 +6,6 @@ use super::header::Header;
 use super::pulses::Pulses;
 use super::waveform::Waveform;
 use crate::wire::{self, NOTICE_BYTES, Record};
-use touchdown_core::event::Notice;
 
 /// Most blocks of an episode.
 pub const MOST_BLOCKS: usize = 256;
@@ -24,7 +23,7 @@ pub enum Item<'a> {
     Waveform(Waveform<'a>),
     /// Pulses.
     Pulses(Pulses<'a>),
-    /// Notices.
+    /// Notices, and changes of what the controller shows.
     Events(Events<'a>),
     /// How severe it was: a version and that version's bytes.
     Severity(u8, &'a [u8]),
@@ -32,19 +31,14 @@ pub enum Item<'a> {
     Ending(Ending),
 }
 
-/// Notices of a block.
+/// Records of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Events<'a>(&'a [[u8; NOTICE_BYTES]]);
 
 impl<'a> Events<'a> {
-    /// The notices; `None` for a record that is not known.
-    pub fn notices(&self) -> impl Iterator<Item = Option<Notice>> + use<'a> {
-        self.0
-            .iter()
-            .map(|record| match wire::decode_record(record) {
-                Some(Record::Notice(notice)) => Some(notice),
-                _ => None,
-            })
+    /// Notices and changes of what the controller shows; `None` for a record that is not known.
+    pub fn records(&self) -> impl Iterator<Item = Option<Record>> + use<'a> {
+        self.0.iter().map(wire::decode_record)
     }
 }
 

@@ -6,12 +6,18 @@ use std::str::FromStr;
 const MOST_CHANNELS: usize = 10_000;
 /// Most rates that are believed.
 const MOST_RATES: usize = 1000;
+/// Station of an episode.
+pub const STATION: &str = "touchdown";
+/// Beginning of the device of an episode.
+pub const DEVICE: &str = "episode ";
 
 /// The configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cfg {
     /// Of the standard.
     pub year: u16,
+    /// Whether it is the export of an episode: along the channels' axes, with zero and gain of a commissioning check.
+    pub is_episode: bool,
     /// In the order of the data.
     pub analog: Vec<Analog>,
     /// Names, in the order of the data.
@@ -184,6 +190,8 @@ impl Cfg {
         });
         Ok(Self {
             year,
+            is_episode: first[0] == STATION
+                && first.get(1).is_some_and(|it| it.starts_with(DEVICE)),
             analog,
             digital,
             rates,

@@ -8,7 +8,7 @@ mod files;
 
 use std::io::Read;
 
-pub use cfg::Cfg;
+pub use cfg::{Cfg, DEVICE, STATION};
 pub use dat::Dat;
 pub use files::{combined, is_comtrade, open};
 
