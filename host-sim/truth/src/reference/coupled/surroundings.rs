@@ -1,8 +1,8 @@
 //! The forces besides those of the links: weight, springs, dampers, unbalance, gyroscopic effect, magnets
 //! and drag.
 
-use super::jet::Jet;
 use super::system::{Law, shared};
+use super::tape::Term;
 
 /// What is left of a magnetic bearing: a force on the axis, and one that grows with its
 /// displacement.
@@ -43,11 +43,12 @@ pub struct Surroundings {
 }
 
 impl Law for Surroundings {
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
+    fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>> {
+        let constant = |value| place[0].constant(value);
         let spins = 2 * self.bodies.len();
         let mut forces = Vec::with_capacity(place.len());
         for (k, body) in self.bodies.iter().enumerate() {
-            forces.extend(body.weight.map(Jet::constant));
+            forces.extend(body.weight.map(constant));
             if body.stiffness != 0.0 || body.damping != 0.0 {
                 for i in [2 * k, 2 * k + 1] {
                     let sprung = place[i] * body.stiffness + speed[i] * body.damping;
@@ -56,7 +57,7 @@ impl Law for Surroundings {
             }
             if body.turning.0 != 0.0 {
                 let (size, angle) = body.turning;
-                let (sine, cosine) = (place[spins] + Jet::constant(angle)).sin_cos();
+                let (sine, cosine) = (place[spins] + constant(angle)).sin_cos();
                 let force = speed[spins] * speed[spins] * size;
                 forces[2 * k] = forces[2 * k] + force * cosine;
                 forces[2 * k + 1] = forces[2 * k + 1] + force * sine;
@@ -71,7 +72,7 @@ impl Law for Surroundings {
             let (at, rate) = (shared(shares, place), shared(shares, speed));
             for axis in 0..2 {
                 let held = at[axis] * magnet.stiffness - rate[axis] * *damping;
-                let force = held + Jet::constant(magnet.force[axis]);
+                let force = held + constant(magnet.force[axis]);
                 for (k, share) in shares
                     .iter()
                     .enumerate()
@@ -83,7 +84,7 @@ impl Law for Surroundings {
         }
         let drags = self.viscous_drags.iter().zip(&speed[spins..]);
         forces.extend(drags.map(|(drag, spin)| match *drag {
-            0.0 => Jet::ZERO,
+            0.0 => constant(0.0),
             drag => *spin * -drag,
         }));
         forces

@@ -127,5 +127,6 @@ impl<L: Law> Motion<L> {
             (&self.place, &self.speed),
             (self.accuracy, LONGEST * self.units.0),
         );
+        self.cost += self.step.cost;
     }
 }
