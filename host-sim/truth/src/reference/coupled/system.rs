@@ -165,6 +165,9 @@ pub trait Law {
     /// Force or torque on each coordinate.
     fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>>;
 
+    /// Makes them those of `time` (s since the release) and after; when they next change, s.
+    fn reach(&mut self, time: f64) -> f64;
+
     /// Potential energy, J.
     fn potential(&self, place: &[f64]) -> f64;
 }
