@@ -36,7 +36,7 @@ pub fn rotor<const N: usize>(
         gravity: [0.0, -1.0],
         speed: 1.0,
         unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); 2],
+        magnets: [ActuatorConfig::default(); 4],
         modes: [None; 3],
         step,
     }

@@ -81,7 +81,6 @@ struct StateJson {
 struct RingJson<'a> {
     name: &'a str,
     z_m: f64,
-    /// Where rings move.
     #[serde(skip_serializing_if = "Option::is_none")]
     ring: Option<RingEndJson>,
     #[serde(flatten)]
@@ -105,6 +104,11 @@ struct RingEndJson {
     y_m: f64,
     vx_m_s: f64,
     vy_m_s: f64,
+    peak_radius_m: f64,
+    peak_excursion_m: f64,
+    /// Between that radius and the stator; below 0 it was reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance_left_m: Option<f64>,
     held_peak_force_n: f64,
     #[serde(flatten)]
     race: Option<RaceJson>,
@@ -178,7 +182,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         history: history(model),
         end: end(scene, outcome),
         rings: rings(scene, outcome),
-        ring: outcome.ring.as_ref().map(ring_end),
+        ring: (outcome.ring.as_ref()).map(|ring| ring_end(ring, scene.stator_gap)),
         energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
             ledger,
             imbalance_j: ledger.imbalance_j(),
@@ -261,18 +265,21 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
         .map(|(index, (ring, [model, _]))| RingJson {
             name: &ring.name,
             z_m: ring.place,
-            ring: outcome.seats.get(index).map(ring_end),
+            ring: (outcome.seats.get(index)).map(|end| ring_end(end, scene.stator_gap)),
             history: history(model),
         })
         .collect()
 }
 
-fn ring_end(ring: &RingEnd) -> RingEndJson {
+fn ring_end(ring: &RingEnd, stator_gap: Option<f64>) -> RingEndJson {
     RingEndJson {
         x_m: ring.position[0],
         y_m: ring.position[1],
         vx_m_s: ring.velocity[0],
         vy_m_s: ring.velocity[1],
+        peak_radius_m: ring.peak_radius,
+        peak_excursion_m: ring.peak_excursion,
+        clearance_left_m: stator_gap.map(|gap| gap - ring.peak_radius),
         held_peak_force_n: ring.held_peak,
         race: ring.race.map(
             |[inner_ring_rad_s, cage_rad_s, temperature_rise_k]| RaceJson {

@@ -240,8 +240,13 @@ fn severity(detection: &Detection) -> String {
 
 /// Of a truth that would take too long.
 pub fn given_up(outcome: &Outcome) -> Option<String> {
-    let at = millis(outcome.given_up?);
     let end = millis(outcome.model.end.time);
+    if outcome.given_up? <= 0.0 {
+        return Some(format!(
+            "no truth: nothing is sensed after the release. The model ends at {end} ms"
+        ));
+    }
+    let at = millis(outcome.given_up?);
     Some(format!(
         "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
     ))

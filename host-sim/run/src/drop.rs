@@ -29,6 +29,21 @@ pub fn run<W: Write>(
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
+    follow(scene, target, stream, Truth::new(scene))
+}
+
+/// The same by the model alone: there is no truth, so nothing is sensed after the release.
+pub fn without_truth(scene: &Scene, target: &Target) -> Result<Outcome, Failure> {
+    let done = follow(scene, target, None::<io::Sink>, Truth::none(scene));
+    done.map(|(outcome, _)| outcome)
+}
+
+fn follow<W: Write>(
+    scene: &Scene,
+    target: &Target,
+    stream: Option<W>,
+    truth: Truth<'_>,
+) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
     let ModelRun {
         histories,
@@ -36,7 +51,7 @@ pub fn run<W: Write>(
         ring,
         seats,
     } = model::run(scene).map_err(refused)?;
-    let mut feed = SampleSource::new(scene, stream).map_err(refused)?;
+    let mut feed = SampleSource::new(scene, stream, truth).map_err(refused)?;
     let procedure = Procedure {
         zones: scene.zones,
         ..Procedure::default()
@@ -82,7 +97,7 @@ struct SampleSource<'a, W> {
 }
 
 impl<'a, W: Write> SampleSource<'a, W> {
-    fn new(scene: &'a Scene, stream: Option<W>) -> Result<Self, ConfigError> {
+    fn new(scene: &'a Scene, stream: Option<W>, truth: Truth<'a>) -> Result<Self, ConfigError> {
         let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
         let levitated = scene.levitated_samples();
         // An end that is a whole number of samples but for rounding has its own sample.
@@ -98,7 +113,7 @@ impl<'a, W: Write> SampleSource<'a, W> {
         };
         Ok(Self {
             scene,
-            truth: Truth::new(scene),
+            truth,
             seen: sensors.start(scene.run.seed),
             sensors,
             faults: Faults::new(&scene.faults, &scene.sensors),

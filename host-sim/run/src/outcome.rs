@@ -175,7 +175,7 @@ pub struct Outcome {
     pub ledger: Option<Ledger>,
     /// The model's retainer ring at the end, where it moves or turns.
     pub ring: Option<RingEnd>,
-    /// Each of the model's rings at the end, where the rotor tilts and rings move.
+    /// Each of the model's rings at the end, where the rotor tilts.
     pub seats: Vec<RingEnd>,
     /// Each ring, where the rotor tilts: the model's and the reference's.
     pub rings: Vec<[History; 2]>,

@@ -9,7 +9,7 @@ use super::calibration::CalibrationTable;
 use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
-use super::file::{ModelTable, RunTable, SceneFile, SensorsTable};
+use super::file::{ModelTable, RunTable, SceneFile, SensorsTable, StatorTable};
 use super::machine::{retainer, rotor, start};
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
 use super::support::{BallBearingTable, SupportTable};
@@ -46,12 +46,14 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let calibration = calibration.map(CalibrationTable::check).transpose()?;
     let sensors = sensors(&file.sensors, calibration, tachometers)?;
     let faults = faults(&file.fault, &sensors, &run)?;
+    let stator_gap = stator_gap(file.stator.as_ref())?;
     let mut scene = Scene {
         name: name.to_owned(),
         title: file.title,
         source: file.source,
         rotor,
         retainer,
+        stator_gap,
         support,
         ball_bearing,
         two_plane,
@@ -77,6 +79,12 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     }
     monitor(&scene)?;
     Ok(scene)
+}
+
+/// Radial, m.
+fn stator_gap(table: Option<&StatorTable>) -> Result<Option<f64>, Diagnostic> {
+    let gap = |it: &StatorTable| between("stator", "gap_mm", it.gap_mm, limits::CLEARANCE_MM);
+    Ok(table.map(gap).transpose()?.map(|gap| MILLI * gap))
 }
 
 /// Of fidelity `coupled`: a whole part of a sample that follows the fastest motion and short bounces, as far as
@@ -203,7 +211,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping: leave them out, or rung";
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping or times: leave them out, or rung";
         return Err(Diagnostic::new("model", "rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {

@@ -45,6 +45,7 @@ pub(super) struct SceneFile {
     pub fidelity: Option<String>,
     pub rotor: RotorTable,
     pub retainer: RetainerTable,
+    pub stator: Option<StatorTable>,
     pub support: Option<SupportTable>,
     pub ball_bearing: Option<BallBearingTable>,
     pub two_plane: Option<TwoPlaneTable>,
@@ -106,6 +107,12 @@ pub struct RotorTable {
     pub polar_inertia_kg_m2: Option<f64>,
     /// Counter-clockwise positive, 1/min.
     pub speed_rpm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StatorTable {
+    pub gap_mm: f64,
 }
 
 /// Table `[retainer]`, as it is written.

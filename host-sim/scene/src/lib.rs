@@ -58,6 +58,8 @@ pub struct Scene {
     pub rotor: Rotor,
     /// The retainer bearing.
     pub retainer: Retainer,
+    /// Radial gap of what the rotor must not reach, m.
+    pub stator_gap: Option<f64>,
     /// What the retainer ring stands on, where that gives way.
     pub support: Option<Support>,
     /// The retainer as a ball bearing, where its inner ring turns.

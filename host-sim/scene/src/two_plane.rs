@@ -9,9 +9,9 @@ use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
 use super::{Retainer, Rotor, Start, limits, list};
 use touchdown_base::plain::Number;
 
-/// Most rings, and most magnets.
+/// Most rings, and most magnets: two planes of them, as they are left and as they come back.
 pub const RINGS: usize = 4;
-const MAGNETS: usize = 2;
+const MAGNETS: usize = 4;
 const GRAM_MM: f64 = 1e-6;
 
 /// A rotor with two ends.
@@ -35,7 +35,7 @@ pub struct TwoPlane {
     pub sensors: [f64; 2],
     /// One to four.
     pub rings: Vec<Ring>,
-    /// None to two.
+    /// None to four.
     pub magnets: Vec<Magnet>,
     /// Bending modes of the free rotor, none to three.
     pub modes: Vec<Mode>,
@@ -69,6 +69,8 @@ pub struct Magnet {
     pub damping: f64,
     /// N.
     pub force: [f64; 2],
+    /// From when and until when it is on, s after the release; always without.
+    pub on: Option<[f64; 2]>,
 }
 
 impl TwoPlane {
@@ -84,7 +86,7 @@ impl TwoPlane {
         let mut seats = seats.map(|ring| ring.support.is_some() || ring.ball_bearing.is_some());
         let mut magnets = self.magnets.iter();
         seats.any(|gives_way| gives_way)
-            || magnets.any(|magnet| magnet.damping > 0.0)
+            || magnets.any(|magnet| magnet.damping > 0.0 || magnet.on.is_some())
             || !self.modes.is_empty()
     }
 
@@ -161,6 +163,8 @@ pub(super) struct MagnetTable {
     damping_n_s_m: f64,
     #[serde(default, deserialize_with = "list::exactly")]
     force_n: [f64; 2],
+    from_s: Option<f64>,
+    until_s: Option<f64>,
 }
 
 const TABLE: &str = "two_plane";
@@ -355,6 +359,30 @@ impl RingTable {
     }
 }
 
+impl MagnetTable {
+    /// From when and until when it is on, s, where either is given.
+    fn on(&self) -> Result<Option<[f64; 2]>, Diagnostic> {
+        const TABLE: &str = "magnet";
+        if self.from_s.is_none() && self.until_s.is_none() {
+            return Ok(None);
+        }
+        let from = self.from_s.unwrap_or(0.0);
+        let from = between(TABLE, "from_s", from, limits::MOMENT_S)?;
+        let Some(until) = self.until_s else {
+            return Ok(Some([from, f64::INFINITY]));
+        };
+        between(TABLE, "until_s", until, limits::MOMENT_S)?;
+        if until <= from {
+            return Err(Diagnostic::new(
+                TABLE,
+                "until_s",
+                "until_s must be after from_s",
+            ));
+        }
+        Ok(Some([from, until]))
+    }
+}
+
 fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
     const TABLE: &str = "magnet";
     if tables.len() > MAGNETS {
@@ -384,6 +412,7 @@ fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
                     place: MILLI * between(TABLE, "z_mm", table.z_mm, limits::PLACE_MM)?,
                     stiffness,
                     force: table.force_n,
+                    on: table.on()?,
                     damping: between(
                         TABLE,
                         "damping_n_s_m",

@@ -49,6 +49,8 @@ pub struct TrueState {
 enum Source {
     Planar(Box<Reference>),
     Coupled(Box<CoupledReference>),
+    /// Nobody asks for it.
+    None,
 }
 
 /// A drop of a scene's machine, followed from its release.
@@ -63,11 +65,20 @@ pub struct Truth<'a> {
 impl<'a> Truth<'a> {
     /// At the release.
     pub fn new(scene: &'a Scene) -> Self {
+        Self::of(scene, source(scene))
+    }
+
+    /// Given up before it begins.
+    pub fn none(scene: &'a Scene) -> Self {
+        Self::of(scene, Source::None)
+    }
+
+    fn of(scene: &'a Scene, source: Source) -> Self {
         let rings = scene.two_plane.as_ref().map_or(0, |it| it.rings.len());
         let recorder = Recorder::new(-scene.first_sample_time());
         Self {
             scene,
-            source: source(scene),
+            source,
             merge: Merge::new(rings.max(1)),
             whole: recorder.clone(),
             rings: vec![recorder; rings],
@@ -81,6 +92,7 @@ impl<'a> Truth<'a> {
             return held(self.scene, time);
         }
         let (rotor, sensed, moving) = match &mut self.source {
+            Source::None => return held(self.scene, 0.0),
             Source::Planar(reference) => {
                 let whole = &mut self.whole;
                 let state = reference.advance(time, &mut |happening| whole.take(happening));
@@ -115,6 +127,7 @@ impl<'a> Truth<'a> {
     pub fn given_up(&self) -> Option<f64> {
         match &self.source {
             Source::Planar(_) => None,
+            Source::None => Some(0.0),
             Source::Coupled(reference) => reference.given_up(),
         }
     }
@@ -125,6 +138,7 @@ impl<'a> Truth<'a> {
         let end = self.advance(duration).rotor;
         let (still, ends) = match &mut self.source {
             Source::Planar(reference) => (reference.still_speed(), Vec::new()),
+            Source::None => (0.0, vec![end; self.rings.len()]),
             Source::Coupled(reference) => {
                 let state = reference.advance(duration, &mut |_, _| ());
                 let rings = state.rings.iter().zip(&state.turns_in_contact);
@@ -201,6 +215,7 @@ fn magnet(magnet: &touchdown_scene::Magnet) -> Magnet {
         place: magnet.place,
         stiffness: magnet.stiffness,
         force: magnet.force,
+        on: magnet.on,
     }
 }
 

@@ -174,11 +174,9 @@ fn magnets_that_hold_split_the_conical_modes() {
         let (polar, step) = (0.6, 1e-4);
         let mut config = rotor([ring(1.5)], polar, step);
         config.gravity = [0.0; 2];
-        config.magnets = [1.5, -1.5].map(|place| ActuatorConfig {
-            place,
-            stiffness: -4.0,
-            force: [0.0; 2], ..ActuatorConfig::default()
-        });
+        for (magnet, place) in config.magnets.iter_mut().zip([1.5, -1.5]) {
+            *magnet = ActuatorConfig { place, stiffness: -4.0, ..ActuatorConfig::default() };
+        }
         let half = 0.5 * polar * spin;
         let root = (half * half + 18.0_f64).sqrt();
         for mode in [half + root, half - root] {

@@ -226,6 +226,8 @@ fn two_planes_are_checked() {
             "stiffness_n_m must be 1 to",
         ),
         ("[magnet]", "force_n", "[0, 1e10]", "force_n must be"),
+        ("[magnet]", "from_s", "-0.1", "from_s must be"),
+        ("[magnet]", "until_s", "0.0", "until_s must be after from_s"),
     ] {
         refuse(TILTS, table, key, value, rule);
     }
@@ -270,8 +272,8 @@ fn tables_that_do_not_go_together() {
             "[[ring]] must stand 1 to 4 times, stands 5",
         ),
         (
-            format!("{TILTS}{}", "[[magnet]]\nz_mm = 1\n".repeat(2)),
-            "[[magnet]] must stand 2 times at most",
+            format!("{TILTS}{}", "[[magnet]]\nz_mm = 1\n".repeat(4)),
+            "[[magnet]] must stand 4 times at most",
         ),
         (
             TILTS.replace("transverse_inertia_kg_m2 = 0.03\n", ""),

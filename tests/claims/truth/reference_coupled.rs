@@ -379,6 +379,7 @@ fn elastic_impacts_keep_energy() {
         place: 0.1,
         stiffness: 2e4,
         force: [3.0, -2.0],
+        on: None,
     };
     machine.magnets.push((magnet, 0.0));
     let start = CoupledStart {
@@ -535,6 +536,7 @@ fn free_tilt_nutates_and_held_tilt_splits() {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
+            on: None,
         };
         machine.magnets.push((magnet, 0.0));
     }
@@ -577,6 +579,7 @@ fn unbalance_drives_the_held_rotor() {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
+            on: None,
         };
         machine.magnets.push((magnet, 0.0));
     }
@@ -814,7 +817,7 @@ proptest! {
         for (it, clearance) in machine.retainers.iter_mut().zip(clearances) {
             it.ring.clearance = clearance;
         }
-        machine.magnets.push((Magnet { place: 0.05, stiffness, force: [0.0; 2] }, 0.0));
+        machine.magnets.push((Magnet { place: 0.05, stiffness, force: [0.0; 2], on: None }, 0.0));
         // Inside every ring.
         let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.ring.clearance / 1e-3 / it.ring.place.abs().max(0.01)).fold(1.0, f64::min);
         let start = CoupledStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry], ..CoupledStart::default() };

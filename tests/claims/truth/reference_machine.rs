@@ -108,6 +108,7 @@ fn heavy_rings_are_rigid_ones() {
         place: 0.05,
         stiffness: -1e4,
         force: [1.0, 2.0],
+        on: None,
     };
     let mut whole = machine(vec![retainer(-0.1, None, None), retainer(0.13, None, None)]);
     (whole.unbalance, whole.magnets) = (unbalance, vec![(magnet, 0.0)]);
@@ -244,6 +245,7 @@ fn magnet_damps() {
         place: 0.0,
         stiffness: -1e5,
         force: [0.0, 9.81 * MASS],
+        on: None,
     };
     whole.magnets = vec![(magnet, 200.0)];
     let mut reference = CoupledReference::new(&whole, &at([1e-4, 0.0], [0.0; 2]), 0.0);

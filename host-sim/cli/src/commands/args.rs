@@ -230,6 +230,9 @@ pub(super) struct DropArgs {
     /// What the sensors read, as CSV that `replay` takes
     #[arg(long, value_name = "FILE")]
     pub stream: Option<String>,
+    /// Run the model alone: no reference to judge it by, nothing sensed after the release
+    #[arg(long, conflicts_with = "stream")]
+    pub no_truth: bool,
     #[command(flatten)]
     pub place: Place,
 }
@@ -410,6 +413,10 @@ pub(super) struct LimitsArgs {
     /// Print the scene file of one of them, and run nothing
     #[arg(long, value_name = "NUMBER", conflicts_with_all = ["machines", "json"])]
     pub machine: Option<u64>,
+    /// Instead: drop that many of them for 1 s each, and tell the slowest by processor time
+    #[arg(long, value_name = "N", conflicts_with_all = ["machines", "machine"],
+          value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub drops: Option<u64>,
     /// Each row as JSON: extreme, precision, measured, limit, unit, holds; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<String>,

@@ -3,7 +3,7 @@
 use super::args::LimitsArgs;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
-use touchdown_lab::limits::{Row, all_hold, json, machine, run, table};
+use touchdown_lab::limits::{Row, all_hold, drops, json, machine, run, table};
 
 /// Runs the extremes, says and writes what came of them; fails where a limit does not hold.
 pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
@@ -11,7 +11,10 @@ pub(super) fn check(args: &LimitsArgs) -> Result<(), Failure> {
     if let Some(number) = args.machine {
         return out.finish(machine(number).trim_end());
     }
-    let rows = run(args.machines)?;
+    let rows = match args.drops {
+        Some(machines) => drops(machines)?,
+        None => run(args.machines)?,
+    };
     out.json("--json", || json(&rows))?;
     let text = table(&rows, out.paint());
     out.finish(&text)?;

@@ -91,8 +91,13 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
         .open()?;
     let mut scene = load(&args.scene)?;
     let why = choose(&mut scene)?;
-    let (outcome, stream) = drop::run(&scene, &target, out.file("--stream"))?;
-    stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
+    let outcome = if args.no_truth {
+        drop::without_truth(&scene, &target)?
+    } else {
+        let (outcome, stream) = drop::run(&scene, &target, out.file("--stream"))?;
+        stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
+        outcome
+    };
     out.json("--json", || json::drop(&scene, &outcome))?;
     out.put("--report", || {
         report::render(&subject::subject(&scene), &outcome)

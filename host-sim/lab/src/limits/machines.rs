@@ -15,7 +15,13 @@ use touchdown_base::progress::Progress;
 use touchdown_scene::Scene;
 
 /// Parts, by the bits of a combination.
-const PARTS: [&str; 4] = ["soft mounts", "ball bearings", "bending modes", "magnets"];
+const PARTS: [&str; 5] = [
+    "soft mounts",
+    "ball bearings",
+    "bending modes",
+    "magnets",
+    "magnets that come back",
+];
 /// Of the progress.
 pub const JOBS: u64 = 1 << PARTS.len();
 /// Steps of a run at most: its duration is cut.
@@ -116,6 +122,9 @@ pub fn text(seed: u64) -> String {
     let [x, y] = [(); 2].map(|()| clearance * random.random_range(-0.2..0.2));
     let step = decades(&mut random, 0.0, 300_f64.log10());
     let duration = (STEPS * 1e-6 * step).min(0.05);
+    if has(4) {
+        text += &lift(seed, mass, ends, duration);
+    }
     let _ = write!(
         text,
         "[start]\nx_mm = {x}\ny_mm = {y}\n[run]\nduration_s = {duration}\n[model]\nrung = \"coupled\"\nstep_us = {step}\n"
@@ -134,6 +143,28 @@ fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
     if random.random() {
         let travel = (clearance * decades(random, -2.0, 0.5)).max(0.001);
         let _ = writeln!(text, "travel_mm = {travel}");
+    }
+    text
+}
+
+/// Magnets that hold the rotor at 15 to 100 Hz again, in the run and perhaps to its end. Numbers of their own: the
+/// machine without them stays the same.
+fn lift(seed: u64, mass: f64, ends: [f64; 2], duration: f64) -> String {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(1);
+    let from = duration * random.random_range(0.1..0.6);
+    let mut text = String::new();
+    for at in ends {
+        let rate = std::f64::consts::TAU * random.random_range(15.0..100.0_f64);
+        let stiffness = -0.5 * mass * rate * rate;
+        let damping = 0.5 * mass * rate * random.random_range(0.1..2.0);
+        let _ = write!(
+            text,
+            "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\nfrom_s = {from}\n"
+        );
+        if random.random() {
+            let _ = writeln!(text, "until_s = {}", from + 0.3 * duration);
+        }
     }
     text
 }

@@ -11,6 +11,7 @@ mod compliant;
 mod coupled;
 mod extreme;
 mod machines;
+mod pace;
 mod press;
 mod refusal;
 mod row;
@@ -28,6 +29,7 @@ use rayon::prelude::*;
 use touchdown_rotor::error::ConfigError;
 
 pub use machines::text as machine;
+pub use pace::rows as drops;
 pub use row::{Row, all_hold};
 pub use table::table;
 

@@ -175,7 +175,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         gravity: [0.0, -scene.run.gravity],
         speed: start_speed(scene),
         unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); 2],
+        magnets: [ActuatorConfig::default(); _],
         modes: [None; MODES],
         step: scene.model.step,
     };
@@ -198,6 +198,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
             stiffness: from.stiffness,
             damping: damps * from.damping,
             force: from.force,
+            on: from.on,
             shape: shape(scene, from.place),
         };
     }
@@ -286,7 +287,11 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
         spin: scales.speed / radii[ring],
         ..*scales
     };
+    let mut peaks = [[0.0; 2]; N];
+    let mut struck = [0.0; N];
     let mut take = |it: RingEvent<R>| {
+        let [x, y] = it.event.after.position.map(R::to_f64);
+        struck[it.ring] = f64::max(struck[it.ring], x.hypot(y));
         let seen = Seen {
             scales: at_ring(it.ring),
             step: scene.model.step,
@@ -305,10 +310,15 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
     for _ in 0..steps {
         model.step(&mut state, &mut *take);
+        farthest(model, &state, &mut peaks);
         each(seen(model, &state));
     }
     if fraction > 0.0 {
         model.part_step(&mut state, R::lit(fraction), take);
+        farthest(model, &state, &mut peaks);
+    }
+    for ([radius, _], struck) in peaks.iter_mut().zip(struck) {
+        *radius = f64::max(*radius, struck);
     }
     let duration = scene.run.duration;
     let ends: Vec<RotorState> = (0..N)
@@ -318,7 +328,7 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     let still = STILL * scales.speed;
     let rings = rings.into_iter().zip(ends);
     let unit = scene.rotor.mass * scales.speed * scales.speed;
-    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales));
+    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales, peaks[ring]));
     let energy = [begun, model.energy(&state).to_f64()];
     let mut run = ModelRun {
         ring: None,
@@ -331,8 +341,7 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     };
     match scene.model.rung {
         Fidelity::Support => run.ring = seats.last(),
-        Fidelity::Coupled => run.seats = seats.collect(),
-        _ => {}
+        _ => run.seats = seats.collect(),
     }
     if scene.model.rung != Fidelity::Support {
         let rings = rings.map(|(ring, end)| ring.finish(end, still));
@@ -355,17 +364,38 @@ fn seen<R: Precision, const N: usize, const Q: usize>(
     }
 }
 
+/// Keeps the farthest of the axis in each ring from the bearing's centre, and of the ring from its rest place, rho0.
+fn farthest<R: Precision, const N: usize, const Q: usize>(
+    model: &Coupled<R, N, Q>,
+    state: &CoupledState<R, N, Q>,
+    peaks: &mut [[f64; 2]; N],
+) {
+    for (ring, peaks) in peaks.iter_mut().enumerate() {
+        let places = [
+            model.kinematics_at(state, ring).position,
+            model.ring(state, ring).position,
+        ];
+        for (peak, place) in peaks.iter_mut().zip(places) {
+            let [x, y] = place.map(R::to_f64);
+            *peak = f64::max(*peak, x.hypot(y));
+        }
+    }
+}
+
 fn ring_end<R: Precision, const N: usize, const Q: usize>(
     model: &Coupled<R, N, Q>,
     state: &CoupledState<R, N, Q>,
     ring: usize,
     unit: f64,
     scales: &Scales<f64>,
+    [radius, excursion]: [f64; 2],
 ) -> RingEnd {
     let motion = model.ring(state, ring);
     RingEnd {
         position: motion.position.map(|x| x.to_f64() * scales.length),
         velocity: motion.velocity.map(|v| v.to_f64() * scales.speed),
+        peak_radius: radius * scales.length,
+        peak_excursion: excursion * scales.length,
         held_peak: model.load(state, ring).held_peak.to_f64() * unit / scales.length,
         race: motion.race.map(|race| {
             let [spin, cage] = [race.spin, race.cage].map(|spin| spin.to_f64() * scales.spin);

@@ -20,7 +20,7 @@ pub struct ModelRun {
     pub ledger: Option<Ledger>,
     /// The retainer ring at the end, where it moves or turns.
     pub ring: Option<RingEnd>,
-    /// Each ring of a rotor that tilts, where the rung lets them move.
+    /// Each ring of a rotor that tilts.
     pub seats: Vec<RingEnd>,
 }
 
@@ -31,6 +31,10 @@ pub struct RingEnd {
     pub position: [f64; 2],
     /// m/s.
     pub velocity: [f64; 2],
+    /// Farthest of the axis there from the bearing's centre, of all steps and impacts, m.
+    pub peak_radius: f64,
+    /// Farthest from its rest place, of all steps, m.
+    pub peak_excursion: f64,
     /// Largest normal force in permanent contact, mean of a step, N.
     pub held_peak: f64,
     /// Of a ball bearing: spin of inner ring and cage, rad/s, and temperature above the surroundings, K.

@@ -1,11 +1,14 @@
 //! The machine, SI.
 
+use core::cmp::Ordering;
+
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
 use super::units::Units;
 use super::vector::Vector;
 use super::{Coupled, Magnet, Ring};
 use touchdown_rotor::RigidConfig;
+use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
@@ -13,6 +16,8 @@ use touchdown_rotor::scales::{Scales, not_negative, positive};
 
 /// Most rings.
 const MOST_RINGS: usize = 4;
+/// Most magnetic bearings: two planes of them, as they are left and as they come back.
+pub(super) const MAGNETS: usize = 4;
 /// Most bending modes.
 pub(super) const MODES: usize = 3;
 /// (h/2)^2 times the stiffness that pulls away, over mass; at 1 the step has no solution.
@@ -59,7 +64,7 @@ pub struct SeatConfig<R> {
     pub shape: [R; MODES],
 }
 
-/// A magnetic bearing after the release.
+/// A magnetic bearing after the release, or while it is on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActuatorConfig<R> {
     /// Axial place from the centre of mass, m.
@@ -70,6 +75,8 @@ pub struct ActuatorConfig<R> {
     pub damping: R,
     /// At the centre, N.
     pub force: [R; 2],
+    /// From when and until when it is on, s after the release; always without.
+    pub on: Option<[R; 2]>,
     /// Each bending mode's displacement there.
     pub shape: [R; MODES],
 }
@@ -104,12 +111,24 @@ pub struct CoupledConfig<R, const N: usize> {
     pub speed: R,
     /// Unbalance.
     pub unbalance: UnbalanceConfig<R>,
-    /// Two planes of magnets; all 0 without.
-    pub magnets: [ActuatorConfig<R>; 2],
+    /// Magnetic bearings; all 0 without.
+    pub magnets: [ActuatorConfig<R>; MAGNETS],
     /// Bending modes; those beyond the model's `Q` - 2 must be none.
     pub modes: [Option<ModeConfig<R>>; MODES],
     /// Length of a step, s.
     pub step: R,
+}
+
+/// After so many steps.
+fn moment<R: Real>(steps: R) -> Instant<R> {
+    if !steps.is_finite() {
+        return Instant::NEVER;
+    }
+    let whole = steps.floor();
+    Instant {
+        tick: whole.to_u64(),
+        fraction: steps - whole,
+    }
 }
 
 fn finite<R: Real>(name: &'static str, values: &[R]) -> Result<(), ConfigError> {
@@ -143,7 +162,7 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             gravity: [R::ZERO, -plane.gravity],
             speed: plane.speed,
             unbalance: UnbalanceConfig::default(),
-            magnets: [ActuatorConfig::default(); 2],
+            magnets: [ActuatorConfig::default(); MAGNETS],
             modes: [None; MODES],
             step: plane.step,
         }
@@ -182,6 +201,12 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             finite("magnets", &magnet.force)?;
             finite("shape", &magnet.shape)?;
             not_negative("magnets", magnet.damping)?;
+            if let Some([from, until]) = magnet.on {
+                not_negative("magnets", from)?;
+                if until.partial_cmp(&from) != Some(Ordering::Greater) {
+                    return Err(ConfigError::OutOfRange("magnets", "off after on"));
+                }
+            }
         }
         if self.modes.iter().skip(modes).any(Option::is_some) {
             return Err(ConfigError::OutOfRange("modes", "as many as the model has"));
@@ -218,7 +243,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             gyration: ratio * size,
             turn: size,
             gravity: Vector::new(config.gravity).times(rate),
-            magnets: [None; 2],
+            magnets: [None; MAGNETS],
             frequency: [R::ZERO; Q],
             decay: [R::ZERO; Q],
             mode_scale: [R::ZERO; Q],
@@ -241,7 +266,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             model.rings[k].shape =
                 model.shape_at(config.rings[k].ring.place, config.rings[k].shape);
         }
-        for k in 0..2 {
+        for k in 0..MAGNETS {
             let magnet = &config.magnets[k];
             let [x, y] = magnet.force;
             let pulls = [magnet.stiffness, magnet.damping, x, y];
@@ -250,6 +275,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 stiffness: magnet.stiffness / config.mass * scales.time * scales.time,
                 damping: magnet.damping / config.mass * scales.time,
                 force: Vector::new(magnet.force).times(rate / config.mass),
+                on: magnet
+                    .on
+                    .map(|it| it.map(|time| moment(time / config.step))),
             });
         }
         model.weight = model.unbalanced(config);

@@ -1,6 +1,6 @@
 //! Where the energy is, and where it went.
 
-use super::{Coupled, CoupledState, at};
+use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::sum::Sum;
@@ -108,11 +108,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             energy.motion += R::HALF * v.square();
             energy.bending += R::HALF * *frequency * *frequency * x.square();
         }
-        for magnet in self.magnets.iter().flatten() {
-            let place = at(&magnet.shape, &places);
-            let potential = R::HALF * magnet.stiffness * place.square() + magnet.force.dot(place);
-            energy.magnets += -potential;
-        }
+        energy.magnets = self.in_magnets(state, &state.on);
         for (ring, seat) in self.rings.iter().zip(&state.seats) {
             if let Some(mount) = &ring.mount {
                 let [motion, spring, taken, stop] = mount.energy(&seat.mount);

@@ -112,7 +112,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 state.shortened = state.shortened.saturating_add(1);
                 break;
             }
-            let time = left.least(longest).least(self.reach(state));
+            let switch = self.switch(state, (whole - left) / self.step);
+            let time = left.least(longest).least(self.reach(state)).least(switch);
             let Some(passage) = self.pass(state, time) else {
                 longest = R::HALF * time;
                 continue;
@@ -244,7 +245,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {
             books.damped.add(*decay * rate * moved.square());
         }
-        for magnet in self.magnets.iter().flatten() {
+        for magnet in self.active(&state.on) {
             let moved = at(&magnet.shape, &passage.moved);
             books.damped.add(magnet.damping * rate * moved.square());
         }

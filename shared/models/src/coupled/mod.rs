@@ -25,6 +25,7 @@ mod race;
 mod settle;
 mod state;
 mod strike;
+mod switch;
 mod units;
 mod vector;
 mod whole;
@@ -38,9 +39,10 @@ pub use race::{RaceConfig, RaceMotion};
 pub use state::{CoupledState, Load, Placement, RingEvent, RingMotion};
 pub use whole::Whole;
 
-use config::MODES;
+use config::{MAGNETS, MODES};
 use mount::Sprung;
 use race::BallBearing;
+use touchdown_rotor::clock::Instant;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
@@ -79,6 +81,8 @@ struct Magnet<R, const Q: usize> {
     stiffness: R,
     damping: R,
     force: Vector<R>,
+    /// From when and until when; always without.
+    on: Option<[Instant<R>; 2]>,
 }
 
 /// Coefficients of the model; `N` rings, `Q` coordinates.
@@ -92,7 +96,7 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     /// Angular speed of a spin of 1.
     turn: R,
     gravity: Vector<R>,
-    magnets: [Option<Magnet<R, Q>>; 2],
+    magnets: [Option<Magnet<R, Q>>; MAGNETS],
     /// Of each coordinate by itself: a bending mode's frequency and damping.
     frequency: [R; Q],
     decay: [R; Q],
@@ -171,6 +175,7 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                     stiffness: R::lit(magnet.stiffness),
                     damping: R::lit(magnet.damping),
                     force: vector(magnet.force),
+                    on: magnet.on.map(|it| it.map(switch::rounded)),
                 })
             }),
             frequency: self.frequency.map(R::lit),

@@ -156,7 +156,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             force[1] = force[1] + velocities[1].turned().times(nutation);
             matrix[1][1].y = -(half * nutation);
         }
-        for magnet in self.magnets.iter().flatten() {
+        for magnet in self.active(&state.on) {
             let rate = at(&magnet.shape, &velocities);
             let middle = at(&magnet.shape, &places) + rate.times(half);
             let pull = middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);

@@ -1,5 +1,6 @@
 //! The state: the rotor's coordinates, its spin, and each ring's motion.
 
+use super::config::MAGNETS;
 use super::mount::SprungState;
 use super::race::{BallBearingState, RaceMotion};
 use super::vector::{Sums, Vector};
@@ -110,6 +111,8 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) spin: Sum<R>,
     pub(super) angle: Turns<R>,
     pub(super) seats: [Seat<R>; N],
+    /// Which magnets are on.
+    pub(super) on: [bool; MAGNETS],
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
 }
@@ -232,6 +235,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             spin: Sum::new(spin),
             angle: Turns::default(),
             seats: [seat; N],
+            on: self.on_at(Instant::at_tick(0)),
             books: Books::default(),
             shortened: 0,
         };

@@ -1,12 +1,12 @@
 //! A drop of a machine.
 
-use super::jet::constants;
 use super::machine::CoupledMachine;
 use super::mode::Mode;
 use super::motion::{Moment, Motion};
 use super::start::CoupledStart;
 use super::surroundings::Surroundings;
 use super::system::{Law, Link};
+use super::tape::Tape;
 use touchdown_base::history::ModelEvent;
 
 /// A ring at one moment, SI; zeros where it can't move.
@@ -88,7 +88,8 @@ impl CoupledReference {
             .fold(f64::INFINITY, f64::min);
         let (law, system) = (machine.surroundings(), machine.system(length));
         let [place, speed] = start.coordinates(machine, spin);
-        let pulled = law.forces(&constants(&place), &constants(&speed));
+        let tape = Tape::new();
+        let pulled = law.forces(&tape.start(&place), &tape.start(&speed));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
         let walls = system.links[..machine.retainers.len()].to_vec();
         let moving = walls.iter().map(|link| {

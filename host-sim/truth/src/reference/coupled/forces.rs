@@ -1,41 +1,44 @@
 //! The forces of closed links: from the conditions that they keep, at the level of accelerations.
 
-use super::jet::{Jet, dot, solve};
+use super::jet::dot;
 use super::mode::Mode;
 use super::system::{Hold, Law, System};
+use super::tape::{Tape, Term};
 
 /// Accelerations under the links' forces.
-pub struct Forces {
+pub struct Forces<'t> {
     /// Of the coordinates.
-    pub acceleration: Vec<Jet>,
+    pub acceleration: Vec<Term<'t>>,
     /// Normal force of each link, N.
-    pub normal: Vec<Jet>,
+    pub normal: Vec<Term<'t>>,
     /// Friction of each link without slip, N.
-    pub grip: Vec<Jet>,
+    pub grip: Vec<Term<'t>>,
     /// What the links' forces are made of, without their signs, N.
     pub size: f64,
 }
 
 /// An unknown force and the condition that it keeps.
-struct Unknown {
+struct Unknown<'t> {
     link: usize,
     grips: bool,
     /// The condition's direction, and its part of the turning.
-    row: ([Jet; 2], f64),
+    row: ([Term<'t>; 2], f64),
     /// The force's direction, and its part of the turning.
-    force: ([Jet; 2], f64),
-    target: Jet,
+    force: ([Term<'t>; 2], f64),
+    target: Term<'t>,
 }
 
-impl Forces {
-    /// Of a motion as far as it is known.
+impl<'t> Forces<'t> {
+    /// Of a motion of which the start is known.
     pub fn new(
+        tape: &'t Tape,
         system: &System,
         law: &impl Law,
         modes: &[Mode],
-        place: &[Jet],
-        speed: &[Jet],
+        place: &[Term<'t>],
+        speed: &[Term<'t>],
     ) -> Self {
+        let none = place[0].constant(0.0);
         let mut acceleration = law.forces(place, speed);
         for (force, mobility) in acceleration.iter_mut().zip(&system.mobility) {
             *force = *force * *mobility;
@@ -72,12 +75,12 @@ impl Forces {
                     }
                 }
                 (Hold::Brake(_), Mode::Stick) => {
-                    unknowns.push(Unknown::without_slip(index, [Jet::ZERO; 2]));
+                    unknowns.push(Unknown::without_slip(index, [none; 2]));
                 }
                 (Hold::Brake(limit), Mode::Slide(sign)) => {
                     for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
                         let braked = -sign * limit * arm * system.mobility[i];
-                        acceleration[i] = acceleration[i] + Jet::constant(braked);
+                        acceleration[i] = acceleration[i] + none.constant(braked);
                     }
                 }
             }
@@ -87,12 +90,17 @@ impl Forces {
             link, row, target, ..
         } in &unknowns
         {
-            let against = |other: &Unknown| {
+            let against = |other: &Unknown<'t>| {
                 let lateral = system.lateral(*link, other.link);
                 let turning = system.turning(*link, other.link) * row.1 * other.force.1;
-                dot(&row.0, &other.force.0) * lateral + Jet::constant(turning)
+                let turning = none.constant(turning);
+                if lateral == 0.0 {
+                    return turning;
+                }
+                let [x, y] = [0, 1].map(|k| row.0[k] * other.force.0[k]);
+                tape.weighted(&[(x, lateral), (y, lateral), (turning, 1.0)])
             };
-            let line: Vec<Jet> = unknowns.iter().map(against).collect();
+            let line: Vec<Term<'t>> = unknowns.iter().map(against).collect();
             let link_at = &system.links[*link];
             let free = link_at.lateral(&acceleration);
             let turning = link_at.turning(&acceleration) * row.1;
@@ -106,46 +114,56 @@ impl Forces {
         }
         let mut result = Self {
             acceleration,
-            normal: vec![Jet::ZERO; modes.len()],
-            grip: vec![Jet::ZERO; modes.len()],
+            normal: vec![none; modes.len()],
+            grip: vec![none; modes.len()],
             size,
         };
-        for (unknown, force) in unknowns.iter().zip(solve(matrix, right)) {
-            result.apply(system, unknown, force);
+        let mut parts: Vec<Vec<(Term<'t>, f64)>> = Vec::new();
+        parts.extend(result.acceleration.iter().map(|free| vec![(*free, 1.0)]));
+        for (unknown, force) in unknowns.iter().zip(tape.solve(&matrix, &right)) {
+            let list = if unknown.grips {
+                &mut result.grip
+            } else {
+                &mut result.normal
+            };
+            list[unknown.link] = force;
+            unknown.push(system, force, &mut parts);
+        }
+        for (acceleration, parts) in result.acceleration.iter_mut().zip(&parts) {
+            if parts.len() > 1 {
+                *acceleration = tape.weighted(parts);
+            }
         }
         result
     }
+}
 
-    fn apply(&mut self, system: &System, unknown: &Unknown, force: Jet) {
-        let link = &system.links[unknown.link];
-        let vector = unknown.force.0.map(|direction| force * direction);
+impl<'t> Unknown<'t> {
+    /// Adds to the coordinates' accelerations what the force makes of them.
+    fn push(&self, system: &System, force: Term<'t>, parts: &mut [Vec<(Term<'t>, f64)>]) {
+        let link = &system.links[self.link];
+        let vector = self.force.0.map(|direction| force * direction);
         for i in 0..system.first_spin() {
             let part = link.shares[i / 2] * system.mobility[i];
             if part != 0.0 {
-                self.acceleration[i] = self.acceleration[i] + vector[i % 2] * part;
+                parts[i].push((vector[i % 2], part));
             }
         }
         for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
-            let part = arm * system.mobility[i] * unknown.force.1;
-            self.acceleration[i] = self.acceleration[i] + force * part;
+            let part = arm * system.mobility[i] * self.force.1;
+            if part != 0.0 {
+                parts[i].push((force, part));
+            }
         }
-        let list = if unknown.grips {
-            &mut self.grip
-        } else {
-            &mut self.normal
-        };
-        list[unknown.link] = force;
     }
-}
 
-impl Unknown {
-    fn without_slip(link: usize, along: [Jet; 2]) -> Self {
+    fn without_slip(link: usize, along: [Term<'t>; 2]) -> Self {
         Self {
             link,
             grips: true,
             row: (along, 1.0),
             force: (along, 1.0),
-            target: Jet::ZERO,
+            target: along[0].constant(0.0),
         }
     }
 }

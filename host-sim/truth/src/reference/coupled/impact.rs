@@ -1,12 +1,16 @@
-//! Impacts at several links at once: Newton's restitution, Coulomb's impulse, by Gauss-Seidel to
-//! convergence. Also what keeps closed links closed against rounding.
+//! Impacts at several links at once: Newton's restitution, Coulomb's impulse. Gauss-Seidel passes find which
+//! links press, stick and slide; for those the impulses are one linear system. Also what keeps closed links
+//! closed against rounding.
 
-use super::jet::{Jet, solve};
+use super::linear::solve;
 use super::step::Mode;
 use super::system::{Hold, Link, System};
 
-/// Passes over all links; for a light ring between the rotor and its stop thousands are needed.
-const MAX_PASSES: usize = 100_000;
+/// Passes over all links; thousands are needed for a light ring between the rotor and its stop where no
+/// linear system is the answer.
+const MAX_PASSES: u32 = 100_000;
+/// Passes before the first linear system; each further one after as many again.
+const FIRST_PASSES: u32 = 16;
 /// Change of speeds at which the passes end, in parts of the speeds.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -65,51 +69,157 @@ impl Touching {
         let vector = [-self.normal[1] * impulse, self.normal[0] * impulse];
         system.push(self.link, vector, impulse, speed);
     }
+
+    /// Impulses along normal and slip.
+    fn give(&self, system: &System, [pressed, rubbed]: [f64; 2], speed: &mut [f64]) {
+        self.press(system, pressed, speed);
+        self.rub(system, rubbed, speed);
+    }
+
+    /// Speed into the wall with which it leaves where it presses.
+    fn leaves(&self, system: &System) -> f64 {
+        match system.links[self.link].hold {
+            Hold::Wall { restitution, .. } => -restitution * self.closing.max(0.0),
+            Hold::Brake(_) => 0.0,
+        }
+    }
 }
 
 /// The impact: afterwards no link closes, and each that took an impulse leaves with its restitution.
-pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64]) {
-    let largest = |size: &dyn Fn(&Link) -> f64| {
-        let sizes = touching.iter().map(|touch| size(&system.links[touch.link]));
-        ROUNDING * sizes.fold(0.0, f64::max)
-    };
-    let slip_rounding = largest(&|link| link.slip_size(speed));
-    let rounding = largest(&|link| {
-        let [x, y] = link.lateral(speed);
-        f64::hypot(x, y)
-    });
-    for _ in 0..MAX_PASSES {
+/// Gives the passes that it took.
+pub fn strike(system: &System, touching: &mut [Touching], speed: &mut [f64]) -> u32 {
+    let before = speed.to_vec();
+    let sizes = Sizes::of(system, touching, speed);
+    for pass in 1..=MAX_PASSES {
         let mut settled = true;
         for touch in touching.iter_mut() {
-            let link = &system.links[touch.link];
-            let Hold::Wall {
-                friction,
-                restitution,
-                ..
-            } = link.hold
-            else {
-                continue;
-            };
-            let wanted = -restitution * touch.closing.max(0.0);
-            let lateral = system.lateral(touch.link, touch.link);
-            let step = (touch.outward(system, speed) - wanted) / lateral;
-            let step = step.max(-touch.impulse);
-            touch.impulse += step;
-            touch.press(system, step, speed);
-            let mobility = lateral + system.turning(touch.link, touch.link);
-            let most = friction * touch.impulse;
-            let rubbed = touch.rubbed - touch.slip(system, speed) / mobility;
-            let rubbed = rubbed.clamp(-most, most);
-            let rub = rubbed - touch.rubbed;
-            touch.rubbed = rubbed;
-            touch.rub(system, rub, speed);
-            settled &=
-                (step * lateral).abs() <= rounding && (rub * mobility).abs() <= slip_rounding;
+            settled &= relax(system, touch, speed, &sizes);
         }
         if settled || touching.len() == 1 {
-            return;
+            return pass;
+        }
+        if pass >= FIRST_PASSES
+            && pass.is_power_of_two()
+            && let Some((impulses, after)) = at_once(system, touching, &before, &sizes)
+        {
+            for (touch, [pressed, rubbed]) in touching.iter_mut().zip(impulses) {
+                (touch.impulse, touch.rubbed) = (pressed, rubbed);
+            }
+            speed.copy_from_slice(&after);
+            return pass;
         }
     }
+    MAX_PASSES
+}
+
+/// Largest speeds before, along the normals and of the slips, in parts of which rounding counts.
+struct Sizes {
+    normal: f64,
+    slip: f64,
+}
+
+impl Sizes {
+    fn of(system: &System, touching: &[Touching], speed: &[f64]) -> Self {
+        let largest = |size: &dyn Fn(&Link) -> f64| {
+            let sizes = touching.iter().map(|touch| size(&system.links[touch.link]));
+            sizes.fold(0.0, f64::max)
+        };
+        Self {
+            normal: largest(&|link| {
+                let [x, y] = link.lateral(speed);
+                f64::hypot(x, y)
+            }),
+            slip: largest(&|link| link.slip_size(speed)),
+        }
+    }
+
+    /// Rounding of normal speed and slip at a link whose impulses change its own speeds by so much.
+    fn rounding(&self, pressed: f64, rubbed: f64) -> [f64; 2] {
+        [
+            ROUNDING * (self.normal + pressed.abs()),
+            ROUNDING * (self.slip + rubbed.abs()),
+        ]
+    }
+}
+
+/// Solves one link with the others as they are; whether that changes nothing.
+fn relax(system: &System, touch: &mut Touching, speed: &mut [f64], sizes: &Sizes) -> bool {
+    let lateral = system.lateral(touch.link, touch.link);
+    let step = (touch.outward(system, speed) - touch.leaves(system)) / lateral;
+    let step = step.max(-touch.impulse);
+    touch.impulse += step;
+    touch.press(system, step, speed);
+    let mobility = lateral + system.turning(touch.link, touch.link);
+    let most = system.links[touch.link].friction() * touch.impulse;
+    let rubbed = touch.rubbed - touch.slip(system, speed) / mobility;
+    let rubbed = rubbed.clamp(-most, most);
+    let rub = rubbed - touch.rubbed;
+    touch.rubbed = rubbed;
+    touch.rub(system, rub, speed);
+    let [normal, slip] = sizes.rounding(touch.impulse * lateral, rubbed * mobility);
+    (step * lateral).abs() <= normal && (rub * mobility).abs() <= slip
+}
+
+/// The impulses, along normal and slip, with which the links go on pressing, sticking and sliding as they do, and
+/// the speeds after them; none where these do not fit together.
+fn at_once(
+    system: &System,
+    touching: &[Touching],
+    before: &[f64],
+    sizes: &Sizes,
+) -> Option<(Vec<[f64; 2]>, Vec<f64>)> {
+    // Who, the unknown's parts along normal and slip, and whether its condition is on the slip.
+    let mut unknowns = Vec::new();
+    for touch in touching.iter().filter(|touch| touch.impulse > 0.0) {
+        let friction = system.links[touch.link].friction();
+        if touch.rubbed.abs() < friction * touch.impulse {
+            unknowns.push((touch, [1.0, 0.0], false));
+            unknowns.push((touch, [0.0, 1.0], true));
+        } else {
+            unknowns.push((touch, [1.0, touch.rubbed.signum() * friction], false));
+        }
+    }
+    let line = |(touch, _, slips): &(&Touching, [f64; 2], bool)| {
+        let effect = |(other, parts, _): &(&Touching, [f64; 2], bool)| {
+            let mut change = vec![0.0; before.len()];
+            other.give(system, *parts, &mut change);
+            match slips {
+                true => touch.slip(system, &change),
+                false => touch.outward(system, &change),
+            }
+        };
+        unknowns.iter().map(effect).collect()
+    };
+    let missing = |(touch, _, slips): &(&Touching, [f64; 2], bool)| match slips {
+        true => -touch.slip(system, before),
+        false => touch.leaves(system) - touch.outward(system, before),
+    };
+    let matrix = unknowns.iter().map(line).collect();
+    let right: Vec<f64> = unknowns.iter().map(missing).collect();
+    let solution = solve(matrix, &right);
+    let mut after = before.to_vec();
+    let mut impulses = vec![[0.0; 2]; touching.len()];
+    for ((touch, parts, _), size) in unknowns.iter().zip(solution) {
+        let given = parts.map(|part| part * size);
+        touch.give(system, given, &mut after);
+        for (impulse, of) in impulses.iter_mut().zip(touching) {
+            if of.link == touch.link {
+                *impulse = [0, 1].map(|k| impulse[k] + given[k]);
+            }
+        }
+    }
+    let fits = |(touch, [pressed, rubbed]): (&Touching, &[f64; 2])| {
+        let lateral = system.lateral(touch.link, touch.link);
+        let mobility = lateral + system.turning(touch.link, touch.link);
+        let most = system.links[touch.link].friction() * pressed;
+        let [normal, slip] = sizes.rounding(pressed * lateral, rubbed * mobility);
+        touch.outward(system, &after) - touch.leaves(system) <= normal
+            && pressed * lateral >= -normal
+            && (rubbed.abs() - most) * mobility <= slip
+            && touch.slip(system, &after) * rubbed <= slip * rubbed.abs()
+    };
+    let all = touching.iter().zip(&impulses).all(fits);
+    all.then_some((impulses, after))
 }
 
 /// Takes what is left of normal speed and slip from links that have none.
@@ -135,14 +245,13 @@ pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64], speed: &mut [f
     let line = |(a, [ax, ay], at, _): &(usize, [f64; 2], f64, f64)| {
         let against = |(b, [bx, by], bt, _): &(usize, [f64; 2], f64, f64)| {
             let lateral = system.lateral(*a, *b) * (ax * bx + ay * by);
-            Jet::start(lateral + system.turning(*a, *b) * at * bt)
+            lateral + system.turning(*a, *b) * at * bt
         };
         kept.iter().map(against).collect()
     };
     let matrix = kept.iter().map(line).collect();
-    let right = kept.iter().map(|kept| Jet::start(-kept.3)).collect();
-    for ((link, direction, turn, _), impulse) in kept.iter().zip(solve(matrix, right)) {
-        let impulse = impulse.value();
+    let right: Vec<f64> = kept.iter().map(|kept| -kept.3).collect();
+    for ((link, direction, turn, _), impulse) in kept.iter().zip(solve(matrix, &right)) {
         system.push(*link, direction.map(|d| d * impulse), turn * impulse, speed);
     }
 }

@@ -9,7 +9,7 @@
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
 //! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
 
-use super::surroundings::{Body, Magnet, Surroundings};
+use super::surroundings::{Body, Magnet, Pull, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
 
@@ -221,7 +221,12 @@ impl CoupledMachine {
         }));
         let magnet = |(i, (magnet, damping)): (usize, &(Magnet, f64))| {
             let shares = self.axis(magnet.place, |mode| mode.at_magnets[i]);
-            (shares, *magnet, *damping)
+            Pull {
+                magnet: *magnet,
+                damping: *damping,
+                shares,
+                on: magnet.on.is_none(),
+            }
         };
         let drags = self
             .retainers

@@ -28,6 +28,7 @@ mod fall;
 mod forces;
 mod impact;
 mod jet;
+mod linear;
 mod machine;
 mod mode;
 mod motion;
@@ -35,6 +36,7 @@ mod start;
 mod step;
 mod surroundings;
 mod system;
+mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Mount, Race, Retainer, Ring, Unbalance};

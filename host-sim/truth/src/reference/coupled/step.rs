@@ -5,6 +5,7 @@ use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
 pub use super::mode::Mode;
 use super::system::{Hold, Law, System};
+use super::tape::{Tape, Term};
 use crate::reference::roots::Fall;
 
 /// Rounding of what a contact's forces and slips are made of, relative.
@@ -36,6 +37,8 @@ pub struct Step {
     pub end: f64,
     /// How it ends.
     pub ending: Ending,
+    /// Of making it, in products of series.
+    pub cost: usize,
     place: Vec<Jet>,
     speed: Vec<Jet>,
     normal: Vec<Jet>,
@@ -48,6 +51,7 @@ impl Step {
             span: 1.0,
             end: 0.0,
             ending: Ending::Step,
+            cost: 0,
             place: constants(place),
             speed: constants(speed),
             normal: vec![Jet::ZERO; links],
@@ -62,18 +66,19 @@ impl Step {
         (place, speed): (&[f64], &[f64]),
         (accuracy, longest): (f64, f64),
     ) -> Self {
-        let starts = |of: &[f64]| of.iter().map(|x| Jet::start(*x)).collect();
-        let (mut place, mut speed): (Vec<Jet>, Vec<Jet>) = (starts(place), starts(speed));
-        let mut forces = Forces::new(system, law, modes, &place, &speed);
-        for k in 1..=ORDER {
-            let part = 1.0 / k as f64;
-            for i in 0..place.len() {
-                let rate = speed[i].terms()[k - 1];
-                speed[i].push(part * forces.acceleration[i].terms()[k - 1]);
-                place[i].push(part * rate);
+        let tape = Tape::new();
+        let (places, speeds) = (tape.start(place), tape.start(speed));
+        let forces = Forces::new(&tape, system, law, modes, &places, &speeds);
+        tape.carry(|before, order, next| {
+            let part = 1.0 / order as f64;
+            let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
+            for ((place, speed), acceleration) in rates {
+                next[place.index()] = part * before[speed.index()];
+                next[speed.index()] = part * before[acceleration.index()];
             }
-            forces = Forces::new(system, law, modes, &place, &speed);
-        }
+        });
+        let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
+        let (place, speed) = (jets(&places), jets(&speeds));
         let reach = |(jet, size): (&Jet, &f64)| {
             [ORDER - 1, ORDER]
                 .map(|k| (accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
@@ -90,11 +95,12 @@ impl Step {
             span,
             end: 1.0,
             ending: Ending::Step,
+            cost: tape.cost(),
             place: scaled(&place),
             speed: scaled(&speed),
-            normal: scaled(&forces.normal),
+            normal: scaled(&jets(&forces.normal)),
         };
-        let grip: Vec<Jet> = scaled(&forces.grip);
+        let grip: Vec<Jet> = scaled(&jets(&forces.grip));
         for (link, mode) in modes.iter().enumerate() {
             step.locate(system, link, *mode, &grip[link], forces.size);
         }

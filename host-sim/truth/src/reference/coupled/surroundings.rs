@@ -1,8 +1,11 @@
 //! The forces besides those of the links: weight, springs, dampers, unbalance, gyroscopic effect, magnets
 //! and drag.
 
-use super::jet::Jet;
 use super::system::{Law, shared};
+use super::tape::Term;
+
+/// Of the moment at which a magnet is switched, relative.
+const MOMENT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// What is left of a magnetic bearing: a force on the axis, and one that grows with its
 /// displacement.
@@ -14,6 +17,21 @@ pub struct Magnet {
     pub stiffness: f64,
     /// N.
     pub force: [f64; 2],
+    /// From when and until when it is on, s after the release; always without.
+    pub on: Option<[f64; 2]>,
+}
+
+/// A magnet in a machine.
+#[derive(Clone, Debug)]
+pub struct Pull {
+    /// What it does.
+    pub magnet: Magnet,
+    /// N s/m.
+    pub damping: f64,
+    /// Parts of the bodies in the displacement there.
+    pub shares: Vec<f64>,
+    /// Whether it does it now.
+    pub on: bool,
 }
 
 /// What acts on a body by itself.
@@ -36,18 +54,19 @@ pub struct Surroundings {
     pub polar_inertia: f64,
     /// One at least.
     pub bodies: Vec<Body>,
-    /// With the parts of the bodies in their displacements, and damping.
-    pub magnets: Vec<(Vec<f64>, Magnet, f64)>,
+    /// Any number.
+    pub magnets: Vec<Pull>,
     /// On each spin, N m s.
     pub viscous_drags: Vec<f64>,
 }
 
 impl Law for Surroundings {
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet> {
+    fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>> {
+        let constant = |value| place[0].constant(value);
         let spins = 2 * self.bodies.len();
         let mut forces = Vec::with_capacity(place.len());
         for (k, body) in self.bodies.iter().enumerate() {
-            forces.extend(body.weight.map(Jet::constant));
+            forces.extend(body.weight.map(constant));
             if body.stiffness != 0.0 || body.damping != 0.0 {
                 for i in [2 * k, 2 * k + 1] {
                     let sprung = place[i] * body.stiffness + speed[i] * body.damping;
@@ -56,7 +75,7 @@ impl Law for Surroundings {
             }
             if body.turning.0 != 0.0 {
                 let (size, angle) = body.turning;
-                let (sine, cosine) = (place[spins] + Jet::constant(angle)).sin_cos();
+                let (sine, cosine) = (place[spins] + constant(angle)).sin_cos();
                 let force = speed[spins] * speed[spins] * size;
                 forces[2 * k] = forces[2 * k] + force * cosine;
                 forces[2 * k + 1] = forces[2 * k + 1] + force * sine;
@@ -67,11 +86,12 @@ impl Law for Surroundings {
             forces[2] = forces[2] - gyroscopic * speed[3];
             forces[3] = forces[3] + gyroscopic * speed[2];
         }
-        for (shares, magnet, damping) in &self.magnets {
+        for pull in self.magnets.iter().filter(|it| it.on) {
+            let (shares, magnet) = (&pull.shares, &pull.magnet);
             let (at, rate) = (shared(shares, place), shared(shares, speed));
             for axis in 0..2 {
-                let held = at[axis] * magnet.stiffness - rate[axis] * *damping;
-                let force = held + Jet::constant(magnet.force[axis]);
+                let held = at[axis] * magnet.stiffness - rate[axis] * pull.damping;
+                let force = held + constant(magnet.force[axis]);
                 for (k, share) in shares
                     .iter()
                     .enumerate()
@@ -83,7 +103,7 @@ impl Law for Surroundings {
         }
         let drags = self.viscous_drags.iter().zip(&speed[spins..]);
         forces.extend(drags.map(|(drag, spin)| match *drag {
-            0.0 => Jet::ZERO,
+            0.0 => constant(0.0),
             drag => *spin * -drag,
         }));
         forces
@@ -95,12 +115,26 @@ impl Law for Surroundings {
             let [wx, wy] = body.weight;
             0.5 * body.stiffness * (x * x + y * y) - (wx * x + wy * y)
         };
-        let held = |(shares, magnet, _): &(Vec<f64>, Magnet, f64)| {
-            let at = shared(shares, place);
+        let held = |pull: &Pull| {
+            let (at, magnet) = (shared(&pull.shares, place), &pull.magnet);
             let held = |k: usize| -at[k] * (0.5 * magnet.stiffness * at[k] + magnet.force[k]);
             held(0) + held(1)
         };
         let bodies: f64 = self.bodies.iter().enumerate().map(of_body).sum();
-        bodies + self.magnets.iter().map(held).sum::<f64>()
+        let magnets = self.magnets.iter().filter(|it| it.on);
+        bodies + magnets.map(held).sum::<f64>()
+    }
+
+    fn reach(&mut self, time: f64) -> f64 {
+        let reached = |moment: f64| moment <= time * (1.0 + MOMENT_ROUNDING);
+        let mut next = f64::INFINITY;
+        for pull in &mut self.magnets {
+            if let Some([from, until]) = pull.magnet.on {
+                pull.on = reached(from) && !reached(until);
+                let ahead = [from, until].into_iter().filter(|it| !reached(*it));
+                next = ahead.fold(next, f64::min);
+            }
+        }
+        next
     }
 }

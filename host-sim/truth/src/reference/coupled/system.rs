@@ -4,7 +4,7 @@
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
 use super::jet::Jet;
-use std::ops::{Add, Mul};
+use super::tape::Term;
 
 /// How far a link's grip goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,18 +37,12 @@ pub struct Link {
 
 impl Link {
     /// Displacement of coordinates, or its rate of rates.
-    pub fn lateral<T>(&self, of: &[T]) -> [T; 2]
-    where
-        T: Copy + Mul<f64, Output = T> + Add<Output = T>,
-    {
+    pub fn lateral<T: Shared>(&self, of: &[T]) -> [T; 2] {
         shared(&self.shares, of)
     }
 
     /// Part of the spins in the slip.
-    pub fn turning<T>(&self, of: &[T]) -> T
-    where
-        T: Copy + Mul<f64, Output = T> + Add<Output = T>,
-    {
+    pub fn turning<T: Shared>(&self, of: &[T]) -> T {
         weighted(&self.arms, |k| of[2 * self.shares.len() + k])
     }
 
@@ -78,25 +72,34 @@ impl Link {
     }
 }
 
+/// What sums with weights can be made of.
+pub trait Shared: Copy {
+    /// The sum; of one part at least.
+    fn weighted(parts: &[(Self, f64)]) -> Self;
+}
+
+impl Shared for f64 {
+    fn weighted(parts: &[(Self, f64)]) -> Self {
+        parts.iter().map(|(of, weight)| of * weight).sum()
+    }
+}
+
+impl Shared for Jet {
+    fn weighted(parts: &[(Self, f64)]) -> Self {
+        let add = |sum, (of, weight): &(Self, f64)| sum + *of * *weight;
+        parts.iter().fold(Self::ZERO, add)
+    }
+}
+
 /// A sum of the bodies' vectors.
-pub fn shared<T>(shares: &[f64], of: &[T]) -> [T; 2]
-where
-    T: Copy + Mul<f64, Output = T> + Add<Output = T>,
-{
+pub fn shared<T: Shared>(shares: &[f64], of: &[T]) -> [T; 2] {
     [0, 1].map(|axis| weighted(shares, |k| of[2 * k + axis]))
 }
 
-fn weighted<T>(weights: &[f64], of: impl Fn(usize) -> T) -> T
-where
-    T: Mul<f64, Output = T> + Add<Output = T>,
-{
-    let mut sum = of(0) * weights[0];
-    for (k, weight) in weights.iter().enumerate().skip(1) {
-        if *weight != 0.0 {
-            sum = sum + of(k) * *weight;
-        }
-    }
-    sum
+fn weighted<T: Shared>(weights: &[f64], of: impl Fn(usize) -> T) -> T {
+    let counts = |(k, weight): (usize, &f64)| (k == 0 || *weight != 0.0).then(|| (of(k), *weight));
+    let parts: Vec<(T, f64)> = weights.iter().enumerate().filter_map(counts).collect();
+    T::weighted(&parts)
 }
 
 /// Masses and links.
@@ -160,7 +163,10 @@ impl System {
 /// The forces besides those of the links.
 pub trait Law {
     /// Force or torque on each coordinate.
-    fn forces(&self, place: &[Jet], speed: &[Jet]) -> Vec<Jet>;
+    fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>>;
+
+    /// Makes them those of `time` (s since the release) and after; when they next change, s.
+    fn reach(&mut self, time: f64) -> f64;
 
     /// Potential energy, J.
     fn potential(&self, place: &[f64]) -> f64;

@@ -44,7 +44,8 @@ impl<L: Law> Motion<L> {
         }
         let touch = |link: &usize| Touching::new(&self.system, *link, &self.place, &self.speed);
         let mut touching: Vec<Touching> = links.iter().map(touch).collect();
-        impact::strike(&self.system, &mut touching, &mut self.speed);
+        let passes = impact::strike(&self.system, &mut touching, &mut self.speed);
+        self.cost += passes as usize * links.len();
         for touch in &touching {
             let (link, cutoff) = (touch.link, self.cutoff(touch.link));
             let flew = self.modes[link] == Mode::Flight;

@@ -14,9 +14,9 @@ use touchdown_base::history::ModelEvent;
 const ON_WALL: f64 = 64.0 * f64::EPSILON;
 /// Size of the last terms of a series, in parts of the coordinates' sizes.
 const ACCURACY: f64 = 1e-18;
-/// Steps of a run. A drop of 0.3 s onto a soft support takes 1 000 to 10 000; what chatters without
-/// bound would never end.
-const MOST_STEPS: u32 = 30_000;
+/// What a run may cost, in products of series; about 4 s of processor time. What chatters without bound
+/// would never end.
+const MOST_COST: usize = 8_000_000;
 
 /// A system that moves.
 #[derive(Clone, Debug)]
@@ -34,8 +34,8 @@ pub struct Motion<L> {
     turns: Vec<f64>,
     step: Step,
     started: bool,
-    /// Taken since the release.
-    steps: u32,
+    /// Since the release, in products of series.
+    cost: usize,
     /// Length of the next forced step, in units of time.
     forced: f64,
     /// Impacts that are not forgotten, and the time of the last.
@@ -85,7 +85,7 @@ impl<L: Law> Motion<L> {
             speed,
             turns: vec![0.0; links],
             started: false,
-            steps: 0,
+            cost: 0,
             forced: modes::FORCED_STEP,
             busy: (0.0, 0.0),
         }
@@ -110,13 +110,12 @@ impl<L: Law> Motion<L> {
             }
             self.since.add(duration);
             self.pass(on_event);
-            self.steps += 1;
         }
     }
 
-    /// When its steps were spent, s; it stays there.
+    /// When it had cost too much, s; it stays there.
     pub fn given_up(&self) -> Option<f64> {
-        (self.steps == MOST_STEPS).then_some(self.since.value)
+        (self.cost >= MOST_COST).then_some(self.since.value)
     }
 
     /// Number of walls; they are the first links.

@@ -78,6 +78,9 @@ impl<L: Law> Motion<L> {
         let choices: Vec<Vec<Mode>> = links.map(|link| self.choices(link)).collect();
         let sets = choices.iter().map(Vec::len).product();
         for set in 0..sets {
+            if self.given_up().is_some() {
+                return false;
+            }
             let mut rest: usize = set;
             for (mode, choices) in self.modes.iter_mut().zip(&choices) {
                 *mode = choices[rest % choices.len()];
@@ -120,12 +123,15 @@ impl<L: Law> Motion<L> {
             }
         }
         impact::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
+        let since = self.since.value;
+        let until = self.law.reach(since) - since;
         self.step = Step::new(
             &self.system,
             &self.law,
             &self.modes,
             (&self.place, &self.speed),
-            (self.accuracy, LONGEST * self.units.0),
+            (self.accuracy, until.min(LONGEST * self.units.0)),
         );
+        self.cost += self.step.cost;
     }
 }
