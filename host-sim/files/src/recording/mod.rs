@@ -201,7 +201,7 @@ impl Recording {
             rate = given;
             rows = Box::new(stamped.map(|it| it.map(|it| it.row)));
         } else {
-            let even = Even::new(file, opened.rows, opened.header)?;
+            let even = Even::of_rows(file, opened.rows, opened.header)?;
             (rate, start) = (even.rate(), even.start());
             rows = Box::new(even);
         }
