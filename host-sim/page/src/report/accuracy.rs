@@ -11,6 +11,9 @@ use touchdown_scene::names::regime_name;
 /// Quantity, model, reference, difference.
 type Row = [String; 4];
 
+/// Times of one kind, s.
+type Times = fn(&History) -> &[f64];
+
 /// Draws times and end state side by side, with differences.
 pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
@@ -19,7 +22,7 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
         time_row("First impact, ms", first_impact(model), first_impact(truth)),
         speed_row(peak(model), peak(truth)),
     ];
-    let starts: [(_, fn(&History) -> &[f64]); 3] = [
+    let starts: [(_, Times); 3] = [
         ("Permanent contact", |it| &it.contact_starts),
         ("Rolling", |it| &it.rolling_starts),
         ("Lift-off", |it| &it.lift_offs),
