@@ -12,7 +12,7 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
 
 use crate::image_check;
 use crate::machine::Machine;
-use crate::toolchain::{TARGET, default_cargo};
+use crate::toolchain::{TARGET, default_cargo, run};
 use crate::workspace;
 
 /// An image: its package, name and profile.
@@ -106,25 +106,20 @@ pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
         .package;
     let mut cargo = Machine::look().toolchain.cargo("rustc");
     cargo.args(["--quiet", "--profile", PROFILE, "--package", package]);
-    cargo.args(["--bin", name]).current_dir(workspace());
+    cargo.args(["--bin", name]);
     if extra == Extra::StackSizes {
         // The flag is for nightly compilers; this one is stable.
         cargo.env("RUSTC_BOOTSTRAP", "1");
         cargo.args(["--", "-Zemit-stack-sizes"]);
     }
-    let status = cargo.status().context("cannot start cargo")?;
-    ensure!(status.success(), "{name} does not build ({status})");
-    Ok(())
+    run(&mut cargo, &format!("{name} does not build"))
 }
 
 /// Builds the emulator's plugin that models cycles, for the desktop; its file.
 pub fn build_plugin() -> anyhow::Result<PathBuf> {
-    let status = default_cargo()
-        .args(["build", "--quiet", "--release", "--package", PLUGIN])
-        .current_dir(workspace())
-        .status()
-        .context("cannot start cargo for the plugin")?;
-    ensure!(status.success(), "the plugin does not build ({status})");
+    let mut cargo = default_cargo();
+    cargo.args(["build", "--quiet", "--release", "--package", PLUGIN]);
+    run(&mut cargo, "the plugin does not build")?;
     let name = format!("{DLL_PREFIX}{}{DLL_SUFFIX}", PLUGIN.replace('-', "_"));
     Ok(target_directory().join("release").join(name))
 }
@@ -139,16 +134,10 @@ fn folder(profile: &str) -> PathBuf {
 }
 
 fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
-    let status = Machine::look()
-        .toolchain
-        .cargo("build")
-        .args(["--quiet", "--profile", image.profile])
-        .args(["--package", image.package, "--bin", image.name])
-        .args(arguments)
-        .current_dir(workspace())
-        .status()
-        .context("cannot start cargo for the firmware: `cargo xtask setup` installs it")?;
-    ensure!(status.success(), "the firmware does not build ({status})");
+    let mut cargo = Machine::look().toolchain.cargo("build");
+    cargo.args(["--quiet", "--profile", image.profile]);
+    cargo.args(["--package", image.package, "--bin", image.name]);
+    run(cargo.args(arguments), "the firmware does not build")?;
     image_check::write(&folder(image.profile).join(image.name))
 }
 

@@ -1,9 +1,6 @@
 //! Writes anew what the golden tests hold.
 
-use anyhow::{Context, ensure};
-
-use crate::toolchain::default_cargo;
-use crate::workspace;
+use crate::toolchain::{default_cargo, run as run_cargo};
 
 /// The expected texts; before them the streams, if `streams`.
 pub fn run(streams: bool) -> anyhow::Result<()> {
@@ -23,16 +20,7 @@ pub fn run(streams: bool) -> anyhow::Result<()> {
 }
 
 fn cargo(arguments: &[&str]) -> anyhow::Result<()> {
+    let failure = format!("cargo {} failed", arguments.join(" "));
     let mut cargo = default_cargo();
-    cargo
-        .args(arguments)
-        .env("UPDATE_EXPECT", "1")
-        .current_dir(workspace());
-    let status = cargo.status().context("cannot start cargo")?;
-    ensure!(
-        status.success(),
-        "cargo {} failed ({status})",
-        arguments.join(" ")
-    );
-    Ok(())
+    run_cargo(cargo.args(arguments).env("UPDATE_EXPECT", "1"), &failure)
 }

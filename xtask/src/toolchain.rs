@@ -5,6 +5,10 @@
 use std::env;
 use std::process::Command;
 
+use anyhow::{Context, ensure};
+
+use crate::workspace;
+
 /// The microcontroller: Cortex-M4 with a single-precision floating-point unit.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
@@ -56,6 +60,15 @@ pub fn emulator_packages() -> &'static [&'static str] {
 /// Cargo for the desktop's crates: the one that runs this program.
 pub fn default_cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Runs cargo on the workspace; where it fails, so does this, and says `failure`.
+pub fn run(cargo: &mut Command, failure: &str) -> anyhow::Result<()> {
+    let status = cargo.current_dir(workspace()).status();
+    let status = status
+        .context("cannot start cargo: `cargo xtask setup` installs what the firmware needs")?;
+    ensure!(status.success(), "{failure} ({status})");
+    Ok(())
 }
 
 fn debian_cargo(command: &str) -> Command {

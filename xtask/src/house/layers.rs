@@ -9,6 +9,8 @@ use crate::workspace;
 /// A crate of the workspace.
 #[derive(Debug)]
 pub struct Member {
+    /// Its package.
+    pub name: String,
     /// From the workspace's root.
     pub folder: String,
     /// Folders of the crates that it uses, those of its tests left out.
@@ -22,6 +24,7 @@ struct Metadata {
 
 #[derive(Deserialize)]
 struct Package {
+    name: String,
     manifest_path: String,
     dependencies: Vec<Dependency>,
 }
@@ -57,6 +60,7 @@ fn member(package: &Package) -> Member {
         .collect();
     uses.sort();
     Member {
+        name: package.name.clone(),
         folder: folder(manifest.trim_end_matches("/Cargo.toml")),
         uses,
     }

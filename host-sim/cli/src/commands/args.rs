@@ -7,7 +7,6 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use touchdown_core::detect::Tuning;
 
-use super::help;
 use touchdown_base::failure::Failure;
 use touchdown_files::recording::{Mapping, Reading};
 use touchdown_files::stream::is_rate;
@@ -17,108 +16,12 @@ use touchdown_run::emulator::Emulator;
 use touchdown_run::target::Target;
 use touchdown_sweep::Part;
 
-const EXAMPLES: &str = "\
-Examples:
-  touchdown                             drop the rig of the source paper, write a report
-  touchdown drop backward-whirl         another built-in scene
-  touchdown drop my.toml --json -       all numbers, to standard output
-  touchdown drop my.toml --stream s.csv
-                                        what the sensors would have recorded
-  touchdown replay s.csv --scene my.toml
-                                        a recording through the same detector
-  touchdown compare a.csv b.csv --scene my.toml
-                                        two recordings: what differs, and by how much
-  touchdown trade my.toml               what each way of computing costs, and how wrong it is
-  touchdown paper                       the source paper's numbers: printed, right, ours
-  touchdown scene explain my.toml       what is modelled and what is left out
-  touchdown limits                      how the model holds at its extremes
-  touchdown score --quick               latency, misses and false alarms of the detector
-  touchdown sweep plan.toml             how probable whirl is over friction, restitution, gap ...
-  touchdown rig --keep rig              the firmware in an emulator, with its link on a socket
-  touchdown log list flash.bin          the drops that the firmware recorded
-  touchdown live /dev/ttyACM0           what the controller sees and does now
-  touchdown config /dev/ttyACM0         what it was configured with; --set changes it
-  touchdown clear /dev/ttyACM0 --key-file k
-                                        clear what is latched there
-  touchdown calibrate led.csv --scene my.toml --write c.toml
-                                        the sensors' errors, from a rotor led round the wall
-  touchdown force r.csv --calibration c.csv
-                                        the contact force from measured accelerations
-
-Exit status: 0 done, whatever the rotor did; 1 a check did not hold; 2 bad usage or input.";
-
-const PAPER: &str = "\
-printed: stated in M. Fumagalli, P. Varadi, G. Schweitzer, \"Impact dynamics of high
-         speed rotors in retainer bearings\"; - where they give no number
-right:   from a closed form, or where there is none from the independent reference
-ours:    measured on runs of the model under test; - where no run can tell
-
-A note on each row says where its numbers come from and how close ours has to be; it is
-in the page and the JSON. Whirl is counted over random drops: the paper concludes that a
-large gap avoids it, which its own equations do not bear out.
-
-Examples:
-  touchdown paper --drops 100         with fewer random drops
-  touchdown paper --json paper.json
-
-Exit status: 0 ours is right in every row, whatever is printed; 1 it is not.";
-
-const FORCE: &str = "\
-The recording, one row a sample at a constant rate, 5 kHz to 1 MHz:
-  time_s,ax_m_s2[,ay_m_s2]            accelerometers, x right, y up
-
-The calibration, at the same rate: hits of an instrumented hammer along one axis, as
-many as there are. Each is recorded until its motion has died out; a new number in
-`hit` begins the next. Without `hit` all is one hit:
-  [hit,]time_s,force_n,ax_m_s2        or ay_m_s2 for hits along y
-One calibration stands for both axes; with two, each axis has its own.
-
-Both, and each hit, begin with 6 ms or more in which nothing happens: there zero and
-noise are measured.
-
-What comes out is the force on the retainer through both its contacts and its flights,
-0 in the flights. A steady force, as of a rotor that lies still, moves no accelerometer
-and is not seen.
-
-Examples, to see it work:
-  touchdown force --example try
-  touchdown force try/recording.csv --calibration try/calibration.csv --report try/force.html
-
-try/truth.json has what is right. docs/use/force.md tells how it is done and how exact it is.
-Exit status: 0 done, contacts or none; 2 bad usage or input.";
-
-const SWEEP: &str = "\
-A plan:
-  scene = \"rig\"                  a built-in scene, or a file beside the plan
-  drops = 1000                   a point of the grid
-  seed = 1
-  until = \"verdict\"            a drop ends where its regime is decided; default \"end\"
-  find = \"whirl < 0.01\"        looks along one axis, by a sequential test at each value
-  [start]                        random starts; without it the scene's
-  within = 0.5                   of the clearance
-  speed_mm_s = 20                up to, in any direction
-  [[parameter]]                  an axis of the grid
-  key = \"retainer.friction\"
-  from = 0.05
-  to = 0.4
-  steps = 8                      or values = [...]; log = true for equal factors
-  [[parameter]]                  drawn anew for each drop
-  key = \"retainer.restitution\"
-  uniform = [0.3, 0.8]           or log_uniform = [...], normal = [mean, deviation]
-
-The folder gets drops.csv (one row a drop), points.csv, sweep.json and sweep.html, made from
-part-K-of-N.csv. A sweep that was killed goes on after the last whole part when it is run
-again. The same plan gives the same bytes on any number of cores and in any number of parts.
-
-Examples:
-  touchdown sweep plan.toml
-  touchdown sweep plan.toml --out run --shard 1/2
-  touchdown sweep plan.toml --out run --shard 2/2
-  touchdown sweep merge run
-
-As a Slurm job array: benches/slurm/sweep.sbatch.
-
-Exit status: 0 done; 2 bad usage or input.";
+/// What `--help` adds to a command: examples, and what its status means. A test runs them.
+macro_rules! help {
+    ($name:literal) => {
+        include_str!(concat!("help/", $name, ".txt")).trim_ascii_end()
+    };
+}
 
 /// Monitor for rotors on active magnetic bearings: simulates a drop onto the retainer bearing and
 /// runs the detector over it.
@@ -126,7 +29,7 @@ Exit status: 0 done; 2 bad usage or input.";
 /// Without a command: drops the rig of the source paper, writes touchdown-report.html to the
 /// current folder and prints the timeline.
 #[derive(Debug, Parser)]
-#[command(name = "touchdown", version, after_help = EXAMPLES)]
+#[command(name = "touchdown", version, after_help = help!("examples"))]
 pub struct Cli {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -135,47 +38,47 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Drop a rotor: simulate, sense, detect
-    #[command(after_help = help::DROP)]
+    #[command(after_help = help!("drop"))]
     Drop(DropArgs),
     /// Run the detector over a recording: CSV of any style, or COMTRADE
-    #[command(after_help = help::REPLAY)]
+    #[command(after_help = help!("replay"))]
     Replay(ReplayArgs),
     /// Compare two recordings: events, speeds, regime, waveforms
-    #[command(after_help = help::COMPARE)]
+    #[command(after_help = help!("compare"))]
     Compare(CompareArgs),
     /// Measure accuracy against cost: every rung, scheme, precision, math and step
-    #[command(after_help = help::TRADE)]
+    #[command(after_help = help!("trade"))]
     Trade(TradeArgs),
     /// Check every number of the source paper: as printed, as right, as ours
-    #[command(after_help = PAPER)]
+    #[command(after_help = help!("paper"))]
     Paper(PaperArgs),
     /// Drop a rotor thousands of times over parameters: how probable whirl is, when, and how hard
-    #[command(after_help = SWEEP)]
+    #[command(after_help = help!("sweep"))]
     Sweep(SweepArgs),
     /// Run the firmware's image over a machine that falls when told, with its link on a socket
     #[cfg(unix)]
-    #[command(after_help = help::RIG)]
+    #[command(after_help = help!("rig"))]
     Rig(RigArgs),
     /// List, show, export or verify the drops that the firmware recorded; keep or erase them
-    #[command(after_help = help::LOG)]
+    #[command(after_help = help!("log"))]
     Log {
         #[command(subcommand)]
         what: LogCommand,
     },
     /// Watch a controller over its serial link
-    #[command(after_help = help::LIVE)]
+    #[command(after_help = help!("live"))]
     Live(LiveArgs),
     /// Show a controller's configuration, or set another one over its serial link
-    #[command(after_help = help::CONFIG)]
+    #[command(after_help = help!("config"))]
     Config(ConfigArgs),
     /// Clear what is latched in a controller, over its serial link
-    #[command(after_help = help::CLEAR)]
+    #[command(after_help = help!("clear"))]
     Clear(OrderArgs),
     /// Find zero, gain and skew of the sensors from a rotor that was led round the retainer
-    #[command(after_help = help::CALIBRATE)]
+    #[command(after_help = help!("calibrate"))]
     Calibrate(CalibrateArgs),
     /// Recover the contact force from accelerations, with a device calibrated by known hits
-    #[command(after_help = FORCE)]
+    #[command(after_help = help!("force"))]
     Force(ForceArgs),
     /// Run the model at its extremes: what was measured, the limit, and whether it holds
     ///
@@ -191,7 +94,7 @@ pub(super) enum Command {
     /// contains the last digit of its spin.
     ///
     /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
-    #[command(after_help = help::LIMITS)]
+    #[command(after_help = help!("limits"))]
     Limits(LimitsArgs),
     /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
     ///
@@ -200,16 +103,16 @@ pub(super) enum Command {
     /// numbers on any number of cores.
     ///
     /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
-    #[command(after_help = help::SCORE)]
+    #[command(after_help = help!("score"))]
     Score(ScoreArgs),
     /// Look at scenes
-    #[command(after_help = help::SCENE)]
+    #[command(after_help = help!("scene"))]
     Scene {
         #[command(subcommand)]
         what: SceneCommand,
     },
     /// Print a script that completes commands and options in a shell
-    #[command(after_help = help::COMPLETIONS)]
+    #[command(after_help = help!("completions"))]
     Completions {
         /// Which shell
         shell: Shell,
@@ -498,7 +401,7 @@ pub(super) struct SweepArgs {
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum SweepCommand {
     /// Put the parts of a sweep together; the result is that of one run, to the byte
-    #[command(after_help = help::MERGE)]
+    #[command(after_help = help!("merge"))]
     Merge(MergeArgs),
 }
 
@@ -612,35 +515,42 @@ fn clearance(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("{} to {} mm", range.start(), range.end()))
 }
 
+#[derive(Args, Clone, Debug)]
+pub(super) struct DumpArgs {
+    /// A dump of the log's flash, a file of one episode, or a controller's port
+    pub file: String,
+    /// The same as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<String>,
+}
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChosenArgs {
+    /// A dump of the log's flash, a file of one episode, or a controller's port
+    pub file: String,
+    /// Its number; the newest without
+    pub number: Option<u32>,
+}
+
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum LogCommand {
     /// Each episode with its state, trigger and severity, and the lifetime counters
-    #[command(after_help = help::LOG_LIST)]
-    List {
-        /// A dump of the log's flash, a file of one episode, or a controller's port
-        file: String,
-        /// The same as JSON; `-` is standard output
-        #[arg(long, value_name = "FILE")]
-        json: Option<String>,
-    },
+    #[command(after_help = help!("log_list"))]
+    List(DumpArgs),
     /// One episode with its events
-    #[command(after_help = help::LOG_SHOW)]
+    #[command(after_help = help!("log_show"))]
     Show {
-        /// A dump of the log's flash, a file of one episode, or a controller's port
-        file: String,
-        /// Its number; the newest without
-        number: Option<u32>,
+        #[command(flatten)]
+        chosen: ChosenArgs,
         /// The same as JSON; `-` is standard output
         #[arg(long, value_name = "FILE")]
         json: Option<String>,
     },
     /// One episode as a stream that `replay` reads, as COMTRADE or as JSON
-    #[command(after_help = help::LOG_EXPORT)]
+    #[command(after_help = help!("log_export"))]
     Export {
-        /// A dump of the log's flash, a file of one episode, or a controller's port
-        file: String,
-        /// Its number; the newest without
-        number: Option<u32>,
+        #[command(flatten)]
+        chosen: ChosenArgs,
         /// What to write
         #[arg(long, value_enum, default_value_t)]
         format: ExportFormat,
@@ -649,22 +559,16 @@ pub(super) enum LogCommand {
         out: String,
     },
     /// List, and fail where an episode is damaged; one that was cut off is not
-    #[command(after_help = help::LOG_VERIFY)]
-    Verify {
-        /// A dump of the log's flash, a file of one episode, or a controller's port
-        file: String,
-        /// The same as JSON; `-` is standard output
-        #[arg(long, value_name = "FILE")]
-        json: Option<String>,
-    },
+    #[command(after_help = help!("log_verify"))]
+    Verify(DumpArgs),
     /// Keep an episode of a controller: it is neither overwritten nor erased
-    #[command(after_help = help::LOG_ORDER)]
+    #[command(after_help = help!("log_order"))]
     Lock(EpisodeArgs),
     /// Give an episode of a controller free to be overwritten
-    #[command(after_help = help::LOG_ORDER)]
+    #[command(after_help = help!("log_order"))]
     Unlock(EpisodeArgs),
     /// Erase an episode of a controller
-    #[command(after_help = help::LOG_ORDER)]
+    #[command(after_help = help!("log_order"))]
     Erase(EpisodeArgs),
 }
 
@@ -726,7 +630,7 @@ pub(super) struct ForceArgs {
 #[derive(Debug, Subcommand)]
 pub(super) enum SceneCommand {
     /// Say what a scene models, what it leaves out, and the numbers that decide how it goes
-    #[command(after_help = help::EXPLAIN)]
+    #[command(after_help = help!("explain"))]
     Explain {
         /// Scene file, or name of a built-in scene
         scene: String,
@@ -735,7 +639,7 @@ pub(super) enum SceneCommand {
         json: Option<String>,
     },
     /// List the built-in scenes
-    #[command(after_help = help::SCENES)]
+    #[command(after_help = help!("scenes"))]
     List {
         /// The same as JSON; `-` is standard output
         #[arg(long, value_name = "FILE")]

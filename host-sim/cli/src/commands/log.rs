@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{ExportFormat, LogCommand};
+use super::args::{ChosenArgs, DumpArgs, ExportFormat, LogCommand};
 use super::order::order;
 use crate::gate::{Gate, Outputs};
 use touchdown_base::failure::Failure;
@@ -21,40 +21,30 @@ const DAT: &str = "--out (.dat)";
 /// Lists, shows, exports or verifies the episodes of a log; keeps or erases those of a controller.
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
-        LogCommand::List { file, json } => {
-            let out = gate(file, json)?;
-            let dump = source(file, Wanted::All)?;
-            tell(out, &dump, |paint| list(&dump, paint))
-        }
-        LogCommand::Show { file, number, json } => {
-            let out = gate(file, json)?;
-            let dump = source(file, wanted(*number))?;
-            let episode = chosen(file, &dump, *number)?;
-            tell(out, episode, |paint| show(episode, paint))
+        LogCommand::List(args) => all(args).map(drop),
+        LogCommand::Show { chosen, json } => {
+            let out = gate(&chosen.file, json)?;
+            let episode = episode(chosen)?;
+            tell(out, &episode, |paint| show(&episode, paint))
         }
         LogCommand::Export {
-            file,
-            number,
+            chosen,
             format,
             out: name,
         } => {
-            let mut gate = Gate::new().reads("FILE", [file]);
+            let mut gate = Gate::new().reads("FILE", [&chosen.file]);
             for (option, name) in files(*format, name) {
                 gate = gate.writes(option, [name]);
             }
             let out = gate.open()?;
-            let dump = source(file, wanted(*number))?;
-            export(chosen(file, &dump, *number)?, *format, out)
+            export(&episode(chosen)?, *format, out)
         }
-        LogCommand::Verify { file, json } => {
-            let out = gate(file, json)?;
-            let dump = source(file, Wanted::All)?;
-            tell(out, &dump, |paint| list(&dump, paint))?;
-            if is_sound(&dump) {
-                Ok(())
-            } else {
-                Err(Failure::Check(format!("{file}: an episode is damaged")))
+        LogCommand::Verify(args) => {
+            if is_sound(&all(args)?) {
+                return Ok(());
             }
+            let rule = format!("{}: an episode is damaged", args.file);
+            Err(Failure::Check(rule))
         }
         LogCommand::Lock(args) => order(Act::Lock(args.episode), &args.order),
         LogCommand::Unlock(args) => order(Act::Unlock(args.episode), &args.order),
@@ -67,8 +57,12 @@ fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {
     gate.writes("--json", json).open()
 }
 
-fn wanted(number: Option<u32>) -> Wanted {
-    number.map_or(Wanted::Newest, Wanted::Number)
+/// Lists all episodes.
+fn all(DumpArgs { file, json }: &DumpArgs) -> Result<Dump, Failure> {
+    let out = gate(file, json)?;
+    let dump = source(file, Wanted::All)?;
+    tell(out, &dump, |paint| list(&dump, paint))?;
+    Ok(dump)
 }
 
 /// The log in a file, or as much of a controller's as is wanted.
@@ -89,10 +83,11 @@ fn tell(
     out.finish(&told)
 }
 
-fn chosen<'a>(file: &str, dump: &'a Dump, number: Option<u32>) -> Result<&'a Episode, Failure> {
-    let mut all = dump.episodes.iter().rev();
+fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure> {
+    let dump = source(file, number.map_or(Wanted::Newest, Wanted::Number))?;
+    let mut all = dump.episodes.into_iter().rev();
     let found = match number {
-        Some(number) => all.find(|it| it.sequence == number),
+        Some(number) => all.find(|it| it.sequence == *number),
         None => all.next(),
     };
     found.ok_or_else(|| {

@@ -5,7 +5,6 @@ mod calibrate;
 mod compare;
 mod config;
 mod force;
-mod help;
 mod limits;
 mod live;
 mod log;

@@ -29,6 +29,16 @@ const LONGEST_EPISODE: u32 = 1 << 20;
 /// Of what comes by itself, kept while an answer is waited for; the oldest go first.
 const KEPT: usize = 1_000;
 
+/// Asks, and takes that answer alone.
+macro_rules! asked {
+    ($client:ident, $request:expr, $answer:pat => $value:expr) => {
+        match $client.ask(&$request)? {
+            $answer => Ok($value),
+            _ => Err(LinkError::Senseless),
+        }
+    };
+}
+
 /// What the controller says by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Told {
@@ -128,18 +138,12 @@ impl Client {
 
     /// Who is there.
     pub fn hello(&mut self) -> Result<Hello, LinkError> {
-        match self.ask(&Request::Hello)? {
-            Reply::Hello(hello) => Ok(hello),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::Hello, Reply::Hello(hello) => hello)
     }
 
     /// What goes on.
     pub fn state(&mut self) -> Result<State, LinkError> {
-        match self.ask(&Request::State)? {
-            Reply::State(state) => Ok(state),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::State, Reply::State(state) => state)
     }
 
     /// Has something done: by the right of the key, or where the controller has none by its service input.
@@ -148,26 +152,18 @@ impl Client {
     }
 
     fn order_about(&mut self, act: Act, block: &[u8]) -> Result<(), LinkError> {
-        let Reply::Challenge(nonce, keyed) = self.ask(&Request::Challenge)? else {
-            return Err(LinkError::Senseless);
-        };
+        let (nonce, keyed) =
+            asked!(self, Request::Challenge, Reply::Challenge(nonce, keyed) => (nonce, keyed))?;
         let key = self.key.as_ref().filter(|_| keyed);
         let mac = mac(key, &nonce, &act, block);
-        match self.ask(&Request::Order { mac, act })? {
-            Reply::Done => Ok(()),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::Order { mac, act }, Reply::Done => ())
     }
 
     /// The configuration in force.
     pub fn settings(&mut self) -> Result<Settings, LinkError> {
-        match self.ask(&Request::ReadConfig)? {
-            Reply::Config(block) => {
-                let (_, settings) = config_block::decode(&block).map_err(LinkError::Config)?;
-                Ok(settings)
-            }
-            _ => Err(LinkError::Senseless),
-        }
+        let block = asked!(self, Request::ReadConfig, Reply::Config(block) => block)?;
+        let (_, settings) = config_block::decode(&block).map_err(LinkError::Config)?;
+        Ok(settings)
     }
 
     /// Puts another configuration in force; the controller restarts with it.
@@ -190,26 +186,17 @@ impl Client {
 
     /// Where the rotor has been: every `step`-th of the newest samples.
     pub fn recent(&mut self, step: u16) -> Result<Recent, LinkError> {
-        match self.ask(&Request::Recent { step })? {
-            Reply::Recent(recent) => Ok(recent),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::Recent { step }, Reply::Recent(recent) => recent)
     }
 
     /// The lifetime counters; `None` where the controller has no log.
     pub fn lifetime(&mut self) -> Result<Option<Counters>, LinkError> {
-        match self.ask(&Request::Lifetime)? {
-            Reply::Lifetime(counters) => Ok(counters),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::Lifetime, Reply::Lifetime(counters) => counters)
     }
 
     /// Numbers of the first and of the last episode in the log.
     pub fn episodes(&mut self) -> Result<Option<(u32, u32)>, LinkError> {
-        match self.ask(&Request::Episodes)? {
-            Reply::Episodes(range) => Ok(range),
-            _ => Err(LinkError::Senseless),
-        }
+        asked!(self, Request::Episodes, Reply::Episodes(range) => range)
     }
 
     /// Bytes of an episode from `offset` on, and how many the whole has; `None` where there is no such

@@ -16,39 +16,25 @@ pub trait Line: Send {
 /// A limit of zero would wait for ever.
 const SHORTEST: Duration = Duration::from_millis(1);
 
-impl Line for TcpStream {
-    fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize> {
-        self.set_read_timeout(Some(limit.max(SHORTEST)))?;
-        come(Read::read(self, bytes))
-    }
+macro_rules! line {
+    ($line:ty, $set_limit:ident) => {
+        impl Line for $line {
+            fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize> {
+                self.$set_limit(limit.max(SHORTEST).into())?;
+                come(Read::read(self, bytes))
+            }
 
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
-    }
+            fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+                self.write_all(bytes)
+            }
+        }
+    };
 }
 
+line!(TcpStream, set_read_timeout);
 #[cfg(unix)]
-impl Line for std::os::unix::net::UnixStream {
-    fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize> {
-        self.set_read_timeout(Some(limit.max(SHORTEST)))?;
-        come(Read::read(self, bytes))
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
-    }
-}
-
-impl Line for Box<dyn serialport::SerialPort> {
-    fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize> {
-        self.set_timeout(limit.max(SHORTEST))?;
-        come(Read::read(self, bytes))
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
-    }
-}
+line!(std::os::unix::net::UnixStream, set_read_timeout);
+line!(Box<dyn serialport::SerialPort>, set_timeout);
 
 /// Nothing in time is no error; an end is one.
 fn come(read: io::Result<usize>) -> io::Result<usize> {

@@ -90,19 +90,8 @@ impl Recording {
             let opened = of_comtrade(dat, size, reading, scene, &remarks)?;
             return Self::paced(&file, opened, reading, scene, remarks);
         }
-        if path.is_dir() {
-            return Err(InputError::of_file(&file, "is a folder, not a file"));
-        }
-        let fail = |error: std::io::Error| InputError::of_file(&file, reason(&error));
-        let bytes = File::open(path).map_err(fail)?;
-        let size = bytes.metadata().map_err(fail)?.len();
-        Self::of_text(
-            &file,
-            BufReader::with_capacity(1 << 16, bytes),
-            size,
-            reading,
-            scene,
-        )
+        let (bytes, size) = opened(path)?;
+        Self::of_text(&file, bytes, size, reading, scene)
     }
 
     /// Reads the text `bytes`, `size` of them; errors name it `file`.
@@ -206,7 +195,7 @@ impl Recording {
             rate = given;
             rows = Box::new(stamped.map(|it| it.map(|it| it.row)));
         } else {
-            let even = Even::new(file, opened.rows, opened.header)?;
+            let even = Even::of_rows(file, opened.rows, opened.header)?;
             (rate, start) = (even.rate(), even.start());
             rows = Box::new(even);
         }
@@ -250,6 +239,18 @@ impl Iterator for Recording {
         }
         Some(row)
     }
+}
+
+/// Opens a file; also how many bytes it has.
+fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
+    let name = path.display().to_string();
+    let fail = |error: std::io::Error| InputError::of_file(&name, reason(&error));
+    if path.is_dir() {
+        return Err(InputError::of_file(&name, "is a folder, not a file"));
+    }
+    let file = File::open(path).map_err(fail)?;
+    let size = file.metadata().map_err(fail)?.len();
+    Ok((BufReader::with_capacity(1 << 16, file), size))
 }
 
 fn of_comtrade<R: Read + 'static>(

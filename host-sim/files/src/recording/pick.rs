@@ -2,9 +2,7 @@
 
 use touchdown_core::sample::CHANNELS;
 
-use super::mapping::{
-    Axes, Column, LevitatedColumn, Mapping, POSITIONS, PositionColumn, SpeedColumn,
-};
+use super::mapping::{Axes, Column, Mapping, POSITIONS};
 use super::remarks::Remarks;
 use super::unit::{Displacement, Speed, Time, split};
 use crate::stream::{Columns, Row};
@@ -262,45 +260,18 @@ fn no_unit(what: &str, heading: &Heading, example: &str) -> String {
 
 /// Columns that are named as in a stream: ax, ay, bx, by, speed, levitated.
 pub fn by_name(found: &[Heading]) -> Option<Mapping> {
-    let there = |name: &str| {
-        let is = |it: &&Heading| it.parts().0.trim().eq_ignore_ascii_case(name);
-        found
-            .iter()
-            .any(|it| is(&it))
-            .then(|| Column::Name(name.to_owned()))
+    let there = |name: &&str| {
+        let is = |it: &Heading| it.parts().0.trim().eq_ignore_ascii_case(name);
+        found.iter().any(is)
     };
-    let position = |name: &str| {
-        there(name).map(|column| {
-            let it = PositionColumn {
-                column,
-                unit: None,
-                sensitivity: None,
-                offset: 0.0,
-                reversed: false,
-            };
-            toml::Spanned::new(0..0, it)
-        })
-    };
-    let [ax, ay, bx, by] = POSITIONS.map(position);
-    let (bx, by) = bx.zip(by).unzip();
-    let (ax, ay) = ax.zip(ay).unzip();
-    ax.is_some().then_some(Mapping {
-        ax,
-        ay,
-        bx,
-        by,
-        speed: there("speed").map(|column| SpeedColumn {
-            column,
-            unit: None,
-            reversed: false,
-        }),
-        levitated: there("levitated").map(|column| LevitatedColumn {
-            column,
-            above: 0.5,
-            reversed: false,
-        }),
-        ..Mapping::default()
-    })
+    let groups: [&[&str]; 4] = [&POSITIONS[..2], &POSITIONS[2..], &["speed"], &["levitated"]];
+    let mut groups = groups
+        .into_iter()
+        .filter(|it| it.iter().all(there))
+        .peekable();
+    groups.peek().filter(|it| it[0] == POSITIONS[0])?;
+    let table = |name: &&str| format!("[{name}]\ncolumn = \"{name}\"\n");
+    toml::from_str(&groups.flatten().map(table).collect::<String>()).ok()
 }
 
 /// The columns, for people.

@@ -29,7 +29,7 @@ pub struct Even<I> {
 
 impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
     /// Reads the first rows; `before` is the line of the header.
-    pub fn new(file: &str, mut rows: I, before: u64) -> Result<Self, InputError> {
+    pub fn of_rows(file: &str, mut rows: I, before: u64) -> Result<Self, InputError> {
         let fail = |line: u64, rule: String| InputError::at_line(file, line, rule);
         let Some(first) = rows.next().transpose()? else {
             return Err(fail(
@@ -80,6 +80,11 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         }
         even.rate = rate;
         Ok(even)
+    }
+
+    /// Where they come from.
+    pub fn rows(&self) -> &I {
+        &self.rows
     }
 
     /// Samples per second, Hz.

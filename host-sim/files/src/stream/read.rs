@@ -23,42 +23,17 @@ const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
 
 /// A stream being read. The rate is that of the first [`super::LOOK_AHEAD`] rows; all later rows are held
 /// to it.
-pub struct StreamReader<R> {
-    columns: Columns,
-    rows: Even<Records<R>>,
-}
+pub type StreamReader<R> = Even<Records<R>>;
 
 impl<R: Read> StreamReader<R> {
     /// Reads the header and the first rows of `bytes`; errors name the stream `file`.
     pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
-        let records = Records::new(file, bytes)?;
-        Ok(Self {
-            columns: records.columns(),
-            rows: Even::new(file, records, 1)?,
-        })
+        Self::of_rows(file, Records::new(file, bytes)?, 1)
     }
 
     /// The columns.
     pub fn columns(&self) -> Columns {
-        self.columns
-    }
-
-    /// Samples per second, Hz.
-    pub fn rate(&self) -> f64 {
-        self.rows.rate()
-    }
-
-    /// Time of the first row, s.
-    pub fn start(&self) -> f64 {
-        self.rows.start()
-    }
-}
-
-impl<R: Read> Iterator for StreamReader<R> {
-    type Item = Result<Row, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        self.rows.next()
+        self.rows().columns()
     }
 }
 

@@ -11,6 +11,9 @@ use touchdown_scene::names::regime_name;
 /// Quantity, model, reference, difference.
 type Row = [String; 4];
 
+/// Times of one kind, s.
+type Times = fn(&History) -> &[f64];
+
 /// Draws times and end state side by side, with differences.
 pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
@@ -19,39 +22,21 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
         time_row("First impact, ms", first_impact(model), first_impact(truth)),
         speed_row(peak(model), peak(truth)),
     ];
-    let starts = [
-        (
-            "Permanent contact",
-            &model.contact_starts,
-            &truth.contact_starts,
-        ),
-        ("Rolling", &model.rolling_starts, &truth.rolling_starts),
-        ("Lift-off", &model.lift_offs, &truth.lift_offs),
+    let starts: [(_, Times); 3] = [
+        ("Permanent contact", |it| &it.contact_starts),
+        ("Rolling", |it| &it.rolling_starts),
+        ("Lift-off", |it| &it.lift_offs),
     ];
-    for (name, ours, theirs) in starts {
-        if ours.len().max(theirs.len()) > 0 {
-            let name = format!("{name}, first, ms");
-            rows.push(time_row(
-                &name,
-                ours.first().copied(),
-                theirs.first().copied(),
-            ));
+    for (name, of) in starts {
+        let first = [model, truth].map(|it| of(it).first().copied());
+        if first != [None; 2] {
+            rows.push(time_row(&format!("{name}, first, ms"), first[0], first[1]));
         }
     }
-    let same = if model.regime == truth.regime {
-        "same"
-    } else {
-        "differs"
-    };
-    rows.push(
-        [
-            "Regime",
-            regime_name(model.regime),
-            regime_name(truth.regime),
-            same,
-        ]
-        .map(str::to_owned),
-    );
+    let same = model.regime == truth.regime;
+    let same = if same { "same" } else { "differs" };
+    let [ours, theirs] = [model, truth].map(|it| regime_name(it.regime));
+    rows.push(["Regime", ours, theirs, same].map(str::to_owned));
     let apart = error(apart(model, truth) / subject.machine.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
     let given_up = crate::timeline::given_up(outcome);

@@ -46,21 +46,14 @@ pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
 
 /// Draws a path with equal axes.
 pub fn draw(orbit: &Orbit) -> Markup {
-    let Orbit {
-        title,
-        clearance,
-        spin,
-        trace,
-        hits: places,
-    } = orbit;
-    let (clearance, spin) = (*clearance, *spin);
+    let (clearance, spin) = (orbit.clearance, orbit.spin);
     let scale = RADIUS / clearance;
     let micro = 1.25 * clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
         svg.orbit role="img" viewBox="-252 -226 488 472" {
-            title { (title) }
+            title { (orbit.title) }
             desc {
                 "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
                 "circle; rings mark impacts, the outer arrow the direction of spin."
@@ -73,10 +66,10 @@ pub fn draw(orbit: &Orbit) -> Markup {
             }
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
-            @for run in runs(trace) {
+            @for run in runs(orbit.trace) {
                 path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
-            @for (x, y) in hits(places, scale) {
+            @for (x, y) in hits(&orbit.hits, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
             }
             (spin_arrow(spin))

@@ -8,34 +8,25 @@ use touchdown_scene::parts::{Part, SPRING};
 
 /// Physical and dimensionless parameters and those of the run.
 pub fn parameters(subject: &Subject) -> Markup {
+    let machine = &subject.machine;
     let rpm = significant(subject.spin * 30.0 / PI, 6);
     let turn = match subject.spin.total_cmp(&0.0) {
         _ if subject.spin == 0.0 => "",
         std::cmp::Ordering::Greater => ", counter-clockwise",
         _ => ", clockwise",
     };
+    let inertia = significant(machine.polar_inertia, 5);
+    let gravity = significant(machine.gravity, 5);
     let physical = [
-        ("Mass", si(subject.machine.mass, "kg")),
-        (
-            "Rotor radius at the retainer",
-            si(subject.machine.radius, "m"),
-        ),
-        (
-            "Polar inertia",
-            format!(
-                "{}\u{a0}kg\u{a0}m\u{b2}",
-                significant(subject.machine.polar_inertia, 5)
-            ),
-        ),
+        ("Mass", si(machine.mass, "kg")),
+        ("Rotor radius at the retainer", si(machine.radius, "m")),
+        ("Polar inertia", format!("{inertia}\u{a0}kg\u{a0}m\u{b2}")),
         (
             "Radial clearance \u{3c1}\u{2080}",
-            si(subject.machine.clearance, "m"),
+            si(machine.clearance, "m"),
         ),
         ("Spin at the release", format!("{rpm}\u{a0}rpm{turn}")),
-        (
-            "Gravity",
-            format!("{}\u{a0}m/s\u{b2}", significant(subject.machine.gravity, 5)),
-        ),
+        ("Gravity", format!("{gravity}\u{a0}m/s\u{b2}")),
     ];
     let run = [
         ("Duration", si(subject.duration, "s")),
@@ -54,30 +45,23 @@ pub fn parameters(subject: &Subject) -> Markup {
 }
 
 fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
-    let beta = subject.machine.polar_inertia
-        / (subject.machine.mass * subject.machine.radius * subject.machine.radius);
-    let time = (subject.machine.clearance / subject.machine.gravity).sqrt();
-    let speed = (subject.machine.clearance * subject.machine.gravity).sqrt();
+    let machine = &subject.machine;
+    let beta = machine.polar_inertia / (machine.mass * machine.radius * machine.radius);
+    let time = (machine.clearance / machine.gravity).sqrt();
+    let speed = (machine.clearance * machine.gravity).sqrt();
+    let spin = significant(machine.radius * subject.spin / speed, 5);
+    let whirl = si(whirl_speed(subject), "rad/s");
     let mut scales = vec![
-        ("Friction \u{b5}", significant(subject.machine.friction, 4)),
-        (
-            "Restitution \u{3b5}",
-            significant(subject.machine.restitution, 4),
-        ),
+        ("Friction \u{b5}", significant(machine.friction, 4)),
+        ("Restitution \u{3b5}", significant(machine.restitution, 4)),
         ("Inertia \u{3b2} = J/(m r\u{b2})", significant(beta, 4)),
     ];
-    if subject.machine.gravity > 0.0 {
+    if machine.gravity > 0.0 {
         scales.extend([
-            (
-                "Spin W\u{2080} = r \u{3c9}\u{2080}/V",
-                significant(subject.machine.radius * subject.spin / speed, 5),
-            ),
+            ("Spin W\u{2080} = r \u{3c9}\u{2080}/V", spin),
             ("Time T = \u{221a}(\u{3c1}\u{2080}/g)", si(time, "s")),
             ("Speed V = \u{221a}(g \u{3c1}\u{2080})", si(speed, "m/s")),
-            (
-                "Whirl keeps contact from, at the bottom",
-                si(whirl_speed(subject), "rad/s"),
-            ),
+            ("Whirl keeps contact from, at the bottom", whirl),
         ]);
     }
     scales

@@ -40,60 +40,45 @@ fn figure(name: &str, value: &str, note: &str) -> Markup {
 
 fn motion(truth: &History) -> String {
     let end = si(truth.end.time, "s");
-    match truth.regime {
-        Regime::ForwardWhirl => {
-            format!("The rotor whirls round the retainer with its spin after {end}.")
-        }
-        Regime::BackwardWhirl => {
-            format!("The rotor is driven into backward whirl round the retainer within {end}.")
-        }
-        Regime::Pendulum => {
-            format!(
-                "No whirl at the end: the rotor swings at the bottom of the retainer after {end}."
-            )
-        }
-        Regime::Rest => {
-            format!("No whirl at the end: the rotor lies still on the retainer after {end}.")
-        }
+    let (what, when) = match truth.regime {
+        Regime::ForwardWhirl => ("The rotor whirls round the retainer with its spin", "after"),
+        Regime::BackwardWhirl => (
+            "The rotor is driven into backward whirl round the retainer",
+            "within",
+        ),
+        Regime::Pendulum => (
+            "No whirl at the end: the rotor swings at the bottom of the retainer",
+            "after",
+        ),
+        Regime::Rest => (
+            "No whirl at the end: the rotor lies still on the retainer",
+            "after",
+        ),
         Regime::Intermittent => {
-            format!(
-                "No whirl at the end: the rotor keeps lifting off and falling back, {} times in {end}.",
-                truth.lift_offs.len()
-            )
+            let times = truth.lift_offs.len();
+            return format!(
+                "No whirl at the end: the rotor keeps lifting off and falling back, {times} times in {end}."
+            );
         }
-        Regime::Bouncing => format!("The rotor is not in permanent contact after {end}."),
-    }
+        Regime::Bouncing => ("The rotor is not in permanent contact", "after"),
+    };
+    format!("{what} {when} {end}.")
 }
 
 fn detection(outcome: &Outcome, matches: &Matches) -> String {
     let falls = matches.of_kind(EventKind::FreeFall).next();
-    let first = outcome
-        .truth
-        .impacts
-        .first()
-        .map(|impact| impact.state.time);
-    let mut text = match falls.map(|fall| (fall.latency_s, first)) {
+    let first = outcome.truth.impacts.first().map(|it| it.state.time);
+    let mut text = match falls.map(|fall| fall.latency_s) {
         None => String::new(),
-        Some((None, _)) => "The detector missed the free fall.".to_owned(),
-        Some((Some(latency), Some(first))) if latency < first => {
-            let lead = si(first - latency, "s");
-            format!(
-                "The detector declared the free fall {} after the release, {lead} before the first contact.",
-                si(latency, "s")
-            )
-        }
-        Some((Some(latency), Some(first))) => {
-            let late = si(latency - first, "s");
-            format!(
-                "The detector declared the free fall {} after the release, {late} after the first contact.",
-                si(latency, "s")
-            )
-        }
-        Some((Some(latency), None)) => {
-            format!(
-                "The detector declared the free fall {} after the release.",
-                si(latency, "s")
-            )
+        Some(None) => "The detector missed the free fall.".to_owned(),
+        Some(Some(latency)) => {
+            let side = first.map_or(String::new(), |first| {
+                let side = if latency < first { "before" } else { "after" };
+                let apart = si((first - latency).abs(), "s");
+                format!(", {apart} {side} the first contact")
+            });
+            let latency = si(latency, "s");
+            format!("The detector declared the free fall {latency} after the release{side}.")
         }
     };
     let whirl = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];

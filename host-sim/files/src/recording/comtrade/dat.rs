@@ -1,6 +1,6 @@
 //! The data of a COMTRADE recording, sample by sample.
 
-use std::io::{self, Read};
+use std::io::Read;
 
 use csv::ByteRecord;
 
@@ -55,10 +55,7 @@ impl<R: Read> Dat<R> {
             let reader = Box::new(reader.from_reader(bytes));
             (Source::Text(reader, ByteRecord::new()), meter)
         } else {
-            (
-                Source::Binary(bytes, vec![0; cfg.bytes()]),
-                Meter::default(),
-            )
+            (Source::Binary(bytes, Vec::new()), Meter::default())
         };
         Self {
             file: file.to_owned(),
@@ -105,18 +102,17 @@ impl<R: Read> Dat<R> {
                 of_text(record, &self.cfg, &mut self.values)
             }
             Source::Binary(bytes, record) => {
-                let read = fill(bytes, record)
-                    .map_err(|error| InputError::of_file(&self.file, reason(&error)))?;
+                let size = self.cfg.bytes();
+                record.clear();
+                let read = bytes.take(size as u64).read_to_end(record);
+                let read = read.map_err(|error| InputError::of_file(&self.file, reason(&error)))?;
                 self.meter.add(read as u64);
                 if read == 0 {
                     return Ok(None);
                 }
                 self.records += 1;
-                if read < record.len() {
-                    let rule = format!(
-                        "the last sample is cut off: it has {read} of {} bytes",
-                        record.len()
-                    );
+                if read < size {
+                    let rule = format!("the last sample is cut off: it has {read} of {size} bytes");
                     return Err(self.flaw(rule));
                 }
                 of_bytes(record, &self.cfg, &mut self.values)
@@ -124,20 +120,6 @@ impl<R: Read> Dat<R> {
         };
         sample.map(Some).map_err(|rule| self.flaw(rule))
     }
-}
-
-/// Reads until `record` is full or the bytes end.
-fn fill(bytes: &mut impl Read, record: &mut [u8]) -> io::Result<usize> {
-    let mut filled = 0;
-    while filled < record.len() {
-        match bytes.read(&mut record[filled..]) {
-            Ok(0) => break,
-            Ok(read) => filled += read,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(filled)
 }
 
 fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {

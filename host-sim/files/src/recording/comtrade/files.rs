@@ -1,12 +1,12 @@
 //! The files of a COMTRADE recording: .cfg and .dat, or both in a .cff.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
 use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
+use crate::recording::opened;
 use touchdown_base::input_error::{InputError, reason};
 
 /// Larger than any configuration, bytes.
@@ -52,17 +52,6 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
         );
         InputError::of_file(&path.display().to_string(), rule)
     })
-}
-
-fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
-    let name = path.display().to_string();
-    let fail = |error: std::io::Error| InputError::of_file(&name, reason(&error));
-    if path.is_dir() {
-        return Err(InputError::of_file(&name, "is a folder, not a file"));
-    }
-    let file = File::open(path).map_err(fail)?;
-    let size = file.metadata().map_err(fail)?.len();
-    Ok((BufReader::with_capacity(1 << 16, file), size))
 }
 
 fn configuration(name: &str, bytes: &mut impl Read, size: u64) -> Result<Cfg, InputError> {
