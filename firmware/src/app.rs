@@ -248,6 +248,11 @@ impl App {
         !floats && !self.lies_still
     }
 
+    /// With its next tick it trips by `cause`, if levitation is proven: the guard on top has tripped.
+    pub fn trip(&mut self, cause: Cause) {
+        self.told = Some(cause);
+    }
+
     /// What goes on, for the link; the last tick was `age_us` ago.
     pub fn report(&self, age_us: u32, lost_notices: u32) -> State {
         State {

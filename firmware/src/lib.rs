@@ -11,14 +11,17 @@ mod blind_timer;
 pub mod board;
 pub mod crash;
 pub mod drop_log;
-#[cfg(target_os = "none")]
+pub mod intake;
 mod journal;
 pub mod lift_interlock;
+pub mod main_loop;
 pub mod memory;
 pub mod memory_scrub;
 pub mod outgoing;
 pub mod outputs;
 pub mod overrun;
+pub mod platform;
+pub mod power_on;
 pub mod recorder;
 pub mod safety;
 pub mod speed;

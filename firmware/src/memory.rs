@@ -1,4 +1,4 @@
-//! What outlives main's frame on every board: 80 kB of samples, application and recorder.
+//! What outlives main's frame on every board: 80 kB of samples, application, recorder, ring.
 //!
 //! Application and recorder are made in functions of their own, so that their copies are gone from the stack
 //! before the first tick.
@@ -11,11 +11,16 @@ use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
 
 use crate::app::App;
+use crate::board::Board;
+use crate::intake::{Intake, Ring};
 use crate::recorder::{self, Identity, Recorder};
+use crate::tick::{Outbox, TickTask};
 
 /// Places for them, for a static.
 pub struct Memory {
     samples: recorder::Memory,
+    ring: Ring,
+    outbox: Outbox,
     // Without values of their own: these would take as much flash.
     app: MaybeUninit<App>,
     recorder: MaybeUninit<Recorder<'static>>,
@@ -25,20 +30,25 @@ impl Memory {
     /// Nothing in its place yet.
     pub const EMPTY: Self = Self {
         samples: recorder::Memory::EMPTY,
+        ring: Ring::EMPTY,
+        outbox: Outbox::new(),
         app: MaybeUninit::uninit(),
         recorder: MaybeUninit::uninit(),
     };
 
-    /// Application and recorder; `found` is what was wrong at power-on.
-    pub fn fill(
+    /// What takes a sample as it comes, and the task that does the rest; `found` is what was wrong at power-on.
+    pub fn fill<B: Board>(
         &'static mut self,
         config: &MonitorConfig,
         found: Faults,
         identity: Identity,
-    ) -> Result<(&'static mut App, &'static mut Recorder<'static>), ConfigError> {
+        board: B,
+    ) -> Result<(Intake<'static>, TickTask<'static, B>), ConfigError> {
         let app = application(&mut self.app, config, found)?;
         let recorder = recorder(&mut self.recorder, &mut self.samples, config, identity);
-        Ok((app, recorder))
+        let (intake, waiting) = self.ring.split(config)?;
+        let tick = TickTask::new(app, recorder, board, &mut self.outbox, waiting);
+        Ok((intake, tick))
     }
 }
 

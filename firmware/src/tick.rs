@@ -1,15 +1,20 @@
 //! One sample through application and record, and those that were never taken before it.
 
-use touchdown_core::event::Notices;
+use heapless::Deque;
+use touchdown_core::event::{Notice, Notices};
 use touchdown_core::sample::Sample;
+use touchdown_protocol::controller::{Cause, Outputs, Shown};
 
 use crate::app::App;
 use crate::board::Board;
+use crate::intake::Waiting;
 use crate::recorder::Recorder;
 
 /// Missed samples in a row whose time goes on in the monitor: 1 ms at 20 kHz, for which it trips. Those beyond are told
 /// and not made up for.
 const MOST_MISSED: u32 = 20;
+/// Notices on their way to log and link. If it is full they are lost and counted; events are numbered, so a gap shows.
+pub type Outbox = Deque<Notice, 64>;
 
 /// One sample, before which `lost` were lost. What the monitor said to it is left in `notices`.
 #[inline]
@@ -35,5 +40,120 @@ pub fn tick(
             return;
         }
         left -= 1;
+    }
+}
+
+/// Who takes the samples out of the ring.
+pub struct TickTask<'m, B> {
+    /// The application.
+    pub app: &'m mut App,
+    /// The record.
+    pub recorder: &'m mut Recorder<'m>,
+    /// The board, and what it is told.
+    pub desk: Desk<'m, B>,
+    notices: Notices,
+    /// Number of the next sample.
+    next: u32,
+}
+
+impl<'m, B: Board> TickTask<'m, B> {
+    /// Over a ring of which nothing was taken yet.
+    pub fn new(
+        app: &'m mut App,
+        recorder: &'m mut Recorder<'m>,
+        board: B,
+        outbox: &'m mut Outbox,
+        waiting: Waiting<'m>,
+    ) -> Self {
+        Self {
+            app,
+            recorder,
+            desk: Desk {
+                board,
+                outbox,
+                lost_notices: 0,
+                waiting,
+                number: 0,
+                service: false,
+            },
+            notices: Notices::new(),
+            next: 0,
+        }
+    }
+
+    /// The oldest sample that waits, if there is one.
+    #[inline]
+    pub fn step(&mut self) -> bool {
+        let Some(taken) = self.desk.waiting.next() else {
+            return false;
+        };
+        let lost = taken.number.wrapping_sub(self.next);
+        self.next = taken.number.wrapping_add(1);
+        let arrival = &taken.arrival;
+        (self.desk.number, self.desk.service) = (taken.number, arrival.service);
+        if arrival.clear {
+            let refused = self.app.clear().err();
+            self.desk.board.cleared(refused);
+        }
+        if self.desk.waiting.gate.is_overruled(taken.number) {
+            self.app.trip(Cause::Danger);
+        }
+        let Self {
+            app,
+            recorder,
+            desk,
+            notices,
+            ..
+        } = self;
+        tick(app, recorder, desk, &arrival.sample, lost, notices);
+        true
+    }
+
+    /// A notice that does not come from a tick.
+    pub fn hear(&mut self, notice: &Notice) {
+        self.desk.report(notice);
+        self.recorder.hear(notice);
+    }
+}
+
+/// The board, as the tick sees it, and what waits for log and link.
+pub struct Desk<'m, B> {
+    /// The board.
+    pub board: B,
+    /// On their way.
+    pub outbox: &'m mut Outbox,
+    /// For which it had no room.
+    pub lost_notices: u32,
+    /// Whether the service input was on at the last sample.
+    pub service: bool,
+    waiting: Waiting<'m>,
+    /// Of the sample whose tick it is.
+    number: u32,
+}
+
+impl<B: Board> Board for Desk<'_, B> {
+    fn report(&mut self, notice: &Notice) {
+        let is_lost = self.outbox.push_back(*notice).is_err();
+        self.lost_notices = self.lost_notices.saturating_add(u32::from(is_lost));
+        self.board.report(notice);
+    }
+
+    fn drive(&mut self, shown: Shown) {
+        let gate = self.waiting.gate;
+        let outputs = gate.pass(shown.outputs, self.number);
+        self.board.drive(Shown { outputs, ..shown });
+        // The guard on top may have come in between.
+        if gate.is_tripped() && outputs != Outputs::SAFE {
+            let outputs = Outputs::SAFE;
+            self.board.drive(Shown { outputs, ..shown });
+        }
+    }
+
+    fn config(&self) -> &[u8] {
+        self.board.config()
+    }
+
+    fn feed(&mut self) {
+        self.board.feed();
     }
 }

@@ -12,6 +12,8 @@ use embedded_storage::nor_flash::{
     check_erase, check_read, check_write,
 };
 
+use crate::platform::Ready;
+
 const WRITE_ENABLE: u8 = 0x06;
 const PAGE_PROGRAM: u8 = 0x02;
 const READ_DATA: u8 = 0x03;
@@ -189,3 +191,9 @@ impl<S: SpiDevice, D: DelayNs> NorFlash for W25q<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> MultiwriteNorFlash for W25q<S, D> {}
+
+impl<S: SpiDevice, D: DelayNs> Ready for W25q<S, D> {
+    fn is_ready(&mut self) -> bool {
+        matches!(self.is_busy(), Ok(false))
+    }
+}

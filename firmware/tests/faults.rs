@@ -59,10 +59,6 @@ impl Board for Memory {
         &self.block
     }
 
-    fn service(&self) -> bool {
-        false
-    }
-
     fn feed(&mut self) {
         self.fed += 1;
     }

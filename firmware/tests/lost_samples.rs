@@ -3,61 +3,16 @@
 mod common;
 
 use common::desk::Desk;
+use common::falling::{DURATION, RATE, sample};
 use proptest::prelude::*;
 use touchdown_core::event::{EventKind, Notice, Notices};
-use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{SAMPLE_RATE_HZ, default_config, default_settings};
+use touchdown_firmware::board::{default_config, default_settings};
 use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block;
 use touchdown_protocol::controller::{Fault, Faults};
 use touchdown_protocol::log::waveform::Counts;
-
-const RATE: f64 = SAMPLE_RATE_HZ as f64;
-const CLEARANCE: f64 = 0.3e-3;
-const GRAVITY: f64 = 9.81;
-const RESTITUTION: f64 = 0.8;
-/// Floats, then falls and bounces, s.
-const RELEASE: f64 = 0.3;
-const DURATION: f64 = 0.45;
-
-/// Height of a rotor that is let go, in closed form, m.
-fn height(time: f64) -> f64 {
-    let mut left = time - RELEASE;
-    let fall = (2.0 * CLEARANCE / GRAVITY).sqrt();
-    if left < fall {
-        return -0.5 * GRAVITY * left.max(0.0).powi(2);
-    }
-    left -= fall;
-    let mut speed = RESTITUTION * GRAVITY * fall;
-    while left > 2.0 * speed / GRAVITY {
-        left -= 2.0 * speed / GRAVITY;
-        speed *= RESTITUTION;
-        if speed < 1e-6 {
-            return -CLEARANCE;
-        }
-    }
-    speed * left - 0.5 * GRAVITY * left * left - CLEARANCE
-}
-
-fn sample(number: usize, seed: &mut u64) -> Sample {
-    let place = [0.0, height(number as f64 / RATE)];
-    let counts = [0, 1, 0, 1].map(|axis: usize| {
-        let noise: f64 = (0..12)
-            .map(|_| common::chip::random(seed) as u32 as f64 / f64::from(u32::MAX))
-            .sum();
-        let reading = place[axis] + 1e-6 * (noise - 6.0);
-        (2_048.0 + reading * 4_096.0 / 2_000e-6).round() as u16
-    });
-    Sample {
-        counts,
-        valid: 0b1111,
-        spin: None,
-        levitated: None,
-        edges: [None; TACHOMETERS],
-    }
-}
 
 struct Outcome {
     /// Onsets of the fall and of the first three impacts, samples.

@@ -89,9 +89,6 @@ impl Board for Desk {
     fn config(&self) -> &[u8] {
         &self.0
     }
-    fn service(&self) -> bool {
-        false
-    }
 
     fn feed(&mut self) {}
 }

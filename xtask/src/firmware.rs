@@ -52,17 +52,18 @@ const fn image(package: &'static str, name: &'static str, profile: &'static str)
     }
 }
 
-/// Builds all images.
-pub fn build() -> anyhow::Result<()> {
+/// Builds all images, or one.
+pub fn build(only: Option<&str>) -> anyhow::Result<()> {
     println!("Firmware: building for {TARGET}");
-    for image in IMAGES.iter().chain([&NEVER_RUN]) {
+    let is_wanted = |image: &&Image| only.is_none_or(|it| it == image.name);
+    for image in IMAGES.iter().chain([&NEVER_RUN]).filter(is_wanted) {
         cargo(image, &[])?;
         if image.profile != PROFILE {
             let from = folder(image.profile).join(image.name);
             fs::copy(from, images().join(image.name)).context("cannot copy an image")?;
         }
     }
-    for image in IMAGES {
+    for image in IMAGES.iter().filter(is_wanted) {
         let path = images().join(image.name);
         let (flash, ram) = size(&path)?;
         println!(

@@ -37,7 +37,11 @@ enum Task {
         yes: bool,
     },
     /// Build the images, for silicon and for the emulator
-    Firmware,
+    Firmware {
+        /// That one alone
+        #[arg(value_name = "IMAGE")]
+        only: Option<String>,
+    },
     /// Build the images, count the model's instructions in the emulator, write the tables
     Instructions,
     /// Measure what the firmware takes of the chip; fails above the limits of firmware/budget.toml, and where
@@ -113,8 +117,8 @@ enum Task {
 fn main() -> ExitCode {
     let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
-        Task::Firmware => firmware::build(),
-        Task::Instructions => firmware::build().and_then(|()| instructions::count()),
+        Task::Firmware { only } => firmware::build(only.as_deref()),
+        Task::Instructions => firmware::build(None).and_then(|()| instructions::count()),
         Task::Budget {
             json,
             keep,
@@ -138,7 +142,7 @@ fn main() -> ExitCode {
         Task::Test { yes } => setup::run(yes)
             // These first: the others take their names.
             .and_then(|()| firmware::build_planted())
-            .and_then(|()| firmware::build())
+            .and_then(|()| firmware::build(None))
             .and_then(|()| test::run())
             .and_then(|()| faults::run(&faults::sample(), None)),
     };

@@ -6,13 +6,23 @@ mod image {
     use cortex_m_rt::{ExceptionFrame, entry, exception};
     use defmt_semihosting as _;
     use panic_probe as _;
-    use stm32f4 as _;
-    use touchdown_firmware::{board::qemu, memory::Memory};
+    use stm32f4::stm32f405::interrupt;
+    use touchdown_firmware::board::qemu::{self, Memory};
 
     #[entry]
     fn main() -> ! {
         static mut MEMORY: Memory = Memory::EMPTY;
         qemu::main(MEMORY)
+    }
+
+    #[interrupt]
+    fn TIM2() {
+        qemu::on_timer();
+    }
+
+    #[exception]
+    fn PendSV() {
+        qemu::on_waiting();
     }
 
     // The runtime asks for an unsafe function; there is nothing unsafe in it.

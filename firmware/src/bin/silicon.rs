@@ -8,17 +8,22 @@ mod image {
     use cortex_m_rt::{ExceptionFrame, entry, exception};
     use defmt_rtt as _;
     use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::board::f405::{self, Memory};
+    use touchdown_firmware::{board::f405, memory::Memory};
 
     #[entry]
     fn main() -> ! {
-        static mut MEMORY: Memory = Memory::new();
+        static mut MEMORY: Memory = Memory::EMPTY;
         f405::main(MEMORY)
     }
 
     #[interrupt]
     fn ADC() {
         f405::on_converted();
+    }
+
+    #[exception]
+    fn PendSV() {
+        f405::on_waiting();
     }
 
     #[panic_handler]

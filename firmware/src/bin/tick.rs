@@ -1,24 +1,35 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! The tick, the forecast below it, and nothing else: linked to be looked at, never run. A panic handler or soft-float f64 among its
-//! symbols is reachable from them: `cargo xtask budget`.
+//! What interrupts and link can reach: sampling, tick and main loop, with recorder, drop log and flash driver, over registers of no
+//! chip. Linked to be looked at, never run. A panic handler or soft-float f64 among its symbols is reachable: `cargo xtask budget`.
 
 #[cfg(target_os = "none")]
 mod image {
+    use core::convert::Infallible;
     use core::panic::PanicInfo;
 
-    use touchdown_core::event::{Notice, Notices};
-    use touchdown_core::forecast::ForecastTask;
+    use embedded_hal::delay::DelayNs;
+    use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+    use touchdown_core::event::Notice;
     use touchdown_core::sample::Sample;
-    use touchdown_firmware::app::App;
-    use touchdown_firmware::board::Board;
-    use touchdown_firmware::recorder::Recorder;
-    use touchdown_firmware::tick::tick;
+    use touchdown_firmware::board::{Abilities, Board};
+    use touchdown_firmware::drop_log::DropLog;
+    use touchdown_firmware::intake::Intake;
+    use touchdown_firmware::main_loop::MainLoop;
+    use touchdown_firmware::platform::Platform;
+    use touchdown_firmware::tick::TickTask;
+    use touchdown_firmware::w25q::W25q;
     use touchdown_protocol::controller::Shown;
+    use touchdown_protocol::link::{Frame, Refusal};
 
     /// Registers that notices and outputs go to.
     struct Bare(&'static [u8]);
 
     const REGISTER: *mut u8 = 0x4000_0000 as *mut u8;
+
+    fn read() -> u8 {
+        // SAFETY: never run.
+        unsafe { REGISTER.read_volatile() }
+    }
 
     fn write(byte: u8) {
         // SAFETY: never run.
@@ -41,10 +52,6 @@ mod image {
             self.0
         }
 
-        fn service(&self) -> bool {
-            false
-        }
-
         fn feed(&mut self) {
             write(0);
         }
@@ -58,22 +65,110 @@ mod image {
         write((quotient as u64 ^ quotient.to_bits()) as u8);
     }
 
+    /// Registers of flash.
+    struct BareSpi;
+
+    impl ErrorType for BareSpi {
+        type Error = Infallible;
+    }
+
+    impl SpiDevice for BareSpi {
+        fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+            for operation in operations {
+                match operation {
+                    Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = read()),
+                    Operation::Write(bytes) => bytes.iter().for_each(|it| write(*it)),
+                    _ => {}
+                }
+            }
+            Ok(())
+        }
+    }
+
+    impl DelayNs for BareSpi {
+        fn delay_ns(&mut self, _: u32) {
+            write(0);
+        }
+    }
+
+    struct BarePlatform {
+        tick: TickTask<'static, Bare>,
+        log: Option<DropLog<W25q<BareSpi, BareSpi>, 42>>,
+    }
+
+    impl Platform for BarePlatform {
+        type Board = Bare;
+        type Log = DropLog<W25q<BareSpi, BareSpi>, 42>;
+
+        fn abilities(&self) -> Abilities {
+            Abilities {
+                sample_rate: f32::from(read()),
+                full_scale: 4_095,
+                tachometers: false,
+            }
+        }
+
+        fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Bare>) -> T) -> T {
+            act(&mut self.tick)
+        }
+
+        fn receive(&mut self) -> Option<u8> {
+            Some(read()).filter(|it| *it > 0)
+        }
+
+        fn send(&mut self, frame: &Frame) -> bool {
+            frame.iter().for_each(|it| write(*it));
+            true
+        }
+
+        fn is_idle(&mut self) -> bool {
+            read() > 0
+        }
+
+        fn is_sent(&mut self) -> bool {
+            read() > 0
+        }
+
+        fn log(&mut self) -> &mut Option<Self::Log> {
+            &mut self.log
+        }
+
+        fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
+            block.iter().for_each(|it| write(*it));
+            Ok(())
+        }
+
+        fn age_us(&mut self) -> u32 {
+            read().into()
+        }
+
+        fn unknown(&mut self) -> u64 {
+            read().into()
+        }
+
+        fn forget_reset(&mut self) {
+            write(0);
+        }
+
+        fn reset(&mut self) {
+            write(0);
+        }
+    }
+
     /// All the linker keeps hangs on this.
     #[unsafe(no_mangle)]
     extern "C" fn _start(
-        app: &mut App,
-        recorder: &mut Recorder<'static>,
-        config: &'static &'static [u8],
+        intake: &mut Intake<'static>,
+        platform: &mut BarePlatform,
+        main_loop: &mut MainLoop,
         sample: &Sample,
         lost: u32,
-        notices: &mut Notices,
-        forecast_task: &mut ForecastTask,
     ) {
-        tick(app, recorder, &mut Bare(config), sample, lost, notices);
-        if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
-        {
-            recorder.hear(&outlook);
+        if intake.take((*sample).into(), lost) {
+            write(0);
         }
+        while platform.tick.step() {}
+        main_loop.turn(platform);
     }
 
     #[panic_handler]

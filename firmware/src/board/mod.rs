@@ -3,6 +3,8 @@
 #[cfg(target_os = "none")]
 pub mod f405;
 #[cfg(target_os = "none")]
+mod held;
+#[cfg(target_os = "none")]
 mod image;
 #[cfg(target_os = "none")]
 pub mod qemu;
@@ -13,7 +15,7 @@ use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::{Settings, Wiring};
-use touchdown_protocol::controller::Shown;
+use touchdown_protocol::controller::{Busy, Shown};
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
@@ -23,11 +25,11 @@ pub trait Board {
     /// Drives the outputs, and may tell why; called every tick.
     fn drive(&mut self, shown: Shown);
 
+    /// An order to clear that came with a sample was `refused`, or done. Only a replay has such.
+    fn cleared(&mut self, _refused: Option<Busy>) {}
+
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];
-
-    /// Whether the local service input is on.
-    fn service(&self) -> bool;
 
     /// Feeds the watchdog; the last call of a tick that ran to its end.
     fn feed(&mut self);
@@ -70,9 +72,6 @@ pub const SAMPLE_RATE_HZ: u32 = 20_000;
 /// Speed of the link, baud.
 #[cfg(target_os = "none")]
 const BAUD: u32 = 115_200;
-/// Samples between two states that the link sends unasked.
-#[cfg(target_os = "none")]
-const STATE_SAMPLES: u64 = 1_000;
 
 /// Settings of a board on which none are stored: the default configuration, and neither speed nor
 /// levitation wired.

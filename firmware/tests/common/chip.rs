@@ -120,6 +120,11 @@ impl Chip {
         torn
     }
 
+    /// Whether the last change still goes on.
+    pub fn is_busy(&self) -> bool {
+        self.busy > 0
+    }
+
     /// What the last change was.
     pub fn last_name(&self) -> (&'static str, usize) {
         match self.last {

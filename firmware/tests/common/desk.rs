@@ -16,9 +16,5 @@ impl Board for Desk {
         &self.0
     }
 
-    fn service(&self) -> bool {
-        false
-    }
-
     fn feed(&mut self) {}
 }

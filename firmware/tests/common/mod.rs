@@ -3,4 +3,6 @@
 
 pub mod chip;
 pub mod desk;
+pub mod falling;
+pub mod machine;
 pub mod rig;

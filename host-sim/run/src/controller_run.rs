@@ -153,10 +153,6 @@ impl Board for Desk {
         &self.block
     }
 
-    fn service(&self) -> bool {
-        false
-    }
-
     // There is no watchdog on a desktop.
     fn feed(&mut self) {}
 }

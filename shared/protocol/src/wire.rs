@@ -1,7 +1,7 @@
 //! The bytes of samples and notices, little-endian, as they pass between desktop and target.
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
-//! (postcard), 1 where the controller is switched on with the first sample and 0 where a lift was seen before it,
+//! (postcard), flags ([`POWERS_ON`], [`IN_REAL_TIME`]),
 //! then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
 //! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, changes of what the controller shows and orders, then that of the
 //! [`Severity`], and last the one of [`Summary`].
@@ -16,11 +16,15 @@ use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x05";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x06";
 /// First bytes of an answer; the last is the version.
 pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x05";
+/// The controller is switched on with the first sample; without it a lift was seen before.
+pub const POWERS_ON: u8 = 1;
+/// Samples come at their rate, whatever becomes of them; without it each waits for the one before it.
+pub const IN_REAL_TIME: u8 = 2;
 /// Bytes of a sample record.
-pub const SAMPLE_BYTES: usize = 20;
+pub const SAMPLE_BYTES: usize = 21;
 /// Bytes of a notice record.
 pub const NOTICE_BYTES: usize = 32;
 
@@ -30,9 +34,11 @@ const LEVITATED_ON: u8 = 1 << 6;
 const CLEAR: u8 = 1 << 7;
 /// Beside the pulse channels.
 const SERVICE: u8 = 1 << 7;
+/// Likewise: the last byte comes over the line.
+const LINE: u8 = 1 << 6;
 
 /// Sample to bytes: four u16 counts, flags, which pulse channels are there, their ages, spin (f32),
-/// their counts (u16).
+/// their counts (u16), and a byte for the line.
 pub fn encode_sample(sample: &Sample) -> [u8; SAMPLE_BYTES] {
     let mut bytes = [0; SAMPLE_BYTES];
     for (pair, count) in bytes.chunks_exact_mut(2).zip(sample.counts) {
@@ -100,6 +106,18 @@ pub fn with_service(mut bytes: [u8; SAMPLE_BYTES]) -> [u8; SAMPLE_BYTES] {
 /// Whether the service input is on at this sample.
 pub fn has_service(bytes: &[u8; SAMPLE_BYTES]) -> bool {
     bytes[9] & SERVICE != 0
+}
+
+/// The bytes of a sample in whose period a byte comes over the line.
+pub fn with_line_byte(mut bytes: [u8; SAMPLE_BYTES], byte: u8) -> [u8; SAMPLE_BYTES] {
+    bytes[9] |= LINE;
+    bytes[20] = byte;
+    bytes
+}
+
+/// The byte that comes over the line in this sample's period.
+pub fn line_byte(bytes: &[u8; SAMPLE_BYTES]) -> Option<u8> {
+    (bytes[9] & LINE != 0).then_some(bytes[20])
 }
 
 /// A change of what the controller shows.

@@ -71,6 +71,7 @@ fn qemu(folder: &Path) -> (Process, File) {
     assert!(made.success());
     let child = Command::new("qemu-system-arm")
         .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none"])
+        .args(["-icount", "shift=3,sleep=off"])
         .args([
             "-chardev",
             "socket,id=link,path=rig.sock,server=on,wait=off",

@@ -63,7 +63,8 @@ fn is_soft_float(name: &str) -> bool {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stack {
     main: u64,
-    interrupt: u64,
+    /// Of the tick, and of sampling on top of it.
+    interrupts: [u64; 2],
     /// Functions called through a pointer, or compiled elsewhere, whose frames are not in it.
     open: Vec<String>,
 }
@@ -75,18 +76,19 @@ impl Stack {
         open.filter_map(|it| it.strip_prefix(calls::POINTERS))
     }
 
-    /// Of the deepest chain from the start, and of the interrupt on top of it.
+    /// Of the deepest chain from the start, and of the interrupts on top of it.
     pub fn bytes(&self) -> u64 {
-        self.main + EXCEPTION_FRAME + self.interrupt
+        let [tick, sampling] = self.interrupts;
+        self.main + EXCEPTION_FRAME + tick + EXCEPTION_FRAME + sampling
     }
 }
 
 impl fmt::Display for Stack {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (main, interrupt) = (self.main, self.interrupt);
+        let (main, [tick, sampling]) = (self.main, self.interrupts);
         write!(
             f,
-            "{} bytes: main {main}, registers {EXCEPTION_FRAME}, interrupt {interrupt}; not in it: {} functions \
+            "{} bytes: main {main}, tick {tick}, sampling {sampling}, registers twice {EXCEPTION_FRAME}; not in it: {} functions \
              without a stated frame, and pointers in {}",
             self.bytes(),
             self.open.len() - self.pointers().count(),
@@ -106,13 +108,13 @@ pub fn stack(image: &Path) -> anyhow::Result<Stack> {
         }
         Ok::<_, anyhow::Error>(deepest)
     };
-    let (main, interrupt) = (deepest("Reset")?, deepest("ADC")?);
-    let mut open = [main.open, interrupt.open].concat();
+    let (main, tick, sampling) = (deepest("Reset")?, deepest("PendSV")?, deepest("ADC")?);
+    let mut open = [main.open, tick.open, sampling.open].concat();
     open.sort();
     open.dedup();
     Ok(Stack {
         main: main.bytes,
-        interrupt: interrupt.bytes,
+        interrupts: [tick.bytes, sampling.bytes],
         open,
     })
 }

@@ -3,14 +3,14 @@
 /// Over a list of ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Queue {
-    /// Samples that were overwritten before a tick took them.
+    /// Samples for which the ring had no room.
     pub lost: u64,
     /// Longest from a sample to the end of its tick, cycles.
     pub latency_worst: u64,
 }
 
-/// Of samples at equal `period`s, whose ticks take `cycles` each. Up to `depth` samples wait; a new one then takes the
-/// place of the oldest. The converter's register is a queue of one. A lost sample takes no time.
+/// Of samples at equal `period`s, whose ticks take `cycles` each. Up to `depth` samples wait; a new one is then lost,
+/// and takes no time.
 pub fn simulate(cycles: &[u64], period: u64, depth: usize) -> Queue {
     let mut queue = Queue::default();
     let mut waiting = std::collections::VecDeque::new();
@@ -28,10 +28,10 @@ pub fn simulate(cycles: &[u64], period: u64, depth: usize) -> Queue {
             queue.latency_worst = queue.latency_worst.max(serve(next, &mut free));
         }
         if waiting.len() == depth {
-            waiting.pop_front();
             queue.lost += 1;
+        } else {
+            waiting.push_back(sample);
         }
-        waiting.push_back(sample);
     }
     for next in waiting {
         queue.latency_worst = queue.latency_worst.max(serve(next, &mut free));
@@ -66,10 +66,10 @@ mod tests {
 
     #[test]
     fn a_tick_of_more_than_two_periods_loses_with_one_place_and_not_with_two() {
-        // The first ends at 250: the sample of 100 was overwritten at 200, which ends at 260.
+        // The first ends at 250: the sample of 200 had no room beside that of 100, which ends at 260.
         assert_eq!(of(&[250, 10, 10, 10], 1), (1, 250));
         assert_eq!(of(&[250, 10, 10, 10], 2), (0, 250));
-        // Ends at 450: those of 100, 200 and 300 are lost; with two places those of 100 and 200.
+        // Ends at 450: those of 200, 300 and 400 are lost; with two places those of 300 and 400.
         assert_eq!(of(&[450, 1, 1, 1, 1], 1), (3, 450));
         assert_eq!(of(&[450, 1, 1, 1, 1], 2), (2, 450));
     }

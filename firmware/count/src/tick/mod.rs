@@ -23,12 +23,14 @@ use touchdown_firmware::board::qemu::Counter;
 use crate::table::{Table, Tally};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::Board;
+use touchdown_firmware::intake::Ring;
 use touchdown_firmware::memory;
 use touchdown_firmware::recorder::{self, Identity, Recorder};
 use touchdown_firmware::tick::tick;
 
 /// All but the forecast, which is below the tick, are parts of it.
-const PARTS: [&str; 8] = [
+const PARTS: [&str; 9] = [
+    "sampling and guard on top",
     "guard",
     "proof, alarms, touches",
     "sensing and health",
@@ -120,8 +122,12 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     let mut forecast_task = memory::forecast_task(&scene.config()).expect("a valid configuration");
     let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
+    let mut ring = Ring::EMPTY;
+    let (mut intake, mut waiting) = ring.split(&scene.config()).expect("a valid configuration");
     scene.play(|sample| {
         let sample = black_box(sample);
+        let (_, on_top) = counter.count(|| intake.take((*sample).into(), 0));
+        black_box(waiting.next());
         let (monitor, state) = app.monitor();
         let (places, guard) = counter.count(|| monitor.guard(state, sample));
         let places = black_box(&places);
@@ -143,7 +149,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
             recorder.hear(&outlook);
         }
         let counts = [
-            guard, told, sensing, detector, forecast, severity, recording, outputs,
+            on_top, guard, told, sensing, detector, forecast, severity, recording, outputs,
         ];
         tallies
             .iter_mut()
@@ -188,10 +194,6 @@ impl Board for Idle {
 
     fn config(&self) -> &[u8] {
         &self.0
-    }
-
-    fn service(&self) -> bool {
-        false
     }
 
     fn feed(&mut self) {}

@@ -1,29 +1,30 @@
-//! Four channels at a fixed rate: TIM2 starts the converter in hardware, so that software jitter
-//! does not reach the sampling instant. TIM3 counts these starts in hardware.
+//! Four channels at a fixed rate by two converters at once: TIM2 starts them in hardware, so that software jitter does
+//! not reach the sampling instant. TIM3 counts these starts in hardware.
 //!
-//! The four conversions follow each other by 40 converter cycles, 1.9 us: the channels of one
-//! sample are up to 5.7 us apart.
+//! ADC1 converts x and ADC2 y: both of a plane at one instant, plane b 40 converter cycles, 1.9 us, after plane a.
 
-use stm32f4::stm32f405::{ADC_COMMON, ADC1, GPIOA, RCC, TIM2, TIM3};
-use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
+use stm32f4::stm32f405::{ADC_COMMON, ADC1, ADC2, GPIOA, RCC, TIM2, TIM3, adc1};
+use touchdown_core::sample::{Sample, TACHOMETERS};
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::board::SAMPLE_RATE_HZ;
 
-/// PA4 to PA7: plane a x, plane a y, plane b x, plane b y.
-const INPUTS: [u8; CHANNELS] = [4, 5, 6, 7];
+/// Of ADC1 and ADC2, plane a then plane b: PA4 and PA6 are x, PA5 and PA7 are y. Both converters reach all four pins
+/// (DS8626, pin definitions).
+const INPUTS: [[u8; 2]; 2] = [[4, 6], [5, 7]];
 
-/// Timer and converter.
+/// Timer and converters.
 pub struct Converter {
-    adc: ADC1,
+    x: ADC1,
+    y: ADC2,
     timer: TIM2,
     number: TIM3,
 }
 
 impl Converter {
-    /// Sets both up, stopped.
+    /// Sets them up, stopped.
     pub fn new(
-        adc: ADC1,
+        (x, y): (ADC1, ADC2),
         common: &ADC_COMMON,
         timer: TIM2,
         number: TIM3,
@@ -33,32 +34,23 @@ impl Converter {
         rcc.ahb1enr().modify(|_, w| w.gpioaen().enabled());
         rcc.apb1enr()
             .modify(|_, w| w.tim2en().enabled().tim3en().enabled());
-        rcc.apb2enr().modify(|_, w| w.adc1en().enabled());
+        rcc.apb2enr()
+            .modify(|_, w| w.adc1en().enabled().adc2en().enabled());
         pins.moder().modify(|_, w| {
             w.moder4().analog().moder5().analog();
             w.moder6().analog().moder7().analog()
         });
 
         // 84 MHz / 4 = 21 MHz; 36 MHz is the limit (DS8626, 12-bit ADC characteristics).
-        common.ccr().modify(|_, w| w.adcpre().div4());
-        adc.cr1()
-            .write(|w| w.scan().enabled().jeocie().enabled().res().twelve_bit());
-        adc.smpr2().write(|w| {
-            w.smp4().cycles28().smp5().cycles28();
-            w.smp6().cycles28().smp7().cycles28()
-        });
-        adc.jsqr().write(|w| {
-            // SAFETY: channels 4 to 7 exist, and they end in a data register each.
-            unsafe {
-                w.jsq1().bits(INPUTS[0]).jsq2().bits(INPUTS[1]);
-                w.jsq3().bits(INPUTS[2]).jsq4().bits(INPUTS[3]);
-            }
-            w.jl().set(CHANNELS as u8 - 1)
-        });
-        adc.cr2().write(|w| {
-            w.adon().enabled();
-            w.jextsel().tim2trgo().jexten().rising_edge()
-        });
+        // RM0090, injected simultaneous mode: ADC1's trigger starts both.
+        common
+            .ccr()
+            .modify(|_, w| w.adcpre().div4().multi().dual_j());
+        set_up(&x, INPUTS[0]);
+        set_up(&y, INPUTS[1]);
+        x.cr1().modify(|_, w| w.jeocie().enabled());
+        x.cr2()
+            .modify(|_, w| w.jextsel().tim2trgo().jexten().rising_edge());
 
         timer
             .arr()
@@ -69,7 +61,12 @@ impl Converter {
             .smcr()
             .write(|w| w.ts().itr1().sms().ext_clock_mode());
         number.cr1().write(|w| w.cen().enabled());
-        Self { adc, timer, number }
+        Self {
+            x,
+            y,
+            timer,
+            number,
+        }
     }
 
     /// Starts sampling.
@@ -82,19 +79,36 @@ impl Converter {
         self.number.cnt().read().cnt().bits() as u16
     }
 
-    /// The sample just converted.
+    /// The sample just converted. Both converters are through: they began together, and take as long.
     pub fn take(&self) -> Sample {
-        self.adc.sr().modify(|_, w| w.jeoc().clear());
-        let mut counts = [0; CHANNELS];
-        for (count, register) in counts.iter_mut().zip(self.adc.jdr_iter()) {
-            *count = register.read().jdata().bits();
-        }
+        self.x.sr().modify(|_, w| w.jeoc().clear());
+        self.y.sr().modify(|_, w| w.jeoc().clear());
+        let [ax, bx] = results(&self.x);
+        let [ay, by] = results(&self.y);
         Sample {
-            counts,
+            counts: [ax, ay, bx, by],
             valid: 0b1111,
             spin: None,
             levitated: None,
             edges: [None; TACHOMETERS],
         }
     }
+}
+
+fn set_up(adc: &adc1::RegisterBlock, [a, b]: [u8; 2]) {
+    adc.cr1().write(|w| w.scan().enabled().res().twelve_bit());
+    adc.smpr2().write(|w| {
+        w.smp4().cycles28().smp5().cycles28();
+        w.smp6().cycles28().smp7().cycles28()
+    });
+    adc.jsqr().write(|w| {
+        // SAFETY: channels 4 to 7 exist. Two conversions are the last two of the sequence: RM0090, ADC_JSQR.
+        unsafe { w.jsq3().bits(a).jsq4().bits(b) };
+        w.jl().set(1)
+    });
+    adc.cr2().write(|w| w.adon().enabled());
+}
+
+fn results(adc: &adc1::RegisterBlock) -> [u16; 2] {
+    [adc.jdr1(), adc.jdr2()].map(|it| it.read().jdata().bits())
 }

@@ -73,16 +73,16 @@ impl Line {
         Some(byte)
     }
 
-    /// Queues a frame, where there is one; whether it had room.
+    /// Queues a frame; whether it had room.
     #[must_use]
-    pub fn send(&mut self, frame: Option<&Frame>) -> bool {
-        frame.is_none_or(|it| self.out.push(it))
+    pub fn send(&mut self, frame: &Frame) -> bool {
+        self.out.push(frame)
     }
 
-    /// Hands over what waits, once the bytes before have gone.
-    pub fn push(&mut self) {
+    /// Hands over what waits, once the bytes before have gone; whether nothing waits any more.
+    pub fn push(&mut self) -> bool {
         if self.out.is_empty() || self.sends() {
-            return;
+            return self.out.is_empty();
         }
         let mut length = 0;
         for (place, byte) in BATCH.iter().zip(core::iter::from_fn(|| self.out.pop())) {
@@ -109,6 +109,7 @@ impl Line {
             w.chsel().set(CHANNEL).minc().incremented();
             w.dir().memory_to_peripheral().en().enabled()
         });
+        self.out.is_empty()
     }
 
     /// Whether all has gone out.

@@ -39,13 +39,16 @@ impl OutputPins {
     }
 
     /// Whether the service input is on.
-    pub fn service(&self) -> bool {
-        self.0.idr().read().idr4().bit_is_set()
+    pub fn service() -> bool {
+        // SAFETY: a read of a register that reading does not change.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
     }
 
-    /// Takes the current off all, whatever else the program holds: the first act of one that stops.
+    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
+    /// top.
     pub fn drop_now() {
-        // SAFETY: a single write to a register that only sets and resets; nothing runs afterwards.
+        // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOC::ptr() };
         pins.bsrr().write(drop_all);
     }
@@ -62,16 +65,19 @@ fn drop_all(w: &mut Levels) -> &mut Levels {
 pub struct Watchdog(IWDG);
 
 impl Watchdog {
+    /// Not started.
+    pub fn new(iwdg: IWDG) -> Self {
+        Self(iwdg)
+    }
+
     /// Starts it; it stands still while a debugger halts the core.
-    pub fn start(iwdg: IWDG, dbgmcu: &DBGMCU) -> Self {
+    pub fn start(&self, dbgmcu: &DBGMCU) {
         dbgmcu.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
-        iwdg.kr().write(|w| w.key().start());
-        iwdg.kr().write(|w| w.key().unlock());
-        iwdg.pr().write(|w| w.pr().divide_by4());
-        iwdg.rlr().write(|w| w.rl().set(15));
-        let watchdog = Self(iwdg);
-        watchdog.feed();
-        watchdog
+        self.0.kr().write(|w| w.key().start());
+        self.0.kr().write(|w| w.key().unlock());
+        self.0.pr().write(|w| w.pr().divide_by4());
+        self.0.rlr().write(|w| w.rl().set(15));
+        self.feed();
     }
 
     /// Gives it another 2 ms.

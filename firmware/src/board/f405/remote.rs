@@ -1,15 +1,19 @@
-//! What the link may ask of this board.
+//! The chip below the tick.
 
-use cortex_m::peripheral::DWT;
+use core::sync::atomic::Ordering;
+
+use cortex_m::peripheral::{DWT, SCB};
 use stm32f4::stm32f405::{FLASH, GPIOB, RCC, RNG};
-use touchdown_core::event::Notice;
-use touchdown_protocol::config_block::{Block, Settings};
-use touchdown_protocol::link::{Device, Log, Recent, Refusal, State};
+use touchdown_protocol::link::{Frame, Refusal};
 
 use super::clocks::CORE_HZ;
+use super::line::Line;
 use super::outputs::Watchdog;
-use super::{ABILITIES, ChipLog, record, store, with_tick};
-use crate::board::Board;
+use super::{ABILITIES, ChipLog, SAMPLED, Silicon, TICK, record, store};
+use crate::board::Abilities;
+use crate::journal;
+use crate::platform::{Entry, Platform};
+use crate::tick::TickTask;
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
@@ -25,40 +29,26 @@ pub fn wire(pins: &GPIOB, rcc: &RCC) {
         .modify(|_, w| w.moder6().alternate().moder7().alternate());
 }
 
-/// The board, as the link sees it.
-pub struct Remote {
+/// The line, the stored configuration, the log and what tells why it was reset.
+pub struct ChipPlatform {
+    line: Line,
     flash: FLASH,
     rcc: RCC,
     random: RNG,
     log: Option<ChipLog>,
-    wants_reset: bool,
-    lost_notices: u32,
 }
 
-impl Remote {
-    /// With nothing asked yet.
-    pub fn new(flash: FLASH, rcc: RCC, random: RNG, log: Option<ChipLog>) -> Self {
+impl ChipPlatform {
+    /// Of the parts that are up; the noise source is started.
+    pub fn new(line: Line, flash: FLASH, rcc: RCC, random: RNG, log: Option<ChipLog>) -> Self {
         rcc.ahb2enr().modify(|_, w| w.rngen().enabled());
         random.cr().write(|w| w.rngen().enabled());
         Self {
+            line,
             flash,
             rcc,
             random,
             log,
-            wants_reset: false,
-            lost_notices: 0,
-        }
-    }
-
-    /// Does the log's next thing, if the chip is ready for it.
-    pub fn work(&mut self) {
-        let Some(log) = &mut self.log else { return };
-        if log.flash().is_busy() == Ok(false) {
-            let known = with_tick(|tick| (tick.recorder.counted(), tick.app.latched()));
-            let (counted, latched) = known.unwrap_or_default();
-            log.work(counted, latched, || {
-                with_tick(|tick| tick.recorder.fetch()).flatten()
-            });
         }
     }
 
@@ -70,35 +60,48 @@ impl Remote {
         let failed = status.secs().bit_is_set() || status.cecs().bit_is_set();
         (came && !failed).then(|| self.random.dr().read().bits())
     }
-
-    /// Counts a notice for which there was no room on the line.
-    pub fn lose_notice(&mut self) {
-        self.lost_notices = self.lost_notices.saturating_add(1);
-    }
-
-    /// Whether another configuration waits for a reset.
-    pub fn wants_reset(&self) -> bool {
-        self.wants_reset
-    }
 }
 
-impl Device for Remote {
-    fn state(&mut self) -> State {
-        with_tick(|tick| {
-            let age = DWT::cycle_count().wrapping_sub(tick.at);
-            let lost = tick.board.lost_notices.saturating_add(self.lost_notices);
-            tick.app.report(age / (CORE_HZ / 1_000_000), lost)
-        })
-        .unwrap_or(State::NONE)
+impl Platform for ChipPlatform {
+    type Board = Silicon;
+    type Log = ChipLog;
+
+    fn abilities(&self) -> Abilities {
+        ABILITIES
     }
 
-    fn config(&mut self) -> Block {
-        with_tick(|tick| Block::from_slice(tick.board.config()).unwrap_or_default())
-            .unwrap_or_default()
+    fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Silicon>) -> T) -> T {
+        TICK.with(act)
+            .unwrap_or_else(|| unreachable!("the tick is in its place, and held by one"))
     }
 
-    fn service(&mut self) -> bool {
-        with_tick(|tick| tick.board.service()).unwrap_or(false)
+    fn receive(&mut self) -> Option<u8> {
+        self.line.next()
+    }
+
+    fn send(&mut self, frame: &Frame) -> bool {
+        self.line.send(frame)
+    }
+
+    fn is_idle(&mut self) -> bool {
+        self.line.push()
+    }
+
+    fn is_sent(&mut self) -> bool {
+        self.line.push() && self.line.is_done()
+    }
+
+    fn log(&mut self) -> &mut Option<ChipLog> {
+        &mut self.log
+    }
+
+    fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
+        store::store(&self.flash, block)
+    }
+
+    fn age_us(&mut self) -> u32 {
+        let age = DWT::cycle_count().wrapping_sub(SAMPLED.load(Ordering::Relaxed));
+        age / (CORE_HZ / 1_000_000)
     }
 
     fn unknown(&mut self) -> u64 {
@@ -106,35 +109,16 @@ impl Device for Remote {
         high << 32 | low
     }
 
-    fn ordered(&mut self, notice: &Notice) {
-        with_tick(|tick| {
-            tick.board.report(notice);
-            tick.recorder.hear(notice);
-        });
-    }
-
-    fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
-        if let Some(parameter) = ABILITIES.misfit(&settings.monitor) {
-            return Err(Refusal::parameter(parameter));
-        }
-        with_tick(|tick| tick.app.may_restart()).unwrap_or(Ok(()))?;
-        store::store(&self.flash, block)?;
-        self.wants_reset = true;
-        Ok(())
-    }
-
-    fn clear(&mut self) -> Result<(), Refusal> {
-        with_tick(|tick| tick.app.clear()).unwrap_or(Ok(()))?;
+    fn forget_reset(&mut self) {
         Watchdog::forget(&self.rcc);
         record::clear();
-        Ok(())
     }
 
-    fn recent(&mut self, step: u16) -> Recent {
-        with_tick(|tick| tick.recorder.recent(step)).unwrap_or_default()
+    fn write_down(&mut self, entry: &Entry<'_>) {
+        journal::entry(entry);
     }
 
-    fn log(&mut self) -> &mut impl Log {
-        &mut self.log
+    fn reset(&mut self) {
+        SCB::sys_reset();
     }
 }

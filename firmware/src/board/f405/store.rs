@@ -5,6 +5,8 @@ use stm32f4::stm32f405::FLASH;
 use touchdown_protocol::config_block::{self, BLOCK_BYTES, BlockError, Settings};
 use touchdown_protocol::link::Refusal;
 
+use crate::power_on::InForce;
+
 /// Sector 11: RM0090, flash module organization. memory.x leaves it out.
 const START: usize = 0x080e_0000;
 const SLOTS: usize = 128 * 1024 / BLOCK_BYTES;
@@ -26,10 +28,13 @@ fn used() -> usize {
 }
 
 /// The last block and its settings.
-pub fn load() -> Result<(&'static [u8], Settings), BlockError> {
+pub fn load() -> Result<(InForce, Settings), BlockError> {
     match used() {
         0 => Err(BlockError::Blank),
-        used => config_block::decode(slot(used - 1)),
+        used => {
+            let (block, settings) = config_block::decode(slot(used - 1))?;
+            Ok((InForce::Stored(block), settings))
+        }
     }
 }
 

@@ -4,17 +4,19 @@ use semihosting::experimental::env;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sample::Sample;
 use touchdown_protocol::wire::{self, Record};
 
 use super::Failure;
 use super::name::Name;
 use super::nor::NorFile;
 use super::settings::SettingsFile;
-use crate::board::BLOCK_SAMPLES;
+use crate::intake::Arrival;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
+/// Samples that are read at once.
+const BLOCK_SAMPLES: usize = 32;
+
 /// What the command line names.
 pub struct Files {
     /// First.
@@ -51,6 +53,19 @@ impl Files {
 pub struct Replay {
     file: File,
     block: [[u8; wire::SAMPLE_BYTES]; BLOCK_SAMPLES],
+    /// Records of the block, and the next of them.
+    records: usize,
+    at: usize,
+}
+
+/// What the head of a replay says.
+pub struct Head {
+    /// In force where none is stored.
+    pub config: MonitorConfig,
+    /// Whether the controller is switched on with the first sample.
+    pub powers_on: bool,
+    /// Whether samples come at their rate, whatever becomes of them; else each waits for the one before it.
+    pub in_real_time: bool,
 }
 
 impl Replay {
@@ -58,12 +73,14 @@ impl Replay {
         Ok(Self {
             file: File::open(name.get()).map_err(|_| Failure::Replay)?,
             block: [[0; wire::SAMPLE_BYTES]; BLOCK_SAMPLES],
+            records: 0,
+            at: 0,
         })
     }
 
-    /// The configuration at the start of the file, and whether the controller is switched on with the first sample;
-    /// to be called once, first.
-    pub fn config(&mut self) -> Result<(MonitorConfig, bool), Failure> {
+    /// The start of the file; to be called once, first.
+    #[inline(never)]
+    pub fn head(&mut self) -> Result<Head, Failure> {
         let mut head = [0; 8];
         let mut config = [0; CONFIG_BYTES];
         self.file
@@ -78,18 +95,37 @@ impl Replay {
             .ok_or(Failure::Replay)?;
         self.file.read_exact(config).map_err(|_| Failure::Replay)?;
         let config = postcard::from_bytes(config).map_err(|_| Failure::Replay)?;
-        let mut powers_on = [0];
+        let mut flags = [0];
         self.file
-            .read_exact(&mut powers_on)
+            .read_exact(&mut flags)
             .map_err(|_| Failure::Replay)?;
-        Ok((config, powers_on != [0]))
+        let [flags] = flags;
+        Ok(Head {
+            config,
+            powers_on: flags & wire::POWERS_ON != 0,
+            in_real_time: flags & wire::IN_REAL_TIME != 0,
+        })
     }
 
-    /// The next samples, each with whether an order to clear comes before it, and whether the service input is on;
-    /// `None` at the end of the file.
-    pub fn samples(
-        &mut self,
-    ) -> Result<Option<impl Iterator<Item = (Sample, bool, bool)>>, Failure> {
+    /// The next sample and what comes with it; `None` at the end of the file.
+    pub fn next(&mut self) -> Result<Option<(Arrival, Option<u8>)>, Failure> {
+        if self.at == self.records {
+            (self.records, self.at) = (self.read()?, 0);
+        }
+        let record = self.block.get(self.at..self.records).and_then(<[_]>::first);
+        self.at += usize::from(record.is_some());
+        Ok(record.map(|it| {
+            let arrival = Arrival {
+                sample: wire::decode_sample(it),
+                service: wire::has_service(it),
+                clear: wire::has_clear(it),
+            };
+            (arrival, wire::line_byte(it))
+        }))
+    }
+
+    /// Fills the block as far as the file goes; how many records it has.
+    fn read(&mut self) -> Result<usize, Failure> {
         let bytes = self.block.as_flattened_mut();
         let mut filled = 0;
         while let Some(space) = bytes.get_mut(filled..).filter(|space| !space.is_empty()) {
@@ -101,13 +137,7 @@ impl Replay {
         if filled % wire::SAMPLE_BYTES != 0 {
             return Err(Failure::Replay);
         }
-        let records = &self.block[..filled / wire::SAMPLE_BYTES];
-        Ok((!records.is_empty()).then(|| {
-            records.iter().map(|it| {
-                let sample = wire::decode_sample(it);
-                (sample, wire::has_clear(it), wire::has_service(it))
-            })
-        }))
+        Ok(filled / wire::SAMPLE_BYTES)
     }
 }
 

@@ -1,32 +1,47 @@
 //! QEMU's netduinoplus2: samples from a replay file, notices to an answer file, both by
 //! semihosting. Formats: [`touchdown_protocol::wire`].
+//!
+//! TIM2's interrupt gives a sample each period, in emulated time: by default only once all that follows from the one
+//! before is done, so that any rate gives the same bits on any desktop; in real time whatever becomes of it.
 
 mod counter;
 mod files;
+mod line;
 mod name;
 mod nor;
 mod remote;
-mod serial;
 mod settings;
 
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use cortex_m::peripheral::SCB;
 use defmt::{Debug2Format, Display2Format, error, info};
-use touchdown_core::event::{Notice, Notices};
-use touchdown_core::monitor::{Fingerprint, MonitorConfig};
-use touchdown_protocol::config_block::{self, Block, BlockError, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Shown};
+use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals, TIM2};
+use touchdown_core::event::Notice;
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
+use touchdown_protocol::controller::{Busy, Shown};
 use touchdown_protocol::wire::{Cleared, Record, Switching};
 
 pub use self::counter::Counter;
-use self::files::{Answer, Files};
+use self::files::{Answer, Files, Head, Replay};
+use self::line::{Bytes, Wire};
 use self::nor::NorFile;
-use self::remote::Line;
+use self::remote::EmulatorPlatform;
 use self::settings::SettingsFile;
+use super::held::{self, Held};
 use super::{Abilities, Board, EMULATED_SLOTS, image};
 use crate::drop_log::DropLog;
+use crate::intake::Intake;
 use crate::journal;
-use crate::memory::{self, Memory};
-use crate::recorder::{Identity, Recorder};
-use crate::tick::tick;
+use crate::main_loop::MainLoop;
+use crate::memory;
+use crate::power_on::{InForce, PowerOn};
+use crate::recorder::Identity;
+use crate::tick::TickTask;
+
+/// TIM2's clock in QEMU, Hz.
+const TIMER_HZ: f32 = 1e9;
 
 /// Why a run failed; the exit status.
 #[derive(Clone, Copy, Debug)]
@@ -57,69 +72,134 @@ enum End {
 /// The drop log in a file.
 pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
-struct Emulated {
+/// What outlives main's frame.
+pub struct Memory {
+    monitor: memory::Memory,
+    bytes: Bytes,
+}
+
+impl Memory {
+    /// Empty.
+    pub const EMPTY: Self = Self {
+        monitor: memory::Memory::EMPTY,
+        bytes: Bytes::EMPTY,
+    };
+}
+
+static SAMPLING: Held<Sampling> = Held::new();
+static TICK: Held<TickTask<'static, Emulated>> = Held::new();
+/// Samples of which all that follows is done.
+static DONE: AtomicU32 = AtomicU32::new(0);
+/// No sample is left.
+static IS_OVER: AtomicBool = AtomicBool::new(false);
+
+/// What the tick has of the emulator.
+pub struct Emulated {
     answer: Answer,
     shown: Option<Shown>,
     ticks: u64,
-    block: Block,
-    line: Line,
-    service: bool,
+    block: InForce,
     failed: bool,
+}
+
+impl Emulated {
+    fn write(&mut self, record: &Record) {
+        self.failed |= self.answer.write(record).is_err();
+    }
 }
 
 impl Board for Emulated {
     fn report(&mut self, notice: &Notice) {
-        journal::notice(notice);
-        self.line.notice(notice);
-        self.failed |= self.answer.write(&Record::Notice(*notice)).is_err();
+        self.write(&Record::Notice(*notice));
     }
 
     fn drive(&mut self, shown: Shown) {
         if self.shown != Some(shown) {
-            journal::shown(shown);
             self.shown = Some(shown);
             let switching = Switching {
                 sample: self.ticks,
                 shown,
             };
-            self.failed |= self.answer.write(&Record::Switching(switching)).is_err();
+            self.write(&Record::Switching(switching));
         }
         self.ticks += 1;
     }
 
-    fn config(&self) -> &[u8] {
-        &self.block
+    fn cleared(&mut self, refused: Option<Busy>) {
+        let cleared = Cleared {
+            sample: self.ticks,
+            refused,
+        };
+        self.write(&Record::Cleared(cleared));
     }
 
-    fn service(&self) -> bool {
-        self.service
+    fn config(&self) -> &[u8] {
+        self.block.bytes()
     }
 
     // No watchdog is emulated.
     fn feed(&mut self) {}
 }
 
-impl Emulated {
-    /// An order of the replay file to clear was `refused`, or done.
-    fn cleared(&mut self, refused: Option<Busy>) {
-        let cleared = Cleared {
-            sample: self.ticks,
-            refused,
+/// What the sampling interrupt has.
+struct Sampling {
+    timer: TIM2,
+    replay: Replay,
+    wire: Wire,
+    intake: Intake<'static>,
+    given: u32,
+    in_real_time: bool,
+}
+
+impl Sampling {
+    fn take(&mut self) {
+        // QEMU's timer does not begin anew by itself: it would be over from now on.
+        self.timer.egr().write(|w| w.ug().set_bit());
+        self.timer.sr().modify(|_, w| w.uif().clear_bit());
+        let is_free = self.in_real_time || self.given == DONE.load(Ordering::Acquire);
+        let next = if is_free && !IS_OVER.load(Ordering::Relaxed) {
+            self.replay
+                .next()
+                .unwrap_or_else(|failure| end(failure as i32))
+        } else {
+            self.wire.step(None);
+            return;
         };
-        self.failed |= self.answer.write(&Record::Cleared(cleared)).is_err();
+        let Some((arrival, scripted)) = next else {
+            IS_OVER.store(true, Ordering::Release);
+            return;
+        };
+        self.given = self.given.wrapping_add(1);
+        self.wire.step(scripted);
+        // There are no pins to drop.
+        let _ = self.intake.take(arrival, 0);
     }
+}
+
+/// TIM2: a period is over.
+pub fn on_timer() {
+    SAMPLING.with(Sampling::take);
+    SCB::set_pendsv();
+}
+
+/// PendSV: samples wait.
+pub fn on_waiting() {
+    while TICK.with(TickTask::step) == Some(true) {}
 }
 
 /// Runs the replay file that the command line names, and exits the emulator.
 pub fn main(memory: &'static mut Memory) -> ! {
     info!("touchdown {=str} on qemu", env!("CARGO_PKG_VERSION"));
-    let status = match run(memory) {
-        Ok(end) => end as i32,
+    match start(memory) {
+        Ok((mut below, mut emulator)) => below.run(&mut emulator),
         Err(failure) => {
             error!("failed: {}", Debug2Format(&failure));
-            failure as i32
+            end(failure as i32)
         }
-    };
+    }
+}
+
+fn end(status: i32) -> ! {
     semihosting::process::exit(status)
 }
 
@@ -128,100 +208,80 @@ pub fn abort() -> ! {
     semihosting::process::abort()
 }
 
-fn run(memory: &'static mut Memory) -> Result<End, Failure> {
+/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before the first
+/// interrupt.
+#[inline(never)]
+fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Failure> {
+    let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
+        unreachable!("main runs once");
+    };
     let Files {
         mut replay,
         answer,
         log,
-        settings,
+        settings: file,
     } = Files::open()?;
-    let mut log = log
+    let log = log
         .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
         .transpose()?;
-    let (config, powers_on) = replay.config()?;
-    let abilities = abilities(&config);
-    let (block, in_force, mut found) = found_at_power_on(config, abilities, settings.as_ref());
-    if !image::is_whole() {
-        error!("image damaged");
-        found = found.with(Fault::ImageDamaged);
-    }
-    let config = in_force.monitor;
-    journal::config(&config);
-    let mut board = Emulated {
+    let head = replay.head()?;
+    let abilities = abilities(&head.config);
+    let (block, settings, found) = power_on(&head, file.as_ref()).check(&abilities);
+    journal::config(&settings.monitor);
+    let identity = Identity::new(
+        &block.told(&settings),
+        log.as_ref().map_or(0, DropLog::boot),
+    );
+    let board = Emulated {
         answer,
         shown: None,
         ticks: 0,
         block,
-        line: Line::new(abilities, in_force.key, settings),
-        service: false,
         failed: false,
     };
-    let boot = log.as_ref().map_or(0, DropLog::boot);
-    // The log tells the checksum of the block, which would tell of the key.
-    let told = config_block::blanked(&board.block, in_force.key.is_some());
-    let identity = Identity::new(&told, boot);
-    let filled = memory.fill(&config, found, identity);
-    let (app, recorder) = filled.map_err(|refusal| {
+    let filled = memory
+        .monitor
+        .fill(&settings.monitor, found, identity, board);
+    let (intake, tick) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
-    if powers_on {
-        app.recall(log.as_ref().and_then(DropLog::uncleared));
+    if head.powers_on {
+        tick.app.recall(log.as_ref().and_then(DropLog::uncleared));
     } else {
-        app.assume_lift();
+        tick.app.assume_lift();
     }
-    let mut forecast_task = memory::forecast_task(&config).map_err(|_| Failure::Config)?;
-    let mut notices = Notices::new();
-    // Outside the tick: silicon has neither the time nor the use for it.
-    let mut fingerprint = Fingerprint::default();
-    let mut is_over = false;
-    loop {
-        if let Some(samples) = replay.samples()? {
-            for (sample, clears, service) in samples {
-                board.service = service;
-                if clears {
-                    board.cleared(app.clear().err());
-                }
-                tick(app, recorder, &mut board, &sample, 0, &mut notices);
-                if let Some(outlook) =
-                    forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
-                {
-                    board.report(&outlook);
-                    recorder.hear(&outlook);
-                }
-                fingerprint.take(app.state(), &forecast_task);
-            }
-        } else if !is_over {
-            is_over = true;
-            let summary = fingerprint.clone().summary(app.state());
-            let severity = *app.state().severity();
-            board.answer.write(&Record::Severity(severity))?;
-            board.answer.write(&Record::Summary(summary))?;
-            info!(
-                "end: {=u64} samples, {=u64} faults",
-                summary.samples, summary.faults
-            );
-        }
-        // Between blocks of samples: the link is no part of the tick.
-        if let Some(log) = &mut log {
-            store(log, recorder, app.latched());
-        }
-        board
-            .line
-            .serve(app, recorder, &board.block, board.service, &mut log);
-        if log.as_mut().is_some_and(|log| log.flash().has_failed()) {
-            return Err(Failure::Log);
-        }
-        if board.failed {
-            return Err(Failure::Answer);
-        }
-        if board.line.wants_restart() {
-            return Ok(End::Restart);
-        }
-        if is_over && !board.line.stays() {
-            return Ok(End::Done);
-        }
+    let forecast = memory::forecast_task(&settings.monitor).map_err(|_| Failure::Config)?;
+    TICK.put(tick);
+    let (wire, line) = line::open(chip.USART1, &mut memory.bytes, abilities.sample_rate);
+    SAMPLING.put(Sampling {
+        timer: chip.TIM2,
+        replay,
+        wire,
+        intake,
+        given: 0,
+        in_real_time: head.in_real_time,
+    });
+    held::set_tick_priority(&mut core.SCB);
+    SAMPLING.with(|it| start_timer(&it.timer, abilities.sample_rate));
+    // SAFETY: what the handlers need is in place.
+    unsafe {
+        core.NVIC.set_priority(Interrupt::TIM2, held::SAMPLING);
+        NVIC::unmask(Interrupt::TIM2);
     }
+    let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
+    Ok((below, EmulatorPlatform::new(line, abilities, file, log)))
+}
+
+/// An interrupt each sample, at so many a second.
+fn start_timer(timer: &TIM2, sample_rate: f32) {
+    timer
+        .arr()
+        .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32 - 1));
+    timer.dier().write(|w| w.uie().set_bit());
+    // QEMU starts the timer with the last of these.
+    timer.cr1().write(|w| w.cen().enabled());
+    timer.egr().write(|w| w.ug().set_bit());
 }
 
 /// Those of a board that gives the samples of this configuration.
@@ -233,38 +293,18 @@ fn abilities(replayed: &MonitorConfig) -> Abilities {
     }
 }
 
-/// The configuration in force, and what was wrong: that of the replay file, where none is stored.
-fn found_at_power_on(
-    replayed: MonitorConfig,
-    abilities: Abilities,
-    settings: Option<&SettingsFile>,
-) -> (Block, Settings, Faults) {
-    let stored = settings.map_or(Err(BlockError::Blank), SettingsFile::load);
-    let found = match stored {
-        Ok((block, it)) if abilities.misfit(&it.monitor).is_none() => {
-            return (block, it, Faults::NONE);
-        }
-        // What a replay brings counts as configured.
-        Err(BlockError::Blank) => Faults::NONE,
-        Ok(_) => {
-            error!("config: of another board, that of the replay is in force");
-            Faults::NONE.with(Fault::ConfigMisfit)
-        }
-        Err(_) => {
-            error!("config: damaged, that of the replay is in force");
-            Faults::NONE.with(Fault::ConfigDamaged)
-        }
-    };
-    let settings = Settings {
-        monitor: replayed,
-        wiring: Wiring::default(),
-        key: None,
-    };
-    (config_block::encode(&settings), settings, found)
-}
-
-/// All that is ready.
-fn store(log: &mut FileLog, recorder: &mut Recorder<'_>, latched: Option<Cause>) {
-    let mut work = |log: &mut FileLog| log.work(recorder.counted(), latched, || recorder.fetch());
-    while !log.flash().has_failed() && work(log) {}
+/// What is found: the configuration of the replay, which counts as configured, where none is stored.
+fn power_on(head: &Head, file: Option<&SettingsFile>) -> PowerOn {
+    PowerOn {
+        stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
+        fallback: Settings {
+            monitor: head.config,
+            wiring: Wiring::default(),
+            key: None,
+        },
+        is_configured: true,
+        is_whole: image::is_whole(),
+        crash: None,
+        has_bitten: false,
+    }
 }

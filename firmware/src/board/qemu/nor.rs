@@ -10,6 +10,7 @@ use semihosting::fs::File;
 use semihosting::io::{Read, Seek, SeekFrom, Write};
 
 use super::{EMULATED_SLOTS, Failure};
+use crate::platform::Ready;
 use crate::store::bytes_of;
 
 const SECTOR_BYTES: usize = 4096;
@@ -110,3 +111,9 @@ impl NorFlash for NorFile {
 }
 
 impl MultiwriteNorFlash for NorFile {}
+
+impl Ready for NorFile {
+    fn is_ready(&mut self) -> bool {
+        !self.failed
+    }
+}

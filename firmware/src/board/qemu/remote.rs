@@ -1,190 +1,173 @@
-//! The link of the emulator: USART1, which QEMU connects to what `-serial` names.
+//! The emulator below the tick.
 
+use core::sync::atomic::Ordering;
 use core::time::Duration;
 
+use defmt::info;
 use semihosting::experimental::time::Instant;
-use stm32f4::stm32f405::Peripherals;
-use touchdown_core::event::Notice;
-use touchdown_protocol::config_block::{Block, Key, Settings};
-use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
+use touchdown_core::forecast::ForecastTask;
+use touchdown_core::monitor::Fingerprint;
+use touchdown_protocol::link::{Frame, Refusal};
+use touchdown_protocol::wire::Record;
 
-use super::FileLog;
-use super::serial::Serial;
+use super::line::Line;
 use super::settings::SettingsFile;
-use crate::app::App;
-use crate::board::{Abilities, STATE_SAMPLES};
+use super::{DONE, Emulated, End, Failure, FileLog, IS_OVER, TICK, end};
+use crate::board::{Abilities, BLOCK_SAMPLES};
 use crate::journal;
-use crate::recorder::Recorder;
+use crate::platform::{Entry, Platform};
+use crate::tick::TickTask;
 
-/// Looks at a line on which nothing comes before it is left: QEMU brings a byte only once the one before
-/// has been taken.
-const IDLE_POLLS: u32 = 50;
-/// The same in the middle of a frame: on a busy desktop a byte takes long.
-const FRAME_POLLS: u32 = 5_000;
-/// Instructions between two looks: QEMU moves bytes while the core does not ask for them.
-const PAUSE: u32 = 5_000;
 /// Without a byte for so long, and without samples, nobody is there any more.
 const DESERTED: Duration = Duration::from_secs(10);
 
-/// The line and who serves it.
-pub struct Line {
-    serial: Serial,
-    server: Server,
-    told: u64,
+/// The line, the files and what is told at the end.
+pub struct EmulatorPlatform {
+    line: Line,
     abilities: Abilities,
     settings: Option<SettingsFile>,
-    wants_restart: bool,
-    heard: bool,
-    since: Option<Instant>,
+    log: Option<FileLog>,
+    /// Outside the tick: silicon has neither the time nor the use for it.
+    fingerprint: Option<Fingerprint>,
+    /// Since a byte came, or the last sample.
+    heard: Option<Instant>,
+    /// A whole turn ago there were no more samples.
+    was_over: bool,
 }
 
-impl Line {
-    /// Says its rate to who asks, obeys who has `key`, and keeps the configuration in `settings`.
-    pub fn new(abilities: Abilities, key: Option<Key>, settings: Option<SettingsFile>) -> Self {
-        // SAFETY: called once, and nobody else takes them.
-        let chip = unsafe { Peripherals::steal() };
+impl EmulatorPlatform {
+    /// Before the first sample.
+    pub fn new(
+        line: Line,
+        abilities: Abilities,
+        settings: Option<SettingsFile>,
+        log: Option<FileLog>,
+    ) -> Self {
         Self {
-            // The emulated line has no speed.
-            serial: Serial::new(chip.USART1, 16),
-            server: Server::new(env!("CARGO_PKG_VERSION"), abilities.sample_rate, key),
-            told: 0,
+            line,
             abilities,
             settings,
-            wants_restart: false,
-            heard: false,
-            since: None,
-        }
-    }
-
-    /// Whether it is served even when no sample is left: where a configuration is kept, until nobody has
-    /// said anything for [`DESERTED`]. A desktop that was killed leaves nothing behind.
-    pub fn stays(&mut self) -> bool {
-        if core::mem::take(&mut self.heard) || self.since.is_none() {
-            self.since = Some(Instant::now());
-        }
-        self.settings.is_some() && self.since.is_none_or(|it| it.elapsed() < DESERTED)
-    }
-
-    /// Whether a configuration was stored and waits for a start.
-    pub fn wants_restart(&self) -> bool {
-        self.wants_restart
-    }
-
-    /// Queues a notice.
-    pub fn notice(&mut self, notice: &Notice) {
-        let frame = self.server.notice(notice);
-        // Nothing is lost: the emulated line has no speed.
-        while !self.serial.send(frame.as_ref()) {
-            self.serial.push();
-        }
-    }
-
-    /// Takes what has come, and sends until nothing is left.
-    pub fn serve(
-        &mut self,
-        app: &mut App,
-        recorder: &mut Recorder<'_>,
-        block: &Block,
-        service: bool,
-        log: &mut Option<FileLog>,
-    ) {
-        let mut remote = Remote {
-            app,
-            recorder,
-            block,
-            service,
-            told: None,
             log,
-            abilities: self.abilities,
-            settings: self.settings.as_ref(),
-            wants_restart: &mut self.wants_restart,
+            fingerprint: Some(Fingerprint::default()),
+            heard: None,
+            was_over: false,
+        }
+    }
+
+    /// What a replay ends with.
+    fn summarise(&mut self, fingerprint: Fingerprint) {
+        self.hold(|tick| {
+            let summary = fingerprint.summary(tick.app.state());
+            let severity = *tick.app.state().severity();
+            let board = &mut tick.desk.board;
+            board.write(&Record::Severity(severity));
+            board.write(&Record::Summary(summary));
+            info!(
+                "end: {=u64} samples, {=u64} faults",
+                summary.samples, summary.faults
+            );
+        });
+    }
+
+    /// Whether somebody may still be on the line: where a configuration is kept, until nobody has said anything for
+    /// [`DESERTED`]. A desktop that was killed leaves nothing behind.
+    fn stays(&mut self) -> bool {
+        let heard = self.heard.get_or_insert_with(Instant::now);
+        self.settings.is_some() && heard.elapsed() < DESERTED
+    }
+}
+
+impl Platform for EmulatorPlatform {
+    type Board = Emulated;
+    type Log = FileLog;
+    const LOG_SAMPLES: u64 = BLOCK_SAMPLES as u64;
+
+    fn abilities(&self) -> Abilities {
+        self.abilities
+    }
+
+    fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Emulated>) -> T) -> T {
+        TICK.with(act)
+            .unwrap_or_else(|| unreachable!("the tick is in its place, and held by one"))
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        let byte = self.line.next();
+        if byte.is_some() {
+            self.heard = None;
+        }
+        byte
+    }
+
+    fn send(&mut self, frame: &Frame) -> bool {
+        self.line.send(frame)
+    }
+
+    fn is_idle(&mut self) -> bool {
+        self.line.push()
+    }
+
+    fn is_sent(&mut self) -> bool {
+        self.line.push() && self.line.is_done()
+    }
+
+    fn log(&mut self) -> &mut Option<FileLog> {
+        &mut self.log
+    }
+
+    fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
+        let file = self.settings.as_ref().ok_or(Refusal::NoStore)?;
+        file.store(block)
+    }
+
+    // QEMU says nothing about time.
+    fn age_us(&mut self) -> u32 {
+        0
+    }
+
+    fn unknown(&mut self) -> u64 {
+        0
+    }
+
+    fn forget_reset(&mut self) {}
+
+    fn write_down(&mut self, entry: &Entry<'_>) {
+        journal::entry(entry);
+    }
+
+    fn reset(&mut self) {
+        end(End::Restart as i32)
+    }
+
+    fn after_slice(&mut self, forecast: &ForecastTask) {
+        let Some(mut fingerprint) = self.fingerprint.take() else {
+            return;
         };
-        if remote.app.state().samples() >= self.told + STATE_SAMPLES {
-            self.told = remote.app.state().samples();
-            // The next one tells more.
-            let _ = self.serial.send(self.server.state(&mut remote).as_ref());
+        self.hold(|tick| fingerprint.take(tick.app.state(), forecast));
+        self.fingerprint = Some(fingerprint);
+    }
+
+    fn is_over(&self) -> bool {
+        IS_OVER.load(Ordering::Acquire)
+    }
+
+    fn done(&mut self, samples: u64) {
+        DONE.store(samples as u32, Ordering::Release);
+        if self.hold(|tick| tick.desk.board.failed) {
+            end(Failure::Answer as i32);
         }
-        let (mut idle, mut polls) = (0, IDLE_POLLS);
-        while idle < polls {
-            let Some(byte) = self.serial.poll() else {
-                if self.serial.is_done() {
-                    // Where nothing is kept, nobody is on the line: not worth a wait.
-                    idle += if self.settings.is_some() {
-                        cortex_m::asm::delay(PAUSE);
-                        1
-                    } else {
-                        polls
-                    };
-                }
-                continue;
-            };
-            idle = 0;
-            self.heard = true;
-            polls = if byte == 0 { IDLE_POLLS } else { FRAME_POLLS };
-            // An answer without room is asked for again.
-            let _ = self
-                .serial
-                .send(self.server.take(byte, &mut remote).as_ref());
-            if let Some(notice) = remote.told.take() {
-                journal::notice(&notice);
-                // Without room, as on silicon.
-                let _ = self.serial.send(self.server.notice(&notice).as_ref());
-            }
+        if self.log.as_mut().is_some_and(|it| it.flash().has_failed()) {
+            end(Failure::Log as i32);
         }
-    }
-}
-
-struct Remote<'a, 'm> {
-    app: &'a mut App,
-    recorder: &'a mut Recorder<'m>,
-    block: &'a Block,
-    service: bool,
-    /// Of an order, to be passed on.
-    told: Option<Notice>,
-    log: &'a mut Option<FileLog>,
-    abilities: Abilities,
-    settings: Option<&'a SettingsFile>,
-    wants_restart: &'a mut bool,
-}
-
-impl Device for Remote<'_, '_> {
-    fn state(&mut self) -> State {
-        // QEMU says nothing about time, and no notice is lost.
-        self.app.report(0, 0)
-    }
-
-    fn config(&mut self) -> Block {
-        self.block.clone()
-    }
-
-    fn service(&mut self) -> bool {
-        self.service
-    }
-
-    fn ordered(&mut self, notice: &Notice) {
-        self.recorder.hear(notice);
-        self.told = Some(*notice);
-    }
-
-    fn set_config(&mut self, block: &[u8], settings: &Settings) -> Result<(), Refusal> {
-        if let Some(parameter) = self.abilities.misfit(&settings.monitor) {
-            return Err(Refusal::parameter(parameter));
+        let is_over = self.is_over();
+        if !core::mem::replace(&mut self.was_over, is_over) {
+            return;
         }
-        self.app.may_restart()?;
-        self.settings.ok_or(Refusal::NoStore)?.store(block)?;
-        *self.wants_restart = true;
-        Ok(())
-    }
-
-    fn clear(&mut self) -> Result<(), Refusal> {
-        Ok(self.app.clear()?)
-    }
-
-    fn recent(&mut self, step: u16) -> Recent {
-        self.recorder.recent(step)
-    }
-
-    fn log(&mut self) -> &mut impl Log {
-        self.log
+        if let Some(fingerprint) = self.fingerprint.take() {
+            self.summarise(fingerprint);
+        }
+        if !self.stays() {
+            end(End::Done as i32);
+        }
     }
 }

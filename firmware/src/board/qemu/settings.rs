@@ -6,13 +6,14 @@ use touchdown_protocol::config_block::{self, BLOCK_BYTES, Block, BlockError, Set
 use touchdown_protocol::link::Refusal;
 
 use super::name::Name;
+use crate::power_on::InForce;
 
 /// The file; where it is not there, nothing is stored.
 pub struct SettingsFile(pub Name);
 
 impl SettingsFile {
     /// What is stored.
-    pub fn load(&self) -> Result<(Block, Settings), BlockError> {
+    pub fn load(&self) -> Result<(InForce, Settings), BlockError> {
         let mut bytes = [0xff; BLOCK_BYTES];
         let mut file = File::open(self.0.get()).map_err(|_| BlockError::Blank)?;
         let mut filled = 0;
@@ -24,7 +25,7 @@ impl SettingsFile {
         }
         let (block, settings) = config_block::decode(&bytes)?;
         let block = Block::from_slice(block).map_err(|_| BlockError::Length)?;
-        Ok((block, settings))
+        Ok((InForce::Held(block), settings))
     }
 
     /// Stores a block.

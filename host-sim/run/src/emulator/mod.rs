@@ -27,6 +27,8 @@ pub use self::session::{RESTART, Session};
 const QEMU: &str = "qemu-system-arm";
 /// An STM32F405; what of it is emulated is in docs/build/firmware.md.
 const MACHINE: &str = "netduinoplus2";
+/// 8 ns of emulated time an instruction; a core that waits is not waited for.
+const TIME: [&str; 2] = ["-icount", "shift=3,sleep=off"];
 const IMAGE: &str = "touchdown-qemu";
 const COUNTING_IMAGE: &str = "touchdown-count";
 
@@ -119,7 +121,8 @@ impl Emulator {
         let count = write_replay(&replay, config, &Procedure::default(), samples)
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
 
-        let arguments = ["enable=on,target=native,arg=replay,arg=answer"];
+        let [clock, rate] = TIME;
+        let arguments = ["enable=on,target=native,arg=replay,arg=answer", clock, rate];
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;

@@ -7,7 +7,7 @@ use std::process::{Child, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{Answer, Emulator, EmulatorError, decode_answer, read};
+use super::{Answer, Emulator, EmulatorError, TIME, decode_answer, read};
 use touchdown_base::interrupt::Registered;
 use touchdown_files::link::Client;
 
@@ -38,7 +38,8 @@ impl Emulator {
         let port = socket.local_addr().map_err(failed("open a socket"))?.port();
         let serial = format!("tcp:127.0.0.1:{port}");
         let (out, err) = (folder.join("out"), folder.join("err"));
-        let started = self.start(folder, &serial, &[FILES], &out, &err);
+        let [clock, rate] = TIME;
+        let started = self.start(folder, &serial, &[FILES, clock, rate], &out, &err);
         let (child, registered) = started.map_err(failed("start QEMU"))?;
         let mut session = Session {
             emulator: self.clone(),

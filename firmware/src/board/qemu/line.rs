@@ -1,0 +1,115 @@
+//! USART1 at the rate of a real line, in emulated time. QEMU's has no rate and no DMA: the sampling interrupt moves the
+//! bytes.
+
+use heapless::spsc::{Consumer, Producer, Queue};
+use stm32f4::stm32f405::USART1;
+use touchdown_protocol::link::Frame;
+
+use crate::board::BAUD;
+use crate::outgoing::Outgoing;
+
+/// Bits of a byte on the line.
+const BITS: f32 = 10.0;
+
+/// Bytes on their way in and out.
+pub struct Bytes {
+    came: Queue<u8, 256>,
+    goes: Queue<u8, 64>,
+}
+
+impl Bytes {
+    /// None.
+    pub const EMPTY: Self = Self {
+        came: Queue::new(),
+        goes: Queue::new(),
+    };
+}
+
+/// The end of the interrupt.
+pub struct Wire {
+    usart: USART1,
+    came: Producer<'static, u8>,
+    goes: Consumer<'static, u8>,
+    /// Bytes that pass in an interrupt, and those of them that are still to come.
+    rate: f32,
+    credit: f32,
+}
+
+/// The end of the main loop.
+pub struct Line {
+    came: Consumer<'static, u8>,
+    goes: Producer<'static, u8>,
+    out: Outgoing,
+}
+
+/// Both ends, with so many interrupts a second.
+pub fn open(usart: USART1, bytes: &'static mut Bytes, interrupts: f32) -> (Wire, Line) {
+    // SAFETY: any value of 16 bits from 16 on is a divider: RM0090, USART_BRR.
+    usart.brr().write(|w| unsafe { w.bits(16) });
+    usart
+        .cr1()
+        .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
+    let (from_line, came) = bytes.came.split();
+    let (goes, to_line) = bytes.goes.split();
+    let wire = Wire {
+        usart,
+        came: from_line,
+        goes: to_line,
+        rate: BAUD as f32 / BITS / interrupts,
+        credit: 0.0,
+    };
+    let out = Outgoing::default();
+    (wire, Line { came, goes, out })
+}
+
+impl Wire {
+    /// Moves what passes in an interrupt's time; `scripted` is the byte that a replay brings with its sample.
+    pub fn step(&mut self, scripted: Option<u8>) {
+        if let Some(byte) = scripted {
+            let _ = self.came.enqueue(byte);
+        }
+        self.credit += self.rate;
+        while self.credit >= 1.0 {
+            self.credit -= 1.0;
+            let status = self.usart.sr().read();
+            // Reading status, then data clears an overrun as well. What has no room stays with QEMU.
+            let has_come = status.rxne().bit_is_set() || status.ore().bit_is_set();
+            if has_come && self.came.ready() {
+                let _ = self.came.enqueue(self.usart.dr().read().dr().bits() as u8);
+            }
+            if status.txe().bit_is_set()
+                && let Some(byte) = self.goes.dequeue()
+            {
+                self.usart.dr().write(|w| w.dr().set(u16::from(byte)));
+            }
+        }
+    }
+}
+
+impl Line {
+    /// The next byte that came.
+    pub fn next(&mut self) -> Option<u8> {
+        self.came.dequeue()
+    }
+
+    /// Queues a frame; whether it had room.
+    #[must_use]
+    pub fn send(&mut self, frame: &Frame) -> bool {
+        self.out.push(frame)
+    }
+
+    /// Hands over what waits; whether nothing waits any more.
+    pub fn push(&mut self) -> bool {
+        while self.goes.ready()
+            && let Some(byte) = self.out.pop()
+        {
+            let _ = self.goes.enqueue(byte);
+        }
+        self.out.is_empty()
+    }
+
+    /// Whether all has gone out.
+    pub fn is_done(&self) -> bool {
+        self.out.is_empty() && self.goes.is_empty()
+    }
+}

@@ -1,0 +1,178 @@
+//! What becomes of a sample as it comes, above everything else: the guard sees it, and it waits for its tick in a ring.
+//!
+//! A tick that takes long makes those behind it late. Only a full ring loses samples, and their numbers tell which.
+
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use heapless::spsc::{Consumer, Producer, Queue};
+use touchdown_core::guard::{Guard, GuardState};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sample::Sample;
+use touchdown_core::sensing::Sensing;
+use touchdown_protocol::controller::Outputs;
+use touchdown_rotor::error::ConfigError;
+
+/// Samples that can wait, and one: 0.75 ms at 20 kHz.
+pub const RING: usize = 16;
+
+/// What came with a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Of the sensors.
+    pub sample: Sample,
+    /// Whether the service input is on.
+    pub service: bool,
+    /// Whether an order to clear comes before it, as a replay may say.
+    pub clear: bool,
+}
+
+impl From<Sample> for Arrival {
+    fn from(sample: Sample) -> Self {
+        Self {
+            sample,
+            service: false,
+            clear: false,
+        }
+    }
+}
+
+/// An arrival and its number, from 0, modulo 2^32; those that were lost have numbers too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbered {
+    pub(crate) arrival: Arrival,
+    pub(crate) number: u32,
+}
+
+/// Between sampling and tick: the samples that wait, and what the guard on top has taken back.
+pub struct Ring {
+    waiting: Queue<Numbered, RING>,
+    gate: Gate,
+}
+
+impl Ring {
+    /// Nothing waits.
+    pub const EMPTY: Self = Self {
+        waiting: Queue::new(),
+        gate: Gate::OPEN,
+    };
+
+    /// Its two ends; the monitor of `config` must be valid.
+    pub fn split<'m>(
+        &'m mut self,
+        config: &MonitorConfig,
+    ) -> Result<(Intake<'m>, Waiting<'m>), ConfigError> {
+        let (samples, waiting) = self.waiting.split();
+        let gate = &self.gate;
+        let intake = Intake {
+            sensing: Sensing::try_new(&config.sensing)?,
+            guard: Guard::try_new(
+                &config.guard,
+                &config.detector,
+                config.fitted,
+                config.commissioned,
+            )?,
+            state: GuardState::default(),
+            next: 0,
+            samples,
+            gate,
+        };
+        Ok((intake, Waiting { waiting, gate }))
+    }
+}
+
+/// The end of the highest priority.
+pub struct Intake<'m> {
+    sensing: Sensing,
+    guard: Guard,
+    state: GuardState,
+    /// Number of the next sample.
+    next: u32,
+    samples: Producer<'m, Numbered>,
+    gate: &'m Gate,
+}
+
+impl Intake<'_> {
+    /// Takes what came, before which the converter lost so many. Whether the outputs must be safe now: the guard trips,
+    /// and they are not.
+    #[inline]
+    #[must_use]
+    pub fn take(&mut self, arrival: Arrival, lost: u32) -> bool {
+        let number = self.next.wrapping_add(lost);
+        self.next = number.wrapping_add(1);
+        let places = self.sensing.planes(&arrival.sample);
+        let levitated = arrival.sample.levitated;
+        self.guard.update(&mut self.state, places, levitated);
+        // Where there is no room it is lost, and the number of the next that has room tells it.
+        let _ = self.samples.enqueue(Numbered { arrival, number });
+        let verdict = self.state.verdict();
+        (verdict.danger || verdict.lost || verdict.off) && self.gate.trip(number)
+    }
+}
+
+/// The end of the tick.
+pub struct Waiting<'m> {
+    waiting: Consumer<'m, Numbered>,
+    /// Before the outputs.
+    pub gate: &'m Gate,
+}
+
+impl Waiting<'_> {
+    /// The oldest that waits.
+    #[inline]
+    pub fn next(&mut self) -> Option<Numbered> {
+        self.waiting.dequeue()
+    }
+}
+
+/// Takes `run` back before the tick gets to the sample that trips.
+pub struct Gate {
+    /// What the last tick asked for.
+    runs: AtomicBool,
+    tripped: AtomicBool,
+    /// The sample's number.
+    at: AtomicU32,
+}
+
+impl Gate {
+    const OPEN: Self = Self {
+        runs: AtomicBool::new(false),
+        tripped: AtomicBool::new(false),
+        at: AtomicU32::new(0),
+    };
+
+    /// The guard on top trips; whether there is anything to take back.
+    fn trip(&self, number: u32) -> bool {
+        if !self.runs.load(Ordering::Relaxed) || self.is_tripped() {
+            return false;
+        }
+        self.at.store(number, Ordering::Relaxed);
+        self.tripped.store(true, Ordering::Release);
+        true
+    }
+
+    /// Whether it holds the outputs safe.
+    pub fn is_tripped(&self) -> bool {
+        self.tripped.load(Ordering::Acquire)
+    }
+
+    /// Whether the tick of the sample that trips is over, and its outputs run all the same.
+    pub fn is_overruled(&self, number: u32) -> bool {
+        let past = number.wrapping_sub(self.at.load(Ordering::Relaxed));
+        self.is_tripped() && past != 0 && past < 1 << 31
+    }
+
+    /// What of the outputs after the tick of sample `number` reaches the pins. Once the tick has tripped too its word
+    /// counts.
+    pub fn pass(&self, outputs: Outputs, number: u32) -> Outputs {
+        self.runs.store(outputs.run, Ordering::Relaxed);
+        if !self.is_tripped() {
+            return outputs;
+        }
+        let past = number.wrapping_sub(self.at.load(Ordering::Relaxed));
+        if outputs.run || past >= 1 << 31 {
+            return Outputs::SAFE;
+        }
+        self.tripped.store(false, Ordering::Release);
+        outputs
+    }
+}
