@@ -176,7 +176,8 @@ fn a_clear_is_answered_within_20_ms_of_emulated_time() {
     let nonces = first.nonces();
     assert_eq!(nonces.len(), times.len());
     assert!(onset(&first, EventKind::FreeFall) > FALLS - 1e-3);
-    assert!(first.events.iter().any(|it| it.kind == EventKind::ForwardWhirl));
+    let whirls = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
+    assert!(first.events.iter().any(|it| whirls.contains(&it.kind)), "{:?}", first.events.iter().map(|it| it.kind).collect::<Vec<_>>());
     let mut asked = vec![];
     for (challenge, nonce) in challenges().into_iter().zip(&nonces) {
         let order = Request::Order { mac: mac(None, nonce, &Act::Clear, &[]), act: Act::Clear };
@@ -201,12 +202,12 @@ fn a_clear_is_answered_within_20_ms_of_emulated_time() {
         assert!((0.0..20e-3).contains(&all), "{time} s: {all} s");
         refusals.push(ordered.refused);
     }
-    // Allowed while it floats, and refused while it falls; both by right.
+    // Allowed while it floats, and refused while it falls.
     assert_eq!(refusals[0], 0);
     assert!(refusals.iter().any(|it| *it != 0));
 }
 
-/// 31 million instructions a second are a third of what the ticks need.
+/// 31 million instructions a second are less than half of what the ticks need.
 #[test]
 fn a_core_that_is_too_slow_tells_what_it_lost_and_dates_stay_right() {
     let (fast, slow) = (run(3, &[]), run(5, &[]));

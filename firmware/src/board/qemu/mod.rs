@@ -153,8 +153,6 @@ struct Sampling {
 
 impl Sampling {
     fn take(&mut self) {
-        // QEMU's timer does not begin anew by itself: it would be over from now on.
-        self.timer.egr().write(|w| w.ug().set_bit());
         self.timer.sr().modify(|_, w| w.uif().clear_bit());
         let is_free = self.in_real_time || self.given == DONE.load(Ordering::Acquire);
         let next = if is_free && !IS_OVER.load(Ordering::Relaxed) {
@@ -275,13 +273,13 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
 
 /// An interrupt each sample, at so many a second.
 fn start_timer(timer: &TIM2, sample_rate: f32) {
+    timer.cr1().write(|w| w.cen().enabled());
+    timer.dier().write(|w| w.uie().set_bit());
+    // QEMU 7.2 adds its time of the last update to each period, which is 0 as long as there was none; the last of these
+    // starts it (hw/timer/stm32f2xx_timer.c).
     timer
         .arr()
-        .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32 - 1));
-    timer.dier().write(|w| w.uie().set_bit());
-    // QEMU starts the timer with the last of these.
-    timer.cr1().write(|w| w.cen().enabled());
-    timer.egr().write(|w| w.ug().set_bit());
+        .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32));
 }
 
 /// Those of a board that gives the samples of this configuration.

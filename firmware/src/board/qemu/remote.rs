@@ -166,7 +166,7 @@ impl Platform for EmulatorPlatform {
         if let Some(fingerprint) = self.fingerprint.take() {
             self.summarise(fingerprint);
         }
-        if !self.stays() {
+        if !self.stays() && self.is_sent() {
             end(End::Done as i32);
         }
     }
