@@ -37,6 +37,7 @@ pub fn rotor<const N: usize>(
         speed: 1.0,
         unbalance: UnbalanceConfig::default(),
         magnets: [ActuatorConfig::default(); 4],
+        base: None,
         modes: [None; 3],
         step,
     }

@@ -5,6 +5,7 @@ use touchdown_core::monitor::Monitor;
 use touchdown_core::sensing::Calibration;
 
 use super::auto::auto;
+use super::base::BaseTable;
 use super::calibration::CalibrationTable;
 use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
@@ -178,6 +179,10 @@ fn two_plane(
             ("magnet", "z_mm", file.magnet.len()),
             ("mode", "frequency_hz", file.mode.len()),
         ];
+        if file.base.is_some() {
+            let rule = "[base] needs [two_plane]";
+            return Err(Diagnostic::new("base", "frequency_hz", rule));
+        }
         return match without.iter().find(|(_, _, count)| *count > 0) {
             Some((table, key, _)) => {
                 let rule = format!("[[{table}]] needs [two_plane]");
@@ -188,6 +193,7 @@ fn two_plane(
     };
     let (rings, magnets, modes) = (&file.ring, &file.magnet, &file.mode);
     let mut two_plane = table.check(rotor, retainer, rings, magnets, modes)?;
+    two_plane.base = file.base.as_ref().map(BaseTable::check).transpose()?;
     for ring in &mut two_plane.rings {
         ring.support = ring.support.or(support);
         ring.ball_bearing = ring.ball_bearing.or(ball_bearing);
@@ -211,7 +217,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, magnet's damping or times: leave them out, or rung";
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, magnet's damping or times: leave them out, or rung";
         return Err(Diagnostic::new("model", "rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {

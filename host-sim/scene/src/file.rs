@@ -5,13 +5,15 @@ use serde::{Deserialize, Serialize};
 use touchdown_core::detect::Tuning;
 use touchdown_core::guard::GuardConfig;
 
+use super::base::BaseTable;
 use super::calibration::CalibrationTable;
 use super::diagnostic;
 use super::faults::FaultTable;
 use super::list;
+use super::magnet::MagnetTable;
 use super::mode::ModeTable;
 use super::support::{BallBearingTable, SupportTable};
-use super::two_plane::{MagnetTable, RingTable, TwoPlaneTable};
+use super::two_plane::{RingTable, TwoPlaneTable};
 use touchdown_base::input_error::InputError;
 
 /// The tables of `text`; errors name it `name`.
@@ -53,6 +55,7 @@ pub(super) struct SceneFile {
     pub ring: Vec<RingTable>,
     #[serde(default)]
     pub magnet: Vec<MagnetTable>,
+    pub base: Option<BaseTable>,
     #[serde(default)]
     pub mode: Vec<ModeTable>,
     #[serde(default)]

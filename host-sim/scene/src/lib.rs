@@ -1,6 +1,7 @@
 //! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
 
 mod auto;
+mod base;
 mod builtin;
 pub mod calibration;
 pub mod check;
@@ -12,6 +13,7 @@ pub mod file;
 pub mod limits;
 pub mod list;
 pub mod machine;
+mod magnet;
 mod materials;
 mod mode;
 mod model;
@@ -24,13 +26,15 @@ pub mod sensors;
 mod support;
 mod two_plane;
 
+pub use base::Base;
 pub use builtin::{BUILT_IN, BuiltIn};
+pub use magnet::Magnet;
 pub use materials::{Contact, Materials};
 pub use mode::{MODES, Mode};
 pub use model::{Fidelity, Math, Model, Precision, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
 pub use support::{BallBearing, Support};
-pub use two_plane::{Magnet, RINGS, Ring, TwoPlane};
+pub use two_plane::{RINGS, Ring, TwoPlane};
 
 use std::borrow::Cow;
 use std::path::Path;

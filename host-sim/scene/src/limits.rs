@@ -63,6 +63,10 @@ pub const GYROSCOPIC_RATIO: RangeInclusive<f64> = 1e-6..=2.0;
 pub const UNBALANCE_G_MM: RangeInclusive<f64> = 0.0..=1e9;
 /// Principal axis against the rotor's axis, mrad.
 pub const SKEW_MRAD: RangeInclusive<f64> = 0.0..=100.0;
+/// Amplitude of the base's motion, mm.
+pub const BASE_MM: RangeInclusive<f64> = -1e4..=1e4;
+/// Frequency of the base's motion, Hz.
+pub const BASE_HZ: RangeInclusive<f64> = 1e-3..=1e4;
 /// When a magnet is switched, s after the release.
 pub const MOMENT_S: RangeInclusive<f64> = 0.0..=86_400.0;
 /// Force of a magnet, N.

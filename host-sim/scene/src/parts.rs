@@ -119,6 +119,13 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         "[[mode]] is given",
         "no [[mode]]",
     );
+    part(
+        "motion of the base",
+        two_plane.is_some_and(|it| it.base.is_some()),
+        c,
+        "[base] is given",
+        "no [base]",
+    );
     parts.push(Part {
         name: "wear",
         modelled: false,

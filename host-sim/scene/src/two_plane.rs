@@ -1,17 +1,18 @@
-//! `[two_plane]`, `[[ring]]` and `[[magnet]]`: a rotor that tilts, in retainer rings at their places.
+//! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
 
+use super::base::Base;
 use super::diagnostic::Diagnostic;
+use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{MILLI, ON_THE_WALL, above_zero, between};
 use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
 use super::{Retainer, Rotor, Start, limits, list};
 use touchdown_base::plain::Number;
 
-/// Most rings, and most magnets: two planes of them, as they are left and as they come back.
+/// Most rings.
 pub const RINGS: usize = 4;
-const MAGNETS: usize = 4;
 const GRAM_MM: f64 = 1e-6;
 
 /// A rotor with two ends.
@@ -39,6 +40,8 @@ pub struct TwoPlane {
     pub magnets: Vec<Magnet>,
     /// Bending modes of the free rotor, none to three.
     pub modes: Vec<Mode>,
+    /// Motion of what the machine stands on.
+    pub base: Option<Base>,
 }
 
 /// A retainer ring.
@@ -58,21 +61,6 @@ pub struct Ring {
     pub ball_bearing: Option<BallBearing>,
 }
 
-/// What is left of a magnetic bearing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnet {
-    /// From the rotor's centre of mass, m.
-    pub place: f64,
-    /// Force per displacement, along it where positive: the negative stiffness of permanent flux, N/m.
-    pub stiffness: f64,
-    /// Force against the velocity, N s/m.
-    pub damping: f64,
-    /// N.
-    pub force: [f64; 2],
-    /// From when and until when it is on, s after the release; always without.
-    pub on: Option<[f64; 2]>,
-}
-
 impl TwoPlane {
     /// Of the rotor's axis at `place`, from the bearing's centre, where the centre of mass is at `centre`
     /// (or the velocities instead of all of these).
@@ -88,6 +76,7 @@ impl TwoPlane {
         seats.any(|gives_way| gives_way)
             || magnets.any(|magnet| magnet.damping > 0.0 || magnet.on.is_some())
             || !self.modes.is_empty()
+            || self.base.is_some()
     }
 
     /// Of spin (rad/s), bending modes, mounts and the decay of their motion, the fastest, rad/s.
@@ -95,7 +84,8 @@ impl TwoPlane {
         let modes = self.modes.iter().map(|it| it.speed);
         let mounts = self.rings.iter().filter_map(|it| it.support);
         let mounts = mounts.map(|it| (it.stiffness / it.mass).sqrt().max(it.damping / it.mass));
-        modes.chain(mounts).fold(spin.abs(), f64::max)
+        let base = self.base.map(|it| it.rate);
+        modes.chain(mounts).chain(base).fold(spin.abs(), f64::max)
     }
 
     /// The start must be within every ring.
@@ -153,20 +143,6 @@ pub(super) struct RingTable {
     ball_bearing: Option<BallBearingTable>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MagnetTable {
-    z_mm: f64,
-    #[serde(default)]
-    stiffness_n_m: f64,
-    #[serde(default)]
-    damping_n_s_m: f64,
-    #[serde(default, deserialize_with = "list::exactly")]
-    force_n: [f64; 2],
-    from_s: Option<f64>,
-    until_s: Option<f64>,
-}
-
 const TABLE: &str = "two_plane";
 
 impl TwoPlaneTable {
@@ -218,6 +194,7 @@ impl TwoPlaneTable {
             rings,
             magnets: all_magnets(magnets)?,
             modes: all_modes(modes, rotor.mass, self.rotor_length_mm)?,
+            base: None,
         })
     }
 
@@ -357,71 +334,4 @@ impl RingTable {
                 .transpose()?,
         })
     }
-}
-
-impl MagnetTable {
-    /// From when and until when it is on, s, where either is given.
-    fn on(&self) -> Result<Option<[f64; 2]>, Diagnostic> {
-        const TABLE: &str = "magnet";
-        if self.from_s.is_none() && self.until_s.is_none() {
-            return Ok(None);
-        }
-        let from = self.from_s.unwrap_or(0.0);
-        let from = between(TABLE, "from_s", from, limits::MOMENT_S)?;
-        let Some(until) = self.until_s else {
-            return Ok(Some([from, f64::INFINITY]));
-        };
-        between(TABLE, "until_s", until, limits::MOMENT_S)?;
-        if until <= from {
-            return Err(Diagnostic::new(
-                TABLE,
-                "until_s",
-                "until_s must be after from_s",
-            ));
-        }
-        Ok(Some([from, until]))
-    }
-}
-
-fn all_magnets(tables: &[MagnetTable]) -> Result<Vec<Magnet>, Diagnostic> {
-    const TABLE: &str = "magnet";
-    if tables.len() > MAGNETS {
-        let rule = format!(
-            "[[magnet]] must stand {MAGNETS} times at most, stands {} times",
-            tables.len()
-        );
-        return Err(Diagnostic::new(TABLE, "z_mm", rule));
-    }
-    let magnets = tables.iter().enumerate();
-    magnets
-        .map(|(index, table)| {
-            let check = || {
-                let stiffness = table.stiffness_n_m;
-                if stiffness != 0.0 {
-                    between(
-                        TABLE,
-                        "stiffness_n_m",
-                        stiffness.abs(),
-                        limits::STIFFNESS_N_M,
-                    )?;
-                }
-                for force in table.force_n {
-                    between(TABLE, "force_n", force, limits::FORCE_N)?;
-                }
-                Ok(Magnet {
-                    place: MILLI * between(TABLE, "z_mm", table.z_mm, limits::PLACE_MM)?,
-                    stiffness,
-                    force: table.force_n,
-                    on: table.on()?,
-                    damping: between(
-                        TABLE,
-                        "damping_n_s_m",
-                        table.damping_n_s_m,
-                        limits::DAMPING_N_S_M,
-                    )?,
-                })
-            };
-            check().map_err(|flaw: Diagnostic| flaw.in_row(index))
-        })
-        .collect()
 }

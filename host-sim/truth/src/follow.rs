@@ -5,8 +5,8 @@ use touchdown_scene::sensors::PLANES;
 use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mount, Race,
-    Retainer, Ring, RingState, Unbalance,
+    Base, Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mount,
+    Race, Retainer, Ring, RingState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
@@ -257,6 +257,11 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         unbalance: unbalance(scene, machine),
         magnets: magnets.collect(),
         bending: machine.modes.iter().map(bending).collect(),
+        base: machine.base.map(|it| Base {
+            amplitude: it.amplitude,
+            rate: it.rate,
+            phase: it.phase,
+        }),
     }
 }
 

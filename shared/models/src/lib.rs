@@ -12,9 +12,9 @@ mod hertz;
 mod moreau;
 
 pub use coupled::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, Load, ModeConfig,
-    MountConfig, Placement, RaceConfig, RaceMotion, RingConfig, RingEvent, RingMotion, SeatConfig,
-    UnbalanceConfig, Whole,
+    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, Load,
+    ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion, RingConfig, RingEvent, RingMotion,
+    SeatConfig, UnbalanceConfig, Whole,
 };
 pub use hertz::{
     Compliance, Euler, Hertz, HertzConfig, HertzState, Line, Materials, Pairing, Point, Scheme,

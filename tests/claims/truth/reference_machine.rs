@@ -47,6 +47,7 @@ fn machine(retainers: Vec<Retainer>) -> CoupledMachine {
         unbalance: Unbalance::default(),
         magnets: Vec::new(),
         bending: Vec::new(),
+        base: None,
     }
 }
 

@@ -107,17 +107,7 @@ pub fn text(seed: u64) -> String {
         text += &modes(&mut random);
     }
     if has(3) {
-        for at in ends {
-            // What is left of a magnet that held half the rotor at 15 to 100 Hz.
-            let held =
-                0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
-            let stiffness = held * random.random_range(-1.0..0.3);
-            let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
-            let _ = write!(
-                text,
-                "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
-            );
-        }
+        text += &left(&mut random, mass, ends);
     }
     let [x, y] = [(); 2].map(|()| clearance * random.random_range(-0.2..0.2));
     let step = decades(&mut random, 0.0, 300_f64.log10());
@@ -143,6 +133,22 @@ fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
     if random.random() {
         let travel = (clearance * decades(random, -2.0, 0.5)).max(0.001);
         let _ = writeln!(text, "travel_mm = {travel}");
+    }
+    text
+}
+
+/// What is left of magnets that held half the rotor each at 15 to 100 Hz.
+fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
+    let mut text = String::new();
+    for at in ends {
+        let held =
+            0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
+        let stiffness = held * random.random_range(-1.0..0.3);
+        let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
+        let _ = write!(
+            text,
+            "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
+        );
     }
     text
 }

@@ -1,8 +1,8 @@
 //! Rungs `support`, `two-plane` and `coupled`: as a model among others, and with what happens in each ring and to it.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, ModeConfig, MountConfig,
-    Placement, RaceConfig, RingConfig, RingEvent, SeatConfig, UnbalanceConfig, Whole,
+    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, ModeConfig,
+    MountConfig, Placement, RaceConfig, RingConfig, RingEvent, SeatConfig, UnbalanceConfig, Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
@@ -176,6 +176,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         speed: start_speed(scene),
         unbalance: UnbalanceConfig::default(),
         magnets: [ActuatorConfig::default(); _],
+        base: None,
         modes: [None; MODES],
         step: scene.model.step,
     };
@@ -201,6 +202,13 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
             on: from.on,
             shape: shape(scene, from.place),
         };
+    }
+    if scene.model.rung == Fidelity::Coupled {
+        config.base = machine.base.map(|it| BaseConfig {
+            amplitude: it.amplitude,
+            rate: it.rate,
+            phase: it.phase,
+        });
     }
     for (to, mode) in config.modes.iter_mut().zip(modelled_modes(scene)) {
         *to = Some(ModeConfig {
@@ -415,6 +423,8 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
     let machine = ends(scene);
     let magnets = machine.is_some_and(|it| !it.magnets.is_empty());
     let driven = machine.is_some_and(|it| it.unbalance[0] != 0.0 || it.skew[0] != 0.0);
+    let moved = machine
+        .is_some_and(|it| it.base.is_some() || it.magnets.iter().any(|magnet| magnet.on.is_some()));
     Ledger {
         start_j: unit * start.stored(),
         stored: entries(
@@ -443,7 +453,12 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
                     "damping of bending and magnets",
                     end.damped,
                 ),
-                (driven, "by the drive of the spin", -end.driven),
+                (driven && !moved, "by the drive of the spin", -end.driven),
+                (
+                    moved,
+                    "by base, switched magnets and drive of the spin",
+                    -end.driven,
+                ),
             ],
         ),
     }

@@ -6,7 +6,7 @@ use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
 use super::units::Units;
 use super::vector::Vector;
-use super::{Coupled, Magnet, Ring};
+use super::{Base, Coupled, Magnet, Ring};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
@@ -81,6 +81,17 @@ pub struct ActuatorConfig<R> {
     pub shape: [R; MODES],
 }
 
+/// What rings and magnets stand on goes to and fro: by its amplitude times the cosine of an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseConfig<R> {
+    /// m.
+    pub amplitude: [R; 2],
+    /// Of the angle, rad/s, above 0.
+    pub rate: R,
+    /// Angle at the release, rad.
+    pub phase: R,
+}
+
 /// A bending mode of the free rotor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ModeConfig<R> {
@@ -113,6 +124,8 @@ pub struct CoupledConfig<R, const N: usize> {
     pub unbalance: UnbalanceConfig<R>,
     /// Magnetic bearings; all 0 without.
     pub magnets: [ActuatorConfig<R>; MAGNETS],
+    /// Motion of the base; all places are seen from it.
+    pub base: Option<BaseConfig<R>>,
     /// Bending modes; those beyond the model's `Q` - 2 must be none.
     pub modes: [Option<ModeConfig<R>>; MODES],
     /// Length of a step, s.
@@ -163,6 +176,7 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             speed: plane.speed,
             unbalance: UnbalanceConfig::default(),
             magnets: [ActuatorConfig::default(); MAGNETS],
+            base: None,
             modes: [None; MODES],
             step: plane.step,
         }
@@ -208,6 +222,11 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
                 }
             }
         }
+        if let Some(base) = &self.base {
+            finite("base", &base.amplitude)?;
+            finite("base", &[base.phase])?;
+            positive("base", base.rate)?;
+        }
         if self.modes.iter().skip(modes).any(Option::is_some) {
             return Err(ConfigError::OutOfRange("modes", "as many as the model has"));
         }
@@ -244,6 +263,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             turn: size,
             gravity: Vector::new(config.gravity).times(rate),
             magnets: [None; MAGNETS],
+            base: config.base.map(|it| Base {
+                push: Vector::new(it.amplitude).times(it.rate * it.rate * rate),
+                rate: it.rate * scales.time,
+                phase: it.phase,
+            }),
             frequency: [R::ZERO; Q],
             decay: [R::ZERO; Q],
             mode_scale: [R::ZERO; Q],

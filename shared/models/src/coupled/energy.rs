@@ -36,7 +36,7 @@ pub struct CoupledEnergy<R> {
     pub drag: R,
     /// Taken so far by the damping of modes and magnets.
     pub damped: R,
-    /// Given by the drive that keeps an unbalanced rotor's spin, so far.
+    /// Given so far by the drive that keeps an unbalanced rotor's spin, by the base's motion, and by switched magnets.
     pub driven: R,
 }
 

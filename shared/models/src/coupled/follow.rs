@@ -202,6 +202,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let spin = before.spin.value() + R::HALF * passage.spun;
         state.spin.add(passage.spun);
         state.angle.add(self.turn * spin * time);
+        if let Some(base) = &self.base {
+            state.base.add(base.rate * time);
+        }
         for i in 0..N {
             self.advance_ring(state, passage, i, spin);
         }
@@ -235,11 +238,19 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         self.seat(state);
     }
 
-    /// The work of unbalance, magnets and damping.
+    /// The work of unbalance, base, magnets and damping.
     fn book(&self, state: &mut CoupledState<R, N, Q>, passage: &Passage<R, N, Q>) {
         let books = &mut state.books;
         for (force, moved) in passage.unbalance.iter().zip(&passage.moved) {
             books.driven.add(force.dot(*moved));
+        }
+        if let Some(push) = passage.shaken {
+            books.driven.add(push.dot(passage.moved[0]));
+            for (i, ring) in self.rings.iter().enumerate() {
+                if let Some(mount) = &ring.mount {
+                    books.driven.add(mount.shaken(push, passage.ring_moved(i)));
+                }
+            }
         }
         let rate = R::ONE / passage.time;
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {

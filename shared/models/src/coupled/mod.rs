@@ -31,7 +31,7 @@ mod vector;
 mod whole;
 
 pub use config::{
-    ActuatorConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
+    ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
 };
 pub use energy::CoupledEnergy;
 pub use mount::MountConfig;
@@ -85,6 +85,15 @@ struct Magnet<R, const Q: usize> {
     on: Option<[Instant<R>; 2]>,
 }
 
+/// A base that goes to and fro: the acceleration that all on it feels, from which it is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Base<R> {
+    /// Times the cosine of its angle.
+    push: Vector<R>,
+    rate: R,
+    phase: R,
+}
+
 /// Coefficients of the model; `N` rings, `Q` coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupled<R, const N: usize, const Q: usize> {
@@ -97,6 +106,7 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     turn: R,
     gravity: Vector<R>,
     magnets: [Option<Magnet<R, Q>>; MAGNETS],
+    base: Option<Base<R>>,
     /// Of each coordinate by itself: a bending mode's frequency and damping.
     frequency: [R; Q],
     decay: [R; Q],
@@ -177,6 +187,11 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                     force: vector(magnet.force),
                     on: magnet.on.map(|it| it.map(switch::rounded)),
                 })
+            }),
+            base: self.base.map(|base| Base {
+                push: vector(base.push),
+                rate: R::lit(base.rate),
+                phase: R::lit(base.phase),
             }),
             frequency: self.frequency.map(R::lit),
             decay: self.decay.map(R::lit),

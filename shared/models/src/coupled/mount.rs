@@ -125,13 +125,21 @@ impl<R: Real> Sprung<R> {
         })
     }
 
-    /// Through a stretch that nothing pushes it in.
-    pub(super) fn ride(&self, state: &SprungState<R>, time: R) -> Ride<R> {
+    /// Through a stretch that nothing pushes it in but the base's motion, `shaken`.
+    pub(super) fn ride(
+        &self,
+        state: &SprungState<R>,
+        time: R,
+        shaken: Option<Vector<R>>,
+    ) -> Ride<R> {
         let half = R::HALF * time;
         let mobility = R::ONE / (self.mass + half * (self.damping + half * self.stiffness));
         let velocity = state.velocity.value();
         let middle = state.place.value() + velocity.times(half);
-        let force = middle.times(self.stiffness) + velocity.times(self.damping);
+        let mut force = middle.times(self.stiffness) + velocity.times(self.damping);
+        if let Some(push) = shaken {
+            force = force - push.times(self.mass);
+        }
         let kick = force.times(-(time * mobility));
         Ride {
             moved: velocity.times(time) + kick.times(half),
@@ -143,6 +151,11 @@ impl<R: Real> Sprung<R> {
     /// From rest to the stop.
     pub(super) fn travel(&self) -> Option<R> {
         self.travel
+    }
+
+    /// Work of the base's motion.
+    pub(super) fn shaken(&self, push: Vector<R>, moved: Vector<R>) -> R {
+        self.mass * push.dot(moved)
     }
 
     /// Velocity by an impulse.

@@ -7,10 +7,9 @@
 use super::links::{Grip, Link, Links};
 use super::mount::Ride;
 use super::race::{Drag, Turning};
-use super::vector::Vector;
+use super::vector::{Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
-use touchdown_rotor::real::Real;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -47,6 +46,8 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) spun: R,
     /// Of the unbalance, mean.
     pub(super) unbalance: [Vector<R>; Q],
+    /// Acceleration by the base's motion, mean.
+    pub(super) shaken: Option<Vector<R>>,
     /// Whether friction is in it.
     pub(super) rubs: bool,
     inverse: [[Vector<R>; Q]; Q],
@@ -115,10 +116,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         time: R,
         drags: [Drag<R>; N],
     ) -> Passage<R, N, Q> {
+        let shaken = self.shaken(state, time);
         let mut rides = [Ride::default(); N];
         for ((ride, ring), seat) in rides.iter_mut().zip(&self.rings).zip(&state.seats) {
             if let Some(mount) = &ring.mount {
-                *ride = mount.ride(&seat.mount, time);
+                *ride = mount.ride(&seat.mount, time, shaken);
             }
         }
         let mut passage = Passage {
@@ -132,6 +134,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             drags,
             spun: R::ZERO,
             unbalance: self.unbalance(state, time),
+            shaken,
             rubs: true,
             inverse: [[Vector::default(); Q]; Q],
         };
@@ -146,6 +149,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut matrix = [[Vector::default(); Q]; Q];
         let mut force = passage.unbalance;
         force[0] = force[0] + self.gravity;
+        if let Some(push) = passage.shaken {
+            force[0] = force[0] + push;
+        }
         for k in 0..Q {
             let stiffness = self.frequency[k] * self.frequency[k];
             let middle = places[k] + velocities[k].times(half);
@@ -185,14 +191,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         let speed = self.turn * state.spin.value();
         let half = R::HALF * speed * time;
-        let (sin, cos) = (state.angle.parts().1 + half).sin_cos();
-        let mean = if half.abs() > R::EPSILON {
-            half.sin_cos().0 / half
-        } else {
-            R::ONE
-        };
-        let force = Vector::new([cos, sin]).times(mean * speed * speed);
+        let (direction, mean) = turned_by(state.angle.parts().1, half);
+        let force = direction.times(mean * speed * speed);
         self.weight.map(|weight| force * weight)
+    }
+
+    /// Acceleration that the base's motion gives to all that is seen from it, mean of the next `time`.
+    fn shaken(&self, state: &CoupledState<R, N, Q>, time: R) -> Option<Vector<R>> {
+        let base = self.base.as_ref()?;
+        let angle = base.phase + state.base.parts().1;
+        let (direction, mean) = turned_by(angle, R::HALF * base.rate * time);
+        Some(base.push.times(mean * direction.x))
     }
 
     /// With the walls that hold.
@@ -369,30 +378,4 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     pub(super) fn mobility(&self, to: usize, from: usize) -> R {
         product(&self.rings[to].shape, &self.rings[from].shape)
     }
-}
-
-/// Of a matrix near the unit matrix, whose real part is positive definite: no row need be exchanged.
-fn inverse<R: Real, const Q: usize>(mut matrix: [[Vector<R>; Q]; Q]) -> [[Vector<R>; Q]; Q] {
-    let mut inverse = [[Vector::default(); Q]; Q];
-    for k in 0..Q {
-        inverse[k][k] = Vector::real(R::ONE);
-    }
-    for k in 0..Q {
-        let one = Vector::real(R::ONE).over(matrix[k][k]);
-        for l in 0..Q {
-            matrix[k][l] = matrix[k][l] * one;
-            inverse[k][l] = inverse[k][l] * one;
-        }
-        for row in 0..Q {
-            let factor = matrix[row][k];
-            if row == k || factor.square() == R::ZERO {
-                continue;
-            }
-            for l in 0..Q {
-                matrix[row][l] = matrix[row][l] - factor * matrix[k][l];
-                inverse[row][l] = inverse[row][l] - factor * inverse[k][l];
-            }
-        }
-    }
-    inverse
 }

@@ -113,6 +113,8 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) seats: [Seat<R>; N],
     /// Which magnets are on.
     pub(super) on: [bool; MAGNETS],
+    /// Angle of the base, from that at the release.
+    pub(super) base: Turns<R>,
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
 }
@@ -236,6 +238,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             angle: Turns::default(),
             seats: [seat; N],
             on: self.on_at(Instant::at_tick(0)),
+            base: Turns::default(),
             books: Books::default(),
             shortened: 0,
         };

@@ -118,3 +118,42 @@ impl<R: Real> Sums<R> {
         y.add(term.y);
     }
 }
+
+/// Direction in the middle from an angle to that and twice `half`, rad, and how much of it is left in the mean.
+pub(super) fn turned_by<R: Real>(angle: R, half: R) -> (Vector<R>, R) {
+    let (sin, cos) = (angle + half).sin_cos();
+    let mean = if half.abs() > R::EPSILON {
+        half.sin_cos().0 / half
+    } else {
+        R::ONE
+    };
+    (Vector::new([cos, sin]), mean)
+}
+
+/// Of a matrix near the unit matrix, whose real part is positive definite: no row need be exchanged.
+pub(super) fn inverse<R: Real, const Q: usize>(
+    mut matrix: [[Vector<R>; Q]; Q],
+) -> [[Vector<R>; Q]; Q] {
+    let mut inverse = [[Vector::default(); Q]; Q];
+    for k in 0..Q {
+        inverse[k][k] = Vector::real(R::ONE);
+    }
+    for k in 0..Q {
+        let one = Vector::real(R::ONE).over(matrix[k][k]);
+        for l in 0..Q {
+            matrix[k][l] = matrix[k][l] * one;
+            inverse[k][l] = inverse[k][l] * one;
+        }
+        for row in 0..Q {
+            let factor = matrix[row][k];
+            if row == k || factor.square() == R::ZERO {
+                continue;
+            }
+            for l in 0..Q {
+                matrix[row][l] = matrix[row][l] - factor * matrix[k][l];
+                inverse[row][l] = inverse[row][l] - factor * inverse[k][l];
+            }
+        }
+    }
+    inverse
+}

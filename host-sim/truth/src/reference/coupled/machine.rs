@@ -93,6 +93,17 @@ pub struct Bending {
     pub at_centre: f64,
 }
 
+/// Goes by its amplitude times the cosine of an angle that grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// m.
+    pub amplitude: [f64; 2],
+    /// rad/s.
+    pub rate: f64,
+    /// At the release, rad.
+    pub phase: f64,
+}
+
 /// Rotor and surroundings, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledMachine {
@@ -112,6 +123,8 @@ pub struct CoupledMachine {
     pub magnets: Vec<(Magnet, f64)>,
     /// Any number.
     pub bending: Vec<Bending>,
+    /// What it stands on, and is seen from, where that moves.
+    pub base: Option<Base>,
 }
 
 impl CoupledMachine {
@@ -133,11 +146,23 @@ impl CoupledMachine {
             unbalance: Unbalance::default(),
             magnets: Vec::new(),
             bending: Vec::new(),
+            base: None,
         }
     }
 
     fn bodies(&self) -> usize {
         2 + self.bending.len() + self.retainers.len()
+    }
+
+    /// Of rotor and inner rings; then the angle of the base, which nothing changes the rate of.
+    fn spins(&self) -> usize {
+        1 + self.retainers.len() + usize::from(self.base.is_some())
+    }
+
+    /// Force of inertia on a mass, as it is at an angle of the base of 0.
+    fn shaken(&self, mass: f64) -> [f64; 2] {
+        let of = |base: Base| base.amplitude.map(|it| mass * base.rate * base.rate * it);
+        self.base.map_or([0.0; 2], of)
     }
 
     /// Parts of the bodies in the displacement of the axis.
@@ -155,7 +180,7 @@ impl CoupledMachine {
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
             let none = vec![0.0; self.bodies()];
-            let still = vec![0.0; 1 + self.retainers.len()];
+            let still = vec![0.0; self.spins()];
             let with = |mut of: Vec<f64>, index: usize, value: f64| {
                 of[index] = value;
                 of
@@ -201,6 +226,7 @@ impl CoupledMachine {
             Body {
                 weight: self.gravity.map(|g| self.mass * g),
                 turning: (centre, angle),
+                shaken: self.shaken(self.mass),
                 ..Body::default()
             },
             Body {
@@ -217,6 +243,7 @@ impl CoupledMachine {
         bodies.extend(self.retainers.iter().map(|it| Body {
             stiffness: it.mount.map_or(0.0, |mount| mount.stiffness),
             damping: it.mount.map_or(0.0, |mount| mount.damping),
+            shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
             ..Body::default()
         }));
         let magnet = |(i, (magnet, damping)): (usize, &(Magnet, f64))| {
@@ -237,6 +264,7 @@ impl CoupledMachine {
             bodies,
             magnets: self.magnets.iter().enumerate().map(magnet).collect(),
             viscous_drags: [0.0].into_iter().chain(drags).collect(),
+            base: self.base.is_some(),
         }
     }
 
@@ -266,11 +294,10 @@ impl CoupledMachine {
             .iter()
             .map(|it| over(it.race.map(|race| race.inertia)));
         let spins = [1.0 / self.polar_inertia].into_iter().chain(races);
+        let base = self.base.map(|_| 0.0);
         System {
-            mobility: both(mobility).chain(spins).collect(),
-            size: both(size)
-                .chain(vec![1.0; 1 + self.retainers.len()])
-                .collect(),
+            mobility: both(mobility).chain(spins).chain(base).collect(),
+            size: both(size).chain(vec![1.0; self.spins()]).collect(),
             links: self.links(),
         }
     }

@@ -10,8 +10,8 @@
 //! the first fall of a polynomial, found with steps that a bound of its curvature keeps from
 //! passing one, so that no flight is too short to be seen.
 //!
-//! Impacts of links that touch at one moment are solved together by Gauss-Seidel until they change
-//! no more. Three walls on one straight axis can share a load in many ways; then the forces of those
+//! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
+//! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those
 //! that others already determine are taken as 0. Where no set of modes lasts (several rings can jam
 //! with friction) a short step is forced.
 //!
@@ -39,7 +39,7 @@ mod system;
 mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
-pub use machine::{Bending, CoupledMachine, Mount, Race, Retainer, Ring, Unbalance};
+pub use machine::{Base, Bending, CoupledMachine, Mount, Race, Retainer, Ring, Unbalance};
 pub use mode::Mode;
 pub use start::CoupledStart;
 pub use surroundings::Magnet;

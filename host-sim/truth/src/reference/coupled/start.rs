@@ -61,6 +61,7 @@ impl CoupledStart {
                 let race = self.race_spins.get(k).filter(|_| it.race.is_some());
                 of.push(turning * race.copied().unwrap_or(0.0));
             }
+            of.extend(machine.base.map(|base| [base.phase, base.rate][rate]));
             of
         })
     }

@@ -45,6 +45,8 @@ pub struct Body {
     pub damping: f64,
     /// Unbalance: force over the spin squared, and its direction.
     pub turning: (f64, f64),
+    /// By the base's motion, at its angle 0, N.
+    pub shaken: [f64; 2],
 }
 
 /// Of a rotor and what it falls into; the first spin is the rotor's.
@@ -58,6 +60,8 @@ pub struct Surroundings {
     pub magnets: Vec<Pull>,
     /// On each spin, N m s.
     pub viscous_drags: Vec<f64>,
+    /// Whether the base moves: the last coordinate is its angle.
+    pub base: bool,
 }
 
 impl Law for Surroundings {
@@ -101,11 +105,22 @@ impl Law for Surroundings {
                 }
             }
         }
+        if self.base
+            && let Some(angle) = place.last()
+        {
+            let (_, cosine) = angle.sin_cos();
+            for (k, body) in self.bodies.iter().enumerate() {
+                for axis in 0..2 {
+                    forces[2 * k + axis] = forces[2 * k + axis] + cosine * body.shaken[axis];
+                }
+            }
+        }
         let drags = self.viscous_drags.iter().zip(&speed[spins..]);
         forces.extend(drags.map(|(drag, spin)| match *drag {
             0.0 => constant(0.0),
             drag => *spin * -drag,
         }));
+        forces.extend(self.base.then(|| constant(0.0)));
         forces
     }
 

@@ -1,0 +1,44 @@
+//! `[base]`: motion of what the machine stands on.
+
+use serde::Deserialize;
+
+use super::diagnostic::Diagnostic;
+use super::rule::{MILLI, between};
+use super::{limits, list};
+
+/// A base that goes to and fro: by its amplitude times the cosine of an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// m.
+    pub amplitude: [f64; 2],
+    /// Of the angle, rad/s.
+    pub rate: f64,
+    /// At the release, rad.
+    pub phase: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BaseTable {
+    #[serde(deserialize_with = "list::exactly")]
+    amplitude_mm: [f64; 2],
+    frequency_hz: f64,
+    #[serde(default)]
+    phase_deg: f64,
+}
+
+impl BaseTable {
+    pub fn check(&self) -> Result<Base, Diagnostic> {
+        const TABLE: &str = "base";
+        for amplitude in self.amplitude_mm {
+            between(TABLE, "amplitude_mm", amplitude, limits::BASE_MM)?;
+        }
+        let frequency = between(TABLE, "frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
+        let phase = between(TABLE, "phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
+        Ok(Base {
+            amplitude: self.amplitude_mm.map(|it| MILLI * it),
+            rate: std::f64::consts::TAU * frequency,
+            phase: phase.to_radians(),
+        })
+    }
+}
