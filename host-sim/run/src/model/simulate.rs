@@ -21,6 +21,7 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
                 whole: with_model(scene, Simulate(scene))?,
                 rings: Vec::new(),
             },
+            given_up: None,
             ledger: None,
             ring: None,
             seats: Vec::new(),
