@@ -25,6 +25,8 @@ struct DropJson<'a> {
     end: EndJson,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth_given_up_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model_given_up_s: Option<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rings: Vec<RingJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -188,6 +190,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             imbalance_j: ledger.imbalance_j(),
         }),
         truth_given_up_s: outcome.given_up,
+        model_given_up_s: outcome.model_given_up,
         validity: validity(scene),
         detector: EventsJson {
             events: events(&outcome.detection),

@@ -254,6 +254,13 @@ pub fn given_up(outcome: &Outcome) -> Option<String> {
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text = String::new();
+    if let Some(at) = outcome.model_given_up {
+        let line = format!(
+            "model given up at {} ms: it would take too long",
+            millis(at)
+        );
+        text += &(paint.bad(&line) + "\n");
+    }
     if let Some(line) = given_up(outcome) {
         text += &(paint.bad(&line) + "\n");
     }

@@ -47,6 +47,7 @@ fn follow<W: Write>(
     let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
     let ModelRun {
         histories,
+        given_up: model_given_up,
         ledger,
         ring,
         seats,
@@ -65,6 +66,7 @@ fn follow<W: Write>(
         model: histories.whole,
         truth: truth.whole,
         given_up,
+        model_given_up,
         ledger,
         ring,
         seats,

@@ -171,6 +171,8 @@ pub struct Outcome {
     pub truth: History,
     /// When it was given up, s: it would take too long. The stream of the sensors ends there.
     pub given_up: Option<f64>,
+    /// When the model was, s; its end is there.
+    pub model_given_up: Option<f64>,
     /// The model's energy, where its rung keeps account of it.
     pub ledger: Option<Ledger>,
     /// The model's retainer ring at the end, where it moves or turns.

@@ -226,8 +226,6 @@ fn two_planes_are_checked() {
             "stiffness_n_m must be 1 to",
         ),
         ("[magnet]", "force_n", "[0, 1e10]", "force_n must be"),
-        ("[magnet]", "from_s", "-0.1", "from_s must be"),
-        ("[magnet]", "until_s", "0.0", "until_s must be after from_s"),
     ] {
         refuse(TILTS, table, key, value, rule);
     }

@@ -57,6 +57,10 @@ fn broken_rules_name_their_line() {
         ("at_mm = [-280.0", "at_mm = [-80.0", "at_mm must rise"),
         ("damping_ratio = 0.005", "damping_ratio = 2.0", "damping_ratio must be 0 to 1"),
         ("[start]", "[model]\nrung = \"two-plane\"\n[start]", "rung = \"two-plane\" has no support"),
+        ("[start]", "[[magnet]]\nz_mm = 0.0\nfrom_s = -0.1\n[start]", "from_s must be 0 to 86400"),
+        ("[start]", "[[magnet]]\nz_mm = 0.0\nuntil_s = 0.0\n[start]", "until_s must be after from_s"),
+        ("[start]", "[base]\namplitude_mm = [0, 1]\nfrequency_hz = 0.0\n[start]", "frequency_hz must be"),
+        ("[start]", "[stator]\ngap_mm = 0.0\n[start]", "gap_mm must be 0.001 to 100"),
     ] {
         let error = york(|text| text.replacen(from, to, 1)).expect_err(rule);
         assert!(error.contains(rule), "{error}");

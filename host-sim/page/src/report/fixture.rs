@@ -100,6 +100,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         seats: Vec::new(),
         ring: None,
         given_up: None,
+        model_given_up: None,
         model: truth.clone(),
         detection: detection(&truth),
         conduct: conduct(),

@@ -44,6 +44,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     let truth = Recorder::new(levitated).finish(end, 0.0);
     Outcome {
         given_up: None,
+        model_given_up: None,
         ledger: None,
         seats: Vec::new(),
         ring: None,

@@ -23,6 +23,10 @@ const MOVES: usize = 1;
 const TILTS: usize = 2;
 const BENDS: usize = 2 + MODES;
 
+/// Stretches tried beyond one a step, of all of a run, before it is given up: some seconds of processor time. What
+/// chatters on a stiff ring would take hundreds in each step.
+const MOST_TRIED: u64 = 200_000;
+
 /// What is done with the model, whatever its rings and coordinates.
 trait UseWhole {
     type Output;
@@ -316,19 +320,24 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     let mut state = model.start(&of.start, spin, &mut *take)?;
     let begun = model.energy(&state).to_f64();
     let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
-    for _ in 0..steps {
+    let mut given_up = None;
+    for done in 0..steps {
+        if state.tried().saturating_sub(done) > MOST_TRIED {
+            given_up = Some(done as f64 * scene.model.step);
+            break;
+        }
         model.step(&mut state, &mut *take);
         farthest(model, &state, &mut peaks);
         each(seen(model, &state));
     }
-    if fraction > 0.0 {
+    if fraction > 0.0 && given_up.is_none() {
         model.part_step(&mut state, R::lit(fraction), take);
         farthest(model, &state, &mut peaks);
     }
     for ([radius, _], struck) in peaks.iter_mut().zip(struck) {
         *radius = f64::max(*radius, struck);
     }
-    let duration = scene.run.duration;
+    let duration = given_up.unwrap_or(scene.run.duration);
     let ends: Vec<RotorState> = (0..N)
         .map(|ring| Seen::state(&model.kinematics_at(&state, ring), duration, &at_ring(ring)))
         .collect();
@@ -339,6 +348,7 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales, peaks[ring]));
     let energy = [begun, model.energy(&state).to_f64()];
     let mut run = ModelRun {
+        given_up,
         ring: None,
         seats: Vec::new(),
         ledger: Some(ledger(scene, unit, &energy)),

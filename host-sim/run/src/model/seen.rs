@@ -16,6 +16,8 @@ pub(super) const STILL: f64 = 1e-6;
 pub struct ModelRun {
     /// What happened.
     pub histories: Histories,
+    /// When it was given up, s: it would take too long.
+    pub given_up: Option<f64>,
     /// Its energy, where the rung keeps account of it.
     pub ledger: Option<Ledger>,
     /// The retainer ring at the end, where it moves or turns.

@@ -27,6 +27,7 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
                 )?,
                 rings: Vec::new(),
             },
+            given_up: None,
             ledger: None,
             ring: None,
             seats: Vec::new(),

@@ -117,12 +117,18 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) base: Turns<R>,
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
+    pub(super) tried: u64,
 }
 
 impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
     /// Steps of which a part was left out, because contacts were too many.
     pub fn shortened(&self) -> u32 {
         self.shortened
+    }
+
+    /// Stretches tried so far, one a step at least: what the run has cost.
+    pub fn tried(&self) -> u64 {
+        self.tried
     }
 
     /// Time since the release, in whole steps.
@@ -241,6 +247,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             base: Turns::default(),
             books: Books::default(),
             shortened: 0,
+            tried: 0,
         };
         for (sums, x) in state.place.iter_mut().zip([start.position, start.tilt]) {
             *sums = Sums::new(x);
