@@ -1,5 +1,5 @@
-//! Whether the rotor lies still enough on the retainer to be lifted again: at rest, or swinging a
-//! little at the bottom.
+//! Whether the rotor lies still enough on the retainer to be lifted again: at rest, or in contact and near the
+//! bottom for a while.
 
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice, Plane};
@@ -11,22 +11,14 @@ const SWING: f32 = 0.5;
 /// 0.8 mm, 2 pi sqrt(1.5 x 0.8 mm/g) = 70 ms for a rolling solid cylinder.
 const TIME: f32 = 0.2;
 
-/// How an end lies, as the detector told last.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Lies {
-    #[default]
-    No,
-    Swinging,
-    AtRest,
-}
-
 /// Judges the swing.
 #[derive(Clone, Copy, Debug)]
 pub struct LiftInterlock {
     samples: u32,
     /// Ends that are seen.
     seen: [bool; PLANES],
-    lies: [Lies; PLANES],
+    /// As the detector told last, by end.
+    rests: [bool; PLANES],
     within: u32,
 }
 
@@ -36,7 +28,7 @@ impl LiftInterlock {
         Self {
             samples: (TIME * sample_rate) as u32,
             seen: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
-            lies: [Lies::No; PLANES],
+            rests: [false; PLANES],
             within: 0,
         }
     }
@@ -46,23 +38,16 @@ impl LiftInterlock {
         let Notice::Declared(event) = notice else {
             return;
         };
-        let lies = match event.kind {
-            EventKind::Pendulum => Lies::Swinging,
-            EventKind::Rest => Lies::AtRest,
-            // These say nothing about how far it swings.
+        let rests = match event.kind {
+            EventKind::Rest => true,
             EventKind::Sliding | EventKind::Rolling | EventKind::SensorFault => return,
-            EventKind::FreeFall
-            | EventKind::Impact
-            | EventKind::ForwardWhirl
-            | EventKind::BackwardWhirl
-            | EventKind::LiftOff
-            | EventKind::Levitated => Lies::No,
+            _ => false,
         };
-        let [a, b] = &mut self.lies;
+        let [a, b] = &mut self.rests;
         match event.plane {
-            Plane::A => *a = lies,
-            Plane::B => *b = lies,
-            Plane::Both => (*a, *b) = (lies, lies),
+            Plane::A => *a = rests,
+            Plane::B => *b = rests,
+            Plane::Both => (*a, *b) = (rests, rests),
         }
     }
 
@@ -79,13 +64,43 @@ impl LiftInterlock {
             0
         };
         let swings_little = self.within >= self.samples;
-        let lies_still = |lies| match lies {
-            Lies::No => false,
-            Lies::Swinging => swings_little,
-            Lies::AtRest => true,
-        };
-        let mut ends = self.seen.into_iter().zip(self.lies);
+        let mut ends = self.seen.into_iter().zip(self.rests);
         phases.into_iter().all(Phase::is_contact)
-            && ends.all(|(seen, lies)| !seen || lies_still(lies))
+            && (swings_little || ends.all(|(seen, rests)| !seen || rests))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_core::event::{Event, Moment, Motion};
+
+    /// Without weight, or held by friction, it rests anywhere.
+    #[test]
+    fn at_a_side_both_ends_must_be_told_to_rest() {
+        let told = |kind, plane| {
+            Notice::Declared(Event {
+                number: 0,
+                kind,
+                onset: Moment::of_sample(0),
+                declared: 0,
+                plane,
+                normal_speed: 0.0,
+                motion: Motion::Cylindrical,
+                fault: None,
+            })
+        };
+        let mut interlock = LiftInterlock::new(20_000.0, 0b1111);
+        let mut take =
+            |it: &mut LiftInterlock| it.take(Some([3e-4, 0.0]), [Phase::Sliding; PLANES]);
+        assert!((0..20_000).all(|_| !take(&mut interlock)));
+        interlock.hear(&told(EventKind::Rest, Plane::A));
+        assert!(!take(&mut interlock));
+        interlock.hear(&told(EventKind::Rest, Plane::B));
+        assert!(take(&mut interlock));
+        interlock.hear(&told(EventKind::LiftOff, Plane::A));
+        assert!(!take(&mut interlock));
+        interlock.hear(&told(EventKind::Rest, Plane::A));
+        assert!(take(&mut interlock));
     }
 }

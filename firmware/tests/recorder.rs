@@ -12,9 +12,11 @@ use touchdown_core::severity::Severity;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_firmware::recorder::{CAPACITY, Memory, Recorder};
 use touchdown_firmware::store::EPISODE_BYTES;
+use touchdown_protocol::controller::{self, Cause, Mode};
 use touchdown_protocol::log::block::{BLOCK_BYTES, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::{Item, Reader, Verdict};
+use touchdown_protocol::wire::Record;
 
 /// All blocks that are ready, sealed one after another.
 fn fetch(rig: &mut Rig) -> Vec<u8> {
@@ -162,11 +164,49 @@ fn one_drop_is_one_episode_until_it_has_been_quiet() {
     }
     let read = read(&bytes);
     assert!(read.is_whole(&rig.fed));
-    assert_eq!(read.notices, 6);
+    // And what the controller showed when it began.
+    assert_eq!(read.notices, 6 + 1);
     let ending = ending(&bytes);
     assert_eq!((ending.closing, ending.landing), (Closing::Quiet, true));
     // 0.2 m/s over a fall through 0.3 mm.
     assert!((ending.index - 0.2 / (2.0_f32 * 9.806_65 * 0.3e-3).sqrt()).abs() < 1e-5);
+}
+
+/// As it was when it began, and each change.
+#[test]
+fn an_episode_has_mode_and_cause_of_its_time() {
+    let mut rig = Rig::new(1_000.0, 8);
+    let shown = |mode, cause| controller::Shown {
+        mode,
+        cause,
+        ..controller::Shown::default()
+    };
+    let watching = shown(Mode::Watching, None);
+    let dropped = shown(Mode::Dropped, Some(Cause::Fall));
+    rig.recorder.set_phase(Phase::Levitated, watching);
+    quiet(&mut rig, 100);
+    rig.tick(&[EventKind::FreeFall]);
+    rig.recorder.set_phase(Phase::FreeFall, watching);
+    quiet(&mut rig, 10);
+    rig.recorder.set_phase(Phase::FreeFall, dropped);
+    rig.tick(&[EventKind::Impact]);
+    quiet(&mut rig, 1_100);
+    let bytes = fetch(&mut rig);
+    assert_eq!(ending(&bytes).latched, Some(Cause::Fall));
+    let mut records = Vec::new();
+    for item in Reader::new(&bytes) {
+        if let Item::Events(it) = item {
+            records.extend(it.records().flatten());
+        }
+    }
+    let switched = records.iter().filter_map(|it| match it {
+        Record::Switching(it) => Some((it.sample, it.shown)),
+        _ => None,
+    });
+    assert_eq!(
+        switched.collect::<Vec<_>>(),
+        [(0, watching), (111, dropped)]
+    );
 }
 
 #[test]
@@ -185,7 +225,7 @@ fn endless_contact_is_split_and_counted_once() {
     quiet(&mut rig, 1_100);
     let first = ending(&fetch(&mut rig));
     assert_eq!((first.closing, first.landing), (Closing::Longest, true));
-    assert_eq!((first.notices, first.notices_lost), (64, 37));
+    assert_eq!((first.notices, first.notices_lost), (64, 37 + 1));
     let second = ending(&fetch(&mut rig));
     assert_eq!((second.closing, second.landing), (Closing::Quiet, false));
     assert_eq!(rig.recorder.counted().lost, 0);
@@ -239,24 +279,18 @@ fn a_withdrawn_fall_is_no_landing() {
 fn a_rotor_that_has_not_floated_yet_has_not_landed() {
     for lies in [EventKind::Sliding, EventKind::Rolling, EventKind::Pendulum] {
         let mut rig = Rig::switched_on(1_000.0, 8);
-        rig.recorder.set_phase(
-            Phase::Sliding,
-            touchdown_protocol::controller::Shown::default(),
-        );
+        rig.recorder
+            .set_phase(Phase::Sliding, controller::Shown::default());
         quiet(&mut rig, 50);
         rig.tick(&[lies]);
         rig.tick(&[EventKind::Rest]);
         quiet(&mut rig, 1_100);
         assert!(!ending(&fetch(&mut rig)).landing, "{lies:?}");
-        rig.recorder.set_phase(
-            Phase::Levitated,
-            touchdown_protocol::controller::Shown::default(),
-        );
+        rig.recorder
+            .set_phase(Phase::Levitated, controller::Shown::default());
         rig.tick(&[EventKind::FreeFall]);
-        rig.recorder.set_phase(
-            Phase::Impact,
-            touchdown_protocol::controller::Shown::default(),
-        );
+        rig.recorder
+            .set_phase(Phase::Impact, controller::Shown::default());
         rig.tick(&[EventKind::Impact]);
         quiet(&mut rig, 1_100);
         assert!(ending(&fetch(&mut rig)).landing, "{lies:?}");
@@ -276,10 +310,8 @@ fn a_landing_while_the_lying_is_still_recorded_counts() {
         quiet(&mut rig, 50);
         rig.tick(&[EventKind::Sliding]);
         rig.tick(&[EventKind::LiftOff, EventKind::Levitated]);
-        rig.recorder.set_phase(
-            Phase::Levitated,
-            touchdown_protocol::controller::Shown::default(),
-        );
+        rig.recorder
+            .set_phase(Phase::Levitated, controller::Shown::default());
         quiet(&mut rig, 10);
         rig.tick(&[EventKind::FreeFall]);
         rig.tick(&[after]);
@@ -392,10 +424,8 @@ fn ring_dropped(config: &MonitorConfig, every: [u16; TACHOMETERS], fetched: u16)
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let mut rig = Rig::new(20_000.0, 1);
     rig.recorder = Recorder::new(memory, config, IDENTITY);
-    rig.recorder.set_phase(
-        Phase::Levitated,
-        touchdown_protocol::controller::Shown::default(),
-    );
+    rig.recorder
+        .set_phase(Phase::Levitated, controller::Shown::default());
     let mut blocks = Vec::new();
     for tick in 0..30_000 {
         let sample = Sample {
