@@ -51,10 +51,12 @@ pub struct Ring {
 
 impl Ring {
     /// Nothing waits.
-    pub const EMPTY: Self = Self {
-        waiting: Queue::new(),
-        gate: Gate::OPEN,
-    };
+    pub const fn empty() -> Self {
+        Self {
+            waiting: Queue::new(),
+            gate: Gate::open(),
+        }
+    }
 
     /// Its two ends; the monitor of `config` must be valid.
     pub fn split<'m>(
@@ -119,7 +121,7 @@ pub struct Waiting<'m> {
 impl Waiting<'_> {
     /// The oldest that waits.
     #[inline]
-    pub fn next(&mut self) -> Option<Numbered> {
+    pub fn pop(&mut self) -> Option<Numbered> {
         self.waiting.dequeue()
     }
 }
@@ -134,11 +136,13 @@ pub struct Gate {
 }
 
 impl Gate {
-    const OPEN: Self = Self {
-        runs: AtomicBool::new(false),
-        tripped: AtomicBool::new(false),
-        at: AtomicU32::new(0),
-    };
+    const fn open() -> Self {
+        Self {
+            runs: AtomicBool::new(false),
+            tripped: AtomicBool::new(false),
+            at: AtomicU32::new(0),
+        }
+    }
 
     /// The guard on top trips; whether there is anything to take back.
     fn trip(&self, number: u32) -> bool {

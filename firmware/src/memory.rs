@@ -28,13 +28,15 @@ pub struct Memory {
 
 impl Memory {
     /// Nothing in its place yet.
-    pub const EMPTY: Self = Self {
-        samples: recorder::Memory::EMPTY,
-        ring: Ring::EMPTY,
-        outbox: Outbox::new(),
-        app: MaybeUninit::uninit(),
-        recorder: MaybeUninit::uninit(),
-    };
+    pub const fn empty() -> Self {
+        Self {
+            samples: recorder::Memory::EMPTY,
+            ring: Ring::empty(),
+            outbox: Outbox::new(),
+            app: MaybeUninit::uninit(),
+            recorder: MaybeUninit::uninit(),
+        }
+    }
 
     /// What takes a sample as it comes, and the task that does the rest; `found` is what was wrong at power-on.
     pub fn fill<B: Board>(

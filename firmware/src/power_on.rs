@@ -24,6 +24,7 @@ pub struct PowerOn {
 }
 
 /// The configuration block in force.
+#[expect(clippy::large_enum_variant, reason = "one of it, and no allocation")]
 pub enum InForce {
     /// Where it is stored.
     Stored(&'static [u8]),

@@ -84,7 +84,7 @@ impl<'m, B: Board> TickTask<'m, B> {
     /// The oldest sample that waits, if there is one.
     #[inline]
     pub fn step(&mut self) -> bool {
-        let Some(taken) = self.desk.waiting.next() else {
+        let Some(taken) = self.desk.waiting.pop() else {
             return false;
         };
         let lost = taken.number.wrapping_sub(self.next);

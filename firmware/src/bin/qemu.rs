@@ -11,7 +11,7 @@ mod image {
 
     #[entry]
     fn main() -> ! {
-        static mut MEMORY: Memory = Memory::EMPTY;
+        static mut MEMORY: Memory = Memory::empty();
         qemu::main(MEMORY)
     }
 

@@ -12,7 +12,7 @@ mod image {
 
     #[entry]
     fn main() -> ! {
-        static mut MEMORY: Memory = Memory::EMPTY;
+        static mut MEMORY: Memory = Memory::empty();
         f405::main(MEMORY)
     }
 

@@ -109,7 +109,7 @@ pub fn started(
         block: config_block::encode(&default_settings()),
         pins: Rc::clone(&pins),
     };
-    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let memory = Box::leak(Box::new(Memory::empty()));
     let filled = memory.fill(&config, Faults::NONE, IDENTITY, desk);
     let (intake, tick) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));

@@ -122,12 +122,12 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     let mut forecast_task = memory::forecast_task(&scene.config()).expect("a valid configuration");
     let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
-    let mut ring = Ring::EMPTY;
+    let mut ring = Ring::empty();
     let (mut intake, mut waiting) = ring.split(&scene.config()).expect("a valid configuration");
     scene.play(|sample| {
         let sample = black_box(sample);
         let (_, on_top) = counter.count(|| intake.take((*sample).into(), 0));
-        black_box(waiting.next());
+        black_box(waiting.pop());
         let (monitor, state) = app.monitor();
         let (places, guard) = counter.count(|| monitor.guard(state, sample));
         let places = black_box(&places);

@@ -19,10 +19,12 @@ pub struct Bytes {
 
 impl Bytes {
     /// None.
-    pub const EMPTY: Self = Self {
-        came: Queue::new(),
-        goes: Queue::new(),
-    };
+    pub const fn empty() -> Self {
+        Self {
+            came: Queue::new(),
+            goes: Queue::new(),
+        }
+    }
 }
 
 /// The end of the interrupt.

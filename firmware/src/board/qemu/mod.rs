@@ -80,10 +80,12 @@ pub struct Memory {
 
 impl Memory {
     /// Empty.
-    pub const EMPTY: Self = Self {
-        monitor: memory::Memory::EMPTY,
-        bytes: Bytes::EMPTY,
-    };
+    pub const fn empty() -> Self {
+        Self {
+            monitor: memory::Memory::empty(),
+            bytes: Bytes::empty(),
+        }
+    }
 }
 
 static SAMPLING: Held<Sampling> = Held::new();
