@@ -24,6 +24,9 @@ const IMPOSSIBLE: f32 = 0.3;
 const FAINTER: f32 = 0.42;
 /// Part of gravity that a wall is taken to press with at least.
 const LEAST_PRESSING: f32 = 0.1;
+/// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
+/// stiffness.
+const PULL_ERROR: f32 = 5.0;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -49,8 +52,6 @@ const FASTER: f32 = 3.0;
 pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
-    /// The filter of a rotor that floats.
-    calm: Ballistic,
     machine: MachineConfig,
     period: f32,
     threshold: f32,
@@ -75,6 +76,8 @@ pub(crate) struct Airborne {
     bank: JumpBank,
     /// The impacts so far.
     pub(crate) series: Series,
+    /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
+    pull: Option<([f32; 2], f32)>,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -183,9 +186,8 @@ impl FlightTest {
         let tolerance = tuning.wall_tolerance * machine.clearance;
         let longest_bounce = 2.0 * sqrt(2.0 * tolerance / slowest);
         Self {
-            ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
+            ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
-            calm: Ballistic::new(config.sample_rate, 0.0, tuning.flight_error),
             machine,
             period: 1.0 / config.sample_rate,
             threshold,
@@ -211,12 +213,18 @@ impl FlightTest {
         flight.track = Track::new(
             measurement.position,
             measurement.variance,
-            [0.0; 2],
-            UNKNOWN_SPEED,
+            ([0.0; 2], UNKNOWN_SPEED),
+            self.pull(flight),
         );
         flight.series = Series::default();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         flight.restart(threshold_scale);
+    }
+
+    /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
+    fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
+        let told = ([0.0, -self.machine.gravity], PULL_ERROR);
+        flight.pull.unwrap_or(told)
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
@@ -231,8 +239,8 @@ impl FlightTest {
         flight.track = Track::new(
             measurement.position,
             measurement.variance,
-            velocity,
-            UNKNOWN_SPEED,
+            (velocity, UNKNOWN_SPEED),
+            self.pull(both),
         );
         flight.series = both.series.anew();
         flight.lies = both.lies;
@@ -251,11 +259,16 @@ impl FlightTest {
             position, variance, ..
         } = *measurement;
         if listener.count == 0.0 {
-            flight.track = Track::new(position, variance, [0.0; 2], UNKNOWN_SPEED);
+            flight.track = Track::new(
+                position,
+                variance,
+                ([0.0; 2], UNKNOWN_SPEED),
+                ([0.0; 2], 0.0),
+            );
             flight.bank.begin(0.0);
         }
-        self.calm.predict(&mut flight.track);
-        let innovation = self.calm.correct(&mut flight.track, position, variance);
+        self.ballistic.predict(&mut flight.track);
+        let innovation = (self.ballistic).correct(&mut flight.track, position, variance);
         self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
         listener.level += (flight.bank.statistic - listener.level) / listener.count;
@@ -290,7 +303,7 @@ impl FlightTest {
         let approach = Approach {
             inward: outward.map(|n| -n),
             speed: u * outward[0] + v * outward[1],
-            pull: -self.machine.gravity * outward[1],
+            pull: along(flight.track.acceleration, outward),
             restitution: flight.series.restitution(&self.machine),
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
@@ -318,6 +331,7 @@ impl FlightTest {
             series.take(hit.bounce, hit.launch_speed, machine, self.period);
             flight.lies = self.near.max(hit.radius - self.uneven);
             flight.near_wall = 0;
+            flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
         }
         flight.seen_near = 0;
         flight.lying = 0;
@@ -350,8 +364,9 @@ impl FlightTest {
         };
         let flown = measurement.now.since(last.at);
         if flown >= after {
-            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            (flight.series).relaunch(velocity, &self.machine, self.period);
+            let velocity = flight.track.velocity_before(flown * self.period);
+            let pull = flight.track.acceleration;
+            (flight.series).relaunch(velocity, pull, &self.machine, self.period);
         }
     }
 
@@ -362,18 +377,20 @@ impl FlightTest {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
-        let (outward, radius) = direction(self.ballistic.position_before(&after, since));
-        let [u, v] = self.ballistic.velocity_before(&after, since);
+        let (outward, radius) = direction(after.position_before(since));
+        let [u, v] = after.velocity_before(since);
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
+        let pull = after.acceleration;
         let mut bounce = Bounce {
             at: measurement.now.later(-jump.age),
             normal_speed,
             along,
             outward,
+            pull,
             normal_acceleration: along * along / self.machine.clearance
-                - self.machine.gravity * outward[1],
+                + self::along(pull, outward),
         };
         let mut age = jump.dated;
         let mut least = self.min_detectable_speed(
@@ -387,7 +404,7 @@ impl FlightTest {
             if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
                 return None;
             }
-            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
+            let [u, v] = [before[0] - pull[0] * flown, before[1] - pull[1] * flown];
             launch_speed = -(u * last.outward[0] + v * last.outward[1]);
             let next = NextImpact::of(
                 &flight.series,
@@ -419,7 +436,8 @@ impl FlightTest {
     /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
     fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
         let squares = last.along * last.along + launch * launch;
-        let back = squares / self.machine.clearance + self.machine.gravity;
+        let [a, b] = last.pull;
+        let back = squares / self.machine.clearance + sqrt(a * a + b * b);
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
@@ -438,7 +456,7 @@ impl FlightTest {
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
         let along = v * x - u * y;
-        along * along / self.machine.clearance - self.machine.gravity * y
+        along * along / self.machine.clearance + self::along(track.acceleration, [x, y])
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
@@ -490,6 +508,11 @@ impl FlightTest {
         let age = flight.lying as f32;
         (flight.lying > self.dwell).then_some(Landing::Contact { age })
     }
+}
+
+/// Part of `vector` along a unit vector.
+fn along([u, v]: [f32; 2], [x, y]: [f32; 2]) -> f32 {
+    u * x + v * y
 }
 
 #[cfg(test)]
@@ -552,6 +575,7 @@ mod tests {
             at: Moment::of_sample(1_000),
             normal_speed: 5e-3,
             normal_acceleration: 9.81,
+            pull: [0.0, -9.81],
             outward: [0.0, -1.0],
             ..Bounce::default()
         };
