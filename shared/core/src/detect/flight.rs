@@ -4,6 +4,7 @@ use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
+use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
@@ -24,6 +25,13 @@ const IMPOSSIBLE: f32 = 0.3;
 const FAINTER: f32 = 0.42;
 /// Part of gravity that a wall is taken to press with at least.
 const LEAST_PRESSING: f32 = 0.1;
+/// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
+/// stiffness.
+const PULL_ERROR: f32 = 5.0;
+/// Time in which a flight shows its acceleration to 0.8 m/s^2, at 0.75 um and 20 kHz, s.
+const WELL_KNOWN: f32 = 2e-3;
+/// Samples by which an impact is dated wrong.
+const MISDATED: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -49,9 +57,8 @@ const FASTER: f32 = 3.0;
 pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
-    /// The filter of a rotor that floats.
-    calm: Ballistic,
     machine: MachineConfig,
+    told: ToldWall,
     period: f32,
     threshold: f32,
     /// Standard deviations that noise does not reach.
@@ -62,6 +69,8 @@ pub(crate) struct FlightTest {
     uneven: f32,
     /// Acceleration towards the wall that a bounce feels, m/s^2.
     slowest: f32,
+    /// Samples of a flight that show its acceleration well.
+    well_known: u16,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
     listen_samples: f32,
@@ -75,6 +84,12 @@ pub(crate) struct Airborne {
     bank: JumpBank,
     /// The impacts so far.
     pub(crate) series: Series,
+    /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
+    pull: ([f32; 2], f32),
+    /// The wall, once an impact or a contact has shown it.
+    pub(crate) seen_wall: RetainerWall,
+    /// Samples since it began, or since the last jump.
+    flown: u16,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -90,15 +105,25 @@ impl Airborne {
     /// Nothing has been seen of the wall yet.
     fn restart(&mut self, threshold_scale: f32) {
         self.bank.begin(threshold_scale);
+        self.flown = 0;
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
+    }
+
+    /// The sensors show the wall by `way` (m) elsewhere.
+    pub(crate) fn shift_wall(&mut self, way: [f32; 2]) {
+        if self.seen_wall.is_known() {
+            self.seen_wall.shift(way);
+        }
     }
 
     /// What is known of another one, but for impacts under way.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.track = other.track;
         self.series = other.series;
+        self.pull = other.pull;
+        self.seen_wall = other.seen_wall;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -171,8 +196,9 @@ struct Hit {
     foreseen: bool,
     /// With which the flight before it had left the wall, m/s; 0 where it is the first.
     launch_speed: f32,
-    /// From the centre, m.
+    /// From the centre, m, and its variance, m^2.
     radius: f32,
+    variance: f32,
 }
 
 impl FlightTest {
@@ -183,16 +209,20 @@ impl FlightTest {
         let tolerance = tuning.wall_tolerance * machine.clearance;
         let longest_bounce = 2.0 * sqrt(2.0 * tolerance / slowest);
         Self {
-            ballistic: Ballistic::new(config.sample_rate, machine.gravity, tuning.flight_error),
+            ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
-            calm: Ballistic::new(config.sample_rate, 0.0, tuning.flight_error),
             machine,
+            told: ToldWall {
+                radius: machine.clearance,
+                tolerance,
+            },
             period: 1.0 / config.sample_rate,
             threshold,
             certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
             slowest,
+            well_known: (WELL_KNOWN * config.sample_rate) as u16,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
         }
@@ -211,12 +241,52 @@ impl FlightTest {
         flight.track = Track::new(
             measurement.position,
             measurement.variance,
-            [0.0; 2],
-            UNKNOWN_SPEED,
+            ([0.0; 2], UNKNOWN_SPEED),
+            self.pull(flight),
         );
         flight.series = Series::default();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         flight.restart(threshold_scale);
+    }
+
+    /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
+    pub(crate) fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
+        let (_, error) = flight.pull;
+        if error > 0.0 {
+            flight.pull
+        } else {
+            ([0.0, -self.machine.gravity], PULL_ERROR)
+        }
+    }
+
+    /// The wall, as far as it is known.
+    pub(crate) fn wall(&self, flight: &Airborne) -> RetainerWall {
+        if flight.seen_wall.is_known() {
+            flight.seen_wall
+        } else {
+            RetainerWall::told(&self.told)
+        }
+    }
+
+    /// The wall of a contact, and whether impacts have refuted the told one: else it is that.
+    pub(crate) fn wall_of_contact(&self, flight: &Airborne) -> (RetainerWall, bool) {
+        let seen = self.wall(flight);
+        let is_elsewhere = seen.is_elsewhere(&self.told);
+        let wall = if is_elsewhere {
+            seen
+        } else {
+            RetainerWall::told(&self.told)
+        };
+        (wall, is_elsewhere)
+    }
+
+    /// Distance from which on a rotor in the direction `n` may lie on the wall, m.
+    pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
+        if flight.seen_wall.is_known() {
+            flight.seen_wall.nearest(n, &self.told)
+        } else {
+            self.near
+        }
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
@@ -231,10 +301,12 @@ impl FlightTest {
         flight.track = Track::new(
             measurement.position,
             measurement.variance,
-            velocity,
-            UNKNOWN_SPEED,
+            (velocity, UNKNOWN_SPEED),
+            self.pull(both),
         );
         flight.series = both.series.anew();
+        flight.pull = both.pull;
+        flight.seen_wall = both.seen_wall;
         flight.lies = both.lies;
         flight.restart(threshold_scale);
     }
@@ -251,11 +323,16 @@ impl FlightTest {
             position, variance, ..
         } = *measurement;
         if listener.count == 0.0 {
-            flight.track = Track::new(position, variance, [0.0; 2], UNKNOWN_SPEED);
+            flight.track = Track::new(
+                position,
+                variance,
+                ([0.0; 2], UNKNOWN_SPEED),
+                ([0.0; 2], 0.0),
+            );
             flight.bank.begin(0.0);
         }
-        self.calm.predict(&mut flight.track);
-        let innovation = self.calm.correct(&mut flight.track, position, variance);
+        self.ballistic.predict(&mut flight.track);
+        let innovation = (self.ballistic).correct(&mut flight.track, position, variance);
         self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
         listener.level += (flight.bank.statistic - listener.level) / listener.count;
@@ -270,6 +347,7 @@ impl FlightTest {
 
     /// Takes the next sample.
     pub(crate) fn take(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+        flight.flown = flight.flown.saturating_add(1);
         self.ballistic.predict(&mut flight.track);
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
@@ -290,12 +368,13 @@ impl FlightTest {
         let approach = Approach {
             inward: outward.map(|n| -n),
             speed: u * outward[0] + v * outward[1],
-            pull: -self.machine.gravity * outward[1],
+            pull: along(flight.track.acceleration, outward),
             restitution: flight.series.restitution(&self.machine),
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, measurement);
+            flight.flown = 0;
             flight.track.shift(&jump);
             flight.bank.restart();
             if let Some(hit) = impact {
@@ -316,8 +395,14 @@ impl FlightTest {
             series.go_on(hit.bounce, machine, self.period);
         } else {
             series.take(hit.bounce, hit.launch_speed, machine, self.period);
-            flight.lies = self.near.max(hit.radius - self.uneven);
+            let mut wall = self.wall(flight);
+            wall.take(hit.bounce.outward, hit.radius, hit.variance);
+            flight.seen_wall = wall;
+            flight.lies = wall
+                .nearest(hit.bounce.outward, &self.told)
+                .max(hit.radius - self.uneven);
             flight.near_wall = 0;
+            flight.pull = (flight.track.acceleration, flight.track.acceleration_error());
         }
         flight.seen_near = 0;
         flight.lying = 0;
@@ -350,8 +435,9 @@ impl FlightTest {
         };
         let flown = measurement.now.since(last.at);
         if flown >= after {
-            let velocity = (self.ballistic).velocity_before(&flight.track, flown * self.period);
-            (flight.series).relaunch(velocity, &self.machine, self.period);
+            let velocity = flight.track.velocity_before(flown * self.period);
+            let pull = flight.track.acceleration;
+            (flight.series).relaunch(velocity, pull, &self.machine, self.period);
         }
     }
 
@@ -362,18 +448,20 @@ impl FlightTest {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
-        let (outward, radius) = direction(self.ballistic.position_before(&after, since));
-        let [u, v] = self.ballistic.velocity_before(&after, since);
+        let (outward, radius) = direction(after.position_before(since));
+        let [u, v] = after.velocity_before(since);
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
+        let pull = after.acceleration;
         let mut bounce = Bounce {
             at: measurement.now.later(-jump.age),
             normal_speed,
             along,
             outward,
+            pull,
             normal_acceleration: along * along / self.machine.clearance
-                - self.machine.gravity * outward[1],
+                + self::along(pull, outward),
         };
         let mut age = jump.dated;
         let mut least = self.min_detectable_speed(
@@ -387,7 +475,7 @@ impl FlightTest {
             if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
                 return None;
             }
-            let [u, v] = [before[0], before[1] + self.machine.gravity * flown];
+            let [u, v] = [before[0] - pull[0] * flown, before[1] - pull[1] * flown];
             launch_speed = -(u * last.outward[0] + v * last.outward[1]);
             let next = NextImpact::of(
                 &flight.series,
@@ -405,13 +493,22 @@ impl FlightTest {
                 }
             }
         }
-        let is_hit = radius >= self.near && bounce.normal_speed > least;
+        let misdated = MISDATED * self.period * bounce.normal_speed;
+        let is_flown = flight.flown >= self.well_known;
+        let wall = self.wall(flight);
+        let near = if is_flown {
+            wall.nearest(outward, &self.told)
+        } else {
+            wall.likely(outward, &self.told)
+        };
+        let is_hit = radius >= near && bounce.normal_speed > least;
         is_hit.then_some(Hit {
             bounce,
             age,
             foreseen,
             launch_speed,
             radius,
+            variance: after.spread(0.0) * after.spread(0.0) + misdated * misdated,
         })
     }
 
@@ -419,7 +516,8 @@ impl FlightTest {
     /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
     fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
         let squares = last.along * last.along + launch * launch;
-        let back = squares / self.machine.clearance + self.machine.gravity;
+        let [a, b] = last.pull;
+        let back = squares / self.machine.clearance + sqrt(a * a + b * b);
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
@@ -438,7 +536,7 @@ impl FlightTest {
         let ([x, y], _) = direction(track.position);
         let [u, v] = track.velocity;
         let along = v * x - u * y;
-        along * along / self.machine.clearance - self.machine.gravity * y
+        along * along / self.machine.clearance + self::along(track.acceleration, [x, y])
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
@@ -452,18 +550,15 @@ impl FlightTest {
     }
 
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
-        let (_, seen) = direction(measurement.position);
-        flight.seen_near = if seen < self.near {
-            0
-        } else {
-            flight.seen_near + 1
-        };
+        let (outward, seen) = direction(measurement.position);
+        let near = self.near(flight, outward);
+        flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
         if flight.seen_near > OVERDUE * self.dwell {
             let age = flight.seen_near as f32;
             return Some(Landing::Contact { age });
         }
         let (_, radius) = direction(flight.track.position);
-        if radius < self.near {
+        if radius < near {
             flight.near_wall = 0;
             flight.lying = 0;
             return None;
@@ -490,6 +585,11 @@ impl FlightTest {
         let age = flight.lying as f32;
         (flight.lying > self.dwell).then_some(Landing::Contact { age })
     }
+}
+
+/// Part of `vector` along a unit vector.
+fn along([u, v]: [f32; 2], [x, y]: [f32; 2]) -> f32 {
+    u * x + v * y
 }
 
 #[cfg(test)]
@@ -552,6 +652,7 @@ mod tests {
             at: Moment::of_sample(1_000),
             normal_speed: 5e-3,
             normal_acceleration: 9.81,
+            pull: [0.0, -9.81],
             outward: [0.0, -1.0],
             ..Bounce::default()
         };

@@ -30,10 +30,8 @@ pub(crate) struct JumpTest {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Candidate {
-    /// Samples since its instant.
-    age: f32,
-    /// Error of position (m per m/s) and velocity that a unit jump has left.
-    effect: [f32; 2],
+    /// Error of position (m per m/s), velocity and acceleration (1/s) that a unit jump has left.
+    effect: [f32; 3],
     information: f32,
     sum: [f32; 2],
 }
@@ -152,7 +150,7 @@ impl JumpTest {
         let found = bank.candidates().get(index)?;
         let scale = 1.0 / found.information;
         let dated = self.date(bank, index, approach);
-        let (middle, half) = (found.age - 0.5, 0.5 * f32::from(self.stride));
+        let (middle, half) = (self.age(bank, index) - 0.5, 0.5 * f32::from(self.stride));
         Some(Jump {
             age: dated.max(middle - half).min(middle + half).max(0.0),
             dated,
@@ -179,7 +177,7 @@ impl JumpTest {
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
                 // On average half a sample before the sample, and half a stride with it.
                 *slot = Candidate {
-                    effect: [-0.5 * self.period, 1.0],
+                    effect: [-0.5 * self.period, 1.0, 0.0],
                     ..Candidate::default()
                 };
             }
@@ -198,21 +196,34 @@ impl JumpTest {
         self.open(bank);
         let [rx, ry] = innovation.residual;
         let weight = 1.0 / innovation.variance;
-        let mut statistic = 0.0;
+        let mut best = [0.0, 1.0];
         for candidate in bank.candidates.iter_mut().take(bank.live) {
             candidate.predict(self.period);
             let seen = candidate.effect[0];
             candidate.information += seen * seen * weight;
             candidate.sum[0] += seen * rx * weight;
             candidate.sum[1] += seen * ry * weight;
-            candidate.effect[0] -= innovation.gain[0] * seen;
-            candidate.effect[1] -= innovation.gain[1] * seen;
-            let this = candidate.statistic(inward);
-            if this > statistic {
-                statistic = this;
+            for (effect, gain) in candidate.effect.iter_mut().zip(innovation.gain) {
+                *effect -= gain * seen;
+            }
+            let along = candidate.sum[0] * inward[0] + candidate.sum[1] * inward[1];
+            // Compared without a division.
+            let square = along * along;
+            if along > 0.0 && square * best[1] > best[0] * candidate.information {
+                best = [square, candidate.information];
             }
         }
-        bank.statistic = statistic;
+        bank.statistic = 0.5 * best[0] / best[1];
+    }
+
+    /// Samples since the instant of a place in the bank, which they take in turn.
+    fn age(&self, bank: &JumpBank, index: usize) -> f32 {
+        let newer = if index < bank.next {
+            bank.next - 1 - index
+        } else {
+            bank.next + self.instants - 1 - index
+        };
+        f32::from(self.stride) * (newer as f32 + 1.0) - f32::from(bank.wait)
     }
 
     /// The place in the bank of the likeliest instant. Just after an impact a small jump long ago explains the first
@@ -225,7 +236,7 @@ impl JumpTest {
             if candidate.statistic(approach.inward) <= 0.5 * bank.statistic {
                 continue;
             }
-            let guess = candidate.guess(approach, self.period);
+            let guess = candidate.guess(self.age(bank, index), approach, self.period);
             if !(guess.stops() || past_doubt) {
                 continue;
             }
@@ -252,9 +263,10 @@ impl JumpTest {
     /// Around an instant of the bank: the peak between its neighbours, by a parabola through the three.
     fn peak(&self, bank: &JumpBank, index: usize, approach: &Approach) -> Peak {
         let found = bank.candidates().get(index).copied().unwrap_or_default();
-        let value = |candidate: &Candidate| {
+        let age = self.age(bank, index);
+        let value = |candidate: &Candidate, age: f32| {
             candidate
-                .guess(approach, self.period)
+                .guess(age, approach, self.period)
                 .likelihood(DATE_SPREAD)
         };
         let last = self.instants - 1;
@@ -262,10 +274,11 @@ impl JumpTest {
         let younger = if index == last { 0 } else { index + 1 };
         let neighbour = |at: usize| {
             let near = bank.candidates().get(at)?;
-            let apart = (near.age - found.age).abs();
-            (apart == f32::from(self.stride)).then(|| value(near))
+            let of_near = self.age(bank, at);
+            let apart = (of_near - age).abs();
+            (apart == f32::from(self.stride)).then(|| value(near, of_near))
         };
-        let here = value(&found);
+        let here = value(&found, age);
         let (before, after) = (neighbour(older), neighbour(younger));
         let shift = match (before, after) {
             (Some(before), Some(after)) => {
@@ -286,7 +299,7 @@ impl JumpTest {
             None
         };
         Peak {
-            age: (found.age - 0.5 + shift).max(0.0),
+            age: (age - 0.5 + shift).max(0.0),
             higher,
         }
     }
@@ -294,15 +307,15 @@ impl JumpTest {
 
 impl Candidate {
     fn predict(&mut self, period: f32) {
-        self.age += 1.0;
         self.effect[0] += period * self.effect[1];
+        self.effect[1] += period * self.effect[2];
     }
 
-    fn guess(&self, approach: &Approach, period: f32) -> Guess {
+    fn guess(&self, age: f32, approach: &Approach, period: f32) -> Guess {
         let inward = approach.inward;
         let variance = 1.0 / self.information;
         let jump = (self.sum[0] * inward[0] + self.sum[1] * inward[1]) * variance;
-        let fallen = approach.pull * self.age * period;
+        let fallen = approach.pull * age * period;
         let speed = approach.speed + (1.0 - self.effect[1]) * jump - fallen;
         Guess {
             statistic: self.statistic(inward),

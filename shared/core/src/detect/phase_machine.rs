@@ -13,6 +13,7 @@ use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
 use crate::detect::slip::Kind;
 use crate::detect::still::Still;
+use crate::detect::wall::Frame;
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
 use crate::vector::{direction, square};
@@ -158,7 +159,7 @@ impl PhaseMachine {
             Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
             Phase::Sliding | Phase::Rolling => {
                 let contact = &phase_state.contact;
-                let speed = contact.swing().rate * machine.clearance;
+                let speed = contact.swing().rate * contact.frame.radius;
                 let radius = machine.rotor_radius;
                 // Against a ring that turns, or where it rolls, the slip is known and not the spin.
                 if let Some(slip) = &contact.slip {
@@ -166,7 +167,7 @@ impl PhaseMachine {
                 } else if contact.kind == Some(Kind::Rolling) {
                     estimate.spin = -speed / radius;
                 }
-                estimate.speed_error = contact.track.rate_spread() * machine.clearance;
+                estimate.speed_error = contact.track.rate_spread() * contact.frame.radius;
                 estimate.place = contact.place(speed, self.period);
             }
             _ => return None,
@@ -177,7 +178,7 @@ impl PhaseMachine {
     /// What the rotor goes through, for its severity.
     pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
         let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
-        let clearance = self.machine.clearance;
+        let clearance = contact.frame.radius;
         let [u, v] = track.velocity;
         let mut strain = Exposure {
             is_released: phase_state.phase >= Phase::FreeFall,
@@ -264,11 +265,12 @@ impl PhaseMachine {
             .take(measurement.position, self.still_samples);
         let clearance = self.machine.clearance;
         let quiet = block.filter(|block| {
-            let (_, radius) = direction(block.mean);
-            radius < self.near
+            let (outward, radius) = direction(block.mean);
+            let near = self.flight.near(&phase_state.flight, outward);
+            radius < near
                 && block.variance < 0.0625 * clearance * clearance
                 && (block.moved < 0.02 * clearance
-                    || self.machine.gravity > 0.0 && block.farthest < self.near * self.near)
+                    || self.machine.gravity > 0.0 && block.farthest < near * near)
         });
         quiet.is_some()
     }
@@ -294,9 +296,19 @@ impl PhaseMachine {
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
         let velocity = phase_state.flight.track.velocity;
-        phase_state.contact = self
-            .contact
-            .start(measurement, velocity, spread, age, slip_left);
+        let flight = &phase_state.flight;
+        let (pull, _) = self.flight.pull(flight);
+        let (wall, learns) = self.flight.wall_of_contact(flight);
+        let frame = Frame::new(&wall, pull);
+        phase_state.still = Still::default();
+        phase_state.contact = self.contact.start(
+            (frame, learns),
+            measurement,
+            velocity,
+            spread,
+            age,
+            slip_left,
+        );
         phase_state.phase = Phase::Sliding;
     }
 
@@ -311,9 +323,10 @@ impl PhaseMachine {
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
+        let kept = (&mut phase_state.still, &mut phase_state.flight.seen_wall);
         let findings = self
             .contact
-            .take(&mut phase_state.contact, measurement, signals);
+            .take(&mut phase_state.contact, kept, measurement, signals);
         let lifting = whose(&phase_state.contact);
         if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;

@@ -27,6 +27,8 @@ pub(crate) struct Bounce {
     pub(crate) along: f32,
     /// Outward unit vector at the contact.
     pub(crate) outward: [f32; 2],
+    /// Acceleration of the flights, m/s^2.
+    pub(crate) pull: [f32; 2],
     /// Acceleration with which the wall presses on a rotor at rest there, m/s^2.
     pub(crate) normal_acceleration: f32,
 }
@@ -58,18 +60,17 @@ impl Bounce {
             machine.friction
         };
         let step = launch / (loss * self.normal_acceleration * f32::from(REST_STEPS));
-        let [mut sin, minus_cos] = self.outward;
-        let (mut cos, mut along, mut normal_acceleration) =
-            (-minus_cos, self.along, self.normal_acceleration);
+        let ([mut x, mut y], [a, b]) = (self.outward, self.pull);
+        let (mut along, mut normal_acceleration) = (self.along, self.normal_acceleration);
         let (mut left, mut time) = (launch, 0.0);
         for _ in 0..3 * REST_STEPS {
             let before = along;
-            along += (friction * normal_acceleration - machine.gravity * sin) * step;
+            along += (friction * normal_acceleration + b * x - a * y) * step;
             let turn = 0.5 * (before + along) * step / machine.clearance;
-            (sin, cos) = (sin + cos * turn, cos - sin * turn);
-            let norm = 1.5 - 0.5 * (sin * sin + cos * cos);
-            (sin, cos) = (sin * norm, cos * norm);
-            let next = along * along / machine.clearance + machine.gravity * cos;
+            (x, y) = (x - y * turn, y + x * turn);
+            let norm = 1.5 - 0.5 * (x * x + y * y);
+            (x, y) = (x * norm, y * norm);
+            let next = along * along / machine.clearance + a * x + b * y;
             let mean = 0.5 * (normal_acceleration + next);
             let taken = loss * mean * step;
             if taken >= left {
@@ -146,7 +147,13 @@ impl Series {
     /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall. Just after an impact that along
     /// the wall is hardly known, and the wall's pressing grows with its square. How fast it left the wall is known better
     /// from the impacts.
-    pub(crate) fn relaunch(&mut self, [u, v]: [f32; 2], machine: &MachineConfig, period: f32) {
+    pub(crate) fn relaunch(
+        &mut self,
+        [u, v]: [f32; 2],
+        pull: [f32; 2],
+        machine: &MachineConfig,
+        period: f32,
+    ) {
         self.assumed = false;
         let restitution = self.restitution(machine);
         let Some(last) = self.last.as_mut() else {
@@ -154,8 +161,9 @@ impl Series {
         };
         let [x, y] = last.outward;
         last.along = v * x - u * y;
+        last.pull = pull;
         last.normal_acceleration =
-            last.along * last.along / machine.clearance - machine.gravity * y;
+            last.along * last.along / machine.clearance + pull[0] * x + pull[1] * y;
         let rest = last.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| last.at.later(time / period));
     }
@@ -233,6 +241,7 @@ pub(crate) mod tests {
         spin: -3141.6,
     };
 
+    const DOWN: [f32; 2] = [0.0, -9.81];
     /// Samples of 10 us.
     const PERIOD: f32 = 1e-5;
 
@@ -242,6 +251,7 @@ pub(crate) mod tests {
             normal_speed,
             along: 0.0,
             outward: [0.0, -1.0],
+            pull: DOWN,
             normal_acceleration: 9.81,
         }
     }
@@ -269,6 +279,7 @@ pub(crate) mod tests {
                 normal_speed: 5e-3,
                 along,
                 outward: [sin, -cos],
+                pull: DOWN,
                 normal_acceleration: along * along / MACHINE.clearance + MACHINE.gravity * cos,
                 ..Bounce::default()
             };

@@ -1,4 +1,4 @@
-//! Position and velocity in flight: a Kalman filter of a ballistic path, the same for both axes.
+//! Position, velocity and acceleration in flight: a Kalman filter, the same for both axes.
 
 use touchdown_rotor::real::sqrt;
 
@@ -6,13 +6,14 @@ use touchdown_rotor::real::sqrt;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ballistic {
     period: f32,
-    gravity: f32,
-    /// Growth of the velocity's variance in one sample, (m/s)^2.
-    process_noise: f32,
+    /// Growth of the variance of the velocity, (m/s)^2, and of the acceleration, (m/s^2)^2, in one sample.
+    process_noise: [f32; 2],
 }
 
 /// Time over which an error of the equations keeps its sign, s.
 const CORRELATION_TIME: f32 = 1e-3;
+/// Change of the acceleration along a flight: its variance grows by the square of this in a second, m/s^2.
+const DRIFT: f32 = 1.0;
 
 /// The estimate and its covariance.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,8 +22,11 @@ pub(crate) struct Track {
     pub(crate) position: [f32; 2],
     /// m/s.
     pub(crate) velocity: [f32; 2],
-    /// Of position, position and velocity, velocity; for each axis.
-    covariance: [f32; 3],
+    /// m/s^2.
+    pub(crate) acceleration: [f32; 2],
+    /// Of each axis: of the position, of it with velocity and acceleration, of the velocity, of it with the acceleration, of
+    /// the acceleration.
+    covariance: [f32; 6],
 }
 
 /// What a sample told the filter.
@@ -32,8 +36,8 @@ pub(crate) struct Innovation {
     pub(crate) residual: [f32; 2],
     /// Its variance, m^2.
     pub(crate) variance: f32,
-    /// Gains of position and velocity (1/s).
-    pub(crate) gain: [f32; 2],
+    /// Gains of position, velocity (1/s) and acceleration (1/s^2).
+    pub(crate) gain: [f32; 3],
 }
 
 /// A jump that the test found.
@@ -48,78 +52,105 @@ pub(crate) struct Jump {
     /// Variance of each axis of `change`, (m/s)^2.
     pub(crate) variance: f32,
     /// What a unit of it has left in the filter.
-    pub(crate) effect: [f32; 2],
+    pub(crate) effect: [f32; 3],
     /// Standard deviation of `age`, s.
     pub(crate) timing: f32,
 }
 
 impl Ballistic {
-    pub(crate) fn new(sample_rate: f32, gravity: f32, error: f32) -> Self {
+    pub(crate) fn new(sample_rate: f32, error: f32) -> Self {
         Self {
             period: 1.0 / sample_rate,
-            gravity,
-            process_noise: error * error * CORRELATION_TIME / sample_rate,
+            process_noise: [
+                error * error * CORRELATION_TIME / sample_rate,
+                DRIFT * DRIFT / sample_rate,
+            ],
         }
     }
 
     /// To the next sample.
     pub(crate) fn predict(&self, track: &mut Track) {
         let dt = self.period;
-        let fall = self.gravity * dt;
-        track.position[0] += track.velocity[0] * dt;
-        track.position[1] += (track.velocity[1] - 0.5 * fall) * dt;
-        track.velocity[1] -= fall;
-        let [pp, pv, vv] = track.covariance;
+        let axes = track.position.iter_mut().zip(&mut track.velocity);
+        for ((position, velocity), acceleration) in axes.zip(track.acceleration) {
+            *position += (*velocity + 0.5 * acceleration * dt) * dt;
+            *velocity += acceleration * dt;
+        }
+        let [pp, pv, pa, vv, va, aa] = track.covariance;
+        let pa_next = pa + va * dt;
         track.covariance = [
             pp + (2.0 * pv + vv * dt) * dt,
-            pv + vv * dt,
-            vv + self.process_noise,
+            pv + (vv + pa_next) * dt,
+            pa_next,
+            vv + (2.0 * va + aa * dt) * dt + self.process_noise[0],
+            va + aa * dt,
+            aa + self.process_noise[1],
         ];
     }
 
     /// Takes a position (m) whose axes have this variance (m^2).
     pub(crate) fn correct(&self, track: &mut Track, [x, y]: [f32; 2], variance: f32) -> Innovation {
-        let [pp, pv, vv] = track.covariance;
+        let [pp, pv, pa, vv, va, aa] = track.covariance;
         let total = pp + variance;
-        let gain = [pp / total, pv / total];
+        let scale = 1.0 / total;
+        let gain = [pp * scale, pv * scale, pa * scale];
         let residual = [x - track.position[0], y - track.position[1]];
-        for ((position, velocity), r) in
-            (track.position.iter_mut().zip(&mut track.velocity)).zip(residual)
-        {
-            *position += gain[0] * r;
-            *velocity += gain[1] * r;
-        }
-        let keep = variance / total;
-        track.covariance = [pp * keep, pv * keep, vv - gain[1] * pv];
+        track.add(gain, residual);
+        let keep = variance * scale;
+        track.covariance = [
+            pp * keep,
+            pv * keep,
+            pa * keep,
+            vv - gain[1] * pv,
+            va - gain[1] * pa,
+            aa - gain[2] * pa,
+        ];
         Innovation {
             residual,
             variance: total,
             gain,
         }
     }
-
-    /// Velocity `time` seconds ago, m/s.
-    pub(crate) fn velocity_before(&self, track: &Track, time: f32) -> [f32; 2] {
-        [track.velocity[0], track.velocity[1] + self.gravity * time]
-    }
-
-    /// Position `time` seconds ago, m.
-    pub(crate) fn position_before(&self, track: &Track, time: f32) -> [f32; 2] {
-        let [u, v] = track.velocity;
-        [
-            track.position[0] - u * time,
-            track.position[1] - (v + 0.5 * self.gravity * time) * time,
-        ]
-    }
 }
 
 impl Track {
-    /// At `position` (m), known to `variance` (m^2); velocity (m/s) known to `spread` (m/s).
-    pub(crate) fn new(position: [f32; 2], variance: f32, velocity: [f32; 2], spread: f32) -> Self {
+    /// At `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to these.
+    pub(crate) fn new(
+        position: [f32; 2],
+        variance: f32,
+        velocity: ([f32; 2], f32),
+        acceleration: ([f32; 2], f32),
+    ) -> Self {
+        let ((velocity, spread), (acceleration, error)) = (velocity, acceleration);
         Self {
             position,
             velocity,
-            covariance: [variance, 0.0, spread * spread],
+            acceleration,
+            covariance: [variance, 0.0, 0.0, spread * spread, 0.0, error * error],
+        }
+    }
+
+    /// Velocity `time` seconds ago, m/s.
+    pub(crate) fn velocity_before(&self, time: f32) -> [f32; 2] {
+        let ([u, v], [a, b]) = (self.velocity, self.acceleration);
+        [u - a * time, v - b * time]
+    }
+
+    /// Position `time` seconds ago, m.
+    pub(crate) fn position_before(&self, time: f32) -> [f32; 2] {
+        let [u, v] = self.velocity_before(0.5 * time);
+        [self.position[0] - u * time, self.position[1] - v * time]
+    }
+
+    fn add(&mut self, part: [f32; 3], [x, y]: [f32; 2]) {
+        let states = [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.acceleration,
+        ];
+        for ([of_x, of_y], part) in states.into_iter().zip(part) {
+            *of_x += part * x;
+            *of_y += part * y;
         }
     }
 
@@ -130,7 +161,12 @@ impl Track {
 
     /// Standard deviation of the velocity on each axis, m/s.
     pub(crate) fn speed_error(&self) -> f32 {
-        sqrt(self.covariance[2].max(0.0))
+        sqrt(self.covariance[3].max(0.0))
+    }
+
+    /// Standard deviation of the acceleration on each axis, m/s^2.
+    pub(crate) fn acceleration_error(&self) -> f32 {
+        sqrt(self.covariance[5].max(0.0))
     }
 
     /// Takes a velocity jump in.
@@ -141,16 +177,14 @@ impl Track {
             effect,
             ..
         } = *jump;
-        for ((position, velocity), d) in
-            (self.position.iter_mut().zip(&mut self.velocity)).zip(change)
-        {
-            *position += effect[0] * d;
-            *velocity += effect[1] * d;
-        }
+        self.add(effect, change);
         let [u, v] = change;
         let misplaced = (u * u + v * v) * jump.timing * jump.timing;
-        self.covariance[0] += effect[0] * effect[0] * variance + misplaced;
-        self.covariance[1] += effect[0] * effect[1] * variance;
-        self.covariance[2] += effect[1] * effect[1] * variance;
+        let [p, v, a] = effect;
+        let products = [p * p, p * v, p * a, v * v, v * a, a * a];
+        for (covariance, product) in self.covariance.iter_mut().zip(products) {
+            *covariance += product * variance;
+        }
+        self.covariance[0] += misplaced;
     }
 }

@@ -1,0 +1,668 @@
+//! Drops of machines that are not as told: impacts found, lost and invented, their dates and speeds, contact, whirl, severity.
+//!
+//! `cargo run --release -p touchdown-tests --example believed -- --runs 100 --first-seed 1 [--only FAMILY] [--show]`. Seeds below
+//! 10 000 have chosen constants of the detector.
+
+mod rotor;
+use rotor::*;
+use std::f64::consts::TAU;
+use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
+use touchdown_core::event::{EventKind, Notice};
+use touchdown_core::guard::GuardConfig;
+use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sensing::SensingConfig;
+
+const G: f64 = 9.81;
+const UM: f64 = 1e-6;
+
+/// What sensors do and what is told.
+#[derive(Clone, Debug)]
+struct Told {
+    gap: f64, // told over true
+    gravity: f64,
+    restitution: f64,
+    friction: f64,
+    zero: [f64; 2],
+    gain: [f64; 2],
+    noise: f64,
+    runout: [[f64; 3]; 2],
+    phase: [[f64; 3]; 2],
+}
+
+struct Case {
+    m: Machine,
+    told: Told,
+    start: [f64; 2],
+    thrown: [f64; 2],
+    time: f64,
+    drops: bool,
+    orbit: f64,
+}
+
+fn ideal(r: &mut Rng) -> Case {
+    let gap = r.uniform(2e-4, 5e-4);
+    let (restitution, friction) = (r.uniform(0.3, 0.8), r.uniform(0.05, 0.2));
+    let m = Machine {
+        gap,
+        restitution,
+        friction,
+        radius: 0.024,
+        spin: r.any(&[-1.0, 1.0]) * r.uniform(300.0, 3000.0),
+        pull: [0.0, -G],
+        negative: 0.0,
+        soft: None,
+        held: None,
+    };
+    let (far, at) = (gap * r.uniform(0.0, 0.25), r.uniform(0.0, TAU));
+    let told = Told {
+        gap: 1.0,
+        gravity: G,
+        restitution,
+        friction,
+        zero: [0.0; 2],
+        gain: [1.0; 2],
+        noise: 1.0,
+        runout: [[0.0; 3]; 2],
+        phase: [[0.0; 3]; 2],
+    };
+    Case {
+        m,
+        told,
+        start: [far * at.cos(), far * at.sin()],
+        thrown: [0.0; 2],
+        time: 0.2,
+        drops: true,
+        orbit: 0.0,
+    }
+}
+fn carried(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.pull[1] *= 1.0 - r.uniform(0.5, 0.85);
+    c
+}
+fn side(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.pull[0] = r.any(&[-1.0, 1.0]) * G * r.uniform(0.3, 1.5);
+    c
+}
+fn negative(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.negative = r.uniform(0.2, 1.5) * G / c.m.gap;
+    c.m.pull[1] *= r.uniform(0.3, 1.0);
+    c
+}
+fn gap(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.told.gap = 1.0 + r.uniform(-0.3, 0.3);
+    c
+}
+fn centre(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    let (far, at) = (c.m.gap * r.uniform(0.1, 0.3), r.uniform(0.0, TAU));
+    c.told.zero = [far * at.cos(), far * at.sin()];
+    c
+}
+fn gain(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.told.gain = [r.uniform(0.9, 1.1), r.uniform(0.9, 1.1)];
+    c
+}
+fn wrong(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.told.gap = 1.0 + r.uniform(-0.3, 0.3);
+    c.told.gain = [r.uniform(0.9, 1.1), r.uniform(0.9, 1.1)];
+    let (far, at) = (c.m.gap * r.uniform(0.0, 0.2), r.uniform(0.0, TAU));
+    c.told.zero = [far * at.cos(), far * at.sin()];
+    c.m.pull[0] = G * r.uniform(-0.5, 0.5);
+    c.m.pull[1] *= r.uniform(0.4, 1.0);
+    c.told.restitution *= r.uniform(0.7, 1.3);
+    c.told.friction *= r.uniform(0.7, 1.3);
+    c
+}
+fn runout(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    let size = r.uniform(2.0, 8.0);
+    for p in 0..2 {
+        for h in 0..3 {
+            c.told.runout[p][h] = size * r.uniform(0.5, 1.0) / (h + 1) as f64;
+            c.told.phase[p][h] = r.uniform(0.0, TAU);
+        }
+    }
+    c
+}
+fn soft(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.soft = Some([
+        r.uniform(100.0, 400.0),
+        r.uniform(0.05, 0.3),
+        c.m.gap * r.uniform(0.2, 0.6),
+    ]);
+    c
+}
+fn vertical(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.pull = [0.0; 2];
+    c.told.gravity = 0.0;
+    let (fast, at) = (r.uniform(0.02, 0.1), r.uniform(0.0, TAU));
+    c.thrown = [fast * at.cos(), fast * at.sin()];
+    c.time = 0.15;
+    c
+}
+fn orbit(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.orbit = r.uniform(5.0, 30.0) * UM;
+    c
+}
+fn held(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.m.held = Some(Held {
+        frequency: r.uniform(80.0, 200.0),
+        damping: r.uniform(0.4, 0.7),
+        most: 4.0 * G,
+        orbit: [0.0, 1.0],
+        shock: None,
+    });
+    c.drops = false;
+    c.start = [0.0; 2];
+    c.time = 0.3;
+    c
+}
+fn rub(r: &mut Rng) -> Case {
+    let mut c = held(r);
+    c.m.spin = c.m.spin.signum() * TAU * r.uniform(60.0, 300.0);
+    let h = c.m.held.as_mut().unwrap();
+    // The response of the loop to unbalance: as large as to reach the wall by 0-20 %.
+    let (w, s) = (TAU * h.frequency, c.m.spin.abs());
+    let response = s * s / (w * w - s * s).hypot(2.0 * h.damping * w * s);
+    h.orbit = [
+        c.m.gap * r.uniform(1.0, 1.2) / response,
+        r.uniform(0.05, 0.2),
+    ];
+    h.most = 60.0 * G;
+    c
+}
+fn shock(r: &mut Rng) -> Case {
+    let mut c = held(r);
+    let h = c.m.held.as_mut().unwrap();
+    let (a, at) = (G * r.uniform(4.0, 10.0), r.uniform(0.0, TAU));
+    h.shock = Some((0.1, r.uniform(3e-3, 10e-3), [a * at.cos(), a * at.sin()]));
+    h.most = 6.0 * G;
+    c
+}
+
+#[derive(Default)]
+struct Tally {
+    drops: u32,
+    want: u32,
+    found: u32,
+    invented: u32,
+    with_invented: u32,
+    onset: Vec<f64>,
+    speed: Vec<f64>,
+    contacts: u32,
+    contact_err: Vec<f64>,
+    missed_contact: u32,
+    early_contact: u32,
+    whirls: u32,
+    false_whirl: u32,
+    faults: u32,
+    lost: u32,
+    severity: Vec<f64>,
+    dwell: Vec<f64>,
+    confirmed: u32,
+    touched: u32,
+    fall_missed: u32,
+}
+
+fn told_config(c: &Case, rate: f64) -> MonitorConfig {
+    MonitorConfig {
+        fitted: 0b1111,
+        sensing: SensingConfig {
+            resolution: 2_000e-6 / 4_096.0,
+            zero_count: 2_048.0,
+            full_scale: 4_095,
+            mounting_angle: [0.0; 2],
+            calibration: None,
+        },
+        tachometers: None,
+        detector: DetectorConfig {
+            sample_rate: rate as f32,
+            machine: MachineConfig {
+                mass: 3.0,
+                clearance: (c.m.gap * c.told.gap) as f32,
+                gravity: c.told.gravity as f32,
+                rotor_radius: c.m.radius as f32,
+                inertia_ratio: 0.5,
+                friction: c.told.friction as f32,
+                restitution: c.told.restitution.min(0.95) as f32,
+                spin: c.m.spin as f32,
+            },
+            tuning: Tuning::default(),
+        },
+        guard: GuardConfig::default(),
+        commissioned: false,
+    }
+}
+
+struct Ev {
+    kind: EventKind,
+    onset: f64,
+    declared: f64,
+    speed: f64,
+}
+
+fn run(c: &Case, seed: u64, rng: &mut Rng, t: &mut Tally, verbose: bool) {
+    let rate = 20_000.0;
+    let monitor = Monitor::try_new(&told_config(c, rate)).unwrap();
+    let mut state = monitor.start();
+    let lead = 0.4;
+    let lag = rng.uniform(0.0, 1.0) / rate; // release between two samples
+    let n0 = (lead * rate) as i64;
+    let mut rotor: Option<Rotor> = None;
+    let a0 = rng.uniform(0.0, TAU);
+    let place = |time: f64| -> ([f64; 2], [f64; 2], f64) {
+        let a = a0 + c.m.spin * time;
+        let (s, k) = a.sin_cos();
+        (
+            [c.start[0] + c.orbit * k, c.start[1] + c.orbit * s],
+            [-c.orbit * c.m.spin * s, c.orbit * c.m.spin * k],
+            a,
+        )
+    };
+    let mut events: Vec<Ev> = vec![];
+    let (mut confirmed, mut faults) = (false, 0);
+    let total = n0 + ((c.time) * rate) as i64;
+    let t0 = n0 as f64 / rate + lag;
+    let mut log = vec![];
+    for k in 0..total {
+        let time = k as f64 / rate - t0;
+        let (x, angle, spin) = if time < 0.0 {
+            let (x, _, a) = place(time);
+            (x, a, c.m.spin)
+        } else {
+            let rot = rotor.get_or_insert_with(|| {
+                let (x, v, a) = place(0.0);
+                Rotor::new(&c.m, x, [v[0] + c.thrown[0], v[1] + c.thrown[1]], a)
+            });
+            rot.run(time);
+            if rot.lies_fast() {
+                break;
+            }
+            (rot.x, rot.angle, rot.spin)
+        };
+        let mut counts = [0u16; 4];
+        for p in 0..2 {
+            for axis in 0..2 {
+                let mut um = (x[axis] * c.told.gain[axis] + c.told.zero[axis]) * 1e6
+                    + c.told.noise * rng.normal();
+                for h in 0..3 {
+                    um += c.told.runout[p][h]
+                        * ((h + 1) as f64 * (angle - axis as f64 * TAU / 4.0) + c.told.phase[p][h])
+                            .cos();
+                }
+                counts[2 * p + axis] =
+                    (2048.0 + um / (2000.0 / 4096.0)).round().clamp(0.0, 4095.0) as u16;
+            }
+        }
+        let sample = Sample {
+            counts,
+            valid: 0b1111,
+            spin: Some(spin as f32),
+            levitated: None,
+            edges: [None; TACHOMETERS],
+        };
+        for notice in monitor.update(&mut state, &sample).iter() {
+            match notice {
+                Notice::Declared(e) => {
+                    let onset = e.onset.samples() / rate - t0;
+                    if e.kind == EventKind::SensorFault {
+                        faults += 1;
+                    }
+                    if verbose {
+                        log.push((
+                            time,
+                            format!(
+                                "{:9.3} ms  {:?} onset {:.3} speed {:.1} mm/s {:?} plane {:?}",
+                                time * 1e3,
+                                e.kind,
+                                onset * 1e3,
+                                e.normal_speed * 1e3,
+                                e.fault,
+                                e.plane
+                            ),
+                        ));
+                    }
+                    events.push(Ev {
+                        kind: e.kind,
+                        onset,
+                        declared: time,
+                        speed: f64::from(e.normal_speed),
+                    });
+                }
+                Notice::Confirmed { .. } => {
+                    confirmed = true;
+                    if verbose {
+                        log.push((time, format!("{:9.3} ms  CONFIRMED", time * 1e3)))
+                    }
+                }
+                Notice::Withdrawn { .. } => {
+                    if verbose {
+                        log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)))
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    let rot = rotor.unwrap();
+    let truth = &rot.truth;
+    let end = rot.t;
+    t.drops += 1;
+    t.faults += (faults > 0) as u32;
+    t.touched += !truth.impacts.is_empty() as u32;
+    t.confirmed += confirmed as u32;
+    // Impacts.
+    let found_events: Vec<&Ev> = events
+        .iter()
+        .filter(|e| e.kind == EventKind::Impact)
+        .collect();
+    let mut pairs = vec![];
+    for (i, it) in truth.impacts.iter().enumerate() {
+        for (j, e) in found_events.iter().enumerate() {
+            let off = if e.onset > it.time {
+                (e.onset - it.time - it.length).max(0.0)
+            } else {
+                it.time - e.onset
+            };
+            if off < 1e-3 {
+                pairs.push(((e.onset - it.time).abs(), i, j));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut of: Vec<Option<usize>> = vec![None; truth.impacts.len()];
+    let mut used = vec![false; found_events.len()];
+    for (_, i, j) in pairs {
+        if of[i].is_none() && !used[j] {
+            of[i] = Some(j);
+            used[j] = true;
+        }
+    }
+    let variance = (c.told.noise * UM).powi(2) / 2.0 + (2000.0 * UM / 4096.0).powi(2) / 24.0;
+    let times: Vec<f64> = truth
+        .impacts
+        .iter()
+        .map(|i| i.time)
+        .chain(
+            truth
+                .contacts
+                .iter()
+                .flatten()
+                .copied()
+                .filter(|t| t.is_finite()),
+        )
+        .collect();
+    let mut lost = 0;
+    for (i, it) in truth.impacts.iter().enumerate() {
+        if it.jump < 18e-3 || it.time > end - 3e-3 {
+            continue;
+        }
+        if it.length > 0.0 && of[i].is_none() && it.length > 3e-3 { /* judged all the same */ }
+        let before = times
+            .iter()
+            .copied()
+            .filter(|t| *t < it.time - 1e-9)
+            .fold(0.0, f64::max);
+        let after = times
+            .iter()
+            .copied()
+            .filter(|t| *t > it.time + it.length + 1e-9)
+            .fold(end, f64::min);
+        let leaves = it.jump - it.speed;
+        let shown = (it.speed.powi(2) * (it.time - before).powi(3)
+            + leaves.powi(2) * (after - it.time - it.length).powi(3))
+            * rate
+            / (60.0 * variance);
+        if shown < 20.7 {
+            continue;
+        }
+        t.want += 1;
+        match of[i] {
+            Some(j) => {
+                t.found += 1;
+                let e = found_events[j];
+                t.onset.push((e.onset - it.time) * rate);
+                t.speed.push(e.speed / it.speed - 1.0);
+            }
+            None => lost += 1,
+        }
+    }
+    t.lost += (lost > 0) as u32;
+    let invented = used.iter().filter(|u| !**u).count() as u32;
+    t.invented += invented;
+    t.with_invented += (invented > 0) as u32;
+    // Contact: the first that lasts.
+    let lasting = |it: &&[f64; 2]| it[1].min(end) - it[0] > 5e-3;
+    let first_told = events
+        .iter()
+        .find(|e| matches!(e.kind, EventKind::Sliding | EventKind::Rolling));
+    let first_true = truth.contacts.iter().find(lasting);
+    match (first_true, first_told) {
+        (Some(it), Some(e)) => {
+            t.contacts += 1;
+            if end - it[0] > 10e-3 {
+                t.contact_err.push(e.onset - it[0]);
+            }
+        }
+        (Some(it), None) if end - it[0] > 20e-3 => {
+            t.contacts += 1;
+            t.missed_contact += 1;
+            t.contact_err.push(f64::INFINITY)
+        }
+        (None, Some(_)) => t.early_contact += 1,
+        _ => {}
+    }
+    // Whirl: a full turn in a contact, told with a second allowed for those bound to come.
+    for e in &events {
+        let sign = match e.kind {
+            EventKind::ForwardWhirl => 1.0,
+            EventKind::BackwardWhirl => -1.0,
+            _ => continue,
+        };
+        t.whirls += 1;
+        let holds = truth
+            .contacts
+            .iter()
+            .zip(&truth.turned)
+            .any(|(it, turned)| {
+                it[0] < e.declared
+                    && (turned.abs() >= TAU || it[1].is_infinite())
+                    && turned * sign * c.m.spin.signum() > 0.9 * TAU.min(turned.abs() + 1.0)
+            });
+        if !holds {
+            t.false_whirl += 1
+        }
+    }
+    if c.drops {
+        t.fall_missed += !events
+            .iter()
+            .any(|e| e.kind == EventKind::FreeFall && e.declared > 0.0)
+            as u32;
+        let s = state.severity();
+        let greatest = truth.impacts.iter().map(|i| i.speed).fold(0.0, f64::max);
+        if greatest > 0.0 {
+            t.severity.push(f64::from(s.impact_speed) / greatest);
+        }
+        let dwell: f64 = truth.contacts.iter().map(|it| it[1].min(end) - it[0]).sum();
+        if dwell > 0.01 {
+            t.dwell.push(f64::from(s.dwell) / dwell);
+        }
+    }
+    if verbose {
+        println!(
+            "--- seed {seed} gap {:.0} e {:.2} mu {:.2} spin {:.0} pull {:?} neg {:.0} soft {:?} told {:?}",
+            c.m.gap * 1e6,
+            c.m.restitution,
+            c.m.friction,
+            c.m.spin,
+            c.m.pull,
+            c.m.negative,
+            c.m.soft,
+            c.told
+        );
+        for (i, it) in truth.impacts.iter().enumerate() {
+            if it.jump > 2e-3 {
+                log.push((it.time, format!("{:9.3} ms      true impact {:.1} mm/s jump {:.1} length {:.2} ms at {:.0} deg {}", it.time * 1e3, it.speed * 1e3, it.jump * 1e3, it.length * 1e3, it.outward[0].atan2(-it.outward[1]).to_degrees(), if of[i].is_some() { "found" } else { "-" })))
+            }
+        }
+        for it in &truth.contacts {
+            log.push((
+                it[0],
+                format!(
+                    "{:9.3} ms      true contact to {:.3}",
+                    it[0] * 1e3,
+                    it[1] * 1e3
+                ),
+            ))
+        }
+        log.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, line) in &log {
+            println!("{line}")
+        }
+        println!("turned {:?}", truth.turned);
+    }
+}
+
+fn quantile(v: &[f64], p: f64) -> f64 {
+    let mut v: Vec<f64> = v.to_vec();
+    if v.is_empty() {
+        return f64::NAN;
+    }
+    v.sort_by(f64::total_cmp);
+    v[((v.len() - 1) as f64 * p).round() as usize]
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().collect();
+    let get = |name: &str| {
+        args.iter()
+            .position(|a| a == name)
+            .map(|i| args[i + 1].clone())
+    };
+    let runs: u64 = get("--runs").map_or(100, |s| s.parse().unwrap());
+    let first: u64 = get("--first-seed").map_or(1, |s| s.parse().unwrap());
+    let only = get("--only").unwrap_or_default();
+    let verbose = args.iter().any(|a| a == "--show");
+    let families: [(&str, fn(&mut Rng) -> Case); 14] = [
+        ("ideal", ideal),
+        ("orbit", orbit),
+        ("carried 50-85 %", carried),
+        ("side 0.3-1.5 g", side),
+        ("negative", negative),
+        ("gap +-30 %", gap),
+        ("centre 10-30 %", centre),
+        ("gain +-10 %", gain),
+        ("all wrong", wrong),
+        ("runout 2-8 um", runout),
+        ("soft, stop", soft),
+        ("vertical", vertical),
+        ("rub", rub),
+        ("shock", shock),
+    ];
+    println!(
+        "{:16} {:>5} {:>12} {:>5} {:>11} {:>12} {:>12} {:>17} {:>5} {:>5} {:>7} {:>15} {:>13} {:>6} {:>5}",
+        "family",
+        "runs",
+        "found",
+        "lost",
+        "invented/in",
+        "onset 50/99",
+        "speed 90/99",
+        "contact 50/95 ms",
+        "miss",
+        "false",
+        "whirl",
+        "sev 10/50/90",
+        "dwell 10/90",
+        "confd",
+        "fault"
+    );
+    for (name, make) in families {
+        if !name.contains(&only) {
+            continue;
+        }
+        let tallies: Vec<Tally> = std::thread::scope(|s| {
+            let hs: Vec<_> = (0..2u64)
+                .map(|part| {
+                    s.spawn(move || {
+                        let mut t = Tally::default();
+                        for seed in
+                            (first..first + runs).filter(|s| s % 2 == part || verbose && part == 0)
+                        {
+                            if verbose && part == 1 {
+                                continue;
+                            }
+                            let mut rng = Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
+                            let case = make(&mut rng);
+                            run(&case, seed, &mut rng, &mut t, verbose);
+                        }
+                        t
+                    })
+                })
+                .collect();
+            hs.into_iter().map(|h| h.join().unwrap()).collect()
+        });
+        let mut a = Tally::default();
+        for t in tallies {
+            a.drops += t.drops;
+            a.want += t.want;
+            a.found += t.found;
+            a.invented += t.invented;
+            a.with_invented += t.with_invented;
+            a.onset.extend(t.onset);
+            a.speed.extend(t.speed);
+            a.contacts += t.contacts;
+            a.contact_err.extend(t.contact_err);
+            a.missed_contact += t.missed_contact;
+            a.early_contact += t.early_contact;
+            a.whirls += t.whirls;
+            a.false_whirl += t.false_whirl;
+            a.faults += t.faults;
+            a.severity.extend(t.severity);
+            a.dwell.extend(t.dwell);
+            a.confirmed += t.confirmed;
+            a.lost += t.lost;
+            a.touched += t.touched;
+        }
+        let abs = |v: &[f64]| v.iter().map(|x| x.abs()).collect::<Vec<_>>();
+        let (on, sp, co) = (abs(&a.onset), abs(&a.speed), abs(&a.contact_err));
+        println!(
+            "{:16} {:>5} {:>5}/{:<6} {:>5} {:>6}/{:<4} {:>5.2}/{:<6.2} {:>5.3}/{:<6.3} {:>7.2}/{:<9.2} {:>5} {:>5} {:>3}/{:<3} {:>4.2}/{:.2}/{:<5.2} {:>5.2}/{:<6.2} {:>6} {:>5}",
+            name,
+            a.drops,
+            a.found,
+            a.want,
+            a.lost,
+            a.invented,
+            a.with_invented,
+            quantile(&on, 0.5),
+            quantile(&on, 0.99),
+            quantile(&sp, 0.9),
+            quantile(&sp, 0.99),
+            1e3 * quantile(&co, 0.5),
+            1e3 * quantile(&co, 0.95),
+            a.missed_contact,
+            a.early_contact,
+            a.false_whirl,
+            a.whirls,
+            quantile(&a.severity, 0.1),
+            quantile(&a.severity, 0.5),
+            quantile(&a.severity, 0.9),
+            quantile(&a.dwell, 0.1),
+            quantile(&a.dwell, 0.9),
+            a.confirmed,
+            a.faults
+        );
+    }
+}
