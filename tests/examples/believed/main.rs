@@ -191,6 +191,8 @@ fn shock(r: &mut Rng) -> Case {
     c
 }
 
+type Make = fn(&mut Rng) -> Case;
+
 #[derive(Default)]
 struct Tally {
     drops: u32,
@@ -346,10 +348,8 @@ fn run(c: &Case, seed: u64, rng: &mut Rng, t: &mut Tally, verbose: bool) {
                         log.push((time, format!("{:9.3} ms  CONFIRMED", time * 1e3)))
                     }
                 }
-                Notice::Withdrawn { .. } => {
-                    if verbose {
-                        log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)))
-                    }
+                Notice::Withdrawn { .. } if verbose => {
+                    log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)))
                 }
                 _ => {}
             }
@@ -554,7 +554,7 @@ fn main() {
     let first: u64 = get("--first-seed").map_or(1, |s| s.parse().unwrap());
     let only = get("--only").unwrap_or_default();
     let verbose = args.iter().any(|a| a == "--show");
-    let families: [(&str, fn(&mut Rng) -> Case); 14] = [
+    let families: [(&str, Make); 14] = [
         ("ideal", ideal),
         ("orbit", orbit),
         ("carried 50-85 %", carried),

@@ -306,10 +306,10 @@ impl Rotor {
                 }
             }
         } else if let Some(touch) = self.touch.take() {
-            if self.stop_hit {
-                if let Some(it) = self.truth.contacts.last_mut() {
-                    it[1] = self.t
-                }
+            if self.stop_hit
+                && let Some(it) = self.truth.contacts.last_mut()
+            {
+                it[1] = self.t
             }
             self.stop_hit = false;
             self.truth.impacts.push(touch);
