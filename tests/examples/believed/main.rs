@@ -194,6 +194,8 @@ fn shock(r: &mut Rng) -> Case {
     c
 }
 
+type Make = fn(&mut Rng) -> Case;
+
 #[derive(Default)]
 struct Tally {
     drops: u32,
@@ -350,7 +352,11 @@ fn run(c: &Case, seed: u64, rng: &mut Rng, t: &mut Tally, verbose: bool) {
                     }
                 }
                 Notice::Withdrawn { .. } if verbose => {
+<<<<<<< HEAD
                     log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)));
+=======
+                    log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)))
+>>>>>>> detector
                 }
                 _ => {}
             }
@@ -555,7 +561,11 @@ fn main() {
     let first: u64 = get("--first-seed").map_or(1, |s| s.parse().unwrap());
     let only = get("--only").unwrap_or_default();
     let verbose = args.iter().any(|a| a == "--show");
+<<<<<<< HEAD
     let families: [Family; 14] = [
+=======
+    let families: [(&str, Make); 14] = [
+>>>>>>> detector
         ("ideal", ideal),
         ("orbit", orbit),
         ("carried 50-85 %", carried),
