@@ -91,8 +91,7 @@ mod tests {
             })
         };
         let mut interlock = LiftInterlock::new(20_000.0, 0b1111);
-        let take =
-            |it: &mut LiftInterlock| it.take(Some([3e-4, 0.0]), [Phase::Sliding; PLANES]);
+        let take = |it: &mut LiftInterlock| it.take(Some([3e-4, 0.0]), [Phase::Sliding; PLANES]);
         assert!((0..20_000).all(|_| !take(&mut interlock)));
         interlock.hear(&told(EventKind::Rest, Plane::A));
         assert!(!take(&mut interlock));

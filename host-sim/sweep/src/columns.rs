@@ -1,8 +1,7 @@
 //! What a drop is written as: the columns of its row.
 
-use toml::Value;
-
 use super::draw::Drawn;
+use super::parameter::text;
 use super::plan::Plan;
 use super::record::{REGIMES, Record, number};
 
@@ -42,22 +41,4 @@ pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> 
     let number = |value: f64| (!value.is_nan()).then(|| value.to_string());
     cells.extend(record.values().map(|it| number(it).unwrap_or_default()));
     cells
-}
-
-/// Of a whole or decimal number.
-pub(super) fn as_number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Integer(whole) => Some(*whole as f64),
-        Value::Float(number) => Some(*number),
-        _ => None,
-    }
-}
-
-/// For people and tables.
-pub(super) fn text(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        Value::Float(number) => format!("{number}"),
-        other => other.to_string(),
-    }
 }

@@ -14,13 +14,15 @@ mod plan;
 mod record;
 mod results;
 mod run;
+mod search;
 mod summary;
 mod table;
 
-pub use find::{Find, Found, find};
+pub use find::{Find, Found};
 pub use part::Part;
 pub use plan::Plan;
 pub use results::{RESULTS, Results, found, write};
 pub use run::run;
+pub use search::find;
 pub use summary::Point;
 pub use table::table;

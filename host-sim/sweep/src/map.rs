@@ -3,10 +3,9 @@
 use maud::{Markup, html};
 use toml::Value;
 
-use super::columns::{as_number, text};
+use super::parameter::{as_number, short, text};
 use super::plan::Plan;
 use super::summary::Point;
-use super::table::short;
 use touchdown_chart::plot::{Axis, Chart};
 
 const HEIGHT: f64 = 320.0;

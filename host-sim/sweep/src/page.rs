@@ -2,12 +2,12 @@
 
 use maud::html;
 
-use super::columns::text;
 use super::find::Found;
 use super::map;
+use super::parameter::{short, text};
 use super::plan::{Plan, Until};
 use super::summary::{Point, total};
-use super::table::{NO_END, short};
+use super::table::NO_END;
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 

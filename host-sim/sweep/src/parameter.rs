@@ -187,6 +187,36 @@ impl Distribution {
     }
 }
 
+/// Of a whole or decimal number.
+pub(super) fn as_number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(whole) => Some(*whole as f64),
+        Value::Float(number) => Some(*number),
+        _ => None,
+    }
+}
+
+/// For people and tables.
+pub(super) fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => format!("{number}"),
+        other => other.to_string(),
+    }
+}
+
+/// A number of a range can have seventeen digits.
+pub(super) fn short(value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(number) if value.len() > 8 => {
+            let digits = 4 - number.abs().max(1e-300).log10().floor() as i32;
+            let scale = 10f64.powi(digits.clamp(0, 12));
+            format!("{}", (number * scale).round() / scale)
+        }
+        _ => value.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -230,5 +260,13 @@ mod tests {
         ] {
             assert!(values(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn long_numbers_become_short() {
+        assert_eq!(short("0.30000000000000004"), "0.3");
+        assert_eq!(short("12345.678912"), "12346");
+        assert_eq!(short("polynomial-of-old"), "polynomial-of-old");
+        assert_eq!(short("0.1"), "0.1");
     }
 }

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use toml::{Spanned, Table, Value};
 
-use super::columns::as_number;
 use super::find::Find;
-use super::parameter::{Distribution, ParameterTable, Values};
+use super::parameter::{Distribution, ParameterTable, Values, as_number};
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::Scene;
 use touchdown_scene::file::tables;

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::columns::{as_number, columns, text};
+use super::columns::columns;
 use super::find::Found;
 use super::page::page;
+use super::parameter::{as_number, text};
 use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
 use super::plan::{Plan, Until};
 use super::record::Record;

@@ -1,6 +1,6 @@
 //! The points as text.
 
-use super::columns::text;
+use super::parameter::{short, text};
 use super::plan::{Plan, Until};
 use super::summary::{Point, total};
 use touchdown_base::paint::Paint;
@@ -52,29 +52,4 @@ fn line(plan: &Plan, point: &Point) -> String {
         thousand(point.whirl_start_median_s),
         thousand(point.impact_speed_max_m_s),
     )
-}
-
-/// A number of a range can have seventeen digits.
-pub(super) fn short(value: &str) -> String {
-    match value.parse::<f64>() {
-        Ok(number) if value.len() > 8 => {
-            let digits = 4 - number.abs().max(1e-300).log10().floor() as i32;
-            let scale = 10f64.powi(digits.clamp(0, 12));
-            format!("{}", (number * scale).round() / scale)
-        }
-        _ => value.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_numbers_become_short() {
-        assert_eq!(short("0.30000000000000004"), "0.3");
-        assert_eq!(short("12345.678912"), "12346");
-        assert_eq!(short("polynomial-of-old"), "polynomial-of-old");
-        assert_eq!(short("0.1"), "0.1");
-    }
 }

@@ -40,9 +40,6 @@ struct Case {
     orbit: f64,
 }
 
-/// Name, and how one of its cases is drawn.
-type Family = (&'static str, fn(&mut Rng) -> Case);
-
 fn ideal(r: &mut Rng) -> Case {
     let gap = r.uniform(2e-4, 5e-4);
     let (restitution, friction) = (r.uniform(0.3, 0.8), r.uniform(0.05, 0.2));
@@ -352,11 +349,7 @@ fn run(c: &Case, seed: u64, rng: &mut Rng, t: &mut Tally, verbose: bool) {
                     }
                 }
                 Notice::Withdrawn { .. } if verbose => {
-<<<<<<< HEAD
-                    log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)));
-=======
                     log.push((time, format!("{:9.3} ms  WITHDRAWN", time * 1e3)))
->>>>>>> detector
                 }
                 _ => {}
             }
@@ -561,11 +554,7 @@ fn main() {
     let first: u64 = get("--first-seed").map_or(1, |s| s.parse().unwrap());
     let only = get("--only").unwrap_or_default();
     let verbose = args.iter().any(|a| a == "--show");
-<<<<<<< HEAD
-    let families: [Family; 14] = [
-=======
     let families: [(&str, Make); 14] = [
->>>>>>> detector
         ("ideal", ideal),
         ("orbit", orbit),
         ("carried 50-85 %", carried),

@@ -309,11 +309,7 @@ impl Rotor {
             if self.stop_hit
                 && let Some(it) = self.truth.contacts.last_mut()
             {
-<<<<<<< HEAD
-                it[1] = self.t;
-=======
                 it[1] = self.t
->>>>>>> detector
             }
             self.stop_hit = false;
             self.truth.impacts.push(touch);

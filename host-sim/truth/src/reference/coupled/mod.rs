@@ -32,6 +32,7 @@ mod linear;
 mod machine;
 mod mode;
 mod motion;
+mod share;
 mod start;
 mod step;
 mod surroundings;

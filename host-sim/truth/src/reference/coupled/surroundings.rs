@@ -1,7 +1,8 @@
 //! The forces besides those of the links: weight, springs, dampers, unbalance, gyroscopic effect, magnets
 //! and drag.
 
-use super::system::{Law, shared};
+use super::share::shared;
+use super::system::Law;
 use super::tape::Term;
 
 /// Of the moment at which a magnet is switched, relative.

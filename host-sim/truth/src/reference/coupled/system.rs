@@ -3,7 +3,7 @@
 //! Coordinates are x and y of each body, then the angles. A "body" may also be the tilt of another,
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
-use super::jet::Jet;
+use super::share::{Shared, shared, weighted};
 use super::tape::Term;
 
 /// How far a link's grip goes.
@@ -70,36 +70,6 @@ impl Link {
             Hold::Brake(_) => None,
         }
     }
-}
-
-/// What sums with weights can be made of.
-pub trait Shared: Copy {
-    /// The sum; of one part at least.
-    fn weighted(parts: &[(Self, f64)]) -> Self;
-}
-
-impl Shared for f64 {
-    fn weighted(parts: &[(Self, f64)]) -> Self {
-        parts.iter().map(|(of, weight)| of * weight).sum()
-    }
-}
-
-impl Shared for Jet {
-    fn weighted(parts: &[(Self, f64)]) -> Self {
-        let add = |sum, (of, weight): &(Self, f64)| sum + *of * *weight;
-        parts.iter().fold(Self::ZERO, add)
-    }
-}
-
-/// A sum of the bodies' vectors.
-pub fn shared<T: Shared>(shares: &[f64], of: &[T]) -> [T; 2] {
-    [0, 1].map(|axis| weighted(shares, |k| of[2 * k + axis]))
-}
-
-fn weighted<T: Shared>(weights: &[f64], of: impl Fn(usize) -> T) -> T {
-    let counts = |(k, weight): (usize, &f64)| (k == 0 || *weight != 0.0).then(|| (of(k), *weight));
-    let parts: Vec<(T, f64)> = weights.iter().enumerate().filter_map(counts).collect();
-    T::weighted(&parts)
 }
 
 /// Masses and links.

@@ -2,7 +2,7 @@
 
 use super::jet::{Jet, ORDER};
 use super::linear::inverse;
-use super::system::Shared;
+use super::share::Shared;
 use std::cell::RefCell;
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,8 +1,9 @@
 //! Links that touch: impacts, and where a bounce series ends.
 
 use super::super::impact::{self, Touching};
+use super::super::share::shared;
 use super::super::step::Mode;
-use super::super::system::{Hold, Law, shared};
+use super::super::system::{Hold, Law};
 use super::{Motion, ON_WALL};
 use touchdown_base::history::{Impact, ModelEvent, RotorState};
 
