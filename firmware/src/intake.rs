@@ -17,7 +17,7 @@ pub const RING: usize = 16;
 
 /// What came with a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrival {
+pub struct Incoming {
     /// Of the sensors.
     pub sample: Sample,
     /// Whether the service input is on.
@@ -26,7 +26,7 @@ pub struct Arrival {
     pub clear: bool,
 }
 
-impl From<Sample> for Arrival {
+impl From<Sample> for Incoming {
     fn from(sample: Sample) -> Self {
         Self {
             sample,
@@ -38,15 +38,15 @@ impl From<Sample> for Arrival {
 
 /// An arrival and its number, from 0, modulo 2^32; those that were lost have numbers too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Numbered {
-    pub(crate) arrival: Arrival,
+pub struct NumberedSample {
+    pub(crate) arrival: Incoming,
     pub(crate) number: u32,
 }
 
 /// Between sampling and tick: the samples that wait, and what the guard on top has taken back.
 pub struct Ring {
-    waiting: Queue<Numbered, RING>,
-    gate: Gate,
+    waiting: Queue<NumberedSample, RING>,
+    gate: TripGate,
 }
 
 impl Ring {
@@ -54,7 +54,7 @@ impl Ring {
     pub const fn empty() -> Self {
         Self {
             waiting: Queue::new(),
-            gate: Gate::open(),
+            gate: TripGate::open(),
         }
     }
 
@@ -89,8 +89,8 @@ pub struct Intake<'m> {
     state: GuardState,
     /// Number of the next sample.
     next: u32,
-    samples: Producer<'m, Numbered>,
-    gate: &'m Gate,
+    samples: Producer<'m, NumberedSample>,
+    gate: &'m TripGate,
 }
 
 impl Intake<'_> {
@@ -98,14 +98,14 @@ impl Intake<'_> {
     /// and they are not.
     #[inline]
     #[must_use]
-    pub fn take(&mut self, arrival: Arrival, lost: u32) -> bool {
+    pub fn take(&mut self, arrival: Incoming, lost: u32) -> bool {
         let number = self.next.wrapping_add(lost);
         self.next = number.wrapping_add(1);
         let places = self.sensing.planes(&arrival.sample);
         let levitated = arrival.sample.levitated;
         self.guard.update(&mut self.state, places, levitated);
         // Where there is no room it is lost, and the number of the next that has room tells it.
-        let _ = self.samples.enqueue(Numbered { arrival, number });
+        let _ = self.samples.enqueue(NumberedSample { arrival, number });
         let verdict = self.state.verdict();
         (verdict.danger || verdict.lost || verdict.off) && self.gate.trip(number)
     }
@@ -113,21 +113,21 @@ impl Intake<'_> {
 
 /// The end of the tick.
 pub struct Waiting<'m> {
-    waiting: Consumer<'m, Numbered>,
+    waiting: Consumer<'m, NumberedSample>,
     /// Before the outputs.
-    pub gate: &'m Gate,
+    pub gate: &'m TripGate,
 }
 
 impl Waiting<'_> {
     /// The oldest that waits.
     #[inline]
-    pub fn pop(&mut self) -> Option<Numbered> {
+    pub fn pop(&mut self) -> Option<NumberedSample> {
         self.waiting.dequeue()
     }
 }
 
 /// Takes `run` back before the tick gets to the sample that trips.
-pub struct Gate {
+pub struct TripGate {
     /// What the last tick asked for.
     runs: AtomicBool,
     tripped: AtomicBool,
@@ -135,7 +135,7 @@ pub struct Gate {
     at: AtomicU32,
 }
 
-impl Gate {
+impl TripGate {
     const fn open() -> Self {
         Self {
             runs: AtomicBool::new(false),

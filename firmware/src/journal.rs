@@ -25,7 +25,7 @@ mod target {
     use touchdown_protocol::controller::{Fault, Faults, Outputs, Shown};
 
     use crate::crash::Crash;
-    use crate::platform::Entry;
+    use crate::platform::JournalEntry;
 
     /// The configuration in force.
     pub fn config(config: &MonitorConfig) {
@@ -40,11 +40,11 @@ mod target {
     }
 
     /// What is new.
-    pub fn entry(entry: &Entry<'_>) {
+    pub fn entry(entry: &JournalEntry<'_>) {
         match entry {
-            Entry::Notice(it) => notice(it),
-            Entry::Shown(it) => shown(*it),
-            Entry::Faults(it) => faults(*it),
+            JournalEntry::Notice(it) => notice(it),
+            JournalEntry::Shown(it) => shown(*it),
+            JournalEntry::Faults(it) => faults(*it),
         }
     }
 

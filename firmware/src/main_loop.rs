@@ -6,7 +6,7 @@ use touchdown_protocol::config_block::{Block, Key, Settings};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
-use crate::platform::{Entry, LogStore, Platform};
+use crate::platform::{JournalEntry, LogStore, Platform};
 
 /// Samples between two states that the link sends unasked.
 const STATE_SAMPLES: u64 = 1_000;
@@ -121,17 +121,17 @@ impl MainLoop {
         if platform.is_idle()
             && let Some(notice) = platform.hold(|tick| tick.desk.outbox.pop_front())
         {
-            platform.write_down(&Entry::Notice(&notice));
+            platform.write_down(&JournalEntry::Notice(&notice));
             let frame = self.server.notice(&notice);
             let is_lost = frame.is_some_and(|it| !platform.send(&it));
             self.link.lost_notices += u32::from(is_lost);
         }
         let (shown, faults) = platform.hold(|tick| (tick.app.shown(), tick.app.faults()));
         if shown != self.told.0 {
-            platform.write_down(&Entry::Shown(shown));
+            platform.write_down(&JournalEntry::Shown(shown));
         }
         if faults != self.told.1 {
-            platform.write_down(&Entry::Faults(faults));
+            platform.write_down(&JournalEntry::Faults(faults));
         }
         self.told = (shown, faults);
         if samples >= self.state_due && platform.is_idle() {

@@ -63,7 +63,7 @@ pub trait Platform {
     fn reset(&mut self);
 
     /// Writes down what is new, where there is a journal.
-    fn write_down(&mut self, _entry: &Entry<'_>) {}
+    fn write_down(&mut self, _entry: &JournalEntry<'_>) {}
 
     /// After the slice of the forecast that follows a sample.
     fn after_slice(&mut self, _forecast: &ForecastTask) {}
@@ -78,7 +78,7 @@ pub trait Platform {
 }
 
 /// Of a board's journal.
-pub enum Entry<'a> {
+pub enum JournalEntry<'a> {
     /// What the monitor says.
     Notice(&'a Notice),
     /// Outputs, mode and cause, where they changed.

@@ -9,7 +9,7 @@ use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_firmware::board::{Abilities, Board, default_config, default_settings};
 use touchdown_firmware::drop_log::DropLog;
-use touchdown_firmware::intake::{Arrival, Intake};
+use touchdown_firmware::intake::{Incoming, Intake};
 use touchdown_firmware::main_loop::MainLoop;
 use touchdown_firmware::memory::Memory;
 use touchdown_firmware::outgoing::Outgoing;
@@ -172,7 +172,7 @@ impl Machine {
             let sample = (self.source)(self.given);
             self.given += 1;
             self.next_sample += PERIOD;
-            let arrival = Arrival {
+            let arrival = Incoming {
                 service: self.service,
                 ..sample.into()
             };

@@ -36,7 +36,7 @@ use super::held::{self, Held};
 use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, default_settings, image};
 use crate::crash::{Cause, Crash, FaultStatus};
 use crate::drop_log::DropLog;
-use crate::intake::{Arrival, Intake};
+use crate::intake::{Incoming, Intake};
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::{self, Memory};
@@ -101,7 +101,7 @@ impl Sampling {
             levitated: self.inputs.levitated(),
             ..self.converter.take()
         };
-        let arrival = Arrival {
+        let arrival = Incoming {
             sample,
             service: OutputPins::service(),
             clear: false,

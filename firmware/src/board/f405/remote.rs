@@ -12,7 +12,7 @@ use super::outputs::Watchdog;
 use super::{ABILITIES, ChipLog, SAMPLED, Silicon, TICK, record, store};
 use crate::board::Abilities;
 use crate::journal;
-use crate::platform::{Entry, Platform};
+use crate::platform::{JournalEntry, Platform};
 use crate::tick::TickTask;
 
 /// Looks at the noise source, far more than a word takes.
@@ -114,7 +114,7 @@ impl Platform for ChipPlatform {
         record::clear();
     }
 
-    fn write_down(&mut self, entry: &Entry<'_>) {
+    fn write_down(&mut self, entry: &JournalEntry<'_>) {
         journal::entry(entry);
     }
 

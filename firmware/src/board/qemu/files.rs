@@ -10,7 +10,7 @@ use super::Failure;
 use super::name::Name;
 use super::nor::NorFile;
 use super::settings::SettingsFile;
-use crate::intake::Arrival;
+use crate::intake::Incoming;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
@@ -59,7 +59,7 @@ pub struct Replay {
 }
 
 /// What the head of a replay says.
-pub struct Head {
+pub struct ReplayHead {
     /// In force where none is stored.
     pub config: MonitorConfig,
     /// Whether the controller is switched on with the first sample.
@@ -80,7 +80,7 @@ impl Replay {
 
     /// The start of the file; to be called once, first.
     #[inline(never)]
-    pub fn head(&mut self) -> Result<Head, Failure> {
+    pub fn head(&mut self) -> Result<ReplayHead, Failure> {
         let mut head = [0; 8];
         let mut config = [0; CONFIG_BYTES];
         self.file
@@ -100,7 +100,7 @@ impl Replay {
             .read_exact(&mut flags)
             .map_err(|_| Failure::Replay)?;
         let [flags] = flags;
-        Ok(Head {
+        Ok(ReplayHead {
             config,
             powers_on: flags & wire::POWERS_ON != 0,
             in_real_time: flags & wire::IN_REAL_TIME != 0,
@@ -108,14 +108,14 @@ impl Replay {
     }
 
     /// The next sample and what comes with it; `None` at the end of the file.
-    pub fn next(&mut self) -> Result<Option<(Arrival, Option<u8>)>, Failure> {
+    pub fn next(&mut self) -> Result<Option<(Incoming, Option<u8>)>, Failure> {
         if self.at == self.records {
             (self.records, self.at) = (self.read()?, 0);
         }
         let record = self.block.get(self.at..self.records).and_then(<[_]>::first);
         self.at += usize::from(record.is_some());
         Ok(record.map(|it| {
-            let arrival = Arrival {
+            let arrival = Incoming {
                 sample: wire::decode_sample(it),
                 service: wire::has_service(it),
                 clear: wire::has_clear(it),

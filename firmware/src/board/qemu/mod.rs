@@ -24,7 +24,7 @@ use touchdown_protocol::controller::{Busy, Shown};
 use touchdown_protocol::wire::{Cleared, Record, Switching};
 
 pub use self::counter::Counter;
-use self::files::{Answer, Files, Head, Replay};
+use self::files::{Answer, Files, Replay, ReplayHead};
 use self::line::{Bytes, Wire};
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
@@ -294,7 +294,7 @@ fn abilities(replayed: &MonitorConfig) -> Abilities {
 }
 
 /// What is found: the configuration of the replay, which counts as configured, where none is stored.
-fn power_on(head: &Head, file: Option<&SettingsFile>) -> PowerOn {
+fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
     PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
         fallback: Settings {

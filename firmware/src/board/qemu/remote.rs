@@ -15,7 +15,7 @@ use super::settings::SettingsFile;
 use super::{DONE, Emulated, End, Failure, FileLog, IS_OVER, TICK, end};
 use crate::board::{Abilities, BLOCK_SAMPLES};
 use crate::journal;
-use crate::platform::{Entry, Platform};
+use crate::platform::{JournalEntry, Platform};
 use crate::tick::TickTask;
 
 /// Without a byte for so long, and without samples, nobody is there any more.
@@ -131,7 +131,7 @@ impl Platform for EmulatorPlatform {
 
     fn forget_reset(&mut self) {}
 
-    fn write_down(&mut self, entry: &Entry<'_>) {
+    fn write_down(&mut self, entry: &JournalEntry<'_>) {
         journal::entry(entry);
     }
 

@@ -9,8 +9,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// What a series costs besides its products, in products.
 const OTHERWISE: usize = 32;
 
-/// Terms of a series, and zeros up to a multiple of four.
-type Terms = [f64; ORDER + 4];
+/// SeriesTerms of a series, and zeros up to a multiple of four.
+type SeriesTerms = [f64; ORDER + 4];
 
 /// How the next term of a series follows from the terms of others, which stand before it.
 #[derive(Clone, Copy, Debug)]
@@ -33,19 +33,19 @@ enum Rule {
 #[derive(Clone, Copy, Debug)]
 struct Product {
     of: [usize; 2],
-    first: Terms,
+    first: SeriesTerms,
     /// From the last order down.
-    second: Terms,
+    second: SeriesTerms,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Sine {
     angle: usize,
     /// Times its order.
-    turned: Terms,
+    turned: SeriesTerms,
     /// From the last order down.
-    sine: Terms,
-    cosine: Terms,
+    sine: SeriesTerms,
+    cosine: SeriesTerms,
 }
 
 /// A linear system between series.
@@ -56,14 +56,14 @@ struct LinearSystem {
     /// Of the matrix' first terms.
     inverse: Vec<Vec<f64>>,
     /// Of the matrix, without the first term.
-    later: Vec<Vec<Terms>>,
+    later: Vec<Vec<SeriesTerms>>,
     /// From the last order down.
-    unknowns: Vec<Terms>,
+    unknowns: Vec<SeriesTerms>,
 }
 
 /// A term of the product of two series, the second of which stands backward. Four sums, because they do not wait
 /// for one another; both hold zeros beyond the order.
-fn folded(first: &Terms, second: &Terms, order: usize) -> f64 {
+fn folded(first: &SeriesTerms, second: &SeriesTerms, order: usize) -> f64 {
     let mut sums = [0.0; 4];
     let second = second[ORDER - order..].chunks_exact(4);
     for (a, b) in first[..order / 4 * 4 + 4].chunks_exact(4).zip(second) {
@@ -116,7 +116,7 @@ fn times(matrix: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
     matrix.iter().map(line).collect()
 }
 
-fn backward(first: f64) -> Terms {
+fn backward(first: f64) -> SeriesTerms {
     let mut terms = [0.0; ORDER + 4];
     terms[ORDER] = first;
     terms
@@ -324,7 +324,7 @@ impl Mul for Term<'_> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.value(), other.value());
-        let mut first = Terms::default();
+        let mut first = SeriesTerms::default();
         first[0] = a;
         let number = self.tape.0.borrow().products.len();
         self.tape.0.borrow_mut().products.push(Product {
