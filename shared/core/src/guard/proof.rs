@@ -50,6 +50,8 @@ struct PlaneProof {
     lowest: f32,
     /// Since the first proof after that; infinitely low before it, and where a lift was assumed.
     floor: f32,
+    /// Whether each stay since then was higher than the one before: a slow lift goes on.
+    rises: bool,
     floats: bool,
 }
 
@@ -70,6 +72,7 @@ impl Default for PlaneProof {
             highest: 0.0,
             lowest: f32::INFINITY,
             floor: f32::NEG_INFINITY,
+            rises: true,
             floats: false,
         }
     }
@@ -146,11 +149,16 @@ impl Proof {
         floats
     }
 
-    /// Under a plane that has just been proven to float, where it has none.
+    /// Under a plane that has just been proven to float, and higher while its lift goes on.
     fn put_floor(&self, it: &mut PlaneProof) {
         let height = it.sum[1] * self.scale - it.lowest;
-        if self.has_weight && it.floor == f32::NEG_INFINITY && height.is_finite() {
-            it.floor = it.lowest + FLOOR * height;
+        if !self.has_weight || !height.is_finite() {
+            return;
+        }
+        let floor = it.lowest + FLOOR * height;
+        it.rises &= floor > it.floor;
+        if it.rises {
+            it.floor = floor;
         }
     }
 
@@ -226,6 +234,7 @@ impl ProofState {
         self.restart();
         for it in &mut self.planes {
             (it.lowest, it.floor) = (f32::INFINITY, f32::NEG_INFINITY);
+            it.rises = true;
         }
     }
 }
