@@ -210,10 +210,7 @@ impl ContactTest {
         if state.learns && state.lift.is_at_wall() && square(outward, state.shown) > APART * APART {
             state.shown = outward;
             wall.take(outward, radius, measurement.variance);
-            let before = state.frame.position(measurement.position);
             state.frame.follow(wall);
-            let now = state.frame.position(measurement.position);
-            state.track.reframe(before, now);
             state.lift.wall += distance - state.frame.distance(outward);
         }
         age

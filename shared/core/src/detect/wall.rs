@@ -6,7 +6,6 @@
 
 use crate::config::{MachineConfig, Tuning};
 use crate::detect::retainer_wall::RetainerWall;
-use crate::vector::direction;
 use touchdown_rotor::real::sqrt;
 
 /// Time over which an error of the equations keeps its sign, s.
@@ -228,15 +227,6 @@ impl WallFilter {
 }
 
 impl WallTrack {
-    /// As seen in another frame, where a position is at `to` and not at `from`: it has not moved along the wall.
-    pub(crate) fn reframe(&mut self, from: [f32; 2], to: [f32; 2]) {
-        let (([a, b], _), ([c, d], _)) = (direction(from), direction(to));
-        let (cos, sin) = (a * c + b * d, a * d - b * c);
-        for it in [&mut self.slide, &mut self.roll] {
-            (it.sin, it.cos) = (it.sin * cos + it.cos * sin, it.cos * cos - it.sin * sin);
-        }
-    }
-
     /// Standard deviation of the rates, rad/s.
     pub(crate) fn rate_spread(&self) -> f32 {
         sqrt(self.covariance[2].max(0.0))
@@ -280,43 +270,5 @@ impl WallAngle {
         self.sin = s * norm;
         self.cos = c * norm;
         self.turned += a;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_wall_that_is_found_elsewhere_moves_nothing() {
-        let covariance = [1e-8, 0.0, 1e3];
-        let swing = WallAngle {
-            sin: 0.6,
-            cos: 0.8,
-            rate: 50.0,
-            turned: 0.2,
-        };
-        let mut track = WallTrack {
-            slide: swing,
-            roll: swing,
-            covariance,
-            ..WallTrack::default()
-        };
-        let mut frame = Frame {
-            radius: 3e-4,
-            centre: [0.0; 2],
-            down: [0.0, -1.0],
-            pull: 9.81,
-        };
-        let position = [1.8e-4, -2.4e-4];
-        let from = frame.position(position);
-        frame.centre = [-1e-4, 0.0];
-        let to = frame.position(position);
-        track.reframe(from, to);
-        for it in [&mut track.slide, &mut track.roll] {
-            let residual = it.correct(to, 1.0 / frame.radius, [0.0; 2]);
-            assert!(residual.abs() < 1e-6, "{residual}");
-            assert!(it.rate == 50.0 && it.turned == 0.2);
-        }
     }
 }
