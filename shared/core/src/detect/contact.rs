@@ -6,12 +6,11 @@ use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::estimate::Place;
 use crate::detect::lift_off::LiftOff;
 use crate::detect::measurement::Measurement;
-use crate::detect::retainer_wall::RetainerWall;
 use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Kind, Slip, Verdict};
-use crate::detect::still::{Block, Still};
-use crate::detect::wall::{Cusum, Frame, WallAngle, WallFilter, WallTrack};
-use crate::vector::{direction, square};
+use crate::detect::still::Still;
+use crate::detect::wall::{Cusum, WallAngle, WallFilter, WallTrack};
+use crate::vector::direction;
 use touchdown_rotor::real::sqrt;
 
 /// Slip, m/s, that a speed sensor resolves.
@@ -23,8 +22,6 @@ const CLEAR_SWING: f32 = 8.0;
 
 /// Angle in a sample, rad, from which on a whirl is not followed well enough to tell whether it slides or rolls.
 const TOO_FAST: f32 = 0.3;
-/// Angle along the wall after which it shows the wall anew, rad.
-const APART: f32 = 0.1;
 /// Cosine of the angle from the bottom up to which a rotor that goes back swings: near the sides
 /// one that has left the wall comes back as well.
 const SWINGS: f32 = 0.3;
@@ -57,14 +54,10 @@ pub(crate) enum Regime {
 /// A contact under way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Touching {
-    pub(crate) frame: Frame,
-    /// Whether the wall is elsewhere than told, and what it is is followed.
-    pub(crate) learns: bool,
     /// Angle and rate.
     pub(crate) track: WallTrack,
     lift: LiftOff,
-    /// Direction in which it last showed the wall.
-    shown: [f32; 2],
+    still: Still,
     /// Sliding or rolling, once known.
     pub(crate) kind: Option<Kind>,
     regime: Regime,
@@ -141,19 +134,16 @@ impl ContactTest {
     /// the slip (m/s) that is certainly left.
     pub(crate) fn start(
         &self,
-        (frame, learns): (Frame, bool),
         measurement: &Measurement,
         velocity: [f32; 2],
         spread: f32,
         age: f32,
         slip_left: f32,
     ) -> Touching {
-        let (outward, _) = direction(frame.position(measurement.position));
-        let speed = frame.speed(velocity, outward);
+        let (outward, _) = direction(measurement.position);
+        let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
         Touching {
-            track: self.filter.start(&frame, outward, speed, spread),
-            learns,
-            frame,
+            track: self.filter.start(outward, speed, spread),
             age: age as u32,
             slip_left,
             ..Touching::default()
@@ -164,7 +154,6 @@ impl ContactTest {
     pub(crate) fn take(
         &self,
         state: &mut Touching,
-        (still, wall): (&mut Still, &mut RetainerWall),
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -173,53 +162,39 @@ impl ContactTest {
         let rate = state.swing().rate;
         state.too_fast |= rate.abs() * self.period > TOO_FAST;
         let surface = self.machine.rotor_radius * spin.unwrap_or(self.machine.spin);
-        let mut slip = surface + rate * state.frame.radius;
+        let mut slip = surface + rate * self.machine.clearance;
         state.slip = None;
         if let Retainer::Turning(Some(bore)) = signals.retainer {
             slip -= bore.speed;
-            let spread = SURE * state.frame.radius * state.track.rate_spread();
+            let spread = SURE * self.machine.clearance * state.track.rate_spread();
             state.slip = Some(Slip {
                 speed: slip,
                 error: bore.error + spread,
             });
         }
-        let frame = state.frame;
-        let sample = measurement.map(|it| (frame.position(it.position), it.variance));
-        self.filter.take(&mut state.track, &frame, sample, slip);
-        let lift_off = |measurement| self.lift_off(state, wall, measurement);
-        if let Some(age) = measurement.and_then(lift_off) {
+        let sample = measurement.map(|measurement| (measurement.position, measurement.variance));
+        self.filter.take(&mut state.track, sample, slip);
+        if let Some(age) = measurement.and_then(|measurement| self.lift_off(state, measurement)) {
             return [Some(Finding::LiftOff(age)), None];
         }
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
         let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
         let on_wall = measurement.filter(|_| state.lift.is_at_wall());
-        let block = on_wall.and_then(|it| still.take(it.position, self.still_samples));
-        let regime = on_wall.and_then(|it| self.regime(state, it, block, (surface, slip)));
+        let regime = on_wall.and_then(|measurement| self.regime(state, measurement, surface, slip));
         [kind, regime]
     }
 
-    fn lift_off(
-        &self,
-        state: &mut Touching,
-        wall: &mut RetainerWall,
-        measurement: &Measurement,
-    ) -> Option<f32> {
-        let (outward, radius) = direction(measurement.position);
-        let distance = state.frame.distance(outward);
-        let age = (state.lift).take(radius - distance, measurement.variance, self.threshold);
-        if state.learns && state.lift.is_at_wall() && square(outward, state.shown) > APART * APART {
-            state.shown = outward;
-            wall.take(outward, radius, measurement.variance);
-            state.frame.follow(wall);
-            state.lift.wall += distance - state.frame.distance(outward);
-        }
-        age
+    fn lift_off(&self, state: &mut Touching, measurement: &Measurement) -> Option<f32> {
+        let (_, radius) = direction(measurement.position);
+        state
+            .lift
+            .take(radius, measurement.variance, self.threshold)
     }
 
     /// `slip` as against a wall that does not turn, m/s, where measured.
     fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
         let swing = state.swing();
-        let normal_acceleration = state.frame.normal_acceleration(swing);
+        let normal_acceleration = self.normal_acceleration(swing);
         let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
         let taken = per_impulse * normal_acceleration.max(0.0) * self.period;
         state.slip_left -= taken;
@@ -251,6 +226,11 @@ impl ContactTest {
         state.track.for_rolling = Cusum::default();
         state.track.for_sliding = Cusum::default();
         Some(Finding::Kind(found, age))
+    }
+
+    /// Acceleration with which the wall presses, m/s^2.
+    fn normal_acceleration(&self, swing: &WallAngle) -> f32 {
+        self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
     }
 
     fn by_slip(&self, state: &mut Touching, taken: f32) -> (Option<Kind>, f32) {
@@ -286,8 +266,7 @@ impl ContactTest {
     fn goes_round(&self, state: &Touching, slip: f32) -> bool {
         let swing = state.swing();
         let rate = swing.rate.abs() - SURE * state.track.rate_spread();
-        let frame = &state.frame;
-        let over_the_top = frame.pull / frame.radius * (3.0 + 2.0 * swing.cos);
+        let over_the_top = self.machine.gravity / self.machine.clearance * (3.0 + 2.0 * swing.cos);
         rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
     }
 
@@ -295,11 +274,12 @@ impl ContactTest {
         &self,
         state: &mut Touching,
         measurement: &Measurement,
-        block: Option<Block>,
-        (surface, slip): (f32, f32),
+        surface: f32,
+        slip: f32,
     ) -> Option<Finding> {
         let swing = *state.swing();
-        let clear = CLEAR_SWING * sqrt(measurement.variance) / state.frame.radius;
+        let block = state.still.take(measurement.position, self.still_samples);
+        let clear = CLEAR_SWING * sqrt(measurement.variance) / self.machine.clearance;
         let turned_back = state.turning.take(swing.turned, swing.cos, clear);
         let lowest = if state.turning.cos < ASIDE {
             BACK
@@ -334,9 +314,9 @@ impl ContactTest {
 }
 
 impl Touching {
-    /// Distance from the told centre at which it lay, m.
+    /// Radius at which the wall seems to be, m.
     pub(crate) fn wall(&self) -> f32 {
-        self.frame.distance(self.outward()) + self.lift.wall
+        self.lift.wall
     }
 
     /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
@@ -362,7 +342,8 @@ impl Touching {
 
     /// Unit vector from the centre to the contact.
     pub(crate) fn outward(&self) -> [f32; 2] {
-        self.frame.outward(self.swing())
+        let swing = self.swing();
+        [swing.sin, -swing.cos]
     }
 
     /// Where the rotor is for a forecast, at `speed` along the wall (m/s) and samples of `period` (s).

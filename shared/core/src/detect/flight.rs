@@ -4,7 +4,6 @@ use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
-use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
@@ -28,10 +27,6 @@ const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
-/// Time in which a flight shows its acceleration to 0.8 m/s^2, at 0.75 um and 20 kHz, s.
-const WELL_KNOWN: f32 = 2e-3;
-/// Samples by which an impact is dated wrong.
-const MISDATED: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -58,7 +53,6 @@ pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
     machine: MachineConfig,
-    told: ToldWall,
     period: f32,
     threshold: f32,
     /// Standard deviations that noise does not reach.
@@ -69,8 +63,6 @@ pub(crate) struct FlightTest {
     uneven: f32,
     /// Acceleration towards the wall that a bounce feels, m/s^2.
     slowest: f32,
-    /// Samples of a flight that show its acceleration well.
-    well_known: u16,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
     listen_samples: f32,
@@ -85,11 +77,7 @@ pub(crate) struct Airborne {
     /// The impacts so far.
     pub(crate) series: Series,
     /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
-    pull: ([f32; 2], f32),
-    /// The wall, once an impact or a contact has shown it.
-    pub(crate) seen_wall: RetainerWall,
-    /// Samples since it began, or since the last jump.
-    flown: u16,
+    pull: Option<([f32; 2], f32)>,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -105,25 +93,15 @@ impl Airborne {
     /// Nothing has been seen of the wall yet.
     fn restart(&mut self, threshold_scale: f32) {
         self.bank.begin(threshold_scale);
-        self.flown = 0;
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
-    }
-
-    /// The sensors show the wall by `way` (m) elsewhere.
-    pub(crate) fn shift_wall(&mut self, way: [f32; 2]) {
-        if self.seen_wall.is_known() {
-            self.seen_wall.shift(way);
-        }
     }
 
     /// What is known of another one, but for impacts under way.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.track = other.track;
         self.series = other.series;
-        self.pull = other.pull;
-        self.seen_wall = other.seen_wall;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -196,9 +174,8 @@ struct Hit {
     foreseen: bool,
     /// With which the flight before it had left the wall, m/s; 0 where it is the first.
     launch_speed: f32,
-    /// From the centre, m, and its variance, m^2.
+    /// From the centre, m.
     radius: f32,
-    variance: f32,
 }
 
 impl FlightTest {
@@ -212,17 +189,12 @@ impl FlightTest {
             ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
             machine,
-            told: ToldWall {
-                radius: machine.clearance,
-                tolerance,
-            },
             period: 1.0 / config.sample_rate,
             threshold,
             certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
             slowest,
-            well_known: (WELL_KNOWN * config.sample_rate) as u16,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
         }
@@ -250,43 +222,9 @@ impl FlightTest {
     }
 
     /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
-    pub(crate) fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
-        let (_, error) = flight.pull;
-        if error > 0.0 {
-            flight.pull
-        } else {
-            ([0.0, -self.machine.gravity], PULL_ERROR)
-        }
-    }
-
-    /// The wall, as far as it is known.
-    pub(crate) fn wall(&self, flight: &Airborne) -> RetainerWall {
-        if flight.seen_wall.is_known() {
-            flight.seen_wall
-        } else {
-            RetainerWall::told(&self.told)
-        }
-    }
-
-    /// The wall of a contact, and whether impacts have refuted the told one: else it is that.
-    pub(crate) fn wall_of_contact(&self, flight: &Airborne) -> (RetainerWall, bool) {
-        let seen = self.wall(flight);
-        let is_elsewhere = seen.is_elsewhere(&self.told);
-        let wall = if is_elsewhere {
-            seen
-        } else {
-            RetainerWall::told(&self.told)
-        };
-        (wall, is_elsewhere)
-    }
-
-    /// Distance from which on a rotor in the direction `n` may lie on the wall, m.
-    pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
-        if flight.seen_wall.is_known() {
-            flight.seen_wall.nearest(n, &self.told)
-        } else {
-            self.near
-        }
+    fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
+        let told = ([0.0, -self.machine.gravity], PULL_ERROR);
+        flight.pull.unwrap_or(told)
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
@@ -305,8 +243,6 @@ impl FlightTest {
             self.pull(both),
         );
         flight.series = both.series.anew();
-        flight.pull = both.pull;
-        flight.seen_wall = both.seen_wall;
         flight.lies = both.lies;
         flight.restart(threshold_scale);
     }
@@ -347,7 +283,6 @@ impl FlightTest {
 
     /// Takes the next sample.
     pub(crate) fn take(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
-        flight.flown = flight.flown.saturating_add(1);
         self.ballistic.predict(&mut flight.track);
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
@@ -374,7 +309,6 @@ impl FlightTest {
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, measurement);
-            flight.flown = 0;
             flight.track.shift(&jump);
             flight.bank.restart();
             if let Some(hit) = impact {
@@ -395,14 +329,9 @@ impl FlightTest {
             series.go_on(hit.bounce, machine, self.period);
         } else {
             series.take(hit.bounce, hit.launch_speed, machine, self.period);
-            let mut wall = self.wall(flight);
-            wall.take(hit.bounce.outward, hit.radius, hit.variance);
-            flight.seen_wall = wall;
-            flight.lies = wall
-                .nearest(hit.bounce.outward, &self.told)
-                .max(hit.radius - self.uneven);
+            flight.lies = self.near.max(hit.radius - self.uneven);
             flight.near_wall = 0;
-            flight.pull = (flight.track.acceleration, flight.track.acceleration_error());
+            flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
         }
         flight.seen_near = 0;
         flight.lying = 0;
@@ -493,22 +422,13 @@ impl FlightTest {
                 }
             }
         }
-        let misdated = MISDATED * self.period * bounce.normal_speed;
-        let is_flown = flight.flown >= self.well_known;
-        let wall = self.wall(flight);
-        let near = if is_flown {
-            wall.nearest(outward, &self.told)
-        } else {
-            wall.likely(outward, &self.told)
-        };
-        let is_hit = radius >= near && bounce.normal_speed > least;
+        let is_hit = radius >= self.near && bounce.normal_speed > least;
         is_hit.then_some(Hit {
             bounce,
             age,
             foreseen,
             launch_speed,
             radius,
-            variance: after.spread(0.0) * after.spread(0.0) + misdated * misdated,
         })
     }
 
@@ -550,15 +470,18 @@ impl FlightTest {
     }
 
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
-        let (outward, seen) = direction(measurement.position);
-        let near = self.near(flight, outward);
-        flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
+        let (_, seen) = direction(measurement.position);
+        flight.seen_near = if seen < self.near {
+            0
+        } else {
+            flight.seen_near + 1
+        };
         if flight.seen_near > OVERDUE * self.dwell {
             let age = flight.seen_near as f32;
             return Some(Landing::Contact { age });
         }
         let (_, radius) = direction(flight.track.position);
-        if radius < near {
+        if radius < self.near {
             flight.near_wall = 0;
             flight.lying = 0;
             return None;

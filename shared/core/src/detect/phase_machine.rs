@@ -13,7 +13,6 @@ use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
 use crate::detect::slip::Kind;
 use crate::detect::still::Still;
-use crate::detect::wall::Frame;
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
 use crate::vector::{direction, square};
@@ -159,7 +158,7 @@ impl PhaseMachine {
             Phase::FreeFall | Phase::Impact if series.last().is_some() => {}
             Phase::Sliding | Phase::Rolling => {
                 let contact = &phase_state.contact;
-                let speed = contact.swing().rate * contact.frame.radius;
+                let speed = contact.swing().rate * machine.clearance;
                 let radius = machine.rotor_radius;
                 // Against a ring that turns, or where it rolls, the slip is known and not the spin.
                 if let Some(slip) = &contact.slip {
@@ -167,7 +166,7 @@ impl PhaseMachine {
                 } else if contact.kind == Some(Kind::Rolling) {
                     estimate.spin = -speed / radius;
                 }
-                estimate.speed_error = contact.track.rate_spread() * contact.frame.radius;
+                estimate.speed_error = contact.track.rate_spread() * machine.clearance;
                 estimate.place = contact.place(speed, self.period);
             }
             _ => return None,
@@ -178,7 +177,7 @@ impl PhaseMachine {
     /// What the rotor goes through, for its severity.
     pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
         let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
-        let clearance = contact.frame.radius;
+        let clearance = self.machine.clearance;
         let [u, v] = track.velocity;
         let mut strain = Exposure {
             is_released: phase_state.phase >= Phase::FreeFall,
@@ -265,12 +264,11 @@ impl PhaseMachine {
             .take(measurement.position, self.still_samples);
         let clearance = self.machine.clearance;
         let quiet = block.filter(|block| {
-            let (outward, radius) = direction(block.mean);
-            let near = self.flight.near(&phase_state.flight, outward);
-            radius < near
+            let (_, radius) = direction(block.mean);
+            radius < self.near
                 && block.variance < 0.0625 * clearance * clearance
                 && (block.moved < 0.02 * clearance
-                    || self.machine.gravity > 0.0 && block.farthest < near * near)
+                    || self.machine.gravity > 0.0 && block.farthest < self.near * self.near)
         });
         quiet.is_some()
     }
@@ -296,19 +294,9 @@ impl PhaseMachine {
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
         let velocity = phase_state.flight.track.velocity;
-        let flight = &phase_state.flight;
-        let (pull, _) = self.flight.pull(flight);
-        let (wall, learns) = self.flight.wall_of_contact(flight);
-        let frame = Frame::new(&wall, pull);
-        phase_state.still = Still::default();
-        phase_state.contact = self.contact.start(
-            (frame, learns),
-            measurement,
-            velocity,
-            spread,
-            age,
-            slip_left,
-        );
+        phase_state.contact = self
+            .contact
+            .start(measurement, velocity, spread, age, slip_left);
         phase_state.phase = Phase::Sliding;
     }
 
@@ -323,10 +311,9 @@ impl PhaseMachine {
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
-        let kept = (&mut phase_state.still, &mut phase_state.flight.seen_wall);
         let findings = self
             .contact
-            .take(&mut phase_state.contact, kept, measurement, signals);
+            .take(&mut phase_state.contact, measurement, signals);
         let lifting = whose(&phase_state.contact);
         if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;

@@ -5,7 +5,6 @@
 //! their log-likelihoods is summed up as a CUSUM in each direction.
 
 use crate::config::{MachineConfig, Tuning};
-use crate::detect::retainer_wall::RetainerWall;
 use touchdown_rotor::real::sqrt;
 
 /// Time over which an error of the equations keeps its sign, s.
@@ -18,77 +17,12 @@ const MAX_LLR_PER_SAMPLE: f32 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallFilter {
     period: f32,
+    /// Gravity over clearance, 1/s^2.
+    stiffness: f32,
     friction: f32,
     rolling: f32,
-    /// Growth of the variance of the speed along the wall in one sample, (m/s)^2.
+    clearance: f32,
     process_noise: f32,
-}
-
-/// The wall from its own centre, with the bottom where the rotor is pulled.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Frame {
-    /// m.
-    pub(crate) radius: f32,
-    centre: [f32; 2],
-    /// Unit vector.
-    down: [f32; 2],
-    /// m/s^2.
-    pub(crate) pull: f32,
-}
-
-impl Frame {
-    /// Where flights are accelerated by `pull`, m/s^2.
-    pub(crate) fn new(wall: &RetainerWall, [a, b]: [f32; 2]) -> Self {
-        let pull = sqrt(a * a + b * b);
-        let down = if pull > 0.0 {
-            [a / pull, b / pull]
-        } else {
-            [0.0, -1.0]
-        };
-        Self {
-            radius: wall.radius,
-            centre: wall.centre,
-            down,
-            pull,
-        }
-    }
-
-    /// From the told centre to the wall in the direction `n`, m.
-    pub(crate) fn distance(&self, [x, y]: [f32; 2]) -> f32 {
-        self.radius + self.centre[0] * x + self.centre[1] * y
-    }
-
-    /// Takes what is known of the wall by now.
-    pub(crate) fn follow(&mut self, wall: &RetainerWall) {
-        self.radius = wall.radius;
-        self.centre = wall.centre;
-    }
-
-    /// A position (m) in it.
-    pub(crate) fn position(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let ([cx, cy], [dx, dy]) = (self.centre, self.down);
-        let (x, y) = (x - cx, y - cy);
-        [y * dx - x * dy, -(x * dx + y * dy)]
-    }
-
-    /// Of a velocity (m/s), the part along the wall at `outward` in it, counter-clockwise.
-    pub(crate) fn speed(&self, [u, v]: [f32; 2], outward: [f32; 2]) -> f32 {
-        let [dx, dy] = self.down;
-        let (u, v) = (v * dx - u * dy, -(u * dx + v * dy));
-        v * outward[0] - u * outward[1]
-    }
-
-    /// Acceleration with which the wall presses, m/s^2.
-    pub(crate) fn normal_acceleration(&self, swing: &WallAngle) -> f32 {
-        self.radius * swing.rate * swing.rate + self.pull * swing.cos
-    }
-
-    /// A direction in it, in the sensors' axes.
-    pub(crate) fn outward(&self, swing: &WallAngle) -> [f32; 2] {
-        let [dx, dy] = self.down;
-        let (sin, cos) = (swing.sin, swing.cos);
-        [cos * dx - sin * dy, cos * dy + sin * dx]
-    }
 }
 
 /// One hypothesis' estimate.
@@ -140,32 +74,27 @@ impl Cusum {
 
 impl WallFilter {
     pub(crate) fn new(machine: &MachineConfig, tuning: &Tuning, sample_rate: f32) -> Self {
-        let error = tuning.contact_error;
+        let error = tuning.contact_error / machine.clearance;
         Self {
             period: 1.0 / sample_rate,
+            stiffness: machine.gravity / machine.clearance,
             friction: machine.friction,
             rolling: 1.0 / (1.0 + machine.inertia_ratio),
+            clearance: machine.clearance,
             process_noise: error * error * CORRELATION_TIME / sample_rate,
         }
     }
 
-    /// Contact at `outward` (unit vector in the frame) with `speed` along the wall (m/s, counter-clockwise), known
+    /// Contact at `outward` (unit vector) with `speed` along the wall (m/s, counter-clockwise), known
     /// to `spread` (m/s).
-    pub(crate) fn start(
-        &self,
-        frame: &Frame,
-        outward: [f32; 2],
-        speed: f32,
-        spread: f32,
-    ) -> WallTrack {
-        let radius = frame.radius;
+    pub(crate) fn start(&self, outward: [f32; 2], speed: f32, spread: f32) -> WallTrack {
         let swing = WallAngle {
             sin: outward[0],
             cos: -outward[1],
-            rate: speed / radius,
+            rate: speed / self.clearance,
             turned: 0.0,
         };
-        let spread = spread / radius;
+        let spread = spread / self.clearance;
         WallTrack {
             slide: swing,
             roll: swing,
@@ -175,23 +104,16 @@ impl WallFilter {
         }
     }
 
-    /// To the next sample, and its position in the frame (m), whose axes have `variance` (m^2); `slip` has the
+    /// To the next sample, and its position (m), whose axes have `variance` (m^2); `slip` has the
     /// sign of the slip. Without a usable sample, `None`.
-    pub(crate) fn take(
-        &self,
-        track: &mut WallTrack,
-        frame: &Frame,
-        sample: Option<([f32; 2], f32)>,
-        slip: f32,
-    ) {
-        let scale = 1.0 / frame.radius;
+    pub(crate) fn take(&self, track: &mut WallTrack, sample: Option<([f32; 2], f32)>, slip: f32) {
         let dt = self.period;
         let friction = if slip > 0.0 {
             -self.friction
         } else {
             self.friction
         };
-        let k = frame.pull * scale;
+        let k = self.stiffness;
         let slide = &mut track.slide;
         let normal_acceleration = slide.rate * slide.rate + k * slide.cos;
         // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
@@ -206,11 +128,12 @@ impl WallFilter {
         track.covariance = [
             aa + (2.0 * ar + rr * dt) * dt,
             ar + rr * dt,
-            rr + self.process_noise * scale * scale,
+            rr + self.process_noise,
         ];
         let Some((position, variance)) = sample else {
             return;
         };
+        let scale = 1.0 / self.clearance;
         let noise = variance * scale * scale;
         let [aa, ar, rr] = track.covariance;
         let total = aa + noise;
