@@ -104,8 +104,11 @@ impl Intake<'_> {
         let places = self.sensing.planes(&arrival.sample);
         let levitated = arrival.sample.levitated;
         self.guard.update(&mut self.state, places, levitated);
-        // Where there is no room it is lost, and the number of the next that has room tells it.
-        let _ = self.samples.enqueue(NumberedSample { arrival, number });
+        // Where there is no room it is lost, and the number of the next that has room tells it. The length is looked at so
+        // that the compiler knows it is not 0, by which the queue divides.
+        if self.samples.capacity() < RING {
+            let _ = self.samples.enqueue(NumberedSample { arrival, number });
+        }
         let verdict = self.state.verdict();
         (verdict.danger || verdict.lost || verdict.off) && self.gate.trip(number)
     }
@@ -122,7 +125,11 @@ impl Waiting<'_> {
     /// The oldest that waits.
     #[inline]
     pub fn pop(&mut self) -> Option<NumberedSample> {
-        self.waiting.dequeue()
+        if self.waiting.capacity() < RING {
+            self.waiting.dequeue()
+        } else {
+            None
+        }
     }
 }
 
