@@ -406,18 +406,16 @@ fn the_examples_of_every_help_run() {
 #[test]
 fn a_truth_that_would_take_too_long_is_given_up_and_the_drop_ends() {
     let folder = tempfile::tempdir().expect("a folder");
-    let scene = "[rotor]\nmass_kg = 3.42\nradius_mm = 24.0\nspeed_rpm = -36769.0\n\
-        [retainer]\nclearance_mm = 0.277\nfriction = 0.487\nrestitution = 0.069\n\
-        [support]\nmass_kg = 7.02\nstiffness_n_m = 9.86e5\ndamping_n_s_m = 87.5\ntravel_mm = 0.5\n\
-        [start]\nangle_deg = 0.0\ntangential_mm_s = 120.0\n[run]\nduration_s = 1.0\n";
-    fs::write(folder.path().join("stiff.toml"), scene).expect("a file");
+    // A random machine whose light rings chatter on their stops.
+    let scene = touchdown(folder.path()).args(["limits", "--machine", "1"]).assert().success();
+    fs::write(folder.path().join("stiff.toml"), &scene.get_output().stdout).expect("a file");
     let run = touchdown(folder.path()).args(["drop", "stiff.toml", "--json", "-"]).assert().success();
     let json: Value = serde_json::from_slice(&run.get_output().stdout).expect("JSON");
     let given_up = json["truth_given_up_s"].as_f64().expect("a time");
-    assert!(given_up > 0.05 && given_up < 1.0, "{given_up}");
+    assert!(given_up > 0.01 && given_up < 0.05, "{given_up}");
     // What came so far is there, and the model went on.
     assert!(!json["detector"]["events"].as_array().expect("events").is_empty());
-    assert_eq!(json["final"]["time_s"], 1.0);
+    assert_eq!(json["final"]["time_s"], 0.05);
     // A scene whose truth ends says nothing of it.
     let run = touchdown(folder.path()).args(["drop", "rig", "--json", "-"]).assert().success();
     let json: Value = serde_json::from_slice(&run.get_output().stdout).expect("JSON");
