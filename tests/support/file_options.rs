@@ -173,7 +173,7 @@ pub const ROWS: &[Row] = &[
         command: "limits",
         words: "limits",
         outputs: &[File("--json")],
-        others: &["machines", "machine"],
+        others: &["machines", "machine", "drops"],
         ..NONE
     },
     Row {
