@@ -19,8 +19,8 @@ use crate::sum::Sum;
 use crate::wall::{Mode, WallState};
 
 impl<R: Precision> Rigid<R> {
-    /// Whether the rotor has gone round once in the present contact, and goes on so for ever: the regime of any
-    /// later moment is that of now.
+    /// Whether the rotor has gone round once in the present contact, and goes on in that sense for ever: the regime
+    /// of any later moment is that of now.
     pub fn whirls_for_ever(&self, state: &RigidState<R>) -> bool {
         let Motion::Contact(contact) = &state.motion else {
             return false;
@@ -35,6 +35,7 @@ impl<R: Precision> Rigid<R> {
         let weight = law.gravity * (R::lit(3.0) + R::TWO * contact.base.cos.value());
         let least_force = speed * speed - weight;
         turned.abs() >= R::lit(TAU)
+            && turned * speed > R::ZERO
             && is_driven
             && least_force > R::ZERO
             && law.friction * least_force >= law.rolling_friction(R::ONE)
