@@ -4,7 +4,7 @@ use touchdown_firmware::board::qemu::Counter;
 use touchdown_rotor::real::{Micro32, Poly32, Poly64};
 use touchdown_rotor::{Precision, Rigid};
 
-use crate::drop::{Run, STEPS, config};
+use crate::drop::{Run, STEPS, WHOLE, config};
 use crate::table::{Name, Table};
 use crate::{functions, models};
 
@@ -34,6 +34,7 @@ fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
             counter,
             name,
             step,
+            duration: WHOLE,
         };
         let rigid = Rigid::try_new(&config(step)).expect("a valid configuration");
         run.of_model::<R, _>(&rigid.rounded(), rigid.scales())

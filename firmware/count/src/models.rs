@@ -6,7 +6,7 @@ use touchdown_models::{
 };
 use touchdown_rotor::Precision;
 
-use super::drop::{POSITION, Run, STEPS, config};
+use super::drop::{BEGIN, POSITION, Run, STEPS, WHOLE, config};
 use touchdown_firmware::board::qemu::Counter;
 
 use crate::table::{Name, Table};
@@ -22,6 +22,7 @@ pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Na
         counter,
         name,
         step,
+        duration: WHOLE,
     };
     for step in STEPS {
         let run = with_step(step);
@@ -29,6 +30,10 @@ pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Na
         let scales = moreau.scales();
         run.of_model::<R, _>(&moreau.rounded(), scales)
             .write(table, "moreau", "midpoint", &run);
+        let run = Run {
+            duration: BEGIN,
+            ..run
+        };
         run.of_model::<R, _>(&support::<R>(step), scales)
             .write(table, "support", "midpoint", &run);
         run.of_model::<R, _>(&ends::<R>(step), scales)
