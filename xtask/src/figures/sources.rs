@@ -107,15 +107,13 @@ fn by<'a>(name: &str, rows: &'a Value) -> Map<&'a Value> {
 }
 
 /// Mean and worst of a table of counts, by what stands before them.
-fn counts(text: &str) -> Map<Value> {
+fn counts(text: &str) -> Map<Map<f64>> {
     let row = |line: &str| {
         let (rest, worst) = line.rsplit_once(',')?;
         let (key, mean) = rest.rsplit_once(',')?;
         let (mean, worst) = (mean.parse::<f64>().ok()?, worst.parse::<f64>().ok()?);
-        Some((
-            key.replace(',', " "),
-            json!({ "mean": mean, "worst": worst }),
-        ))
+        let counts = [("mean", mean), ("worst", worst)].map(|(name, it)| (name.to_owned(), it));
+        Some((key.replace(',', " "), counts.into()))
     };
     text.lines().filter_map(row).collect()
 }
