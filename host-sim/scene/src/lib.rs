@@ -10,6 +10,7 @@ pub mod diagnostic;
 pub mod elastic;
 mod faults;
 pub mod file;
+pub mod leave_out;
 pub mod limits;
 pub mod list;
 pub mod machine;

@@ -127,3 +127,52 @@ fn a_scene_without_impacts_has_a_table_too() {
             .any(|row| row["pareto"] == true && row["regime_ok"] == true)
     );
 }
+
+/// The changes of a scene without a part.
+fn changes(folder: &TempDir, part: &str) -> Vec<Value> {
+    let text = fs::read_to_string(folder.path().join("trade.json")).unwrap();
+    let json: Value = serde_json::from_str(&text).unwrap();
+    let all = json["parts"]["without"].as_array().unwrap();
+    let found = all.iter().find(|it| it["part"] == part);
+    found.expect("the part")["changes"].as_array().unwrap().clone()
+}
+
+fn interval(change: &Value) -> [f64; 2] {
+    [0, 1].map(|k| change["interval"][k].as_f64().unwrap())
+}
+
+#[test]
+fn a_part_is_worth_what_it_changes() {
+    let (folder, _) = table("soft-support");
+    let changes = changes(&folder, "retainer's mass, spring, damper");
+    for change in &changes {
+        let [low, high] = interval(change);
+        let mean = number(change, "without") - number(change, "whole");
+        assert!(low <= mean && mean <= high, "{change}");
+    }
+    let of = |quantity: &str| changes.iter().find(|it| it["quantity"] == quantity);
+    // A rigid wall keeps the rotor in the gap; the load of whirl on it is much greater.
+    let [_, high] = interval(of("greatest radius").expect("a radius"));
+    assert!(high < 0.0);
+    let [low, _] = interval(of("greatest held force").expect("a force"));
+    assert!(low > 0.0);
+}
+
+#[test]
+fn a_part_that_does_nothing_is_worth_nothing() {
+    let folder = TempDir::new().unwrap();
+    let scene = touchdown_scene::BUILT_IN.iter().find(|it| it.name == "two-plane");
+    // Far from every ring, and softer by 1e9 than the weight over the gap.
+    let magnet = "\n[[magnet]]\nplace_mm = 0.0\nstiffness_n_m = 1e-4\n";
+    fs::write(folder.path().join("s.toml"), scene.unwrap().text.to_owned() + magnet).unwrap();
+    touchdown(folder.path())
+        .args(["trade", "s.toml", "--json", "trade.json"])
+        .assert()
+        .success();
+    let changes = changes(&folder, "magnetic force that is left");
+    assert!(changes.len() >= 6);
+    for change in changes {
+        let [low, high] = interval(&change);
+        assert!(low <= 0.0 && high >= 0.0, "{change}");
+    }
+}

@@ -16,7 +16,7 @@ pub(super) fn table(args: &TradeArgs) -> Result<(), Failure> {
         .open()?;
     let scene = load(&args.scene)?;
     let trade = trade::run(&scene);
-    out.json("--json", || trade::json(&trade.rows))?;
+    out.json("--json", || trade::json(&trade))?;
     out.put("--report", || trade::page(&trade))?;
     out.put("--svg", || trade::svg(&trade))?;
     let text = trade::table(&trade, out.paint());

@@ -1,10 +1,12 @@
-//! Accuracy against cost: every rung, scheme, precision, math and step over one scene.
+//! Accuracy against cost over one scene: what each part of the machine is worth, and every rung, scheme, precision, math
+//! and step.
 
 mod accuracy;
 mod drawing;
 mod pace;
 mod page;
 mod pareto;
+pub mod parts;
 mod row;
 mod table;
 
@@ -18,6 +20,7 @@ use rayon::prelude::*;
 use touchdown_rotor::error::ConfigError;
 
 use accuracy::Accuracy;
+use parts::Worth;
 use touchdown_base::progress;
 use touchdown_run::fidelity::combination;
 use touchdown_run::fidelity::cost::LONGEST;
@@ -30,11 +33,13 @@ pub struct Trade {
     pub scene: String,
     /// From the release, s.
     pub measured: f64,
+    /// What each part is worth, over this time.
+    pub parts: Worth,
     /// One a combination that the scene allows.
     pub rows: Vec<Row>,
 }
 
-/// Measures every combination over the first second of `scene`.
+/// Measures every part and every combination over the first second of `scene`.
 pub fn run(scene: &Scene) -> Trade {
     let mut scene = scene.clone();
     scene.run.duration = scene.run.duration.min(LONGEST);
@@ -56,6 +61,7 @@ pub fn run(scene: &Scene) -> Trade {
     Trade {
         scene: scene.heading().to_owned(),
         measured: scene.run.duration,
+        parts: parts::run(&scene),
         rows,
     }
 }

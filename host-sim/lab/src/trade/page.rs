@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::Trade;
 use super::drawing::{Cost, drawing, legend};
+use super::parts::Effect;
 use super::row::Row;
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
@@ -29,6 +30,16 @@ pub fn page(trade: &Trade) -> String {
                  the run."
             }
         }
+        @if !trade.parts.without.is_empty() {
+            section {
+                h2 { "What each part is worth" }
+                p.note {
+                    (trade.parts.drops) " drops with the whole machine, and the same without the part. Starts within \
+                     half of the clearance and 20 mm/s; friction and mounts known to a factor of 2, restitution to 0.1."
+                }
+                (worth(trade))
+            }
+        }
         section {
             h2 { "Error against cost" }
             p.note {
@@ -49,6 +60,22 @@ pub fn page(trade: &Trade) -> String {
         section { h2 { "All combinations" } (rows("All combinations", &all)) }
     };
     shell("Accuracy against cost \u{2013} touchdown", &body).into_string()
+}
+
+fn worth(trade: &Trade) -> Markup {
+    let without = trade.parts.without.iter();
+    let all: Vec<(&str, &Effect)> = without
+        .flat_map(|it| it.changes.iter().map(|change| (it.part, change)))
+        .collect();
+    table("What each part is worth", &all)
+        .words("Without", |it| it.0)
+        .words("Quantity", |it| it.1.quantity)
+        .number("Whole", |it| it.1.shown(it.1.whole))
+        .number("Without it", |it| it.1.shown(it.1.without))
+        .number("Effect, from", |it| it.1.shown(it.1.interval[0]))
+        .number("to (95 %)", |it| it.1.shown(it.1.interval[1]))
+        .words("Seen", |it| if it.1.is_seen() { "yes" } else { "no" })
+        .draw()
 }
 
 fn rows(name: &str, rows: &[&Row]) -> Markup {

@@ -1,11 +1,11 @@
 //! A row of the table.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
+use super::Trade;
 use super::accuracy::Accuracy;
 use super::pace::Pace;
+use super::parts::Worth;
 use touchdown_scene::{Fidelity, Math, Model, Precision, Scheme};
 
 /// One combination: how wrong it is, and what it costs.
@@ -83,7 +83,13 @@ impl Row {
     }
 }
 
-/// The table as JSON.
-pub fn json(rows: &[Row]) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(&BTreeMap::from([("rows", rows)]))
+/// All of it as JSON.
+pub fn json(trade: &Trade) -> serde_json::Result<String> {
+    #[derive(Serialize)]
+    struct Json<'a> {
+        parts: &'a Worth,
+        rows: &'a [Row],
+    }
+    let Trade { parts, rows, .. } = trade;
+    serde_json::to_string_pretty(&Json { parts, rows })
 }

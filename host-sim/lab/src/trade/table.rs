@@ -1,17 +1,20 @@
 //! The table as text, in 80 columns.
 
 use super::Trade;
+use super::parts;
 use super::row::Row;
 use touchdown_base::paint::Paint;
 
 /// Steps that have a column, us.
 const COLUMNS: [u32; 4] = [1, 10, 100, 1000];
 
-/// Worst errors by combination and step, then the front.
+/// What each part is worth, worst errors by combination and step, then the front.
 pub fn table(trade: &Trade, paint: Paint) -> String {
-    let mut text = paint.bold(&trade.scene) + "\n";
+    let mut text = paint.bold(&trade.scene) + "\n\n";
+    text += &parts::text(&trade.parts, paint);
+    text += &paint.bold("Every combination of scheme, numbers, math and step");
     text += &format!(
-        "the first {} s; error: greatest of time/T, position/rho0 and velocity/V at\n\
+        "\nthe first {} s; error: greatest of time/T, position/rho0 and velocity/V at\n\
          impacts 1, 3 and 10 against the reference; -: refused, or an impact missing\n\n",
         trade.measured
     );
