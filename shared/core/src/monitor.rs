@@ -93,7 +93,8 @@ pub struct Summary {
 }
 
 impl Monitor {
-    /// Checks `config` and prepares the tick.
+    /// Checks `config` and prepares the tick. Never inlined: it is called where a configuration is checked and where it is used.
+    #[inline(never)]
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
         Ok(Self {
             sensing: Sensing::try_new(&config.sensing)?,
