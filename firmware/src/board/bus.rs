@@ -59,9 +59,9 @@ impl<R: SpiRegisters> SpiDevice for Bus<R> {
 }
 
 /// Waits by counting cycles of a core at so many MHz.
-pub struct Cycles<const MHZ: u32>;
+pub struct CycleDelay<const MHZ: u32>;
 
-impl<const MHZ: u32> DelayNs for Cycles<MHZ> {
+impl<const MHZ: u32> DelayNs for CycleDelay<MHZ> {
     fn delay_ns(&mut self, time: u32) {
         let rest = (MHZ * (time % 1_000)).div_ceil(1_000);
         cortex_m::asm::delay(MHZ * (time / 1_000) + rest);

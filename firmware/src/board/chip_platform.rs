@@ -120,7 +120,7 @@ impl<C: Chip> Platform for ChipPlatform<C> {
 }
 
 /// What comes with the positions.
-pub trait Inputs {
+pub trait SampleInputs {
     /// Spin, rad/s, where it is known.
     fn spin(&mut self) -> Option<f32>;
 
@@ -139,7 +139,7 @@ pub struct Sampling<S, I> {
     intake: Intake<'static>,
 }
 
-impl<S: SampleSource, I: Inputs> Sampling<S, I> {
+impl<S: SampleSource, I: SampleInputs> Sampling<S, I> {
     /// Of what was not sampled yet.
     pub fn new(source: S, inputs: I, intake: Intake<'static>) -> Self {
         Self {

@@ -4,7 +4,7 @@ use embedded_hal::delay::DelayNs;
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{Bus, Cycles, SpiRegisters};
+use crate::board::bus::{Bus, CycleDelay, SpiRegisters};
 use crate::w25q::W25q;
 
 /// The chip.
@@ -12,7 +12,7 @@ pub type Chip = W25q<Spi, Wait>;
 /// Its bus.
 pub type Spi = Bus<Spi1>;
 /// Waits by counting cycles.
-pub type Wait = Cycles<{ CORE_HZ / 1_000_000 }>;
+pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// PB3 clock, PB4 in, PB5 out, PA15 chip select.
 pub struct Spi1 {

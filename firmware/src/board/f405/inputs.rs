@@ -5,7 +5,7 @@ use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
 use super::outputs::OutputPins;
-use crate::board::chip_platform::Inputs;
+use crate::board::chip_platform::SampleInputs;
 use crate::speed::{Speed, SpeedState, pulses_a_capture};
 
 /// The timer counts every eighth tick: one turn of it takes 6.2 ms.
@@ -59,7 +59,7 @@ impl PinInputs {
     }
 }
 
-impl Inputs for PinInputs {
+impl SampleInputs for PinInputs {
     fn spin(&mut self) -> Option<f32> {
         let speed = self.speed.as_ref()?;
         let is_new = self.timer.sr().read().cc3if().bit_is_set();

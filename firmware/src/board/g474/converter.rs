@@ -10,7 +10,7 @@ use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3};
 use touchdown_core::sample::Sample;
 
 use super::clocks::CORE_HZ;
-use super::spi::{Device, Wait};
+use super::spi::{SelectedSpi, Wait};
 use crate::ad7606::{Ad7606, NoSample};
 use crate::board::SAMPLE_RATE_HZ;
 use crate::board::bus::Bus;
@@ -23,7 +23,7 @@ const LOW: u32 = 64;
 pub struct ByTimer;
 
 /// BUSY and RESET.
-pub struct Pin;
+pub struct PortBPin;
 
 impl ErrorType for ByTimer {
     type Error = Infallible;
@@ -39,11 +39,11 @@ impl OutputPin for ByTimer {
     }
 }
 
-impl ErrorType for Pin {
+impl ErrorType for PortBPin {
     type Error = Infallible;
 }
 
-impl InputPin for Pin {
+impl InputPin for PortBPin {
     fn is_high(&mut self) -> Result<bool, Infallible> {
         // SAFETY: a read of a register that reading does not change.
         let pins = unsafe { &*GPIOB::ptr() };
@@ -55,7 +55,7 @@ impl InputPin for Pin {
     }
 }
 
-impl OutputPin for Pin {
+impl OutputPin for PortBPin {
     fn set_low(&mut self) -> Result<(), Infallible> {
         // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOB::ptr() };
@@ -72,17 +72,17 @@ impl OutputPin for Pin {
 }
 
 /// Timer and converter.
-pub struct Converter {
-    adc: Ad7606<Bus<Device>, ByTimer, Pin, Pin>,
+pub struct ExternalConverter {
+    adc: Ad7606<Bus<SelectedSpi>, ByTimer, PortBPin, PortBPin>,
     timer: TIM2,
     number: TIM3,
     edges: EXTI,
 }
 
-impl Converter {
+impl ExternalConverter {
     /// Sets them up, stopped.
     pub fn try_new(
-        bus: Bus<Device>,
+        bus: Bus<SelectedSpi>,
         (timer, number): (TIM2, TIM3),
         (convst, pins): (&GPIOA, &GPIOB),
         (edges, routes): (EXTI, &SYSCFG),
@@ -116,7 +116,7 @@ impl Converter {
         }
         edges.ftsr1().modify(|_, w| w.ft0().set_bit());
         edges.imr1().modify(|_, w| w.im0().set_bit());
-        let adc = Ad7606::try_new(bus, ByTimer, Pin, Pin, &mut Wait {})?;
+        let adc = Ad7606::try_new(bus, ByTimer, PortBPin, PortBPin, &mut Wait {})?;
         Ok(Self {
             adc,
             timer,
@@ -131,7 +131,7 @@ impl Converter {
     }
 }
 
-impl SampleSource for Converter {
+impl SampleSource for ExternalConverter {
     fn number(&self) -> u16 {
         self.number.cnt().read().bits() as u16
     }

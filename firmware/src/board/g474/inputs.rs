@@ -4,8 +4,8 @@ use stm32g4::stm32g474::{GPIOB, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::CORE_HZ;
-use super::outputs::OutputPins;
-use crate::board::chip_platform::Inputs;
+use super::outputs::OutputPort;
+use crate::board::chip_platform::SampleInputs;
 use crate::speed::{Speed, SpeedState, pulses_a_capture};
 
 /// The timer counts every sixteenth tick: one turn of it takes 6.2 ms.
@@ -15,7 +15,7 @@ const CAPTURED: u32 = 1 << 1;
 const OVER: u32 = 1 << 9;
 
 /// PB6 (timer 4, channel 1): rising edge of the speed pulse. PB7: high while levitation is on.
-pub struct PinInputs {
+pub struct TimerInputs {
     pins: GPIOB,
     timer: TIM4,
     speed: Option<Speed>,
@@ -23,7 +23,7 @@ pub struct PinInputs {
     levitation: bool,
 }
 
-impl PinInputs {
+impl TimerInputs {
     /// Sets up what `settings` say is wired.
     pub fn new(pins: GPIOB, timer: TIM4, rcc: &RCC, settings: &Settings) -> Self {
         rcc.apb1enr1().modify(|_, w| w.tim4en().set_bit());
@@ -64,7 +64,7 @@ impl PinInputs {
     }
 }
 
-impl Inputs for PinInputs {
+impl SampleInputs for TimerInputs {
     fn spin(&mut self) -> Option<f32> {
         let speed = self.speed.as_ref()?;
         let is_new = self.timer.sr().read().bits() & CAPTURED != 0;
@@ -87,6 +87,6 @@ impl Inputs for PinInputs {
     }
 
     fn service(&self) -> bool {
-        OutputPins::service()
+        OutputPort::service()
     }
 }

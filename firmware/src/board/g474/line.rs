@@ -17,12 +17,12 @@ const CIRCULAR: u32 = 1 << 5;
 const UP: u32 = 1 << 7;
 
 /// The port.
-pub struct Port {
+pub struct ChannelPort {
     usart: USART1,
     dma: DMA1,
 }
 
-impl Port {
+impl ChannelPort {
     /// Sets it up.
     pub fn new(usart: USART1, dma: DMA1, requests: &DMAMUX, pins: &GPIOA, rcc: &RCC) -> Self {
         rcc.ahb1enr()
@@ -65,7 +65,7 @@ impl Port {
     }
 }
 
-impl LineRegisters for Port {
+impl LineRegisters for ChannelPort {
     fn receive(&mut self, ring: u32) {
         let register = self.usart.rdr().as_ptr() as u32;
         self.go(RECEIVES.0, register, ring, RING_BYTES as u32, CIRCULAR);

@@ -17,18 +17,18 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{DWT, SCB};
 use defmt::{error, info};
 use embedded_hal::delay::DelayNs;
-use stm32g4::stm32g474::{FLASH, Interrupt, NVIC, Peripherals};
+use stm32g4::stm32g474::{FLASH, Interrupt, NVIC, Peripherals, RCC};
 use touchdown_core::event::Notice;
 use touchdown_protocol::config_block::Settings;
-use touchdown_protocol::controller::Shown;
+use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_rotor::error::ConfigError;
 
-use self::converter::Converter;
-use self::inputs::PinInputs;
-use self::line::Port;
-use self::outputs::{OutputPins, Watchdog};
+use self::converter::ExternalConverter;
+use self::inputs::TimerInputs;
+use self::line::ChannelPort;
+use self::outputs::{IndependentWatchdog, OutputPort};
 use self::remote::G474;
-use self::spi::{Device, Wait};
+use self::spi::{SelectedSpi, Wait};
 use super::bus::Bus;
 use super::chip_platform::{ChipPlatform, Sampling};
 use super::held::{self, Held};
@@ -45,7 +45,7 @@ use crate::tick::TickTask;
 use crate::w25q::W25q;
 
 /// The drop log in a W25Q of 2 MiB.
-type ChipLog = DropLog<W25q<Bus<Device>, Wait>, LOG_SLOTS>;
+type ChipLog = DropLog<W25q<Bus<SelectedSpi>, Wait>, LOG_SLOTS>;
 const LOG_SLOTS: usize = 42;
 
 /// 16 bit; no pin takes the pulses of ring and cage.
@@ -55,19 +55,19 @@ const ABILITIES: Abilities = Abilities {
     tachometers: false,
 };
 
-static SAMPLING: Held<Sampling<Converter, PinInputs>> = Held::new();
-static TICK: Held<TickTask<'static, Silicon>> = Held::new();
+static SAMPLING: Held<Sampling<ExternalConverter, TimerInputs>> = Held::new();
+static TICK: Held<TickTask<'static, Nucleo>> = Held::new();
 /// Cycle counter at the last sample.
 static SAMPLED: AtomicU32 = AtomicU32::new(0);
 
 /// What the tick has of the chip.
-pub struct Silicon {
-    pins: OutputPins,
-    watchdog: Watchdog,
+pub struct Nucleo {
+    pins: OutputPort,
+    watchdog: IndependentWatchdog,
     block: InForce,
 }
 
-impl Board for Silicon {
+impl Board for Nucleo {
     fn report(&mut self, _: &Notice) {}
 
     fn drive(&mut self, shown: Shown) {
@@ -87,7 +87,7 @@ impl Board for Silicon {
 pub fn on_converted() {
     SAMPLED.store(DWT::cycle_count(), Ordering::Relaxed);
     if SAMPLING.with(Sampling::take) == Some(true) {
-        OutputPins::drop_now();
+        OutputPort::drop_now();
     }
     SCB::set_pendsv();
 }
@@ -125,22 +125,14 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
         unreachable!("main runs once");
     };
     let rcc = &chip.RCC;
-    let pins = OutputPins::new(chip.GPIOC, rcc);
+    let pins = OutputPort::new(chip.GPIOC, rcc);
     info!("touchdown {=str} on stm32g474", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH, &chip.PWR);
-    let (block, settings, found) = PowerOn {
-        stored: slots::load::<FLASH>(),
-        fallback: fallback(),
-        is_configured: false,
-        is_whole: image::is_whole(FLASH::START),
-        crash: record::read(),
-        has_bitten: Watchdog::has_bitten(rcc),
-    }
-    .check(&ABILITIES);
+    let (block, settings, found) = check(rcc);
     journal::config(&settings.monitor);
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
-    let converter = Converter::try_new(
+    let converter = ExternalConverter::try_new(
         spi::converter(chip.SPI1, &chip.GPIOA, rcc),
         (chip.TIM2, chip.TIM3),
         (&chip.GPIOA, &chip.GPIOB),
@@ -149,7 +141,7 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
     )
     .ok()?;
     let log = mount(spi::flash(chip.SPI3, &chip.GPIOA, &chip.GPIOB, rcc));
-    let line = Line::new(Port::new(
+    let line = Line::new(ChannelPort::new(
         chip.USART1,
         chip.DMA1,
         &chip.DMAMUX,
@@ -158,9 +150,9 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
     ));
     let boot = log.as_ref().map_or(0, DropLog::boot);
     let identity = Identity::new(&block.told(&settings), boot);
-    let board = Silicon {
+    let board = Nucleo {
         pins,
-        watchdog: Watchdog::new(chip.IWDG),
+        watchdog: IndependentWatchdog::new(chip.IWDG),
         block,
     };
     let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
@@ -173,21 +165,39 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
     tick.desk.board.watchdog.start(&chip.DBGMCU);
     TICK.put(tick);
     converter.start();
-    let inputs = PinInputs::new(chip.GPIOB, chip.TIM4, rcc, &settings);
+    let inputs = TimerInputs::new(chip.GPIOB, chip.TIM4, rcc, &settings);
     SAMPLING.put(Sampling::new(converter, inputs, intake));
     held::set_tick_priority(&mut core.SCB);
-    // SAFETY: what the handlers need is in place.
-    unsafe {
-        core.NVIC.set_priority(Interrupt::EXTI0, held::SAMPLING);
-        NVIC::unmask(Interrupt::EXTI0);
-    }
+    unmask(&mut core.NVIC);
     let below = MainLoop::new(settings.key, SAMPLE_RATE_HZ as f32, forecast);
     let below_tick = G474::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
 }
 
+/// What is stored, and what was wrong.
+fn check(rcc: &RCC) -> (InForce, Settings, Faults) {
+    let found = PowerOn {
+        stored: slots::load::<FLASH>(),
+        fallback: fallback(),
+        is_configured: false,
+        is_whole: image::is_whole(FLASH::START),
+        crash: record::read(),
+        has_bitten: IndependentWatchdog::has_bitten(rcc),
+    };
+    found.check(&ABILITIES)
+}
+
+/// Lets samples come: what the handlers need is in place.
+fn unmask(interrupts: &mut NVIC) {
+    // SAFETY: it is, and the priority is that of sampling.
+    unsafe {
+        interrupts.set_priority(Interrupt::EXTI0, held::SAMPLING);
+        NVIC::unmask(Interrupt::EXTI0);
+    }
+}
+
 /// The log in the chip, where one answers: without it the monitor works all the same.
-fn mount(spi: Bus<Device>) -> Option<ChipLog> {
+fn mount(spi: Bus<SelectedSpi>) -> Option<ChipLog> {
     // Data sheet W25Q64JV, power-up timing.
     Wait {}.delay_ms(5);
     let chip = W25q::try_new(spi, Wait {}).ok();
@@ -200,15 +210,15 @@ fn mount(spi: Bus<Device>) -> Option<ChipLog> {
 
 /// The end of a program that panics: outputs dropped, a record left, reset.
 pub fn on_panic(info: &PanicInfo) -> ! {
-    record::on_panic(OutputPins::drop_now, info)
+    record::on_panic(OutputPort::drop_now, info)
 }
 
 /// Likewise after a fault of the core at `pc`, called from `lr`.
 pub fn on_hard_fault(pc: u32, lr: u32) -> ! {
-    record::on_hard_fault(OutputPins::drop_now, pc, lr)
+    record::on_hard_fault(OutputPort::drop_now, pc, lr)
 }
 
 /// Likewise after an interrupt that nothing serves.
 pub fn on_stray_interrupt(number: i16) -> ! {
-    record::on_stray_interrupt(OutputPins::drop_now, number)
+    record::on_stray_interrupt(OutputPort::drop_now, number)
 }

@@ -5,12 +5,12 @@ use touchdown_protocol::controller::Outputs;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4 is the service input, high while on.
-pub struct OutputPins(GPIOC);
+pub struct OutputPort(GPIOC);
 
 /// RM0440, GPIOx_BSRR: the upper half resets.
 const DROP_ALL: u32 = (1 << 6 | 1 << 7 | 1 << 2 | 1 << 3) << 16;
 
-impl OutputPins {
+impl OutputPort {
     /// All without current.
     pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
         rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
@@ -60,9 +60,9 @@ impl OutputPins {
 }
 
 /// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms of its oscillator.
-pub struct Watchdog(IWDG);
+pub struct IndependentWatchdog(IWDG);
 
-impl Watchdog {
+impl IndependentWatchdog {
     /// Not started.
     pub fn new(iwdg: IWDG) -> Self {
         Self(iwdg)

@@ -6,9 +6,9 @@ use stm32g4::stm32g474::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
 use super::clocks::CORE_HZ;
-use super::line::Port;
-use super::outputs::Watchdog;
-use super::{ABILITIES, ChipLog, SAMPLED, Silicon, TICK};
+use super::line::ChannelPort;
+use super::outputs::IndependentWatchdog;
+use super::{ABILITIES, ChipLog, Nucleo, SAMPLED, TICK};
 use crate::board::chip_platform::Chip;
 use crate::board::held::Held;
 use crate::board::slots::ConfigFlash;
@@ -38,13 +38,13 @@ impl G474 {
 }
 
 impl Chip for G474 {
-    type Board = Silicon;
+    type Board = Nucleo;
     type Log = ChipLog;
-    type Port = Port;
+    type Port = ChannelPort;
     const MHZ: u32 = CORE_HZ / 1_000_000;
     const ABILITIES: Abilities = ABILITIES;
 
-    fn tick() -> &'static Held<TickTask<'static, Silicon>> {
+    fn tick() -> &'static Held<TickTask<'static, Nucleo>> {
         &TICK
     }
 
@@ -66,7 +66,7 @@ impl Chip for G474 {
     }
 
     fn forget_reset(&self) {
-        Watchdog::forget(&self.rcc);
+        IndependentWatchdog::forget(&self.rcc);
     }
 }
 

@@ -4,19 +4,19 @@ use embedded_hal::delay::DelayNs;
 use stm32g4::stm32g474::{GPIOA, GPIOB, RCC, SPI1, SPI3, gpioa, spi1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{Bus, Cycles, SpiRegisters};
+use crate::board::bus::{Bus, CycleDelay, SpiRegisters};
 
 /// Waits by counting cycles.
-pub type Wait = Cycles<{ CORE_HZ / 1_000_000 }>;
+pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// A SPI and the pin of port A that selects its device.
-pub struct Device {
+pub struct SelectedSpi {
     spi: *const spi1::RegisterBlock,
     pin: u32,
 }
 
 // SAFETY: each SPI is one device's alone.
-unsafe impl Send for Device {}
+unsafe impl Send for SelectedSpi {}
 
 /// RM0440, SPI_CR1: clock idles high, master, and the select is software's; its divider at bit 3.
 const CPOL: u32 = 1 << 1;
@@ -25,7 +25,7 @@ const MASTER: u32 = 1 << 2 | 1 << 8 | 1 << 9 | 1 << 6;
 const BYTES: u32 = 7 << 8 | 1 << 12;
 
 /// PA5 clock, PA6 in, PA4 select: mode 2 at 10.6 MHz.
-pub fn converter(_: SPI1, pins: &GPIOA, rcc: &RCC) -> Bus<Device> {
+pub fn converter(_: SPI1, pins: &GPIOA, rcc: &RCC) -> Bus<SelectedSpi> {
     rcc.ahb2enr().modify(|_, w| w.gpioaen().set_bit());
     rcc.apb2enr().modify(|_, w| w.spi1en().set_bit());
     // SAFETY: AF5 is SPI1: DS12288, alternate functions.
@@ -38,7 +38,7 @@ pub fn converter(_: SPI1, pins: &GPIOA, rcc: &RCC) -> Bus<Device> {
 }
 
 /// PB3 clock, PB4 in, PB5 out, PA15 select: mode 0 at 21 MHz.
-pub fn flash(_: SPI3, pins: &GPIOA, bus: &GPIOB, rcc: &RCC) -> Bus<Device> {
+pub fn flash(_: SPI3, pins: &GPIOA, bus: &GPIOB, rcc: &RCC) -> Bus<SelectedSpi> {
     rcc.ahb2enr()
         .modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
     rcc.apb1enr1().modify(|_, w| w.spi3en().set_bit());
@@ -56,8 +56,8 @@ pub fn flash(_: SPI3, pins: &GPIOA, bus: &GPIOB, rcc: &RCC) -> Bus<Device> {
     device(SPI3::ptr(), pins, 15, 2 << 3)
 }
 
-fn device(spi: *const spi1::RegisterBlock, pins: &GPIOA, pin: u32, how: u32) -> Bus<Device> {
-    let mut device = Device { spi, pin };
+fn device(spi: *const spi1::RegisterBlock, pins: &GPIOA, pin: u32, how: u32) -> Bus<SelectedSpi> {
+    let mut device = SelectedSpi { spi, pin };
     device.select(false);
     // SAFETY: bits of the registers, as above. An output is 1.
     unsafe {
@@ -70,14 +70,14 @@ fn device(spi: *const spi1::RegisterBlock, pins: &GPIOA, pin: u32, how: u32) -> 
     Bus(device)
 }
 
-impl Device {
+impl SelectedSpi {
     fn registers(&self) -> &spi1::RegisterBlock {
         // SAFETY: of the chip, and nobody else's.
         unsafe { &*self.spi }
     }
 }
 
-impl SpiRegisters for Device {
+impl SpiRegisters for SelectedSpi {
     fn select(&mut self, is_on: bool) {
         while self.registers().sr().read().bsy().bit_is_set() {}
         // SAFETY: a single write to a register that only sets and resets.
