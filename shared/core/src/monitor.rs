@@ -93,8 +93,7 @@ pub struct Summary {
 }
 
 impl Monitor {
-    /// Checks `config` and prepares the tick. Never inlined: it is called where a configuration is checked and where it is used.
-    #[inline(never)]
+    /// Checks `config` and prepares the tick.
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
         Ok(Self {
             sensing: Sensing::try_new(&config.sensing)?,
