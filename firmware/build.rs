@@ -6,16 +6,27 @@ use std::fs;
 use std::path::Path;
 
 /// What starts on the chip; `touchdown-tick` never does.
-const IMAGES: [&str; 3] = ["touchdown-firmware", "touchdown-qemu", "touchdown-crash"];
+const IMAGES: [&str; 4] = [
+    "touchdown-firmware",
+    "touchdown-qemu",
+    "touchdown-crash",
+    "touchdown-g474",
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-changed=../memory.x");
+    let is_g474 = env::var_os("CARGO_FEATURE_G474").is_some();
+    let map = if is_g474 {
+        "src/board/g474/memory.x"
+    } else {
+        "../memory.x"
+    };
+    println!("cargo::rerun-if-changed={map}");
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
         return Ok(());
     }
     // The linker runs in the workspace's root or elsewhere, as cargo likes.
     let out = env::var("OUT_DIR")?;
-    fs::copy("../memory.x", Path::new(&out).join("memory.x"))?;
+    fs::copy(map, Path::new(&out).join("memory.x"))?;
     println!("cargo::rustc-link-search={out}");
     for name in IMAGES {
         println!("cargo::rustc-link-arg-bin={name}=-Tlink.x");

@@ -3,6 +3,7 @@
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
+use touchdown_core::sample::Sample;
 use touchdown_protocol::controller::{Cause, Faults, Shown};
 use touchdown_protocol::link::{Frame, Log, Refusal};
 use touchdown_protocol::log::block;
@@ -75,6 +76,15 @@ pub trait Platform {
 
     /// All that follows from the first `samples` is done.
     fn done(&mut self, _samples: u64) {}
+}
+
+/// Where samples come from: a converter of the chip's own, or one on a bus.
+pub trait SampleSource {
+    /// Number of the newest sample that has begun, modulo 2^16, as hardware counts.
+    fn number(&self) -> u16;
+
+    /// The sample that was just converted.
+    fn take(&mut self) -> Sample;
 }
 
 /// Of a board's journal.

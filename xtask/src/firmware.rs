@@ -20,6 +20,8 @@ struct Image {
     package: &'static str,
     name: &'static str,
     profile: &'static str,
+    /// Of cargo besides.
+    arguments: &'static [&'static str],
 }
 
 const FIRMWARE: &str = "touchdown-firmware";
@@ -30,7 +32,11 @@ const PROFILE: &str = "firmware";
 const FASTEST: &str = "release";
 
 /// All images that run.
-const IMAGES: [Image; 5] = [
+const IMAGES: [Image; 6] = [
+    Image {
+        arguments: &["--no-default-features", "--features", "g474"],
+        ..image(FIRMWARE, "touchdown-g474", PROFILE)
+    },
     image(FIRMWARE, "touchdown-firmware", PROFILE),
     image(FIRMWARE, "touchdown-qemu", PROFILE),
     image(FIRMWARE, "touchdown-crash", PROFILE),
@@ -49,6 +55,7 @@ const fn image(package: &'static str, name: &'static str, profile: &'static str)
         package,
         name,
         profile,
+        arguments: &[],
     }
 }
 
@@ -102,12 +109,10 @@ pub enum Extra {
 pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
     let mut all = IMAGES.iter().chain([&NEVER_RUN]);
     let known = all.find(|image| image.name == name);
-    let package = known
-        .with_context(|| format!("{name} is no image"))?
-        .package;
+    let image = known.with_context(|| format!("{name} is no image"))?;
     let mut cargo = Machine::look().toolchain.cargo("rustc");
-    cargo.args(["--quiet", "--profile", PROFILE, "--package", package]);
-    cargo.args(["--bin", name]);
+    cargo.args(["--quiet", "--profile", PROFILE, "--package", image.package]);
+    cargo.args(["--bin", name]).args(image.arguments);
     if extra == Extra::StackSizes {
         // The flag is for nightly compilers; this one is stable.
         cargo.env("RUSTC_BOOTSTRAP", "1");
@@ -138,6 +143,7 @@ fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
     let mut cargo = Machine::look().toolchain.cargo("build");
     cargo.args(["--quiet", "--profile", image.profile]);
     cargo.args(["--package", image.package, "--bin", image.name]);
+    cargo.args(image.arguments);
     run(cargo.args(arguments), "the firmware does not build")?;
     image_check::write(&folder(image.profile).join(image.name))
 }

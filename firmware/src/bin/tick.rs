@@ -44,7 +44,7 @@ mod image {
         fn drive(&mut self, shown: Shown) {
             let outputs = shown.outputs;
             #[cfg(feature = "plants")]
-            plant(self.0, outputs.bits());
+            plants::in_tick(self.0, outputs.bits());
             write(outputs.bits());
         }
 
@@ -57,12 +57,27 @@ mod image {
         }
     }
 
-    /// A panic where the index is too large, and f64 in software.
+    /// A panic each, where the index is too large. The tick reaches the first, an order that the link's parser took the
+    /// second, and the flash driver the third, from what it is to write.
     #[cfg(feature = "plants")]
-    fn plant(bytes: &[u8], index: u8) {
-        let byte = bytes[usize::from(index)];
-        let quotient = f64::from(byte) / f64::from(index) + f64::from(byte) * 1e-3;
-        write((quotient as u64 ^ quotient.to_bits()) as u8);
+    mod plants {
+        /// And f64 in software.
+        #[inline(never)]
+        pub fn in_tick(bytes: &[u8], index: u8) {
+            let byte = bytes[usize::from(index)];
+            let quotient = f64::from(byte) / f64::from(index) + f64::from(byte) * 1e-3;
+            super::write((quotient as u64 ^ quotient.to_bits()) as u8);
+        }
+
+        #[inline(never)]
+        pub fn behind_link(block: &[u8]) {
+            super::write(block[usize::from(super::read()) + 40]);
+        }
+
+        #[inline(never)]
+        pub fn in_flash(bytes: &[u8]) {
+            super::write(bytes[usize::from(super::read())] ^ 1);
+        }
     }
 
     /// Registers of flash.
@@ -77,7 +92,11 @@ mod image {
             for operation in operations {
                 match operation {
                     Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = read()),
-                    Operation::Write(bytes) => bytes.iter().for_each(|it| write(*it)),
+                    Operation::Write(bytes) => {
+                        #[cfg(feature = "plants")]
+                        plants::in_flash(bytes);
+                        bytes.iter().for_each(|it| write(*it));
+                    }
                     _ => {}
                 }
             }
@@ -113,7 +132,8 @@ mod image {
         }
 
         fn receive(&mut self) -> Option<u8> {
-            Some(read()).filter(|it| *it > 0)
+            // Any byte: without the 0 that ends a frame no parser would be linked.
+            (read() > 0).then(read)
         }
 
         fn send(&mut self, frame: &Frame) -> bool {
@@ -134,6 +154,8 @@ mod image {
         }
 
         fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
+            #[cfg(feature = "plants")]
+            plants::behind_link(block);
             block.iter().for_each(|it| write(*it));
             Ok(())
         }

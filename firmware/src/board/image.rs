@@ -1,12 +1,11 @@
 //! Whether the image in flash is the one that was built.
 
-use core::ops::Range;
 use core::ptr::addr_of;
 
 use touchdown_core::checksum::CRC;
 
-/// Of the program: memory.x.
-const FLASH: Range<usize> = 0x0800_0000..0x080e_0000;
+/// Of the flash of every board here.
+const START: usize = 0x0800_0000;
 /// Sections that are checked at most.
 const RANGES: usize = 5;
 
@@ -16,8 +15,8 @@ const RANGES: usize = 5;
 #[unsafe(link_section = ".image_check")]
 static CHECK: [u32; 1 + 2 * RANGES] = [u32::MAX; 1 + 2 * RANGES];
 
-/// Reads the whole image; 8 instructions a byte.
-pub fn is_whole() -> bool {
+/// Reads the whole image, which ends before `limit`; 8 instructions a byte.
+pub fn is_whole(limit: usize) -> bool {
     // SAFETY: of a static. Volatile, as it is written once the compiler is done.
     let [checksum, numbers @ ..] = unsafe { addr_of!(CHECK).read_volatile() };
     let mut digest = CRC.digest();
@@ -27,7 +26,7 @@ pub fn is_whole() -> bool {
     for [start, length] in numbers.as_chunks().0 {
         let (start, length) = (*start as usize, *length as usize);
         let end = start.saturating_add(length);
-        if length > 0 && (start < FLASH.start || end > FLASH.end) {
+        if length > 0 && (start < START || end > limit) {
             return false;
         }
         if length > 0 {

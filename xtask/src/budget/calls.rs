@@ -91,6 +91,20 @@ impl Graph {
         Self(nodes.collect())
     }
 
+    /// Whether the compiler told what stack they take.
+    pub fn knows_frames(&self) -> bool {
+        self.0.values().any(|it| it.function.frame.is_some())
+    }
+
+    /// Functions that call one of such a name, and have none themselves.
+    pub fn callers(&self, is_such: impl Fn(&str) -> bool) -> BTreeSet<&str> {
+        let named = |address: &u64| Some(&*self.0.get(address)?.function.name);
+        let calls = |it: &&Node| it.calls.iter().filter_map(named).any(&is_such);
+        let names = self.0.values().filter(calls);
+        let names = names.map(|it| &*it.function.name);
+        names.filter(|it| !is_such(it)).collect()
+    }
+
     /// From the function of this name.
     pub fn deepest(&self, name: &str) -> anyhow::Result<Deepest> {
         let start = self.0.values().find(|it| it.function.name == name);

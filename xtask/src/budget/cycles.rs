@@ -92,11 +92,29 @@ pub struct Modelled {
     queues: Vec<AtRate>,
 }
 
-#[cfg(test)]
 impl Modelled {
-    /// Whether the worst tick holds a loop of so many turns, of two instructions or more, and loses samples by it.
-    pub fn shows_a_loop_of(&self, turns: u64) -> bool {
-        self.worst.lower > 2 * turns && self.samples_lost_modelled > turns * 2 / PERIOD
+    /// What has a limit, as modelled.
+    pub fn limited(&self) -> [(&'static str, u64); 3] {
+        [
+            ("worst", self.worst.modelled),
+            ("top_priority_worst", self.top_priority_worst.modelled),
+            ("mean_10_ms", self.mean_10_ms_modelled),
+        ]
+    }
+
+    #[cfg(test)]
+    pub fn with_worst(modelled: u64) -> Self {
+        let mut it = super::cycles::modelled(&[]);
+        it.worst.modelled = modelled;
+        it
+    }
+
+    /// The worst of a part, as modelled, and of any tick in the corpus, in instructions.
+    #[cfg(test)]
+    pub fn worst_of(&self, part: &str) -> (u64, u32) {
+        let mut parts = self.parts.iter().filter(|it| it.part == part);
+        let of_part = parts.next().map_or(0, |it| it.worst_modelled);
+        (of_part, self.corpus_instructions_worst.unwrap_or(0))
     }
 }
 

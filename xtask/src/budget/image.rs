@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use super::calls::{self, Function, Graph, Region};
@@ -18,7 +18,7 @@ const EXCEPTION_FRAME: u64 = 4 * 27;
 /// What can be reached in an image that has the tick and nothing else.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reached {
-    /// Functions of a panic.
+    /// Functions that call those of a panic.
     pub panics: Vec<String>,
     /// Functions for f64.
     pub soft_float: Vec<String>,
@@ -33,19 +33,31 @@ pub fn look(image: &Path) -> anyhow::Result<Reached> {
 fn reached(elf: &[u8]) -> anyhow::Result<Reached> {
     let file = object::File::parse(elf)?;
     let mut found = Reached::default();
-    let mut functions = 0;
+    let (mut functions, mut has_panic) = (0, false);
     for symbol in file.symbols().filter(|it| it.kind() == SymbolKind::Text) {
         let name = symbol.name()?;
         functions += 1;
-        if PANICS.iter().any(|it| name.contains(it)) {
-            found.panics.push(name.to_owned());
-        } else if is_soft_float(name) {
+        if is_soft_float(name) {
             found.soft_float.push(name.to_owned());
         }
+        has_panic |= is_panic(name);
     }
     // A stripped image would pass whatever is in it.
     ensure!(functions > 0, "the image has no symbols");
+    if has_panic {
+        let graph = graph(elf)?;
+        found.panics = graph
+            .callers(is_panic)
+            .into_iter()
+            .map(str::to_owned)
+            .collect();
+        ensure!(!found.panics.is_empty(), "a panic that nobody calls");
+    }
     Ok(found)
+}
+
+fn is_panic(name: &str) -> bool {
+    PANICS.iter().any(|it| name.contains(it))
 }
 
 /// Whether it computes in f64: Run-time ABI for the Arm Architecture, tables 2 to 8, and GCC's names.
@@ -101,6 +113,7 @@ impl fmt::Display for Stack {
 pub fn stack(image: &Path) -> anyhow::Result<Stack> {
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
     let graph = graph(&bytes)?;
+    ensure!(graph.knows_frames(), "the image tells no stack sizes");
     let deepest = |name: &str| {
         let deepest = graph.deepest(name)?;
         for line in &deepest.chain {
@@ -125,7 +138,7 @@ fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
     let code = text.data()?;
     let frames = match file.section_by_name(".stack_sizes") {
         Some(section) => frames(section.data()?)?,
-        None => bail!("the image tells no stack sizes"),
+        None => vec![],
     };
     let mut regions = vec![];
     let mut functions = vec![];

@@ -8,6 +8,7 @@ use std::path::Path;
 use anyhow::Context;
 use serde::Deserialize;
 
+use super::cycles::Modelled;
 use super::{Budget, Instructions};
 
 /// What fails the check, and what is aimed at.
@@ -20,6 +21,9 @@ pub struct Limits {
     stack_bytes: u64,
     panic_free: bool,
     pub(super) soft_float_symbols: u64,
+    /// As modelled, over all streams, those of the corpus included.
+    #[serde(default)]
+    cycles: BTreeMap<String, u64>,
     /// Worst of each part.
     parts: BTreeMap<String, u32>,
     #[serde(default)]
@@ -65,6 +69,14 @@ fn rows(budget: &Budget, limits: &Limits) -> Vec<(String, u64, Option<u64>)> {
         let limit = limits.parts.get(&part.part).copied().map(u64::from);
         let worst = part.instructions.instructions_worst.into();
         (part.part.clone(), worst, limit)
+    }));
+    let cycles = budget.cycles.iter().flat_map(Modelled::limited);
+    rows.extend(cycles.map(|(name, it)| {
+        (
+            format!("cycles_{name}"),
+            it,
+            limits.cycles.get(name).copied(),
+        )
     }));
     rows
 }
@@ -116,6 +128,10 @@ mod tests {
         panic_free = true
         soft_float_symbols = 0
         tick = { instructions_typical = 1_500, instructions_worst = 4_000 }
+        [cycles]
+        worst = 30_000
+        top_priority_worst = 3_000
+        mean_10_ms = 0
         [parts]
         detector = 3_000
         [goals]
@@ -174,6 +190,8 @@ mod tests {
         assert!(of(|it| it.stack_bytes += 1).starts_with("stack_bytes"));
         assert!(of(|it| it.soft_float_symbols = 1).starts_with("soft_float_symbols"));
         assert!(of(|it| it.panic_free = false).starts_with("panic_free"));
+        let cycles = breach(|it| it.cycles = Some(Modelled::with_worst(30_001)));
+        assert_eq!(cycles, "cycles_worst: 30001, limit 30000");
     }
 
     #[test]

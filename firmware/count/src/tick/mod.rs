@@ -183,12 +183,14 @@ struct Idle(Block);
 
 impl Board for Idle {
     fn report(&mut self, notice: &Notice) {
+        #[cfg(feature = "plants")]
+        plants::without_end(notice);
         black_box(notice);
     }
 
     fn drive(&mut self, shown: Shown) {
         #[cfg(feature = "plants")]
-        plant(shown);
+        plants::divisions(shown);
         black_box(shown);
     }
 
@@ -204,13 +206,28 @@ fn is_played(name: &str) -> bool {
     !cfg!(feature = "plants") || name == "orbit, speed known"
 }
 
-/// A path that is slow only where nothing may run: here the self-test. For the tests of the check.
+/// Slow paths, for the tests of the check.
 #[cfg(feature = "plants")]
-#[inline(never)]
-fn plant(shown: Shown) {
-    if shown.outputs.bits() == 0 {
-        (0..20_000).for_each(|it| {
-            black_box(it);
-        });
+mod plants {
+    use super::{Notice, Shown, black_box};
+
+    /// A division in a loop, only where nothing may run: here the self-test.
+    #[inline(never)]
+    pub fn divisions(shown: Shown) {
+        if shown.outputs.bits() == 0 {
+            black_box((0..5_000).fold(1.0, |sum: f32, it| sum / black_box(it as f32)));
+        }
+    }
+
+    /// A loop without a bound of its own, on data that the image's own stream does not have: where the rotor touches.
+    #[inline(never)]
+    pub fn without_end(notice: &Notice) {
+        let mut left = match notice {
+            Notice::Touch(_) => black_box(100_000),
+            _ => 0,
+        };
+        while left > 0 {
+            left = black_box(left - 1);
+        }
     }
 }

@@ -1,24 +1,26 @@
 //! The W25Q flash chip on SPI1, polled: the one on the Feather STM32F405.
 
-use core::convert::Infallible;
-
 use embedded_hal::delay::DelayNs;
-use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
+use crate::board::bus::{Bus, CycleDelay, SpiRegisters};
 use crate::w25q::W25q;
 
 /// The chip.
-pub type Chip = W25q<Spi, Cycles>;
+pub type Chip = W25q<Spi, Wait>;
+/// Its bus.
+pub type Spi = Bus<Spi1>;
+/// Waits by counting cycles.
+pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// PB3 clock, PB4 in, PB5 out, PA15 chip select.
-pub struct Spi {
+pub struct Spi1 {
     spi: SPI1,
     select: GPIOA,
 }
 
-impl Spi {
+impl Spi1 {
     /// Sets up pins and SPI, mode 0 at 21 MHz. PB3, PB4 and PA15 are no longer those of JTAG; a probe talks SWD.
     pub fn new(spi: SPI1, select: GPIOA, pins: &GPIOB, rcc: &RCC) -> Self {
         rcc.ahb1enr()
@@ -48,6 +50,15 @@ impl Spi {
         });
         Self { spi, select }
     }
+}
+
+impl SpiRegisters for Spi1 {
+    fn select(&mut self, is_on: bool) {
+        while self.spi.sr().read().bsy().bit_is_set() {}
+        self.select
+            .bsrr()
+            .write(|w| w.br15().bit(is_on).bs15().bit(!is_on));
+    }
 
     fn exchange(&mut self, byte: u8) -> u8 {
         while self.spi.sr().read().txe().bit_is_clear() {}
@@ -55,49 +66,8 @@ impl Spi {
         while self.spi.sr().read().rxne().bit_is_clear() {}
         self.spi.dr().read().dr().bits() as u8
     }
-}
 
-impl ErrorType for Spi {
-    type Error = Infallible;
-}
-
-impl SpiDevice for Spi {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        self.select.bsrr().write(|w| w.br15().set_bit());
-        for operation in operations {
-            match operation {
-                Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = self.exchange(0)),
-                Operation::Write(bytes) => bytes.iter().for_each(|it| {
-                    self.exchange(*it);
-                }),
-                Operation::Transfer(into, from) => {
-                    let mut from = from.iter();
-                    for place in into.iter_mut() {
-                        *place = self.exchange(from.next().copied().unwrap_or(0));
-                    }
-                    from.for_each(|it| {
-                        self.exchange(*it);
-                    });
-                }
-                Operation::TransferInPlace(bytes) => {
-                    bytes.iter_mut().for_each(|it| *it = self.exchange(*it));
-                }
-                Operation::DelayNs(time) => Cycles.delay_ns(*time),
-            }
-        }
-        while self.spi.sr().read().bsy().bit_is_set() {}
-        self.select.bsrr().write(|w| w.bs15().set_bit());
-        Ok(())
-    }
-}
-
-/// Waits by counting cycles.
-pub struct Cycles;
-
-impl DelayNs for Cycles {
-    fn delay_ns(&mut self, time: u32) {
-        const CYCLES_A_MICROSECOND: u32 = CORE_HZ / 1_000_000;
-        let rest = (CYCLES_A_MICROSECOND * (time % 1_000)).div_ceil(1_000);
-        cortex_m::asm::delay(CYCLES_A_MICROSECOND * (time / 1_000) + rest);
+    fn wait_ns(&mut self, time: u32) {
+        Wait {}.delay_ns(time);
     }
 }

@@ -8,6 +8,7 @@ use touchdown_core::sample::{Sample, TACHOMETERS};
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::board::SAMPLE_RATE_HZ;
+use crate::platform::SampleSource;
 
 /// Of ADC1 and ADC2, plane a then plane b: PA4 and PA6 are x, PA5 and PA7 are y. Both converters reach all four pins
 /// (DS8626, pin definitions).
@@ -73,14 +74,15 @@ impl Converter {
     pub fn start(&self) {
         self.timer.cr1().write(|w| w.cen().enabled());
     }
+}
 
-    /// Number of the newest sample, modulo 2^16.
-    pub fn number(&self) -> u16 {
+impl SampleSource for Converter {
+    fn number(&self) -> u16 {
         self.number.cnt().read().cnt().bits() as u16
     }
 
-    /// The sample just converted. Both converters are through: they began together, and take as long.
-    pub fn take(&self) -> Sample {
+    // Both converters are through: they began together, and take as long.
+    fn take(&mut self) -> Sample {
         self.x.sr().modify(|_, w| w.jeoc().clear());
         self.y.sr().modify(|_, w| w.jeoc().clear());
         let [ax, bx] = results(&self.x);

@@ -4,13 +4,15 @@ use stm32f4::stm32f405::{GPIOB, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
+use super::outputs::OutputPins;
+use crate::board::chip_platform::SampleInputs;
 use crate::speed::{Speed, SpeedState, pulses_a_capture};
 
 /// The timer counts every eighth tick: one turn of it takes 6.2 ms.
 const PRESCALER: u32 = 8;
 
 /// PB8 (timer 4, channel 3): rising edge of the speed pulse. PB9: high while levitation is on.
-pub struct Inputs {
+pub struct PinInputs {
     pins: GPIOB,
     timer: TIM4,
     speed: Option<Speed>,
@@ -18,7 +20,7 @@ pub struct Inputs {
     levitation: bool,
 }
 
-impl Inputs {
+impl PinInputs {
     /// Sets up what `settings` say is wired.
     pub fn new(pins: GPIOB, timer: TIM4, rcc: &RCC, settings: &Settings) -> Self {
         rcc.ahb1enr().modify(|_, w| w.gpioben().enabled());
@@ -55,9 +57,10 @@ impl Inputs {
             levitation: wiring.levitation,
         }
     }
+}
 
-    /// Spin, rad/s, where it is known.
-    pub fn spin(&mut self) -> Option<f32> {
+impl SampleInputs for PinInputs {
+    fn spin(&mut self) -> Option<f32> {
         let speed = self.speed.as_ref()?;
         let is_new = self.timer.sr().read().cc3if().bit_is_set();
         // Reading what was captured clears the flag; before the timer, or it could be ahead of it.
@@ -72,9 +75,12 @@ impl Inputs {
         speed.take(&mut self.state, now, captured)
     }
 
-    /// Whether levitation is commanded on, where that is wired.
-    pub fn levitated(&self) -> Option<bool> {
+    fn levitated(&self) -> Option<bool> {
         let is_high = self.pins.idr().read().idr9().bit_is_set();
         self.levitation.then_some(is_high)
+    }
+
+    fn service(&self) -> bool {
+        OutputPins::service()
     }
 }

@@ -9,7 +9,6 @@ mod converter;
 mod inputs;
 mod line;
 mod outputs;
-mod record;
 mod remote;
 mod store;
 
@@ -19,28 +18,29 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{DWT, SCB};
 use defmt::{error, info};
 use embedded_hal::delay::DelayNs;
-use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals};
+use stm32f4::stm32f405::{FLASH, Interrupt, NVIC, Peripherals};
 use touchdown_core::event::Notice;
-use touchdown_core::sample::Sample;
 use touchdown_protocol::controller::{Outputs, Shown};
 use touchdown_rotor::error::ConfigError;
 
-use self::chip::{Chip, Cycles, Spi};
+use self::chip::{Chip, Spi, Spi1, Wait};
 use self::clocks::APB2_HZ;
 use self::converter::Converter;
-use self::inputs::Inputs;
-use self::line::Line;
+use self::inputs::PinInputs;
+use self::line::Port;
 use self::outputs::{OutputPins, Watchdog};
-use self::remote::ChipPlatform;
+use self::remote::F405;
+use super::bus::Bus;
+use super::chip_platform::{ChipPlatform, Sampling};
 use super::held::{self, Held};
-use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, default_settings, image};
-use crate::crash::{Cause, Crash, FaultStatus};
+use super::line::Line;
+use super::slots::ConfigFlash;
+use super::{Abilities, BAUD, Board, SAMPLE_RATE_HZ, default_settings, image, record, slots};
+use crate::crash::Crash;
 use crate::drop_log::DropLog;
-use crate::intake::{Incoming, Intake};
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::{self, Memory};
-use crate::overrun::Overruns;
 use crate::power_on::{InForce, PowerOn};
 use crate::recorder::Identity;
 use crate::tick::TickTask;
@@ -57,7 +57,7 @@ const ABILITIES: Abilities = Abilities {
     tachometers: false,
 };
 
-static SAMPLING: Held<Sampling> = Held::new();
+static SAMPLING: Held<Sampling<Converter, PinInputs>> = Held::new();
 static TICK: Held<TickTask<'static, Silicon>> = Held::new();
 /// Cycle counter at the last sample.
 static SAMPLED: AtomicU32 = AtomicU32::new(0);
@@ -85,37 +85,12 @@ impl Board for Silicon {
     }
 }
 
-/// What the sampling interrupt has.
-struct Sampling {
-    converter: Converter,
-    inputs: Inputs,
-    overruns: Overruns,
-    intake: Intake<'static>,
-}
-
-impl Sampling {
-    fn take(&mut self) {
-        let lost = self.overruns.tick(self.converter.number());
-        let sample = Sample {
-            spin: self.inputs.spin(),
-            levitated: self.inputs.levitated(),
-            ..self.converter.take()
-        };
-        let arrival = Incoming {
-            sample,
-            service: OutputPins::service(),
-            clear: false,
-        };
-        if self.intake.take(arrival, lost) {
-            OutputPins::drop_now();
-        }
-    }
-}
-
 /// The converters have a sample.
 pub fn on_converted() {
     SAMPLED.store(DWT::cycle_count(), Ordering::Relaxed);
-    SAMPLING.with(Sampling::take);
+    if SAMPLING.with(Sampling::take) == Some(true) {
+        OutputPins::drop_now();
+    }
     SCB::set_pendsv();
 }
 
@@ -135,7 +110,7 @@ pub fn main(memory: &'static mut Memory) -> ! {
 /// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform)> {
+fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> {
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -143,10 +118,10 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform)> {
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
     clocks::start(&chip.RCC, &chip.FLASH);
     let (block, settings, found) = PowerOn {
-        stored: store::load(),
+        stored: slots::load::<FLASH>(),
         fallback: default_settings(),
         is_configured: false,
-        is_whole: image::is_whole(),
+        is_whole: image::is_whole(FLASH::START),
         crash: record::read(),
         has_bitten: Watchdog::has_bitten(&chip.RCC),
     }
@@ -163,8 +138,14 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform)> {
         &chip.RCC,
     );
     remote::wire(&chip.GPIOB, &chip.RCC);
-    let line = Line::new(chip.USART1, chip.DMA2, (APB2_HZ / BAUD) as u16, &chip.RCC);
-    let log = mount(Spi::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, &chip.RCC));
+    let port = Port::new(chip.USART1, chip.DMA2, (APB2_HZ / BAUD) as u16, &chip.RCC);
+    let line = Line::new(port);
+    let log = mount(Bus(Spi1::new(
+        chip.SPI1,
+        chip.GPIOA,
+        &chip.GPIOB,
+        &chip.RCC,
+    )));
     let identity = Identity::new(
         &block.told(&settings),
         log.as_ref().map_or(0, DropLog::boot),
@@ -184,12 +165,8 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform)> {
     tick.desk.board.watchdog.start(&chip.DBGMCU);
     TICK.put(tick);
     converter.start();
-    SAMPLING.put(Sampling {
-        inputs: Inputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings),
-        overruns: Overruns::default(),
-        converter,
-        intake,
-    });
+    let inputs = PinInputs::new(chip.GPIOB, chip.TIM4, &chip.RCC, &settings);
+    SAMPLING.put(Sampling::new(converter, inputs, intake));
     held::set_tick_priority(&mut core.SCB);
     // SAFETY: what the handlers need is in place.
     unsafe {
@@ -197,17 +174,15 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform)> {
         NVIC::unmask(Interrupt::ADC);
     }
     let below = MainLoop::new(settings.key, SAMPLE_RATE_HZ as f32, forecast);
-    Some((
-        below,
-        ChipPlatform::new(line, chip.FLASH, chip.RCC, chip.RNG, log),
-    ))
+    let below_tick = F405::new(chip.FLASH, chip.RCC, chip.RNG);
+    Some((below, ChipPlatform::new(below_tick, line, log)))
 }
 
 /// The log in the chip, where one answers: without it the monitor works all the same.
 fn mount(spi: Spi) -> Option<ChipLog> {
     // Data sheet W25Q64JV, power-up timing.
-    Cycles.delay_ms(5);
-    let chip = W25q::try_new(spi, Cycles).ok();
+    Wait {}.delay_ms(5);
+    let chip = W25q::try_new(spi, Wait {}).ok();
     let log = chip.and_then(|chip| ChipLog::mount(chip).ok());
     if log.is_none() {
         error!("no flash for the drop log");
@@ -234,27 +209,17 @@ pub fn rehearse() -> Option<Crash> {
 
 /// The end of a program that panics: outputs dropped, a record left, reset.
 pub fn on_panic(info: &PanicInfo) -> ! {
-    record::stop(|| Crash::of_panic(info))
+    record::on_panic(OutputPins::drop_now, info)
 }
 
 /// Likewise after a fault of the core at `pc`, called from `lr`.
 pub fn on_hard_fault(pc: u32, lr: u32) -> ! {
-    record::stop(|| Crash {
-        cause: Cause::HardFault,
-        place: pc,
-        detail: lr,
-        status: record::fault_status(),
-    })
+    record::on_hard_fault(OutputPins::drop_now, pc, lr)
 }
 
 /// Likewise after an interrupt that nothing serves.
 pub fn on_stray_interrupt(number: i16) -> ! {
-    record::stop(|| Crash {
-        cause: Cause::StrayInterrupt,
-        place: number as u32,
-        detail: 0,
-        status: FaultStatus::default(),
-    })
+    record::on_stray_interrupt(OutputPins::drop_now, number)
 }
 
 /// With the outputs without current there is nothing left to do.

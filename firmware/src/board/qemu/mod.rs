@@ -303,7 +303,7 @@ fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
             key: None,
         },
         is_configured: true,
-        is_whole: image::is_whole(),
+        is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
         crash: None,
         has_bitten: false,
     }

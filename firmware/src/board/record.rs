@@ -2,12 +2,12 @@
 //! end of a program that crashed.
 
 use core::mem::MaybeUninit;
+use core::panic::PanicInfo;
 use core::ptr::addr_of_mut;
 
 use cortex_m::peripheral::SCB;
 
-use super::outputs::OutputPins;
-use crate::crash::{Crash, FaultStatus, WORDS};
+use crate::crash::{Cause, Crash, FaultStatus, WORDS};
 
 #[unsafe(link_section = ".uninit.crash")]
 static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
@@ -35,7 +35,7 @@ fn write(words: [u32; WORDS]) {
 }
 
 /// What the core says of the fault that it is in.
-pub fn fault_status() -> FaultStatus {
+fn fault_status() -> FaultStatus {
     /// ARMv7-M, CFSR: bus fault address valid.
     const BFARVALID: u32 = 1 << 15;
     // SAFETY: reads only.
@@ -49,10 +49,35 @@ pub fn fault_status() -> FaultStatus {
     }
 }
 
-/// Drops the outputs, leaves the record and resets.
-pub fn stop(crash: impl FnOnce() -> Crash) -> ! {
+/// By `drop_outputs` takes the current off, leaves the record and resets.
+fn stop(drop_outputs: fn(), crash: impl FnOnce() -> Crash) -> ! {
     cortex_m::interrupt::disable();
-    OutputPins::drop_now();
+    drop_outputs();
     write(crash().encode());
     SCB::sys_reset()
+}
+
+/// The end of a program that panics.
+pub fn on_panic(drop_outputs: fn(), info: &PanicInfo) -> ! {
+    stop(drop_outputs, || Crash::of_panic(info))
+}
+
+/// Likewise after a fault of the core at `pc`, called from `lr`.
+pub fn on_hard_fault(drop_outputs: fn(), pc: u32, lr: u32) -> ! {
+    stop(drop_outputs, || Crash {
+        cause: Cause::HardFault,
+        place: pc,
+        detail: lr,
+        status: fault_status(),
+    })
+}
+
+/// Likewise after an interrupt that nothing serves.
+pub fn on_stray_interrupt(drop_outputs: fn(), number: i16) -> ! {
+    stop(drop_outputs, || Crash {
+        cause: Cause::StrayInterrupt,
+        place: number as u32,
+        detail: 0,
+        status: FaultStatus::default(),
+    })
 }

@@ -1,0 +1,99 @@
+//! The outputs, and the watchdog that makes them fail-safe against a stuck core.
+
+use stm32g4::stm32g474::{DBGMCU, GPIOC, IWDG, RCC};
+use touchdown_protocol::controller::Outputs;
+
+/// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
+/// circuits behind them need pull-downs. PC4 is the service input, high while on.
+pub struct OutputPort(GPIOC);
+
+/// RM0440, GPIOx_BSRR: the upper half resets.
+const DROP_ALL: u32 = (1 << 6 | 1 << 7 | 1 << 2 | 1 << 3) << 16;
+
+impl OutputPort {
+    /// All without current.
+    pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
+        rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
+        let outputs = Self(pins);
+        outputs.drive(Outputs::SAFE);
+        // SAFETY: pull-down is 2: a broken wire reads as off. An output is 1, an input 0; after reset all are analog.
+        unsafe {
+            outputs.0.pupdr().modify(|_, w| w.pupdr4().bits(2));
+            outputs.0.moder().modify(|_, w| {
+                w.moder6().bits(1).moder7().bits(1);
+                w.moder2().bits(1).moder3().bits(1).moder4().bits(0)
+            });
+        }
+        outputs
+    }
+
+    /// Sets all levels at once.
+    pub fn drive(&self, outputs: Outputs) {
+        let levels = [
+            (outputs.run, 6),
+            (outputs.no_brake, 7),
+            (outputs.permit, 2),
+            (outputs.ready, 3),
+        ];
+        let set = levels.map(|(level, pin)| u32::from(level) << pin);
+        // SAFETY: where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
+        self.0
+            .bsrr()
+            .write(|w| unsafe { w.bits(set.iter().fold(DROP_ALL, |all, it| all | it)) });
+    }
+
+    /// Whether the service input is on.
+    pub fn service() -> bool {
+        // SAFETY: a read of a register that reading does not change.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
+    }
+
+    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
+    /// top.
+    pub fn drop_now() {
+        // SAFETY: a single write to a register that only sets and resets.
+        let pins = unsafe { &*GPIOC::ptr() };
+        // SAFETY: likewise.
+        pins.bsrr().write(|w| unsafe { w.bits(DROP_ALL) });
+    }
+}
+
+/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms of its oscillator.
+pub struct IndependentWatchdog(IWDG);
+
+impl IndependentWatchdog {
+    /// Not started.
+    pub fn new(iwdg: IWDG) -> Self {
+        Self(iwdg)
+    }
+
+    /// Starts it; it stands still while a debugger halts the core.
+    pub fn start(&self, dbgmcu: &DBGMCU) {
+        dbgmcu.apb1l_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
+        // SAFETY: keys of RM0440, IWDG_KR: start, unlock. A quarter of 32 kHz, 16 of it.
+        unsafe {
+            self.0.kr().write(|w| w.bits(0xcccc));
+            self.0.kr().write(|w| w.bits(0x5555));
+            self.0.pr().write(|w| w.bits(0));
+            self.0.rlr().write(|w| w.bits(15));
+        }
+        self.feed();
+    }
+
+    /// Gives it another 2 ms.
+    pub fn feed(&self) {
+        // SAFETY: the key of RM0440, IWDG_KR.
+        self.0.kr().write(|w| unsafe { w.bits(0xaaaa) });
+    }
+
+    /// Whether it has bitten since power was applied or [`Self::forget`] was called.
+    pub fn has_bitten(rcc: &RCC) -> bool {
+        rcc.csr().read().iwdgrstf().bit_is_set()
+    }
+
+    /// Forgets it.
+    pub fn forget(rcc: &RCC) {
+        rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    }
+}
