@@ -84,7 +84,7 @@ impl App {
             patrol: ConfigScrub::default(),
             coefficients: MemoryScrub::default(),
             blind: BlindTimer::new(sample_rate),
-            permit: LiftInterlock::new(sample_rate, config.fitted),
+            permit: LiftInterlock::new(&config.detector, config.fitted),
             safety: Safety::default(),
             faults: found,
             lies_still: false,
@@ -140,9 +140,9 @@ impl App {
 
     /// After `lost` samples and one that was taken.
     fn act(&mut self, board: &mut impl Board, lost: u32) {
-        let position = self.state.position();
-        self.lies_still = self.permit.take(position, self.state.phases());
-        self.watch_itself(board.config(), position.is_some(), lost);
+        let places = self.state.places();
+        self.lies_still = self.permit.take(places, self.state.phases());
+        self.watch_itself(board.config(), places.is_some(), lost);
         let told = self.told.take();
         self.step(told);
         board.drive(self.shown());

@@ -25,9 +25,6 @@ struct Kind {
     undecided: &'static str,
 }
 
-/// The detector keeps an end for falling or bouncing that lies, and does not tell every slow lift-off.
-pub const APART: &str = "likewise, the ends apart: cleared where it lies still, runs within 0.5 s";
-
 /// Cycles in contact above all: a tenth of the runs for each other family.
 const FAMILIES: [Kind; 7] = [
     Kind {
@@ -50,7 +47,7 @@ const FAMILIES: [Kind; 7] = [
         undecided: "it whirled, or rocked on, until it was lifted: no order to clear is taken",
     },
     Kind {
-        name: APART,
+        name: "likewise, the ends apart: cleared where it lies still, runs within 0.5 s",
         part: 10,
         judged: |rng| {
             let told = Told::wrong(rng, 0.05);

@@ -3,6 +3,9 @@
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::{not_negative, positive};
 
+/// Part of the told clearance within which no wall reads: (0.8 - 0.3)/1.3, with zero and clearance told wrong by 0.3 of it
+/// and gain by 0.2.
+pub const NEAREST_WALL: f32 = 0.38;
 /// Most instants that a test's bank has room for.
 pub(crate) const MOST_INSTANTS: usize = 32;
 

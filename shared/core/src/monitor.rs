@@ -12,7 +12,7 @@ use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
-use crate::sensing::{PLANES, Reading, Sensing, SensingConfig};
+use crate::sensing::{PLANES, PlanePositions, Reading, Sensing, SensingConfig, mean};
 use crate::severity::{Severity, SeverityModel, SeverityState};
 use crate::spin::{SpinCheck, SpinFaults};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
@@ -67,7 +67,7 @@ pub struct MonitorState {
     touch: TouchState,
     pub(crate) health: HealthState,
     pub(crate) tachometers: TachometersState,
-    position: Option<[f32; 2]>,
+    planes: PlanePositions,
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,
     pub(crate) spin: Option<f32>,
@@ -206,10 +206,11 @@ impl Monitor {
         let spin = state.spin;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
-        state.position = reading
-            .mean()
-            .filter(|_| reading.is_own())
-            .map(|(position, _)| position);
+        state.planes = if reading.is_own() {
+            reading.planes
+        } else {
+            [None; PLANES]
+        };
         state.faults += u64::from(reading.unusable.count_ones());
         let signals = Signals {
             spin,
@@ -230,7 +231,7 @@ impl Monitor {
             spin_fault: None,
         };
         state.samples += 1;
-        state.position = None;
+        state.planes = [None; PLANES];
         Seen {
             reading: Reading::default(),
             signals,
@@ -317,7 +318,13 @@ impl MonitorState {
     /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers
     /// values of its own.
     pub fn position(&self) -> Option<[f32; 2]> {
-        self.position
+        mean(&self.planes).map(|(position, _)| position)
+    }
+
+    /// Likewise of each plane; a plane that is not seen is where the other one is.
+    pub fn places(&self) -> Option<[[f32; 2]; PLANES]> {
+        let [a, b] = self.planes;
+        Some([a.or(b)?, b.or(a)?])
     }
 
     /// What can be had of each channel.

@@ -2,7 +2,7 @@
 
 use core::f32::consts::TAU;
 
-use crate::config::{DetectorConfig, MachineConfig};
+use crate::config::{DetectorConfig, MachineConfig, NEAREST_WALL};
 use crate::detect::estimate::Place;
 use crate::detect::lift_off::LiftOff;
 use crate::detect::measurement::Measurement;
@@ -38,6 +38,8 @@ pub(crate) struct ContactTest {
     period: f32,
     threshold: f32,
     still_samples: u32,
+    /// m.
+    pub(crate) nearest: f32,
 }
 
 /// What the contact is known to have become.
@@ -127,6 +129,7 @@ impl ContactTest {
             period: 1.0 / config.sample_rate,
             threshold,
             still_samples: (config.tuning.still_time * config.sample_rate).max(16.0) as u32,
+            nearest: NEAREST_WALL * config.machine.clearance,
         }
     }
 
@@ -186,9 +189,9 @@ impl ContactTest {
 
     fn lift_off(&self, state: &mut Touching, measurement: &Measurement) -> Option<f32> {
         let (_, radius) = direction(measurement.position);
-        state
-            .lift
-            .take(radius, measurement.variance, self.threshold)
+        let lift = &mut state.lift;
+        let found = lift.take(radius, measurement.variance, self.threshold);
+        found.or_else(|| lift.carried(self.nearest))
     }
 
     /// `slip` as against a wall that does not turn, m/s, where measured.

@@ -44,6 +44,11 @@ impl LiftOff {
         (self.count >= LEARNT).then_some(self.square)
     }
 
+    /// Samples since a slow lift took the learnt wall along, where it is nearer than `nearest` (m), as no wall is.
+    pub(crate) fn carried(&self, nearest: f32) -> Option<f32> {
+        (f32::from(self.count) >= MEMORY && self.wall < nearest).then_some(MEMORY)
+    }
+
     /// At one end alone, where the wall seems to be `shift` (m) farther. Which end has left it, the next
     /// samples decide.
     pub(crate) fn at_one_end(&self, shift: f32) -> Self {
@@ -88,6 +93,22 @@ impl LiftOff {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// 1.4 mm/s, where an orbit of 10 um wavers more than the wall's learnt place lags.
+    #[test]
+    fn a_slow_lift_that_takes_the_wall_along_is_found() {
+        let mut test = LiftOff::default();
+        let (nearest, steps) = (115e-6, 6_000);
+        let found = (0..steps).find(|&k| {
+            let lifted = 1.4e-3 * (k as f32 - 2_000.0).max(0.0) / 20_000.0;
+            let sin = libm::sinf(0.05 * k as f32);
+            let found = test.take(300e-6 + 10e-6 * sin - lifted, 2e-10, 25.0);
+            assert_eq!(found, None, "{k}");
+            test.carried(nearest).is_some()
+        });
+        let lifted = 1.4e-3 * (found.expect("found") as f32 - 2_000.0) / 20_000.0;
+        assert!((185e-6..215e-6).contains(&lifted), "{lifted}");
+    }
 
     #[test]
     fn a_flight_is_found_and_dated() {

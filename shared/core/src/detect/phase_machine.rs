@@ -336,9 +336,10 @@ impl PhaseMachine {
                     Regime::BackwardWhirl => (EventKind::BackwardWhirl, age),
                 },
                 Finding::LiftOff(age) => {
-                    let wall = phase_state.contact.wall();
+                    let wall = Some(phase_state.contact.wall());
+                    let wall = wall.filter(|&it| it >= self.contact.nearest);
                     if let Some(measurement) = measurement {
-                        self.fly(phase_state, measurement, Some(wall), threshold_scale);
+                        self.fly(phase_state, measurement, wall, threshold_scale);
                     }
                     (EventKind::LiftOff, age)
                 }
