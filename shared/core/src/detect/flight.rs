@@ -32,8 +32,6 @@ const PULL_ERROR: f32 = 5.0;
 const WELL_KNOWN: f32 = 2e-3;
 /// Acceleration beside told gravity from which on a motion is no fall, m/s^2: magnets that hold, shocks.
 const BESIDE: f32 = 2.0 * PULL_ERROR;
-/// Samples by which an impact is dated wrong.
-const MISDATED: f32 = 0.3;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -480,8 +478,8 @@ impl FlightTest {
                 }
             }
         }
-        let falls = self.falls(flight, pull);
-        let near = if falls {
+        let shows = self.falls(flight, pull);
+        let near = if shows {
             self.nearest(flight, outward)
         } else {
             self.near(flight, outward)
@@ -493,10 +491,7 @@ impl FlightTest {
             foreseen,
             launch_speed,
             radius,
-            shown: falls.then(|| {
-                let misdated = MISDATED * self.period * bounce.normal_speed;
-                square([after.spread(0.0), misdated], [0.0; 2])
-            }),
+            shown: shows.then(|| after.spread(0.0) * after.spread(0.0)),
         })
     }
 

@@ -13,8 +13,8 @@ const UNEVEN: f32 = 0.003;
 const WITHIN: f32 = 3.0;
 /// Part of the tolerance from which on the wall is elsewhere than told.
 const APART: f32 = 0.5;
-/// Part of the told clearance that no wall is within.
-const LEAST: f32 = 0.5;
+/// Part of the told clearance that no wall is within, as for the guard.
+const LEAST: f32 = 0.67;
 
 /// What is told, m.
 #[derive(Clone, Copy, Debug)]
