@@ -97,6 +97,12 @@ fn gap(r: &mut Rng) -> Case {
     c.told.gap = 1.0 + r.uniform(-0.3, 0.3);
     c
 }
+/// Told so many percent too large.
+fn gap_told<const PERCENT: i32>(r: &mut Rng) -> Case {
+    let mut c = ideal(r);
+    c.told.gap = 1.0 + f64::from(PERCENT) / 100.0;
+    c
+}
 fn centre(r: &mut Rng) -> Case {
     let mut c = ideal(r);
     let (far, at) = (c.m.gap * r.uniform(0.1, 0.3), r.uniform(0.0, TAU));
@@ -554,13 +560,20 @@ fn main() {
     let first: u64 = get("--first-seed").map_or(1, |s| s.parse().unwrap());
     let only = get("--only").unwrap_or_default();
     let verbose = args.iter().any(|a| a == "--show");
-    let families: [(&str, Make); 14] = [
+    let families: [(&str, Make); 21] = [
         ("ideal", ideal),
         ("orbit", orbit),
         ("carried 50-85 %", carried),
         ("side 0.3-1.5 g", side),
         ("negative", negative),
         ("gap +-30 %", gap),
+        ("gap told -30 %", gap_told::<-30>),
+        ("gap told -20 %", gap_told::<-20>),
+        ("gap told -8 %", gap_told::<-8>),
+        ("gap told +8 %", gap_told::<8>),
+        ("gap told +9 %", gap_told::<9>),
+        ("gap told +20 %", gap_told::<20>),
+        ("gap told +30 %", gap_told::<30>),
         ("centre 10-30 %", centre),
         ("gain +-10 %", gain),
         ("all wrong", wrong),

@@ -566,6 +566,7 @@ impl DetectorState {
             let farther = way[0] * outward[0] + way[1] * outward[1];
             let track = &mut self.rotor.flight.track;
             track.position = sum(track.position, way);
+            self.rotor.flight.shift_wall(way);
             self.rotor.contact = self.rotor.contact.at_one_end(farther);
         }
     }

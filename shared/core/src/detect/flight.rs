@@ -4,10 +4,11 @@ use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
+use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
-use crate::vector::direction;
+use crate::vector::{direction, square};
 use touchdown_rotor::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
@@ -27,6 +28,10 @@ const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
+/// Time in which a flight shows its acceleration to 0.8 m/s^2, at 0.75 um and 20 kHz, s.
+const WELL_KNOWN: f32 = 2e-3;
+/// Acceleration beside told gravity from which on a motion is no fall, m/s^2: magnets that hold, shocks.
+const BESIDE: f32 = 2.0 * PULL_ERROR;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -53,6 +58,7 @@ pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
     machine: MachineConfig,
+    told: ToldWall,
     period: f32,
     threshold: f32,
     /// Standard deviations that noise does not reach.
@@ -63,6 +69,8 @@ pub(crate) struct FlightTest {
     uneven: f32,
     /// Acceleration towards the wall that a bounce feels, m/s^2.
     slowest: f32,
+    /// Samples of a flight that show its acceleration well.
+    well_known: u16,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
     listen_samples: f32,
@@ -78,6 +86,10 @@ pub(crate) struct Airborne {
     pub(crate) series: Series,
     /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
     pull: Option<([f32; 2], f32)>,
+    /// The wall, once an impact has shown it.
+    seen_wall: Option<RetainerWall>,
+    /// Samples since it began, or since the last jump.
+    flown: u16,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -93,15 +105,24 @@ impl Airborne {
     /// Nothing has been seen of the wall yet.
     fn restart(&mut self, threshold_scale: f32) {
         self.bank.begin(threshold_scale);
+        self.flown = 0;
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
+    }
+
+    /// The sensors show the wall by `way` (m) elsewhere.
+    pub(crate) fn shift_wall(&mut self, way: [f32; 2]) {
+        if let Some(wall) = &mut self.seen_wall {
+            wall.shift(way);
+        }
     }
 
     /// What is known of another one, but for impacts under way.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.track = other.track;
         self.series = other.series;
+        self.seen_wall = other.seen_wall;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -176,6 +197,8 @@ struct Hit {
     launch_speed: f32,
     /// From the centre, m.
     radius: f32,
+    /// Variance of that, m^2, where it shows the wall: it ended a fall.
+    shown: Option<f32>,
 }
 
 impl FlightTest {
@@ -189,12 +212,17 @@ impl FlightTest {
             ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
             machine,
+            told: ToldWall {
+                radius: machine.clearance,
+                tolerance,
+            },
             period: 1.0 / config.sample_rate,
             threshold,
             certain: sqrt(2.0 * threshold),
             near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
             slowest,
+            well_known: (WELL_KNOWN * config.sample_rate) as u16,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
         }
@@ -227,6 +255,25 @@ impl FlightTest {
         flight.pull.unwrap_or(told)
     }
 
+    /// The wall, where impacts have shown it elsewhere than told.
+    fn wall<'a>(&self, flight: &'a Airborne) -> Option<&'a RetainerWall> {
+        (flight.seen_wall.as_ref()).filter(|it| it.is_elsewhere(&self.told))
+    }
+
+    /// Distance from which on a rotor in the direction `n` is at the wall, m.
+    pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
+        (self.wall(flight)).map_or(self.near, |wall| wall.likely(n, &self.told))
+    }
+
+    /// The same from which on it may be there: a wall that impacts have shown as told is no nearer.
+    fn nearest(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
+        match (&flight.seen_wall, self.wall(flight)) {
+            (Some(wall), None) => self.near.min(wall.likely(n, &self.told)),
+            (_, Some(wall)) => wall.nearest(n, &self.told),
+            (None, None) => RetainerWall::told(&self.told).nearest(n, &self.told),
+        }
+    }
+
     /// The flight of one end that goes on from that of both; its velocity has to be found.
     pub(crate) fn part(
         &self,
@@ -243,6 +290,7 @@ impl FlightTest {
             self.pull(both),
         );
         flight.series = both.series.anew();
+        flight.seen_wall = both.seen_wall;
         flight.lies = both.lies;
         flight.restart(threshold_scale);
     }
@@ -283,6 +331,7 @@ impl FlightTest {
 
     /// Takes the next sample.
     pub(crate) fn take(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+        flight.flown = flight.flown.saturating_add(1);
         self.ballistic.predict(&mut flight.track);
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
@@ -309,6 +358,7 @@ impl FlightTest {
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
             let impact = self.judge(flight, &jump, measurement);
+            flight.flown = 0;
             flight.track.shift(&jump);
             flight.bank.restart();
             if let Some(hit) = impact {
@@ -329,7 +379,13 @@ impl FlightTest {
             series.go_on(hit.bounce, machine, self.period);
         } else {
             series.take(hit.bounce, hit.launch_speed, machine, self.period);
-            flight.lies = self.near.max(hit.radius - self.uneven);
+            if let Some(variance) = hit.shown {
+                let told = RetainerWall::told(&self.told);
+                let wall = flight.seen_wall.get_or_insert(told);
+                wall.take(hit.bounce.outward, hit.radius, variance);
+            }
+            let near = self.near(flight, hit.bounce.outward);
+            flight.lies = near.max(hit.radius - self.uneven);
             flight.near_wall = 0;
             flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
         }
@@ -422,14 +478,27 @@ impl FlightTest {
                 }
             }
         }
-        let is_hit = radius >= self.near && bounce.normal_speed > least;
+        let shows = self.falls(flight, pull);
+        let near = if shows {
+            self.nearest(flight, outward)
+        } else {
+            self.near(flight, outward)
+        };
+        let is_hit = radius >= near && bounce.normal_speed > least;
         is_hit.then_some(Hit {
             bounce,
             age,
             foreseen,
             launch_speed,
             radius,
+            shown: shows.then(|| after.spread(0.0) * after.spread(0.0)),
         })
+    }
+
+    /// Whether the flight with the acceleration `pull` (m/s^2) before a jump was a fall, rather than held.
+    fn falls(&self, flight: &Airborne, pull: [f32; 2]) -> bool {
+        let told = [0.0, -self.machine.gravity];
+        flight.flown >= self.well_known && square(pull, told) < BESIDE * BESIDE
     }
 
     /// How long the flight after an impact would last on a flat wall, s: it leaves with the speed v = `launch` and comes
@@ -470,18 +539,15 @@ impl FlightTest {
     }
 
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
-        let (_, seen) = direction(measurement.position);
-        flight.seen_near = if seen < self.near {
-            0
-        } else {
-            flight.seen_near + 1
-        };
+        let (outward, seen) = direction(measurement.position);
+        let near = self.near(flight, outward);
+        flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
         if flight.seen_near > OVERDUE * self.dwell {
             let age = flight.seen_near as f32;
             return Some(Landing::Contact { age });
         }
         let (_, radius) = direction(flight.track.position);
-        if radius < self.near {
+        if radius < near {
             flight.near_wall = 0;
             flight.lying = 0;
             return None;

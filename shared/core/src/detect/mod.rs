@@ -12,6 +12,7 @@
 //! | `track` | position and velocity in flight |
 //! | `impact_test` | whether the velocity jumped: an impact |
 //! | `series` | when the bounces will have died out |
+//! | `retainer_wall` | where the wall is |
 //! | `wall` | angle on the wall; sliding or rolling |
 //! | `lift_off` | whether it has left the wall |
 //! | `still` | whether it moves at all |
@@ -42,6 +43,7 @@ mod pending;
 mod phase_machine;
 mod possible;
 mod release;
+mod retainer_wall;
 mod series;
 mod signals;
 mod slip;

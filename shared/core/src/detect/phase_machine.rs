@@ -264,11 +264,12 @@ impl PhaseMachine {
             .take(measurement.position, self.still_samples);
         let clearance = self.machine.clearance;
         let quiet = block.filter(|block| {
-            let (_, radius) = direction(block.mean);
-            radius < self.near
+            let (outward, radius) = direction(block.mean);
+            let near = self.flight.near(&phase_state.flight, outward);
+            radius < near
                 && block.variance < 0.0625 * clearance * clearance
                 && (block.moved < 0.02 * clearance
-                    || self.machine.gravity > 0.0 && block.farthest < self.near * self.near)
+                    || self.machine.gravity > 0.0 && block.farthest < near * near)
         });
         quiet.is_some()
     }
