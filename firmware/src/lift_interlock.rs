@@ -78,12 +78,12 @@ impl LiftInterlock {
 
     /// Takes the place (m) of each end in this sample, and its phase; whether the rotor may be lifted.
     pub fn take(&mut self, places: Option<[[f32; 2]; PLANES]>, phases: [Phase; PLANES]) -> bool {
-        let Some(places) = places else {
+        let floats = phases.into_iter().all(|it| it < Phase::FreeFall);
+        let Some(places) = places.filter(|_| !floats) else {
             self.ends = [End::default(); PLANES];
             return false;
         };
-        let floats = phases.into_iter().all(|it| it < Phase::FreeFall);
-        let mut all_lie = !floats;
+        let mut all_lie = true;
         for (at, (place, phase)) in places.into_iter().zip(phases).enumerate() {
             let (is_low, is_still) = self.follow(at, place);
             let rests = self.rests[at] || !self.seen[at];

@@ -329,8 +329,13 @@ impl FlightTest {
         self.jumps.skip(&mut flight.bank);
     }
 
-    /// Takes the next sample.
-    pub(crate) fn take(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+    /// Takes the next sample, of a fall that is certain or not yet confirmed.
+    pub(crate) fn take(
+        &self,
+        flight: &mut Airborne,
+        measurement: &Measurement,
+        is_certain: bool,
+    ) -> Option<Landing> {
         flight.flown = flight.flown.saturating_add(1);
         self.ballistic.predict(&mut flight.track);
         if !self.is_possible(&flight.track, measurement) {
@@ -357,7 +362,7 @@ impl FlightTest {
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
-            let impact = self.judge(flight, &jump, measurement);
+            let impact = self.judge(flight, &jump, measurement, is_certain);
             flight.flown = 0;
             flight.track.shift(&jump);
             flight.bank.restart();
@@ -429,7 +434,13 @@ impl FlightTest {
     /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
     /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
     /// it finds after the time t in which a fall is found, as a jump of pressing times t.
-    fn judge(&self, flight: &Airborne, jump: &Jump, measurement: &Measurement) -> Option<Hit> {
+    fn judge(
+        &self,
+        flight: &Airborne,
+        jump: &Jump,
+        measurement: &Measurement,
+        is_certain: bool,
+    ) -> Option<Hit> {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
@@ -478,7 +489,7 @@ impl FlightTest {
                 }
             }
         }
-        let shows = self.falls(flight, pull);
+        let shows = is_certain && self.falls(flight, pull);
         let near = if shows {
             self.nearest(flight, outward)
         } else {

@@ -218,7 +218,8 @@ impl PhaseMachine {
         pending: &mut Option<Pending>,
         writer: &mut EventWriter,
     ) {
-        let landing = self.flight.take(&mut phase_state.flight, measurement);
+        let flight = &mut phase_state.flight;
+        let landing = self.flight.take(flight, measurement, pending.is_none());
         if signals.levitated == Some(false) {
             writer.resolve(pending, true);
         }

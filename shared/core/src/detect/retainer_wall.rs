@@ -52,7 +52,7 @@ impl RetainerWall {
 
     /// Distance from which on a rotor in the direction `n` is at the wall, if that is where it seems to be, m.
     pub(crate) fn likely(&self, n: [f32; 2], told: &ToldWall) -> f32 {
-        self.distance(n) - told.tolerance
+        (self.distance(n) - told.tolerance).max(LEAST * told.radius)
     }
 
     /// Distance from which on a rotor in the direction `n` may be at the wall, m.
