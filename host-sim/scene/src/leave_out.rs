@@ -13,7 +13,6 @@ pub fn removable(scene: &Scene) -> Vec<Part> {
 /// The scene without `part`; `None` where every model has it.
 pub fn without(scene: &Scene, part: &Part) -> Option<Scene> {
     let mut scene = scene.clone();
-    let ends = |scene: &mut Scene| scene.two_plane.take();
     match part.name {
         SPRING => supports(&mut scene, |_| None),
         "hard stop of the retainer" => {
@@ -26,7 +25,7 @@ pub fn without(scene: &Scene, part: &Part) -> Option<Scene> {
             }
         }
         "tilt, gyroscopic effect, both ends" => {
-            let ends = ends(&mut scene)?;
+            let ends = scene.two_plane.take()?;
             let rings = || ends.rings.iter();
             scene.support = scene
                 .support

@@ -260,9 +260,10 @@ impl FlightTest {
         (flight.seen_wall.as_ref()).filter(|it| it.is_elsewhere(&self.told))
     }
 
-    /// Distance from which on a rotor in the direction `n` is at the wall, m.
+    /// Distance from which on a rotor in the direction `n` is at the wall, m: a gain that is too large shows the wall
+    /// farther out where the others show it as told.
     pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
-        (self.wall(flight)).map_or(self.near, |wall| wall.likely(n, &self.told))
+        (self.wall(flight)).map_or(self.near, |wall| wall.likely(n, &self.told).min(self.near))
     }
 
     /// The same from which on it may be there: a wall that impacts have shown as told is no nearer.
