@@ -157,22 +157,3 @@ fn a_part_is_worth_what_it_changes() {
     let [low, _] = interval(of("greatest held force").expect("a force"));
     assert!(low > 0.0);
 }
-
-#[test]
-fn a_part_that_does_nothing_is_worth_nothing() {
-    let folder = TempDir::new().unwrap();
-    let scene = touchdown_scene::BUILT_IN.iter().find(|it| it.name == "two-plane");
-    // Far from every ring, and softer by 1e9 than the weight over the gap.
-    let magnet = "\n[[magnet]]\nplace_mm = 0.0\nstiffness_n_m = 1e-4\n";
-    fs::write(folder.path().join("s.toml"), scene.unwrap().text.to_owned() + magnet).unwrap();
-    touchdown(folder.path())
-        .args(["trade", "s.toml", "--json", "trade.json"])
-        .assert()
-        .success();
-    let changes = changes(&folder, "magnetic force that is left");
-    assert!(changes.len() >= 6);
-    for change in changes {
-        let [low, high] = interval(&change);
-        assert!(low <= 0.0 && high >= 0.0, "{change}");
-    }
-}
