@@ -157,9 +157,10 @@ pub const ROWS: &[Row] = &[
     },
     Row {
         command: "trade",
-        words: "trade my.toml",
+        words: "trade my.toml --drops 0",
         inputs: &[("scene", "my.toml")],
         outputs: &[File("--json"), File("--report"), File("--svg")],
+        others: &["drops"],
         ..NONE
     },
     Row {
@@ -351,6 +352,7 @@ pub const ROWS: &[Row] = &[
         words: "scene explain my.toml",
         inputs: &[("scene", "my.toml")],
         outputs: &[File("--json")],
+        others: &["drops"],
         ..NONE
     },
     Row {

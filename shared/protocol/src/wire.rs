@@ -1,7 +1,7 @@
 //! The bytes of samples and notices, little-endian, as they pass between desktop and target.
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
-//! (postcard), flags ([`POWERS_ON`], [`IN_REAL_TIME`]),
+//! (postcard), flags ([`POWERS_ON`], [`IN_REAL_TIME`], [`UNCONFIGURED`]),
 //! then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
 //! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, changes of what the controller shows and orders, then that of the
 //! [`Severity`], and last the one of [`Summary`].
@@ -23,6 +23,8 @@ pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x05";
 pub const POWERS_ON: u8 = 1;
 /// Samples come at their rate, whatever becomes of them; without it each waits for the one before it.
 pub const IN_REAL_TIME: u8 = 2;
+/// The configuration does not count as one, as on a chip in which none is stored.
+pub const UNCONFIGURED: u8 = 4;
 /// Bytes of a sample record.
 pub const SAMPLE_BYTES: usize = 21;
 /// Bytes of a notice record.

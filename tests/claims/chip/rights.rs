@@ -1,5 +1,5 @@
 //! What lies to the controller or orders without a right, on the emulated target: what is refused, what is allowed, and
-//! why. A damaged block and orders over the link with the wrong key: `rig`.
+//! why. Orders over the link with the wrong key: `rig`.
 #![cfg(unix)]
 
 use std::f64::consts::TAU;
@@ -16,9 +16,9 @@ use touchdown_core::event::{Act, EventKind, Notice};
 use touchdown_core::fault::FaultKind;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::{self, Key, Settings};
-use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode};
+use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Decoder, Nonce, Refusal, Reply, Request, State, encode, mac};
-use touchdown_protocol::wire::encode_sample;
+use touchdown_protocol::wire::{UNCONFIGURED, encode_sample, with_clear};
 use touchdown_run::emulator::{Answer, Emulator, Session, built, replay_head};
 use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
@@ -211,6 +211,45 @@ fn a_drop_outlives_the_power_until_it_is_cleared_by_right_and_a_recorded_right_i
     }
     let state = wire.state();
     assert_eq!((state.mode, state.outputs.run), (Mode::Dropped, false));
+}
+
+/// Switched on with the rotor at rest, cleared, lifted, afloat.
+#[test]
+fn without_a_whole_configuration_of_its_own_there_is_never_current() {
+    let cleared_at = (0.3 * RATE) as u64;
+    let whole = config_block::encode(&settings());
+    let mut damaged = whole.clone();
+    damaged[20] ^= 1;
+    for (stored, flags, fault) in [
+        (None, UNCONFIGURED, Some(Fault::Unconfigured)),
+        (Some(&damaged), UNCONFIGURED, Some(Fault::ConfigDamaged)),
+        (Some(&whole), UNCONFIGURED, None),
+        (None, 0, None),
+    ] {
+        let folder = TempDir::new().expect("a folder");
+        let at = folder.path();
+        if let Some(stored) = stored {
+            fs::write(at.join("settings"), stored).expect("a file");
+        }
+        let mut replay = replay_head(&settings().monitor, true).expect("a configuration");
+        *replay.last_mut().expect("flags") |= flags;
+        for (sample, number) in samples(1.3, lifted).zip(0..) {
+            let bytes = encode_sample(&sample);
+            replay.extend(if number == cleared_at { with_clear(bytes) } else { bytes });
+        }
+        fs::write(at.join("replay"), replay).expect("a file");
+        let mut session = emulator().open(at).unwrap_or_else(|error| panic!("{error}"));
+        let answer = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(runs(&answer), fault.is_none(), "{fault:?}");
+        let refused: Vec<_> = answer.orders.iter().map(|it| it.refused).collect();
+        assert_eq!(refused, [fault.map(|_| Busy::Configuration)], "{fault:?}");
+        let current = answer.shown.iter().any(|it| it.shown.outputs != Outputs::SAFE);
+        assert_eq!(current, fault.is_none(), "{fault:?}");
+        let faults = Wire::of(&mut session).state().faults;
+        for it in [Fault::Unconfigured, Fault::ConfigDamaged] {
+            assert_eq!(faults.contains(it), fault == Some(it), "{fault:?}");
+        }
+    }
 }
 
 #[test]

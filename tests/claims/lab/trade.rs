@@ -25,10 +25,10 @@ const KEYS: [&str; 15] = [
     "step_s",
 ];
 
-fn table(scene: &str) -> (TempDir, Vec<Value>) {
+fn table(scene: &str, drops: &str) -> (TempDir, Vec<Value>) {
     let folder = TempDir::new().unwrap();
     touchdown(folder.path())
-        .args(["trade", scene, "--json", "trade.json"])
+        .args(["trade", scene, "--drops", drops, "--json", "trade.json"])
         .assert()
         .success();
     let text = fs::read_to_string(folder.path().join("trade.json")).unwrap();
@@ -53,7 +53,7 @@ fn point(row: &Value) -> [f64; 2] {
 
 #[test]
 fn every_combination_has_a_row_of_the_agreed_shape() {
-    let (folder, rows) = table("rig");
+    let (folder, rows) = table("rig", "0");
     let mut seen = BTreeSet::new();
     for row in &rows {
         let keys: Vec<&str> = row
@@ -103,7 +103,7 @@ fn every_combination_has_a_row_of_the_agreed_shape() {
 
 #[test]
 fn the_front_is_what_nothing_beats() {
-    let (_folder, rows) = table("rig-wide-gap");
+    let (_folder, rows) = table("rig-wide-gap", "0");
     let points: Vec<_> = rows.iter().map(point).collect();
     for (row, &at) in rows.iter().zip(&points) {
         let beaten = points
@@ -120,7 +120,7 @@ fn the_front_is_what_nothing_beats() {
 
 #[test]
 fn a_scene_without_impacts_has_a_table_too() {
-    let (_folder, rows) = table("backward-whirl");
+    let (_folder, rows) = table("backward-whirl", "0");
     assert!(rows.iter().all(|row| row["error_impact_1"].is_null()));
     assert!(
         rows.iter()
@@ -143,7 +143,7 @@ fn interval(change: &Value) -> [f64; 2] {
 
 #[test]
 fn a_part_is_worth_what_it_changes() {
-    let (folder, _) = table("soft-support");
+    let (folder, _) = table("soft-support", "32");
     let changes = changes(&folder, "retainer's mass, spring, damper");
     for change in &changes {
         let [low, high] = interval(change);

@@ -21,7 +21,7 @@ fn text(name: &str, model: &str, outputs: &str) -> String {
 fn rows(name: &str) -> Vec<Value> {
     let folder = TempDir::new().unwrap();
     let output = touchdown(folder.path())
-        .args(["trade", name, "--json", "-"])
+        .args(["trade", name, "--drops", "0", "--json", "-"])
         .output()
         .unwrap();
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();

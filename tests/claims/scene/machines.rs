@@ -136,7 +136,7 @@ fn the_trade_has_the_new_rungs() {
         )
         .unwrap();
         touchdown(folder.path())
-            .args(["trade", "s.toml", "--json", "a.json"])
+            .args(["trade", "s.toml", "--drops", "0", "--json", "a.json"])
             .assert()
             .success();
         let json = fs::read_to_string(folder.path().join("a.json")).unwrap();

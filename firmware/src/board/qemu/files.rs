@@ -66,6 +66,8 @@ pub struct ReplayHead {
     pub powers_on: bool,
     /// Whether samples come at their rate, whatever becomes of them; else each waits for the one before it.
     pub in_real_time: bool,
+    /// Whether `config` counts as configured.
+    pub is_configured: bool,
 }
 
 impl Replay {
@@ -104,6 +106,7 @@ impl Replay {
             config,
             powers_on: flags & wire::POWERS_ON != 0,
             in_real_time: flags & wire::IN_REAL_TIME != 0,
+            is_configured: flags & wire::UNCONFIGURED == 0,
         })
     }
 

@@ -293,7 +293,7 @@ fn abilities(replayed: &MonitorConfig) -> Abilities {
     }
 }
 
-/// What is found: the configuration of the replay, which counts as configured, where none is stored.
+/// What is found: the configuration of the replay where none is stored.
 fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
     PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
@@ -302,7 +302,7 @@ fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
             wiring: Wiring::default(),
             key: None,
         },
-        is_configured: true,
+        is_configured: head.is_configured,
         is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
         crash: None,
         has_bitten: false,

@@ -291,6 +291,9 @@ pub(super) struct TradeArgs {
     /// The drawing alone
     #[arg(long, value_name = "FILE", default_value = "touchdown-trade.svg")]
     pub svg: String,
+    /// Drops of the machine, and of that without each of its parts; 0 for none [default: 16 to 200, by what a drop takes]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    pub drops: Option<u32>,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -637,6 +640,9 @@ pub(super) enum SceneCommand {
         /// The same as JSON, section by section; `-` is standard output
         #[arg(long, value_name = "FILE")]
         json: Option<String>,
+        /// Say what each part is worth too, by so many drops with it and without it
+        #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+        drops: u32,
     },
     /// List the built-in scenes
     #[command(after_help = help!("scenes"))]

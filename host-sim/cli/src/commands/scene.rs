@@ -7,7 +7,8 @@ use super::{choose, load};
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_page::json::text;
-use touchdown_run::explain::{explain, explanation};
+use touchdown_lab::trade::parts::{self, Worth};
+use touchdown_run::explain::{Explanation, explain, explanation};
 use touchdown_scene::{BUILT_IN, Scene};
 
 /// A built-in scene.
@@ -17,18 +18,34 @@ struct BuiltIn {
     heading: String,
 }
 
+/// An explanation, and what each part is worth where that was asked for.
+#[derive(Serialize)]
+struct Explained {
+    #[serde(flatten)]
+    explanation: Explanation,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parts: Option<Worth>,
+}
+
 /// Explains a scene, or lists those that are built in.
 pub(super) fn look(what: &SceneCommand) -> Result<(), Failure> {
     match what {
-        SceneCommand::Explain { scene: name, json } => {
+        SceneCommand::Explain {
+            scene: name,
+            json,
+            drops,
+        } => {
             let mut out = Gate::new()
                 .reads("SCENE", [name])
                 .writes("--json", json)
                 .open()?;
             let mut scene = load(name)?;
             let why = choose(&mut scene)?;
-            out.json("--json", || text(&explanation(&scene)))?;
-            out.finish(&(why + &explain(&scene)))
+            let parts = (*drops > 0).then(|| parts::run(&scene, Some(*drops as usize)));
+            let worth = parts.as_ref().map(|it| "\n".to_owned() + &parts::text(it, out.paint()));
+            let explanation = explanation(&scene);
+            out.json("--json", || text(&Explained { explanation, parts }))?;
+            out.finish(&(why + &explain(&scene) + &worth.unwrap_or_default()))
         }
         SceneCommand::List { json } => {
             let mut out = Gate::new().writes("--json", json).open()?;

@@ -15,7 +15,7 @@ pub(super) fn table(args: &TradeArgs) -> Result<(), Failure> {
         .writes("--svg", [&args.svg])
         .open()?;
     let scene = load(&args.scene)?;
-    let trade = trade::run(&scene);
+    let trade = trade::run(&scene, args.drops.map(|it| it as usize));
     out.json("--json", || trade::json(&trade))?;
     out.put("--report", || trade::page(&trade))?;
     out.put("--svg", || trade::svg(&trade))?;

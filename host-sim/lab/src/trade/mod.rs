@@ -39,8 +39,8 @@ pub struct Trade {
     pub rows: Vec<Row>,
 }
 
-/// Measures every part and every combination over the first second of `scene`.
-pub fn run(scene: &Scene) -> Trade {
+/// Measures every part, by so many drops, and every combination over the first second of `scene`.
+pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
     let mut scene = scene.clone();
     scene.run.duration = scene.run.duration.min(LONGEST);
     let models: Vec<Model> = combination::all()
@@ -61,7 +61,7 @@ pub fn run(scene: &Scene) -> Trade {
     Trade {
         scene: scene.heading().to_owned(),
         measured: scene.run.duration,
-        parts: parts::run(&scene),
+        parts: parts::run(&scene, drops),
         rows,
     }
 }

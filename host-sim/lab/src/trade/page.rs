@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::Trade;
 use super::drawing::{Cost, drawing, legend};
-use super::parts::Effect;
+use super::parts::{Effect, drawing as parts_drawing};
 use super::row::Row;
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
@@ -37,7 +37,8 @@ pub fn page(trade: &Trade) -> String {
                     (trade.parts.drops) " drops with the whole machine, and the same without the part. Starts within \
                      half of the clearance and 20 mm/s; friction and mounts known to a factor of 2, restitution to 0.1."
                 }
-                (worth(trade))
+                (parts_drawing(&trade.parts))
+                details { summary { "All numbers" } (worth(trade)) }
             }
         }
         section {

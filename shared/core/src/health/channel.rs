@@ -350,7 +350,7 @@ impl Watch {
             );
         }
         if it.condition == Condition::Lost {
-            it.sound += u16::from(it.repeats == 0);
+            it.sound = it.sound.saturating_add(u16::from(it.repeats == 0));
             if it.latched || it.sound < SOUND {
                 return (None, None);
             }
@@ -542,6 +542,19 @@ mod tests {
             if k > 1_000 + HELD {
                 assert_eq!(taken, (Some(f32::from(count)), None), "{k}");
             }
+        }
+    }
+
+    /// Its count of sound samples once ran over, after 65 536 of them.
+    #[test]
+    fn a_channel_that_is_latched_stays_lost_for_good() {
+        let watch = Watch::new(25.3, 80.0, 4095);
+        let mut it = ChannelMonitorState::default();
+        it.condemn(Condition::Lost);
+        for k in 0..70_000_u32 {
+            let look = watch.look(&mut it, Some(2_048 + (k % 2) as u16), true);
+            let (position, _) = watch.take(&mut it, look, true, false);
+            assert_eq!((position, it.condition), (None, Condition::Lost), "{k}");
         }
     }
 }

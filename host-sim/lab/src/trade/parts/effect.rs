@@ -63,6 +63,14 @@ impl Effect {
         si(value, self.unit)
     }
 
+    /// A change of this quantity as a part of the greater mean, -1 to 1; of shares, itself.
+    pub fn relative(&self, change: f64) -> f64 {
+        if self.unit.is_empty() {
+            return change;
+        }
+        (change / self.whole.abs().max(self.without.abs())).clamp(-1.0, 1.0)
+    }
+
     /// Whether the part matters for this quantity, as far as these drops show.
     pub fn is_seen(&self) -> bool {
         let [low, high] = self.interval;

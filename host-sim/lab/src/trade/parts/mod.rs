@@ -1,11 +1,13 @@
 //! What each part of a machine is worth: an ensemble of drops with the whole machine, and again with each part left
 //! out. What differs is what a model without that part gets wrong.
 
+mod drawing;
 mod effect;
 mod ensemble;
 mod quantity;
 mod table;
 
+pub use drawing::drawing;
 pub use effect::Effect;
 pub use table::text;
 
@@ -15,6 +17,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use touchdown_base::progress;
+use touchdown_run::fidelity::cost::LONGEST;
 use touchdown_run::model;
 use touchdown_scene::Scene;
 use touchdown_scene::leave_out::{removable, without};
@@ -22,7 +25,7 @@ use touchdown_scene::leave_out::{removable, without};
 use ensemble::varied;
 use quantity::{COUNT, Values, values};
 
-/// Steps of all drops together: some 20 s of processor time.
+/// Steps of all drops together where no number of drops is asked for: some 20 s of processor time.
 const WORK: f64 = 2e7;
 const FEWEST: usize = 16;
 const MOST: usize = 200;
@@ -54,13 +57,16 @@ struct Drop {
     seconds: f64,
 }
 
-/// Drops the machine of `scene`, and that without each of its parts.
-pub fn run(scene: &Scene) -> Worth {
+/// Drops the machine of `scene` so often, and that without each of its parts, for a second at most.
+pub fn run(scene: &Scene, drops: Option<usize>) -> Worth {
+    let mut scene = scene.clone();
+    scene.run.duration = scene.run.duration.min(LONGEST);
+    let scene = &scene;
     let parts = removable(scene);
     let machines = 1 + parts.len();
     let steps = scene.run.duration / scene.model.step * machines as f64;
-    let drops = ((WORK / steps) as usize).clamp(FEWEST, MOST);
-    if parts.is_empty() {
+    let drops = drops.unwrap_or(((WORK / steps) as usize).clamp(FEWEST, MOST));
+    if parts.is_empty() || drops == 0 {
         return Worth {
             drops: 0,
             without: vec![],
