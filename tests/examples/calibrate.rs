@@ -1,7 +1,10 @@
 //! The commissioning check over many machines: `cargo run --release -p touchdown-tests --example calibrate -- --runs 1000`.
 
 use clap::Parser;
-use touchdown_tests::led_rounds;
+use touchdown_tests::led_rounds::{self, Row, Summary};
+use touchdown_tests::record::record;
+
+const COMMAND: &str = "cargo run --release -p touchdown-tests --example calibrate --";
 
 /// Finds zero, gain and skew in simulated recordings, and counts how often they are right
 #[derive(Parser)]
@@ -15,6 +18,9 @@ struct Arguments {
     /// As JSON
     #[arg(long)]
     json: bool,
+    /// Write the table into docs/use/calibrate.md
+    #[arg(long, conflicts_with = "json")]
+    record: bool,
 }
 
 fn main() {
@@ -24,23 +30,48 @@ fn main() {
         let text = serde_json::to_string_pretty(&summary).expect("a value");
         println!("{text}");
     } else {
-        println!("| quantity | found | within | of them, % | largest | in the 95 % error, % |");
-        println!("|---|---:|---:|---:|---:|---:|");
-        for it in &summary.rows {
-            let within = 100.0 * it.within;
-            let covered = 100.0 * it.covered;
-            println!(
-                "| {} | {} | {:.0e} | {within:.1} | {:.1e} | {covered:.1} |",
-                it.name, it.count, it.tolerance, it.largest
-            );
-        }
-        println!("refused: {}", summary.refused.len());
+        let table = table(&summary);
+        print!("{table}");
         for it in summary.refused.iter().take(10) {
-            eprintln!("{it}");
+            eprintln!("refused: {it}");
+        }
+        if arguments.record {
+            let Arguments {
+                runs, first_seed, ..
+            } = arguments;
+            let command = format!("{COMMAND} --runs {runs} --first-seed {first_seed}");
+            record(
+                "docs/use/calibrate.md",
+                "calibrate-recordings",
+                &command,
+                &table,
+            )
+            .unwrap_or_else(|why| panic!("{why}"));
         }
     }
-    let holds = |it: &led_rounds::Row| it.within == 1.0 && (0.93..=0.97).contains(&it.covered);
+    let holds = |it: &Row| it.within == 1.0 && (0.93..=0.97).contains(&it.covered);
     if !summary.refused.is_empty() || !summary.rows.iter().all(holds) {
         std::process::exit(1);
     }
+}
+
+fn table(summary: &Summary) -> String {
+    let mut table =
+        "| quantity | found | within | of them, % | largest | in the 95 % error, % |\n".to_owned();
+    table += "|---|---:|---:|---:|---:|---:|\n";
+    for it in &summary.rows {
+        let Row {
+            name,
+            count,
+            tolerance,
+            within,
+            largest,
+            covered,
+        } = it;
+        let (within, covered) = (100.0 * within, 100.0 * covered);
+        table += &format!(
+            "| {name} | {count} | {tolerance:.0e} | {within:.1} | {largest:.1e} | {covered:.1} |\n"
+        );
+    }
+    table + &format!("| refused | {} | | | | |\n", summary.refused.len())
 }

@@ -18,6 +18,7 @@ pub mod led_rounds;
 pub mod minimal_scene;
 pub mod moment;
 pub mod plant;
+pub mod record;
 pub mod ring_scenes;
 pub mod rotors;
 pub mod sweep_runs;

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
 use touchdown_tests::binary::touchdown;
@@ -156,4 +157,26 @@ fn a_part_is_worth_what_it_changes() {
     assert!(high < 0.0);
     let [low, _] = interval(of("greatest held force").expect("a force"));
     assert!(low > 0.0);
+}
+
+/// A stop that no mount reaches.
+#[test]
+fn a_part_that_does_nothing_is_worth_nothing() {
+    let folder = TempDir::new().unwrap();
+    let text = include_str!("../../../host-sim/scenes/soft-support.toml");
+    let text = text.replace("travel_mm = 0.5", "travel_mm = 50.0");
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    touchdown(folder.path())
+        .args(["scene", "explain", "s.toml", "--drops", "16", "--json", "trade.json"])
+        .assert()
+        .success()
+        .stdout(contains("16 drops with the whole machine"));
+    let changes = changes(&folder, "hard stop of the retainer");
+    assert!(changes.len() > 5, "{changes:?}");
+    for change in &changes {
+        // The share's interval is not empty with 16 drops; what was measured is the same to the last bit.
+        assert_eq!(change["whole"], change["without"], "{change}");
+        let [low, high] = interval(change);
+        assert!(low <= 0.0 && 0.0 <= high, "{change}");
+    }
 }

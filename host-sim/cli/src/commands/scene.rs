@@ -6,8 +6,8 @@ use super::args::SceneCommand;
 use super::{choose, load};
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
-use touchdown_page::json::text;
 use touchdown_lab::trade::parts::{self, Worth};
+use touchdown_page::json::text;
 use touchdown_run::explain::{Explanation, explain, explanation};
 use touchdown_scene::{BUILT_IN, Scene};
 
@@ -42,7 +42,9 @@ pub(super) fn look(what: &SceneCommand) -> Result<(), Failure> {
             let mut scene = load(name)?;
             let why = choose(&mut scene)?;
             let parts = (*drops > 0).then(|| parts::run(&scene, Some(*drops as usize)));
-            let worth = parts.as_ref().map(|it| "\n".to_owned() + &parts::text(it, out.paint()));
+            let worth = parts
+                .as_ref()
+                .map(|it| "\n".to_owned() + &parts::text(it, out.paint()));
             let explanation = explanation(&scene);
             out.json("--json", || text(&Explained { explanation, parts }))?;
             out.finish(&(why + &explain(&scene) + &worth.unwrap_or_default()))
