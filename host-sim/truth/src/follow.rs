@@ -1,6 +1,6 @@
 //! The machine of a scene, followed by the reference that has all its parts.
 
-use touchdown_scene::sensors::PLANES;
+use touchdown_scene::sensors::{Motion, PLANES};
 
 use super::Units;
 use crate::reference::Reference;
@@ -44,6 +44,18 @@ pub struct TrueState {
     pub sensed: [[f64; 2]; PLANES],
     /// The rest.
     pub moving: Moving,
+}
+
+impl TrueState {
+    /// For the sensors; no ring with marks is told of.
+    pub fn motion(&self, levitated: bool) -> Motion {
+        Motion {
+            planes: self.sensed,
+            spin: self.rotor.spin,
+            levitated,
+            bearing: None,
+        }
+    }
 }
 
 enum Source {
