@@ -246,7 +246,7 @@ impl Fall {
     /// The same machine by the reference.
     pub fn reference(&self) -> CoupledReference {
         let rotor = self.machine();
-        let mount = self.mount.map(|mount| reference::coupled::Mount {
+        let mount = self.mount.map(|mount| touchdown_scene::Support {
             mass: mount.mass,
             stiffness: mount.stiffness,
             damping: mount.damping,

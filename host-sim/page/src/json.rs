@@ -30,7 +30,7 @@ struct DropJson<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rings: Vec<RingJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    ring: Option<RingEndJson>,
+    ring: Option<&'a RingEnd>,
     #[serde(skip_serializing_if = "Option::is_none")]
     energy: Option<EnergyJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,7 +84,7 @@ struct RingJson<'a> {
     name: &'a str,
     z_m: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    ring: Option<RingEndJson>,
+    ring: Option<&'a RingEnd>,
     #[serde(flatten)]
     history: HistoryJson<'a>,
 }
@@ -97,30 +97,6 @@ struct HistoryJson<'a> {
     lift_offs_s: &'a [f64],
     rolling_starts_s: &'a [f64],
     regime: Regime,
-}
-
-/// The retainer ring at the end.
-#[derive(Serialize)]
-struct RingEndJson {
-    x_m: f64,
-    y_m: f64,
-    vx_m_s: f64,
-    vy_m_s: f64,
-    peak_radius_m: f64,
-    peak_excursion_m: f64,
-    /// Between that radius and the stator; below 0 it was reached.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    clearance_left_m: Option<f64>,
-    held_peak_force_n: f64,
-    #[serde(flatten)]
-    race: Option<RaceJson>,
-}
-
-#[derive(Serialize)]
-struct RaceJson {
-    inner_ring_rad_s: f64,
-    cage_rad_s: f64,
-    temperature_rise_k: f64,
 }
 
 #[derive(Serialize)]
@@ -184,7 +160,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         history: history(model),
         end: end(scene, outcome),
         rings: rings(scene, outcome),
-        ring: (outcome.ring.as_ref()).map(|ring| ring_end(ring, scene.stator_gap)),
+        ring: outcome.ring.as_ref(),
         energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
             ledger,
             imbalance_j: ledger.imbalance_j(),
@@ -268,30 +244,10 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
         .map(|(index, (ring, [model, _]))| RingJson {
             name: &ring.name,
             z_m: ring.place,
-            ring: (outcome.seats.get(index)).map(|end| ring_end(end, scene.stator_gap)),
+            ring: outcome.seats.get(index),
             history: history(model),
         })
         .collect()
-}
-
-fn ring_end(ring: &RingEnd, stator_gap: Option<f64>) -> RingEndJson {
-    RingEndJson {
-        x_m: ring.position[0],
-        y_m: ring.position[1],
-        vx_m_s: ring.velocity[0],
-        vy_m_s: ring.velocity[1],
-        peak_radius_m: ring.peak_radius,
-        peak_excursion_m: ring.peak_excursion,
-        clearance_left_m: stator_gap.map(|gap| gap - ring.peak_radius),
-        held_peak_force_n: ring.held_peak,
-        race: ring.race.map(
-            |[inner_ring_rad_s, cage_rad_s, temperature_rise_k]| RaceJson {
-                inner_ring_rad_s,
-                cage_rad_s,
-                temperature_rise_k,
-            },
-        ),
-    }
 }
 
 fn end(scene: &Scene, outcome: &Outcome) -> EndJson {

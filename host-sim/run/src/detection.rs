@@ -4,8 +4,9 @@ use touchdown_core::event::{Event, EventKind, Motion, Notice, Touch};
 use touchdown_core::forecast::Outlook;
 
 use crate::monitor_run::MonitorOutput;
-use crate::outcome::{ChannelFault, DetectedEvent, Detection, Forecast, TouchEvent};
+use crate::outcome::{DetectedEvent, Detection, Forecast, TouchEvent};
 use crate::timebase::Timebase;
+use touchdown_files::drop_log::ChannelFault;
 use touchdown_scene::names::{channel_name, plane_name};
 
 /// An event, as far as its declaration tells.

@@ -167,10 +167,8 @@ impl<W: Write> Iterator for SampleSource<'_, W> {
             return None;
         }
         let motion = Motion {
-            planes: state.sensed,
-            spin: state.rotor.spin,
-            levitated: time < 0.0,
             bearing: bearing(self.scene, state.moving),
+            ..state.motion(time < 0.0)
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
         self.faults.inject(&mut sample, time);

@@ -9,8 +9,9 @@ use touchdown_base::history::{History, PhaseKind, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_base::spectrogram::Spectrogram;
 use touchdown_core::event::EventKind;
-use touchdown_core::health::{Condition, FaultKind};
+use touchdown_core::health::Condition;
 use touchdown_core::sample::CHANNELS;
+use touchdown_files::drop_log::ChannelFault;
 use touchdown_truth::Moving;
 
 /// An event of the detector, with times in seconds since the release (or since the stream's zero).
@@ -58,15 +59,6 @@ pub struct TouchEvent {
     pub peak_fraction: f64,
     /// Speed into the wall, m/s, where the detector found the impact.
     pub normal_speed_m_s: Option<f64>,
-}
-
-/// What is wrong with which channel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct ChannelFault {
-    /// `ax`, `ay`, `bx`, `by` or `speed`; the first of a plane stands for the plane where both are wrong.
-    pub channel: &'static str,
-    /// What.
-    pub kind: FaultKind,
 }
 
 /// What lay ahead, as the monitor saw it; the first of an episode, and where a probability had changed.

@@ -1,12 +1,12 @@
 //! The machine of a scene, followed by the reference that has all its parts.
 
-use touchdown_scene::sensors::PLANES;
+use touchdown_scene::sensors::{Motion, PLANES};
 
 use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Base, Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mount,
-    Race, Retainer, Ring, RingState, Unbalance,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer, Ring,
+    RingState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
@@ -44,6 +44,18 @@ pub struct TrueState {
     pub sensed: [[f64; 2]; PLANES],
     /// The rest.
     pub moving: Moving,
+}
+
+impl TrueState {
+    /// For the sensors; no ring with marks is told of.
+    pub fn motion(&self, levitated: bool) -> Motion {
+        Motion {
+            planes: self.sensed,
+            spin: self.rotor.spin,
+            levitated,
+            bearing: None,
+        }
+    }
 }
 
 enum Source {
@@ -170,8 +182,7 @@ fn source(scene: &Scene) -> Source {
             return Source::Planar(Box::new(reference));
         }
         (None, support, bearing) => {
-            let (support, bearing) = (support.as_ref().map(mount), bearing.as_ref().map(race));
-            CoupledMachine::level(&scene.machine(), support, bearing)
+            CoupledMachine::level(&scene.machine(), support, bearing.as_ref().map(race))
         }
     };
     let tilted = scene.two_plane.as_ref();
@@ -181,15 +192,6 @@ fn source(scene: &Scene) -> Source {
         ..CoupledStart::level(&scene.start, scene.retainer.clearance)
     };
     Source::Coupled(Box::new(CoupledReference::new(&machine, &start, spin)))
-}
-
-fn mount(support: &touchdown_scene::Support) -> Mount {
-    Mount {
-        mass: support.mass,
-        stiffness: support.stiffness,
-        damping: support.damping,
-        travel: support.travel,
-    }
 }
 
 fn race(bearing: &touchdown_scene::BallBearing) -> Race {
@@ -210,15 +212,6 @@ fn ring(ring: &touchdown_scene::Ring) -> Ring {
     }
 }
 
-fn magnet(magnet: &touchdown_scene::Magnet) -> Magnet {
-    Magnet {
-        place: magnet.place,
-        stiffness: magnet.stiffness,
-        force: magnet.force,
-        on: magnet.on,
-    }
-}
-
 fn gravity(scene: &Scene, machine: &TwoPlane) -> [f64; 2] {
     let (sin, cos) = machine.gravity_angle.sin_cos();
     [scene.run.gravity * sin, -scene.run.gravity * cos]
@@ -236,7 +229,7 @@ fn unbalance(scene: &Scene, machine: &TwoPlane) -> Unbalance {
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
         ring: ring(it),
-        mount: it.support.as_ref().map(mount),
+        mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {
@@ -247,7 +240,6 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         at_magnets: machine.magnets.iter().map(|it| mode.at(it.place)).collect(),
         at_centre: mode.at(0.0),
     };
-    let magnets = machine.magnets.iter().map(|it| (magnet(it), it.damping));
     CoupledMachine {
         mass: scene.rotor.mass,
         polar_inertia: scene.rotor.polar_inertia,
@@ -255,13 +247,9 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         gravity: gravity(scene, machine),
         retainers: machine.rings.iter().map(retainer).collect(),
         unbalance: unbalance(scene, machine),
-        magnets: magnets.collect(),
+        magnets: machine.magnets.clone(),
         bending: machine.modes.iter().map(bending).collect(),
-        base: machine.base.map(|it| Base {
-            amplitude: it.amplitude,
-            rate: it.rate,
-            phase: it.phase,
-        }),
+        base: machine.base,
     }
 }
 

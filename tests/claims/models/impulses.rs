@@ -52,7 +52,7 @@ fn the_force_between_impacts_does_not_grow_with_shorter_steps() {
     let [coarse, fine] = [10.0, 1.0].map(|step| {
         let model = format!("travel_mm = 0.01\n[model]\nstep_us = {step:?}\n");
         let ring = model::run(&scene(0.1, &(support.to_owned() + &model)));
-        ring.expect("a valid scene").ring.expect("a ring that moves").held_peak
+        ring.expect("a valid scene").ring.expect("a ring that moves").held_peak_force_n
     });
     println!("{coarse} N in steps of 10 us, {fine} N in steps of 1 us");
     assert!((fine / coarse - 1.0).abs() < 0.05, "{coarse} {fine}");

@@ -6,9 +6,8 @@ use touchdown_models::{ActuatorConfig, BaseConfig, MountConfig, Placement};
 use touchdown_run::model;
 use touchdown_scene::Scene;
 use touchdown_tests::rotors::{built, ring, rotor};
-use touchdown_truth::reference::coupled::{
-    Base, CoupledMachine, CoupledReference, CoupledStart, Magnet, Mount,
-};
+use touchdown_scene::{Base, Magnet, Support};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
 
 /// In units of the model: the base, and the squares of the rates of rotor and ring.
 const AMPLITUDE: [f64; 2] = [0.04, -0.03];
@@ -73,10 +72,10 @@ fn the_reference_follows_it_to_rounding() {
         restitution: 1.0,
         gravity: 0.0,
     };
-    let mount = Mount { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, travel: None };
+    let mount = Support { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, travel: None };
     let mut machine = CoupledMachine::level(&rotor, Some(mount), None);
-    let magnet = Magnet { place: 0.0, stiffness: -HOLDS, force: [0.0; 2], on: None };
-    machine.magnets = vec![(magnet, 0.0)];
+    let magnet = Magnet { place: 0.0, stiffness: -HOLDS, force: [0.0; 2], damping: 0.0, on: None };
+    machine.magnets = vec![magnet];
     machine.base = Some(Base { amplitude: AMPLITUDE, rate: RATE, phase: PHASE });
     let mut reference = CoupledReference::new(&machine, &CoupledStart::default(), 0.0);
     let state = reference.advance(END, &mut |_, _| panic!("no contact"));

@@ -45,7 +45,7 @@ fn rotor_and_ring_swing_and_decay_together() {
             let sag = scene.rotor.mass * scene.run.gravity / stiffness;
             let left = (swing * time).cos() + decay / swing * (swing * time).sin();
             let expected = -sag * (1.0 - (-decay * time).exp() * left);
-            let ring = run(&scene).unwrap().ring.expect("a ring").position[1];
+            let ring = run(&scene).unwrap().ring.expect("a ring").y_m;
             worst = worst.max((ring - expected).abs() / sag);
         }
         errors.push(worst);
@@ -106,7 +106,8 @@ fn the_inner_ring_spins_up_as_in_the_reference() {
     for precision in Precision::ALL {
         let scene = scene("ball-bearing", precision, 2e-5);
         let ours = run(&scene).unwrap();
-        let [inner, cage, _] = ours.ring.and_then(|ring| ring.race).expect("a race");
+        let race = ours.ring.and_then(|ring| ring.race).expect("a race");
+        let (inner, cage) = (race.inner_ring_rad_s, race.cage_rad_s);
         let (ours, truth) = (ours.histories.whole, touchdown_truth::simulate(&scene));
         let [a, b] = [&ours, &truth].map(|history| history.rolling_starts[0]);
         assert!((a - b).abs() < 1e-3, "{a} {b}");
@@ -128,7 +129,8 @@ fn heat_is_what_friction_and_drag_took() {
     bearing.heat_loss = 0.0;
     let capacity = bearing.heat_capacity;
     let ours = run(&scene).unwrap();
-    let [_, _, rise] = ours.ring.and_then(|ring| ring.race).expect("a race");
+    let race = ours.ring.and_then(|ring| ring.race).expect("a race");
+    let rise = race.temperature_rise_k;
     let ledger = ours.ledger.expect("a ledger");
     let taken = |name| {
         ledger

@@ -6,7 +6,8 @@ use touchdown_models::{ActuatorConfig, Placement};
 use touchdown_run::model;
 use touchdown_scene::Scene;
 use touchdown_tests::rotors::{built, ring, rotor};
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, Magnet};
+use touchdown_scene::Magnet;
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
 
 /// Switched off and on at these times; places and speeds in units of the model.
 const OFF: f64 = 0.307;
@@ -74,9 +75,10 @@ fn the_reference_has_it_to_rounding() {
         place: 0.0,
         stiffness: -HOLDS,
         force: [0.0; 2],
+        damping: 0.0,
         on: Some(on),
     };
-    machine.magnets = vec![(magnet([0.0, OFF]), 0.0), (magnet([ON, f64::INFINITY]), 0.0)];
+    machine.magnets = vec![magnet([0.0, OFF]), magnet([ON, f64::INFINITY])];
     let start = CoupledStart {
         position: [0.0, -SAG],
         ..CoupledStart::default()

@@ -6,10 +6,8 @@ use touchdown_base::history::{ModelEvent, Impact};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_truth::reference::Reference;
-use touchdown_truth::reference::coupled::{
-    CoupledMachine, CoupledReference, CoupledStart, CoupledState, Magnet, Mode, Mount, Race,
-    Retainer, Ring, Unbalance,
-};
+use touchdown_scene::{Magnet, Support};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Ring, Unbalance};
 
 const RIG: Machine = Machine {
     mass: 3.42,
@@ -21,7 +19,7 @@ const RIG: Machine = Machine {
     gravity: 9.81,
 };
 const SPIN: f64 = 1000.0 * PI;
-const MOUNT: Mount = Mount {
+const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
@@ -44,7 +42,7 @@ fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
 
 fn support(
     rotor: Machine,
-    mount: Option<Mount>,
+    mount: Option<Support>,
     race: Option<Race>,
     start: &CoupledStart,
     spin: f64,
@@ -205,7 +203,7 @@ fn two_like_ends_are_the_planar_reference() {
 #[test]
 fn rotor_and_ring_swing_on_the_mount() {
     for damping in [0.0, 300.0, 3000.0] {
-        let mount = Mount { damping, ..MOUNT };
+        let mount = Support { damping, ..MOUNT };
         let start = Start::Wall {
             angle: 0.0,
             tangential: 0.0,
@@ -247,7 +245,7 @@ fn whirl_on_the_mount_keeps_its_circle() {
         gravity: 0.0,
         ..RIG
     };
-    let mount = Mount {
+    let mount = Support {
         damping: 0.0,
         ..MOUNT
     };
@@ -281,7 +279,7 @@ fn whirl_on_the_mount_keeps_its_circle() {
 #[test]
 fn hard_stop_holds_the_ring() {
     let travel = 4e-5;
-    let mount = Mount {
+    let mount = Support {
         stiffness: 2e5,
         travel: Some(travel),
         ..MOUNT
@@ -323,7 +321,7 @@ fn impacts_with_a_free_ring_keep_momentum() {
         gravity: 0.0,
         ..RIG
     };
-    let mount = Mount {
+    let mount = Support {
         stiffness: 0.0,
         damping: 0.0,
         ..MOUNT
@@ -359,7 +357,7 @@ fn elastic_impacts_keep_energy() {
         restitution: 1.0,
         ..RIG
     };
-    let mount = Mount {
+    let mount = Support {
         damping: 0.0,
         ..MOUNT
     };
@@ -379,9 +377,10 @@ fn elastic_impacts_keep_energy() {
         place: 0.1,
         stiffness: 2e4,
         force: [3.0, -2.0],
+        damping: 0.0,
         on: None,
     };
-    machine.magnets.push((magnet, 0.0));
+    machine.magnets.push(magnet);
     let start = CoupledStart {
         position: [1e-4, 2e-5],
         tilt: [2e-4, 1e-3],
@@ -536,9 +535,10 @@ fn free_tilt_nutates_and_held_tilt_splits() {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
+            damping: 0.0,
             on: None,
         };
-        machine.magnets.push((magnet, 0.0));
+        machine.magnets.push(magnet);
     }
     let half = 0.5 * ratio * SPIN;
     let split = (half * half + 2.0 * 2e4 * 0.1 * 0.1 / TRANSVERSE_INERTIA).sqrt();
@@ -579,9 +579,10 @@ fn unbalance_drives_the_held_rotor() {
             place,
             stiffness: -2e4,
             force: [0.0; 2],
+            damping: 0.0,
             on: None,
         };
-        machine.magnets.push((magnet, 0.0));
+        machine.magnets.push(magnet);
     }
     let square = SPIN * SPIN;
     let out = 2e-6 * rotor.mass * square / (2.0 * 2e4 - rotor.mass * square);
@@ -672,7 +673,7 @@ fn walls_are_started_on() {
 #[test]
 fn heavy_rings_are_fixed_ones() {
     let start = free([1e-4, 5e-5], [0.0; 2]);
-    let mount = Mount {
+    let mount = Support {
         mass: 1e15,
         stiffness: 1e12,
         damping: 0.0,
@@ -775,7 +776,7 @@ proptest! {
         let rotor = Machine { friction, restitution, gravity, ..RIG };
         let (mass, stiffness) = (10_f64.powf(mass), 10_f64.powf(stiffness));
         let damping = damping * (mass * stiffness).sqrt();
-        let mount = has_mount.then_some(Mount { mass, stiffness, damping, travel });
+        let mount = has_mount.then_some(Support { mass, stiffness, damping, travel });
         let race = has_race.then_some(Race { inertia: 10_f64.powf(inertia), dry_drag, viscous_drag });
         let out = part * rotor.clearance;
         let start = free([out * angle.sin(), -out * angle.cos()], [vx, vy]);
@@ -817,7 +818,7 @@ proptest! {
         for (it, clearance) in machine.retainers.iter_mut().zip(clearances) {
             it.ring.clearance = clearance;
         }
-        machine.magnets.push((Magnet { place: 0.05, stiffness, force: [0.0; 2], on: None }, 0.0));
+        machine.magnets.push(Magnet { place: 0.05, stiffness, damping: 0.0, force: [0.0; 2], on: None });
         // Inside every ring.
         let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.ring.clearance / 1e-3 / it.ring.place.abs().max(0.01)).fold(1.0, f64::min);
         let start = CoupledStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry], ..CoupledStart::default() };

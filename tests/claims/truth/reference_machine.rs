@@ -4,17 +4,15 @@ use std::f64::consts::PI;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_tests::close::{close, close_pair};
-use touchdown_truth::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, Magnet, Mount, Race, Retainer, Ring,
-    Unbalance,
-};
+use touchdown_scene::{Magnet, Support};
+use touchdown_truth::reference::coupled::{Bending, CoupledMachine, CoupledReference, CoupledStart, Race, Retainer, Ring, Unbalance};
 
 const CLEARANCE: f64 = 3e-4;
 const MASS: f64 = 3.42;
 const RADIUS: f64 = 0.024;
 const POLAR: f64 = 0.000_984_96;
 const SPIN: f64 = -1000.0 * PI;
-const MOUNT: Mount = Mount {
+const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
@@ -26,7 +24,7 @@ const RACE: Race = Race {
     viscous_drag: 1e-5,
 };
 
-fn retainer(place: f64, mount: Option<Mount>, race: Option<Race>) -> Retainer {
+fn retainer(place: f64, mount: Option<Support>, race: Option<Race>) -> Retainer {
     let ring = Ring {
         place,
         radius: RADIUS,
@@ -109,14 +107,15 @@ fn heavy_rings_are_rigid_ones() {
         place: 0.05,
         stiffness: -1e4,
         force: [1.0, 2.0],
+        damping: 0.0,
         on: None,
     };
     let mut whole = machine(vec![retainer(-0.1, None, None), retainer(0.13, None, None)]);
-    (whole.unbalance, whole.magnets) = (unbalance, vec![(magnet, 0.0)]);
+    (whole.unbalance, whole.magnets) = (unbalance, vec![magnet]);
     let start = at([2e-5, 0.0], [1e-4, 2e-4]);
     let mut want = CoupledReference::new(&whole, &start, 0.1 * SPIN);
     for it in &mut whole.retainers {
-        it.mount = Some(Mount { mass: 1e15, stiffness: 1e12, damping: 0.0, travel: Some(1e-4) });
+        it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, travel: Some(1e-4) });
         it.race = Some(Race { inertia: 1e15, dry_drag: 1e-3, viscous_drag: 1e-3 });
     }
     let mut have = CoupledReference::new(&whole, &start, 0.1 * SPIN);
@@ -132,7 +131,7 @@ fn heavy_rings_are_rigid_ones() {
     close(a.spin, b.spin, 1e-12 * SPIN.abs());
 }
 
-fn one_plane(mass: f64, polar_inertia: f64, mount: Mount, race: Race) -> CoupledReference {
+fn one_plane(mass: f64, polar_inertia: f64, mount: Support, race: Race) -> CoupledReference {
     let rotor = Machine {
         mass,
         radius: RADIUS,
@@ -149,7 +148,7 @@ fn one_plane(mass: f64, polar_inertia: f64, mount: Mount, race: Race) -> Coupled
 /// One ring at the centre of mass; or two ends alike, each of which bears half.
 #[test]
 fn level_it_is_one_plane() {
-    let mount = Mount {
+    let mount = Support {
         travel: Some(4e-5),
         ..MOUNT
     };
@@ -246,9 +245,10 @@ fn magnet_damps() {
         place: 0.0,
         stiffness: -1e5,
         force: [0.0, 9.81 * MASS],
+        damping: 200.0,
         on: None,
     };
-    whole.magnets = vec![(magnet, 200.0)];
+    whole.magnets = vec![magnet];
     let mut reference = CoupledReference::new(&whole, &at([1e-4, 0.0], [0.0; 2]), 0.0);
     let decay = 100.0 / MASS;
     let rate = (1e5 / MASS - decay * decay).sqrt();
@@ -262,7 +262,7 @@ fn magnet_damps() {
 }
 
 fn whole_machine(restitution: f64) -> CoupledMachine {
-    let mount = Mount {
+    let mount = Support {
         damping: 0.0,
         ..MOUNT
     };
@@ -295,7 +295,7 @@ fn free_rings_keep_momentum() {
     let mut whole = whole_machine(0.8);
     whole.gravity = [0.0; 2];
     for it in &mut whole.retainers {
-        it.mount = Some(Mount {
+        it.mount = Some(Support {
             stiffness: 0.0,
             damping: 0.0,
             ..MOUNT

@@ -14,6 +14,7 @@ use touchdown_lab::paper::DROPS;
 use touchdown_lab::score::{GROUPS, Plan};
 use touchdown_run::emulator::Emulator;
 use touchdown_run::target::Target;
+use touchdown_scene::limits::CLEARANCE_MM;
 use touchdown_sweep::Part;
 
 /// What `--help` adds to a command: examples, and what its status means. A test runs them.
@@ -153,7 +154,8 @@ pub(super) struct RigArgs {
     #[arg(long, value_name = "FOLDER")]
     pub keep: Option<String>,
     /// Part of the link's bytes that are flipped, lost or invented
-    #[arg(long, value_name = "PART", default_value_t = 0.0, value_parser = share)]
+    #[arg(long, value_name = "PART", default_value_t = 0.0,
+          value_parser = number(|it| (0.0..=1.0).contains(&it), "a number from 0 to 1"))]
     pub noise: f64,
     /// As fast as the emulator can, not at the pace of the samples
     #[arg(long)]
@@ -184,7 +186,7 @@ pub(super) struct ReplayArgs {
     #[arg(long)]
     pub power_on: bool,
     /// Order the controller to clear what is latched at this time of the recording, s; may be given again
-    #[arg(long, value_name = "T", value_parser = time, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = number(f64::is_finite, "a time in s"), allow_negative_numbers = true)]
     pub clear_at: Vec<f64>,
     #[command(flatten)]
     pub reading: ReadingArgs,
@@ -199,7 +201,7 @@ pub(super) struct ReadingArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
     /// Make samples of another rate of it, Hz: linear between neighbours, none across gaps
-    #[arg(long, value_name = "RATE", value_parser = rate)]
+    #[arg(long, value_name = "RATE", value_parser = number(is_rate, "100 to 200000 Hz"))]
     resample: Option<f64>,
 }
 
@@ -226,10 +228,10 @@ pub(super) struct CompareArgs {
     #[arg(long)]
     pub scene: String,
     /// Most that an onset may differ, ms
-    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = not_negative)]
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = tolerance())]
     pub within_ms: f64,
     /// Most that the speed of an impact may differ, % of the faster
-    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = not_negative)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = tolerance())]
     pub within_percent: f64,
     /// Events side by side as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -256,25 +258,21 @@ impl CompareArgs {
     }
 }
 
-/// A tolerance.
-fn not_negative(text: &str) -> Result<f64, String> {
-    let number = text
-        .parse()
-        .ok()
-        .filter(|it: &f64| it.is_finite() && *it >= 0.0);
-    number.ok_or_else(|| "a number, 0 or more".to_owned())
+/// Reads a number that `is_right`; `rule` says what that is.
+fn number(
+    is_right: fn(f64) -> bool,
+    rule: &str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + use<> {
+    let rule = rule.to_owned();
+    move |text| {
+        let number = text.parse().ok().filter(|it| is_right(*it));
+        number.ok_or_else(|| rule.clone())
+    }
 }
 
-/// A time.
-fn time(text: &str) -> Result<f64, String> {
-    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
-    time.ok_or_else(|| "a time in s".to_owned())
-}
-
-/// A sample rate.
-fn rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse().ok().filter(|rate| is_rate(*rate));
-    rate.ok_or_else(|| "100 to 200000 Hz".to_owned())
+/// Reads a tolerance.
+fn tolerance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    number(|it| it.is_finite() && it >= 0.0, "a number, 0 or more")
 }
 
 #[derive(Args, Clone, Debug)]
@@ -479,7 +477,7 @@ pub(super) struct CalibrateArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub config: Option<String>,
     /// Radial clearance, mm, as it was measured, in place of the one told
-    #[arg(long, value_name = "MM", value_parser = clearance)]
+    #[arg(long, value_name = "MM", value_parser = clearance())]
     pub clearance: Option<f64>,
     /// What is believed: the clearance, or the gain of each plane's first axis
     #[arg(long, value_enum, default_value_t)]
@@ -511,11 +509,12 @@ pub(super) enum ScaleArg {
 }
 
 /// A clearance, mm.
-fn clearance(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok();
-    let range = touchdown_scene::limits::CLEARANCE_MM;
-    let number = number.filter(|it| range.contains(it));
-    number.ok_or_else(|| format!("{} to {} mm", range.start(), range.end()))
+fn clearance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    let (least, most) = CLEARANCE_MM.into_inner();
+    number(
+        |it| CLEARANCE_MM.contains(&it),
+        &format!("{least} to {most} mm"),
+    )
 }
 
 #[derive(Args, Clone, Debug)]
@@ -585,14 +584,6 @@ pub(super) enum ExportFormat {
     Comtrade,
     /// Header, events, severity, ending
     Json,
-}
-
-/// A number from 0 to 1.
-#[cfg(unix)]
-fn share(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok();
-    let number = number.filter(|it| (0.0..=1.0).contains(it));
-    number.ok_or_else(|| "a number from 0 to 1".to_owned())
 }
 
 /// `K/N`.

@@ -85,7 +85,11 @@ fn machine(args: &CalibrateArgs) -> Result<Machine, Failure> {
         let mut scene = Scene::load("rig")?;
         scene.name.clone_from(name);
         scene.retainer.clearance = f64::from(settings.monitor.detector.machine.clearance);
-        scene.sensors = sensors(&settings.monitor.sensing, settings.monitor.fitted);
+        scene.sensors = sensors(
+            &settings.monitor.sensing,
+            settings.monitor.fitted,
+            scene.sensors,
+        );
         return Ok(Machine {
             settings,
             scene,
@@ -107,27 +111,16 @@ fn machine(args: &CalibrateArgs) -> Result<Machine, Failure> {
     })
 }
 
-/// Sensors of a scene that have this converter.
-fn sensors(sensing: &SensingConfig, fitted: u8) -> SensorsConfig {
+/// Sensors of a scene, but with this converter.
+fn sensors(sensing: &SensingConfig, fitted: u8, others: SensorsConfig) -> SensorsConfig {
     let counts = u32::from(sensing.full_scale) + 1;
     let bits = counts.next_power_of_two().trailing_zeros().max(4);
     SensorsConfig {
         planes: if fitted & 0b1100 == 0 { 1 } else { 2 },
         bits,
         range: f64::from(sensing.resolution) * f64::from(1 << (bits - 1)),
-        noise: 0.0,
-        bandwidth: None,
         mounting_angle: sensing.mounting_angle.map(f64::from),
-        skew: [0.0; PLANES],
-        offset: [0.0; 4],
-        gain_error: [0.0; 4],
-        nonlinearity: 0.0,
-        runout: 0.0,
-        runout_harmonic: 1,
-        speed: false,
-        levitation_signal: false,
-        calibration: None,
-        tachometers: None,
+        ..others
     }
 }
 

@@ -14,7 +14,6 @@ mod paper;
 mod rig;
 mod scene;
 mod score;
-mod subject;
 mod sweep;
 mod trade;
 
@@ -98,9 +97,7 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
         outcome
     };
     out.json("--json", || json::drop(&scene, &outcome))?;
-    out.put("--report", || {
-        report::render(&subject::subject(&scene), &outcome)
-    })?;
+    out.put("--report", || report::render(&scene, &outcome))?;
     let text = timeline::drop(&scene, &outcome, out.paint());
     out.finish(&(why + &text))
 }

@@ -88,13 +88,13 @@ pub struct Event {
     /// Of an impact, m/s.
     pub normal_speed_m_s: f32,
     /// Of a sensor fault.
-    pub fault: Option<LoggedFault>,
+    pub fault: Option<ChannelFault>,
 }
 
-/// What was wrong with which channel.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct LoggedFault {
-    /// As in `replay --json`.
+/// What is wrong with which channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ChannelFault {
+    /// `ax`, `ay`, `bx`, `by` or `speed`; the first of a plane stands for the plane where both are wrong.
     pub channel: &'static str,
     /// What.
     pub kind: FaultKind,
@@ -317,7 +317,7 @@ fn event(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<Event> {
         onset_s: since(event.onset.samples()),
         declared_s: since(event.declared as f64),
         normal_speed_m_s: event.normal_speed,
-        fault: event.fault.map(|it| LoggedFault {
+        fault: event.fault.map(|it| ChannelFault {
             channel: channel_name(it.channel),
             kind: it.kind,
         }),

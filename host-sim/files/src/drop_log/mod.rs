@@ -9,7 +9,7 @@ mod text;
 
 pub use comtrade::comtrade;
 pub use dump::{Dump, read};
-pub use episode::{Completeness, Episode, Event, LoggedFault};
+pub use episode::{ChannelFault, Completeness, Episode, Event};
 pub use fetch::{Wanted, fetch};
 pub use text::{list, show};
 

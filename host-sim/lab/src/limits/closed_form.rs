@@ -1,10 +1,9 @@
 //! Extremes whose result is known in closed form. Each is run at every step, or at the one it is about.
 
-use crate::limits::extreme::STEPS;
+use crate::limits::extreme::{STEPS, free, wall};
 use crate::limits::watch::inertia;
 use touchdown_base::history::History;
 use touchdown_base::input_error::InputError;
-use touchdown_base::machine::Start;
 use touchdown_scene::Scene;
 use touchdown_truth::Units;
 use touchdown_truth::reference::energy;
@@ -273,12 +272,4 @@ fn denormals(rig: &Scene, (name, least): Denormal) -> ClosedForm {
 fn first<T>(all: &[T], error: impl Fn(&T) -> f64) -> f64 {
     all.first()
         .map_or(f64::INFINITY, |first| error(first).abs())
-}
-
-fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
-    Start::Free { position, velocity }
-}
-
-fn wall(angle: f64, tangential: f64) -> Start {
-    Start::Wall { angle, tangential }
 }

@@ -115,10 +115,10 @@ fn set_gap(scene: &mut Scene, clearance: f64) {
     }
 }
 
-fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
+pub(super) fn free(position: [f64; 2], velocity: [f64; 2]) -> Start {
     Start::Free { position, velocity }
 }
 
-fn wall(angle: f64, tangential: f64) -> Start {
+pub(super) fn wall(angle: f64, tangential: f64) -> Start {
     Start::Wall { angle, tangential }
 }

@@ -19,7 +19,7 @@ use touchdown_rotor::error::ConfigError;
 
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::quantile;
-use touchdown_scene::sensors::{Motion, Sensors};
+use touchdown_scene::sensors::Sensors;
 use touchdown_scene::{Scene, Start};
 use touchdown_truth::{Truth, Units};
 
@@ -128,15 +128,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
         if case.whirl.is_some_and(|whirl| time > whirl.turned + 5e-3) {
             break;
         }
-        let sample = sensors.read(
-            &mut seen,
-            &Motion {
-                planes: at.sensed,
-                spin: at.rotor.spin,
-                levitated: time < 0.0,
-                bearing: None,
-            },
-        );
+        let sample = sensors.read(&mut seen, &at.motion(time < 0.0));
         for notice in monitor.update(&mut state, &sample) {
             let Notice::Declared(event) = notice else {
                 continue;

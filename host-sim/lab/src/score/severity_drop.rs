@@ -6,7 +6,7 @@ use touchdown_rotor::error::ConfigError;
 
 use touchdown_base::history::PhaseKind;
 use touchdown_scene::Scene;
-use touchdown_scene::sensors::{Motion, Sensors};
+use touchdown_scene::sensors::Sensors;
 use touchdown_truth::Truth;
 
 /// Angle of whirl in a sample, rad, beyond which the load is left out: the core's own limit.
@@ -66,12 +66,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
         }
         speed = speed.max(f64::hypot(u, v));
         end = time;
-        let motion = Motion {
-            planes: at.sensed,
-            spin: at.rotor.spin,
-            levitated: time < 0.0,
-            bearing: None,
-        };
+        let motion = at.motion(time < 0.0);
         monitor.update(&mut state, &sensors.read(&mut chain, &motion));
     }
     let history = truth.finish().whole;

@@ -234,12 +234,6 @@ impl<'a> Feed<'a> {
 
     fn fallen(&mut self, time: f64) -> (Motion, Option<Instant>) {
         let state = self.truth.advance(time);
-        let motion = Motion {
-            planes: state.sensed,
-            spin: state.rotor.spin,
-            levitated: false,
-            bearing: None,
-        };
         let instant = Instant {
             time,
             phase: state.phase,
@@ -247,7 +241,7 @@ impl<'a> Feed<'a> {
             turns: state.rotor.turns_in_contact * state.rotor.spin.signum(),
             position: state.rotor.position,
         };
-        (motion, Some(instant))
+        (state.motion(false), Some(instant))
     }
 }
 

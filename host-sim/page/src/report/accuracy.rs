@@ -1,11 +1,11 @@
 //! The model under test against the independent reference.
 
-use super::Subject;
 use maud::{Markup, html};
 use touchdown_base::history::History;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{error, ms, si, significant};
 use touchdown_run::outcome::Outcome;
+use touchdown_scene::Scene;
 use touchdown_scene::names::regime_name;
 
 /// Quantity, model, reference, difference.
@@ -15,7 +15,7 @@ type Row = [String; 4];
 type Times = fn(&History) -> &[f64];
 
 /// Draws times and end state side by side, with differences.
-pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
+pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
     let mut rows = vec![
         count_row("Impacts", model.impacts.len(), truth.impacts.len()),
@@ -37,7 +37,7 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
     let same = if same { "same" } else { "differs" };
     let [ours, theirs] = [model, truth].map(|it| regime_name(it.regime));
     rows.push(["Regime", ours, theirs, same].map(str::to_owned));
-    let apart = error(apart(model, truth) / subject.machine.clearance);
+    let apart = error(apart(model, truth) / scene.retainer.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
     let given_up = crate::timeline::given_up(outcome);
     let table = table("Model against reference", &rows)
@@ -47,8 +47,8 @@ pub fn accuracy(subject: &Subject, outcome: &Outcome) -> Markup {
         .number("Difference", |it| it[3].clone());
     html! {
         p {
-            "The model ran in " (subject.precision) " with an output interval of "
-            (si(subject.step, "s")) ". The reference is an independent solver in f64."
+            "The model ran in " (scene.model.precision.name()) " with an output interval of "
+            (si(scene.model.step, "s")) ". The reference is an independent solver in f64."
             @if let Some(line) = given_up { " " strong { "The " (line) "." } }
         }
         (table.draw())

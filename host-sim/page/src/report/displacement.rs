@@ -1,6 +1,5 @@
 //! Displacement x and y against time.
 
-use super::Subject;
 use super::stretch::far;
 use super::timeline::{percent, strokes, visible};
 use super::window::Window;
@@ -9,15 +8,16 @@ use maud::{Markup, html};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Outcome, TracePoint};
+use touchdown_scene::Scene;
 
 const HEIGHT: f64 = 190.0;
 const MICRO: f64 = 1e6;
 
 /// Draws both axes for a stretch of time.
-pub fn displacement(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+pub fn displacement(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     html! {
-        (panel(0, window, subject, outcome))
-        (panel(1, window, subject, outcome))
+        (panel(0, window, scene, outcome))
+        (panel(1, window, scene, outcome))
         ul.legend {
             li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } "true motion" }
             li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M4 8h0M11 4h0M18 7h0M25 5h0M31 8h0" {} } "sensed" }
@@ -28,14 +28,14 @@ pub fn displacement(window: Window, subject: &Subject, outcome: &Outcome) -> Mar
     }
 }
 
-fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+fn panel(axis: usize, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
     // A ring that moves lets the rotor beyond its clearance.
     let farthest = shown(&outcome.trace, window)
         .iter()
         .map(|point| point.state.position[axis].abs())
         .filter(|place| place.is_finite())
-        .fold(subject.machine.clearance, f64::max);
+        .fold(scene.retainer.clearance, f64::max);
     let reach = 1.12 * farthest * MICRO;
     let name = ["x (right)", "y (up)"][axis];
     let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
@@ -54,7 +54,7 @@ fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> M
         let time = point.state.time * factor;
         let position = point.state.position[axis] * MICRO;
         match last {
-            Some(from) if far(from, point, subject.machine.clearance) => motion.dot(time, position),
+            Some(from) if far(from, point, scene.retainer.clearance) => motion.dot(time, position),
             _ => motion.line_to(time, position),
         }
         last = Some(point);
@@ -65,8 +65,8 @@ fn panel(axis: usize, window: Window, subject: &Subject, outcome: &Outcome) -> M
     let mut wall = chart.pen();
     for side in [-1.0, 1.0] {
         wall.lift();
-        wall.line_to(x.lo, side * subject.machine.clearance * MICRO);
-        wall.line_to(x.hi, side * subject.machine.clearance * MICRO);
+        wall.line_to(x.lo, side * scene.retainer.clearance * MICRO);
+        wall.line_to(x.hi, side * scene.retainer.clearance * MICRO);
     }
     let curves = html! {
         (wall.finish("wall"))

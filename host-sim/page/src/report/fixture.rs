@@ -1,8 +1,7 @@
 //! Drops of the reference, with a detector that knows the truth but for small errors.
 
-use super::Subject;
 use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
-use touchdown_base::machine::{Machine, Start};
+use touchdown_base::machine::Start;
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
 use touchdown_protocol::link::{Hello, State, Text};
@@ -10,39 +9,21 @@ use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
 use touchdown_run::timebase::Timebase;
+use touchdown_scene::Scene;
 use touchdown_truth::reference::Reference;
 
 const RATE: f64 = 50e3;
 const LEAD: f64 = 0.2;
 
-/// The rig of the paper.
-pub fn subject() -> Subject {
-    Subject {
-        title: "Rotor drop, paper rig".to_owned(),
-        source: "section 4 of the paper".to_owned(),
-        machine: Machine {
-            mass: 3.42,
-            radius: 0.024,
-            polar_inertia: 9.8496e-4,
-            clearance: 0.3e-3,
-            friction: 0.1,
-            restitution: 0.8,
-            gravity: 9.81,
-        },
-        spin: -3141.592653589793,
-        duration: 0.3,
-        sample_rate: RATE,
-        precision: "f64".to_owned(),
-        step: 20e-6,
-        seed: 1,
-        noise: 1e-6,
-        rings: Vec::new(),
-        cage_ratio: None,
-        parts: Vec::new(),
-        validity: None,
-        press: None,
-        versions: vec![("touchdown-core".to_owned(), "0.1.0".to_owned())],
-    }
+/// The rig of the paper, of materials that nobody told.
+pub fn scene() -> Scene {
+    let mut scene = Scene::load("rig").expect("a built-in scene");
+    scene.title = Some("Rotor drop, paper rig".to_owned());
+    scene.source = Some("section 4 of the paper".to_owned());
+    scene.run.sample_rate = RATE;
+    scene.model.step = 20e-6;
+    scene.materials.given = false;
+    scene
 }
 
 /// The free start of the paper's drop.
@@ -54,14 +35,14 @@ pub fn start() -> Start {
 }
 
 /// A drop; the model is as good as the reference.
-pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
-    let mut reference = Reference::new(&subject.machine, start, subject.spin);
+pub fn outcome(scene: &Scene, start: &Start) -> Outcome {
+    let mut reference = Reference::new(&scene.machine(), start, scene.rotor.spin);
     let (lead, held) = match *start {
         Start::Free { position, .. } => (LEAD, position),
         Start::Wall { .. } => (0.0, [0.0; 2]),
     };
     let mut recorder = Recorder::new(lead);
-    let points = ((lead + subject.duration) * RATE) as usize;
+    let points = ((lead + scene.run.duration) * RATE) as usize;
     let mut trace = Vec::new();
     let step = points.div_ceil(6000);
     let mut analyser = Analyser::new(RATE / step as f64);
@@ -69,7 +50,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
         let time = number as f64 / RATE - lead;
         let (state, phase) = if time < 0.0 {
             let position = held;
-            let spin = subject.spin;
+            let spin = scene.rotor.spin;
             let state = RotorState {
                 time,
                 position,
@@ -81,7 +62,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
             let state = reference.advance(time, &mut |it| recorder.take(it));
             (state, reference.phase())
         };
-        let jitter = |step: f64| 1.5 * subject.noise * (number as f64 * step).sin();
+        let jitter = |step: f64| 1.5 * scene.sensors.noise * (number as f64 * step).sin();
         let [x, y] = state.position;
         let sensed = (number % 50 != 7).then(|| [x + jitter(12.9898), y + jitter(78.233)]);
         analyser.take(time, sensed);
@@ -92,7 +73,7 @@ pub fn outcome(subject: &Subject, start: &Start) -> Outcome {
             sensed,
         });
     }
-    let end = reference.advance(subject.duration, &mut |it| recorder.take(it));
+    let end = reference.advance(scene.run.duration, &mut |it| recorder.take(it));
     let truth = recorder.finish(end, reference.still_speed());
     Outcome {
         rings: Vec::new(),

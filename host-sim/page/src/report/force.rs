@@ -1,14 +1,15 @@
 //! What the wall took: the impulse of each impact, and its force over time where the materials are known.
 
-use super::Subject;
+use super::rings;
 use super::timeline::percent;
 use super::window::Window;
 use maud::{Markup, html};
 use touchdown_base::history::{History, Impact};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_chart::text::{ms, si};
-use touchdown_run::fidelity::force::Press;
+use touchdown_run::fidelity::force::{self, Press};
 use touchdown_run::outcome::Outcome;
+use touchdown_scene::{Fidelity, Scene};
 use touchdown_truth::reference::pulse::Meeting;
 
 const HEIGHT: f64 = 150.0;
@@ -16,14 +17,16 @@ const HEIGHT: f64 = 150.0;
 const LEAST_RESTITUTION: f64 = 0.01;
 
 /// Each ring's impulses, and the force of its first impact.
-pub fn force(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
-    let machine = &subject.machine;
+pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
+    // Fidelity `hertz` takes steel for what the scene does not give.
+    let known = scene.materials.given || scene.model.rung == Fidelity::Hertz;
+    let press = known.then(|| force::press(scene)).flatten();
     let rings: Vec<(Option<&str>, &History, f64)> = if outcome.rings.is_empty() {
-        vec![(None, &outcome.truth, machine.restitution)]
+        vec![(None, &outcome.truth, scene.retainer.restitution)]
     } else {
-        let rings = subject.rings.iter().zip(&outcome.rings);
+        let rings = rings(scene).iter().zip(&outcome.rings);
         rings
-            .map(|(ring, [_, truth])| (Some(&*ring.name), truth, ring.restitution))
+            .map(|(ring, [_, truth])| (Some(&*ring.name), truth, ring.retainer.restitution))
             .collect()
     };
     html! {
@@ -31,9 +34,9 @@ pub fn force(window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
             @if let Some(name) = name { h3 { "Ring " (name) } }
             @if let Some(first) = truth.impacts.first() {
                 (impulses(window, &truth.impacts))
-                @match subject.press.and_then(|press| meeting(first, restitution, press)) {
+                @match press.and_then(|press| meeting(first, restitution, press)) {
                     Some(meeting) => { (pulse(first, &meeting)) },
-                    None => { (no_force(first, subject.press.is_some())) },
+                    None => { (no_force(first, press.is_some())) },
                 }
             } @else {
                 p { "No impact." }

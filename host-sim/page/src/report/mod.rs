@@ -29,96 +29,45 @@ mod tests;
 
 use maud::{Markup, html};
 use spectrum::Spectra;
-use touchdown_base::machine::Machine;
 use touchdown_chart::shell::page;
-use touchdown_run::fidelity::force::Press;
 use touchdown_run::matching::match_events;
 use touchdown_run::outcome::Outcome;
-use touchdown_scene::parts::Part;
+use touchdown_scene::{Ring, Scene};
 use window::Window;
 
-/// What was dropped and how; SI.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Subject {
-    /// Heading.
-    pub title: String,
-    /// Where the scene comes from.
-    pub source: String,
-    /// Rotor and retainer.
-    pub machine: Machine,
-    /// At the release, counter-clockwise positive, rad/s.
-    pub spin: f64,
-    /// From the release, s.
-    pub duration: f64,
-    /// Of the sensors, Hz.
-    pub sample_rate: f64,
-    /// Number type of the model, `f64` or `f32`.
-    pub precision: String,
-    /// Output interval of the model, s.
-    pub step: f64,
-    /// Of the sensors' noise.
-    pub seed: u64,
-    /// Of a sensor, standard deviation, m.
-    pub noise: f64,
-    /// Rings of a rotor that tilts; else none.
-    pub rings: Vec<RingSubject>,
-    /// Speed of a ball bearing's cage over that of its inner ring.
-    pub cage_ratio: Option<f64>,
-    /// Of the machine, in and out.
-    pub parts: Vec<Part>,
-    /// How far a rigid rotor can be trusted.
-    pub validity: Option<String>,
-    /// How the contact presses, where the scene gives the materials.
-    pub press: Option<Press>,
-    /// Component and version.
-    pub versions: Vec<(String, String)>,
-}
-
-/// A ring of a rotor that tilts; SI.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RingSubject {
-    /// For people.
-    pub name: String,
-    /// Radial, m.
-    pub clearance: f64,
-    /// From the centre of mass, m.
-    pub place: f64,
-    /// Of the normal speed, 0 to 1.
-    pub restitution: f64,
+/// Rings of a rotor that tilts; else none.
+fn rings(scene: &Scene) -> &[Ring] {
+    scene.two_plane.as_ref().map_or(&[], |it| &it.rings)
 }
 
 /// Writes the page.
-pub fn render(subject: &Subject, outcome: &Outcome) -> String {
+pub fn render(scene: &Scene, outcome: &Outcome) -> String {
     let matches = match_events(&outcome.truth, &outcome.detection);
     let whole = Window::whole(&outcome.truth);
-    let window = Window::interesting(
-        &outcome.truth,
-        subject.machine.clearance,
-        subject.machine.gravity,
-    );
+    let window = Window::interesting(&outcome.truth, scene.retainer.clearance, scene.run.gravity);
     let zoomed = window != whole;
     let (ring_moves, _) = moving::ring_moves(outcome);
     let body = html! {
-        (verdict::verdict(subject, outcome, &matches))
+        (verdict::verdict(scene, outcome, &matches))
         section {
             h2 { "Timeline" }
             (timeline::legend())
             @if zoomed {
                 h3 { "First part" }
-                (timeline::timeline("Timeline, first part", window, subject, outcome))
+                (timeline::timeline("Timeline, first part", window, scene, outcome))
                 h3 { "Whole run" }
             }
-            (timeline::timeline("Timeline, whole run", whole, subject, outcome))
+            (timeline::timeline("Timeline, whole run", whole, scene, outcome))
             p.note { "Short strokes in the bars are impacts. Labels below the bars stand at the time of declaration." }
         }
         div.pair {
             section {
                 @if ring_moves {
                     h2 { "Orbit in the retainer ring" }
-                    (moving::in_ring(subject, outcome))
+                    (moving::in_ring(scene, outcome))
                 } @else {
                     h2 { "Orbit" }
-                    (orbit::orbit(subject.machine.clearance, subject.spin, outcome))
+                    (orbit::orbit(scene.retainer.clearance, scene.rotor.spin, outcome))
                 }
                 p.note {
                     @if ring_moves { "The rotor as seen from the ring, which moves. " }
@@ -129,48 +78,48 @@ pub fn render(subject: &Subject, outcome: &Outcome) -> String {
             }
             section {
                 h2 { "Phase plane at the wall" }
-                (phase_plane::phase_plane(subject, outcome))
+                (phase_plane::phase_plane(scene, outcome))
                 p.note { "True motion where the rotor is beyond 80 % of the clearance. Inside a dashed curve the wall cannot hold the rotor: contact ends there. Shaded, where a full turn is shown and the spin is fast: contact is kept for ever in whirl (orange) or in a swing (green), as in Fig. 3 of the source paper." }
             }
         }
-        (parts_that_move(whole, subject, outcome))
-        section { h2 { "Contact force" } (force::force(window, subject, outcome)) }
+        (parts_that_move(whole, scene, outcome))
+        section { h2 { "Contact force" } (force::force(window, scene, outcome)) }
         section {
             h2 { "Displacement" }
-            (displacement::displacement(window, subject, outcome))
+            (displacement::displacement(window, scene, outcome))
             @if zoomed {
                 details {
                     summary { "Displacement over the whole run" }
-                    (displacement::displacement(whole, subject, outcome))
+                    (displacement::displacement(whole, scene, outcome))
                 }
             }
         }
         section {
             h2 { "Full spectrum" }
-            (spectra(whole, subject, outcome))
+            (spectra(whole, scene, outcome))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
         section { h2 { "Controller" } (controller::controller(outcome)) }
         section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
-        section { h2 { "Impacts" } (tables::impacts(subject, outcome, &matches)) }
+        section { h2 { "Impacts" } (tables::impacts(scene, outcome, &matches)) }
         section { h2 { "Severity" } (severity::severity(outcome)) }
         section { h2 { "Sensors" } (health::health(outcome)) }
-        section { h2 { "Model against reference" } (accuracy::accuracy(subject, outcome)) }
+        section { h2 { "Model against reference" } (accuracy::accuracy(scene, outcome)) }
         @if let Some(ledger) = &outcome.ledger {
             section { h2 { "Energy" } (energy::energy(ledger)) }
         }
-        section { h2 { "Parameters" } (parameters::parameters(subject)) }
-        section { h2 { "Not modelled" } (parameters::limits(subject, outcome.model.has_forces())) }
-        section { h2 { "Versions" } (parameters::versions(subject)) }
+        section { h2 { "Parameters" } (parameters::parameters(scene)) }
+        section { h2 { "Not modelled" } (parameters::limits(scene, outcome.model.has_forces())) }
+        section { h2 { "Versions" } (parameters::versions()) }
     };
-    let title = format!("{} \u{2013} touchdown report", subject.title);
+    let title = format!("{} \u{2013} touchdown report", scene.heading());
     page(&title, &body).into_string()
 }
 
-fn spectra(whole: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+fn spectra(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     spectrum::spectra(&Spectra {
         found: &outcome.spectrogram,
-        spin: subject.spin,
+        spin: scene.rotor.spin,
         parts: vec![
             ("levitated", "before it", [f64::NEG_INFINITY, 0.0]),
             ("motion", "after the release", [0.0, whole.end]),
@@ -180,20 +129,20 @@ fn spectra(whole: Window, subject: &Subject, outcome: &Outcome) -> Markup {
 }
 
 /// Ends, ring and inner ring, where they are there.
-fn parts_that_move(whole: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+fn parts_that_move(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (ring, race) = moving::ring_moves(outcome);
     html! {
-        @if !subject.rings.is_empty() { (moving::ends(subject, outcome)) }
+        @if !rings(scene).is_empty() { (moving::ends(scene, outcome)) }
         @if ring {
             section {
                 h2 { "Retainer ring" }
                 (moving::ring(whole, outcome))
             }
         }
-        @if let (true, Some(cage)) = (race, subject.cage_ratio) {
+        @if let (true, Some(bearing)) = (race, &scene.ball_bearing) {
             section {
                 h2 { "Ball bearing" }
-                (moving::speeds(cage, whole, outcome))
+                (moving::speeds(bearing.cage_ratio, whole, outcome))
             }
         }
     }

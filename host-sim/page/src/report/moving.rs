@@ -1,41 +1,36 @@
 //! What moves besides the rotor's centre: its ends, the retainer ring, the inner ring.
 
 use super::orbit::{Orbit, draw};
+use super::rings;
 use super::window::Window;
-use super::{RingSubject, Subject};
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 use touchdown_base::history::{History, PhaseKind};
 use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_run::outcome::{Outcome, TracePoint};
+use touchdown_scene::{Ring, Scene};
 use touchdown_truth::Moving;
 
 const HEIGHT: f64 = 190.0;
 const MICRO: f64 = 1e6;
 
 /// One orbit a ring of a rotor that tilts.
-pub fn ends(subject: &Subject, outcome: &Outcome) -> Markup {
-    let rings = subject.rings.iter().zip(&outcome.rings).enumerate();
+pub fn ends(scene: &Scene, outcome: &Outcome) -> Markup {
+    let rings = rings(scene).iter().zip(&outcome.rings).enumerate();
     html! {
         div.pair {
             @for (index, (ring, [_, truth])) in rings {
                 section {
                     h2 { "Orbit in ring " (ring.name) }
-                    (end(index, ring, truth, subject, outcome))
-                    p.note { (format!("At {:.0} mm from the centre of mass, gap {} \u{b5}m; {} impacts.", ring.place * 1e3, ring.clearance * MICRO, truth.impacts.len())) }
+                    (end(index, ring, truth, scene, outcome))
+                    p.note { (format!("At {:.0} mm from the centre of mass, gap {} \u{b5}m; {} impacts.", ring.place * 1e3, ring.retainer.clearance * MICRO, truth.impacts.len())) }
                 }
             }
         }
     }
 }
 
-fn end(
-    index: usize,
-    ring: &RingSubject,
-    truth: &History,
-    subject: &Subject,
-    outcome: &Outcome,
-) -> Markup {
+fn end(index: usize, ring: &Ring, truth: &History, scene: &Scene, outcome: &Outcome) -> Markup {
     let in_ring = |point: &TracePoint| {
         let Moving::Ends(ends) = point.moving else {
             return None;
@@ -45,8 +40,8 @@ fn end(
     let trace: Vec<_> = outcome.trace.iter().filter_map(in_ring).collect();
     draw(&Orbit {
         title: &format!("Orbit in ring {}", ring.name),
-        clearance: ring.clearance,
-        spin: subject.spin,
+        clearance: ring.retainer.clearance,
+        spin: scene.rotor.spin,
         trace: &trace,
         hits: truth.impacts.iter().map(|it| it.state.position).collect(),
     })
@@ -68,7 +63,7 @@ fn phase_at(truth: &History, time: f64) -> PhaseKind {
 }
 
 /// Path of the rotor in a ring that moves itself.
-pub fn in_ring(subject: &Subject, outcome: &Outcome) -> Markup {
+pub fn in_ring(scene: &Scene, outcome: &Outcome) -> Markup {
     let relative = |point: &TracePoint| match point.moving {
         Moving::Ring { position, .. } => {
             let [x, y] = point.state.position;
@@ -79,8 +74,8 @@ pub fn in_ring(subject: &Subject, outcome: &Outcome) -> Markup {
     let trace: Vec<_> = outcome.trace.iter().map(relative).collect();
     draw(&Orbit {
         title: "Orbit in the retainer ring",
-        clearance: subject.machine.clearance,
-        spin: subject.spin,
+        clearance: scene.retainer.clearance,
+        spin: scene.rotor.spin,
         trace: &trace,
         hits: Vec::new(),
     })

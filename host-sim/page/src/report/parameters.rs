@@ -1,17 +1,18 @@
 //! What was assumed: parameters, limits of the model, versions.
 
-use super::Subject;
 use maud::{Markup, html};
 use std::f64::consts::PI;
 use touchdown_chart::text::{si, significant};
-use touchdown_scene::parts::{Part, SPRING};
+use touchdown_scene::Scene;
+use touchdown_scene::parts::{SPRING, parts};
+use touchdown_scene::scales::validity;
 
 /// Physical and dimensionless parameters and those of the run.
-pub fn parameters(subject: &Subject) -> Markup {
-    let machine = &subject.machine;
-    let rpm = significant(subject.spin * 30.0 / PI, 6);
-    let turn = match subject.spin.total_cmp(&0.0) {
-        _ if subject.spin == 0.0 => "",
+pub fn parameters(scene: &Scene) -> Markup {
+    let machine = &scene.machine();
+    let rpm = significant(scene.rotor.spin * 30.0 / PI, 6);
+    let turn = match scene.rotor.spin.total_cmp(&0.0) {
+        _ if scene.rotor.spin == 0.0 => "",
         std::cmp::Ordering::Greater => ", counter-clockwise",
         _ => ", clockwise",
     };
@@ -29,28 +30,31 @@ pub fn parameters(subject: &Subject) -> Markup {
         ("Gravity", format!("{gravity}\u{a0}m/s\u{b2}")),
     ];
     let run = [
-        ("Duration", si(subject.duration, "s")),
-        ("Sample rate", si(subject.sample_rate, "Hz")),
-        ("Sensor noise, standard deviation", si(subject.noise, "m")),
-        ("Noise seed", subject.seed.to_string()),
-        ("Model precision", subject.precision.clone()),
-        ("Model output interval", si(subject.step, "s")),
+        ("Duration", si(scene.run.duration, "s")),
+        ("Sample rate", si(scene.run.sample_rate, "Hz")),
+        (
+            "Sensor noise, standard deviation",
+            si(scene.sensors.noise, "m"),
+        ),
+        ("Noise seed", scene.run.seed.to_string()),
+        ("Model precision", scene.model.precision.name().to_owned()),
+        ("Model output interval", si(scene.model.step, "s")),
     ];
     html! {
         div.pair {
             div { (list("Rotor and retainer", &physical)) }
-            div { (list("Dimensionless numbers and scales", &scales(subject))) (list("Run", &run)) }
+            div { (list("Dimensionless numbers and scales", &scales(scene))) (list("Run", &run)) }
         }
     }
 }
 
-fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
-    let machine = &subject.machine;
+fn scales(scene: &Scene) -> Vec<(&'static str, String)> {
+    let machine = &scene.machine();
     let beta = machine.polar_inertia / (machine.mass * machine.radius * machine.radius);
     let time = (machine.clearance / machine.gravity).sqrt();
     let speed = (machine.clearance * machine.gravity).sqrt();
-    let spin = significant(machine.radius * subject.spin / speed, 5);
-    let whirl = si(whirl_speed(subject), "rad/s");
+    let spin = significant(machine.radius * scene.rotor.spin / speed, 5);
+    let whirl = si(whirl_speed(scene), "rad/s");
     let mut scales = vec![
         ("Friction \u{b5}", significant(machine.friction, 4)),
         ("Restitution \u{3b5}", significant(machine.restitution, 4)),
@@ -68,10 +72,10 @@ fn scales(subject: &Subject) -> Vec<(&'static str, String)> {
 }
 
 /// Least angular speed at the bottom from which a rotor driven by friction keeps contact for a turn.
-fn whirl_speed(subject: &Subject) -> f64 {
-    let friction = subject.machine.friction;
+fn whirl_speed(scene: &Scene) -> f64 {
+    let friction = scene.retainer.friction;
     let drive = 3.0 * (1.0 + (-2.0 * PI * friction).exp()) / (1.0 + 4.0 * friction * friction);
-    (subject.machine.gravity / subject.machine.clearance * (drive - 1.0)).sqrt()
+    (scene.run.gravity / scene.retainer.clearance * (drive - 1.0)).sqrt()
 }
 
 fn list(name: &str, rows: &[(&str, String)]) -> Markup {
@@ -82,13 +86,17 @@ fn list(name: &str, rows: &[(&str, String)]) -> Markup {
 }
 
 /// What the model leaves out; `forces`: it gives impacts a force and a duration.
-pub fn limits(subject: &Subject, forces: bool) -> Markup {
-    let out = subject.parts.iter().filter(|part| !part.modelled);
+pub fn limits(scene: &Scene, forces: bool) -> Markup {
+    let parts = parts(scene);
+    let out = parts.iter().filter(|part| !part.modelled);
+    let is_fixed = !parts
+        .iter()
+        .any(|part| part.name == SPRING && part.modelled);
     html! {
         ul {
             @for part in out { li { (part.name) ": " (part.reason) "." } }
-            @if let Some(validity) = &subject.validity { li { (validity) } }
-            @if subject.machine_is_fixed() {
+            @if let Some(validity) = validity(scene) { li { (validity) } }
+            @if is_fixed {
                 li { "In reality the support caps the whirl frequency. Whirl speeds and the loads computed from them are therefore upper bounds." }
             }
             @if forces {
@@ -102,22 +110,9 @@ pub fn limits(subject: &Subject, forces: bool) -> Markup {
     }
 }
 
-impl Subject {
-    /// Whether the retainer stands on no spring.
-    fn machine_is_fixed(&self) -> bool {
-        let spring = |part: &&Part| part.name == SPRING;
-        self.parts
-            .iter()
-            .find(spring)
-            .is_none_or(|part| !part.modelled)
-    }
-}
-
-/// Components and versions.
-pub fn versions(subject: &Subject) -> Markup {
-    html! {
-        dl.versions { @for (component, version) in &subject.versions { div { dt { (component) } dd { (version) } } } }
-    }
+/// The program's version.
+pub fn versions() -> Markup {
+    html! { dl.versions { div { dt { "touchdown" } dd { (env!("CARGO_PKG_VERSION")) } } } }
 }
 
 #[cfg(test)]
@@ -127,7 +122,7 @@ mod tests {
 
     #[test]
     fn whirl_speed_of_the_rig() {
-        let speed = whirl_speed(&fixture::subject());
+        let speed = whirl_speed(&fixture::scene());
         assert!((speed - 334.59).abs() < 0.01, "{speed}");
     }
 }

@@ -1,6 +1,5 @@
 //! Angular speed against angle while the rotor is at the wall.
 
-use super::Subject;
 use super::regions::{View, areas};
 use super::stretch::{far, runs};
 use crate::report::phase::phase_class;
@@ -9,6 +8,7 @@ use touchdown_base::history::RotorState;
 use touchdown_base::regions::Plane;
 use touchdown_chart::plot::{Axis, Chart, Pen};
 use touchdown_run::outcome::{Outcome, TracePoint};
+use touchdown_scene::Scene;
 
 /// Part of the clearance beyond which the rotor counts as near the wall.
 const NEAR: f64 = 0.8;
@@ -23,11 +23,11 @@ const HEIGHT: f64 = 330.0;
 
 /// Draws theta-dot against theta, theta from the bottom, counter-clockwise; of a fast whirl also its
 /// beginning.
-pub fn phase_plane(subject: &Subject, outcome: &Outcome) -> Markup {
+pub fn phase_plane(scene: &Scene, outcome: &Outcome) -> Markup {
     let motion = outcome
         .trace
         .iter()
-        .filter_map(|point| at_wall(&point.state, subject));
+        .filter_map(|point| at_wall(&point.state, scene));
     let (widest, low, high) = motion.fold((0.0, 0.0, 0.0), |(widest, low, high), (angle, rate)| {
         (
             f64::max(widest, angle.abs()),
@@ -38,13 +38,13 @@ pub fn phase_plane(subject: &Subject, outcome: &Outcome) -> Markup {
     if low == high {
         return html! { p.note { "The rotor did not move along the wall." } };
     }
-    let slow = BEGINNING * (subject.machine.gravity / subject.machine.clearance).sqrt();
+    let slow = BEGINNING * (scene.run.gravity / scene.retainer.clearance).sqrt();
     let beginning = slow > 0.0 && high.max(-low) > 3.0 * slow;
     html! {
         @if beginning {
-            (plane("Phase plane, slow part", widest, low.max(-slow), high.min(slow), subject, outcome))
+            (plane("Phase plane, slow part", widest, low.max(-slow), high.min(slow), scene, outcome))
         }
-        (plane("Phase plane", widest, low, high, subject, outcome))
+        (plane("Phase plane", widest, low, high, scene, outcome))
     }
 }
 
@@ -53,7 +53,7 @@ fn plane(
     widest: f64,
     low: f64,
     high: f64,
-    subject: &Subject,
+    scene: &Scene,
     outcome: &Outcome,
 ) -> Markup {
     let fast = high.max(-low) > 1e4;
@@ -79,30 +79,30 @@ fn plane(
         height: HEIGHT,
     };
     let curves = html! {
-        @if let Some(plane) = fast_plane(subject).filter(|_| reach > 90.0) {
-            (areas(View { plane: &plane, side: -subject.spin.signum(), factor }, &chart))
+        @if let Some(plane) = fast_plane(scene).filter(|_| reach > 90.0) {
+            (areas(View { plane: &plane, side: -scene.rotor.spin.signum(), factor }, &chart))
         }
-        @if reach > 90.0 { (contact_limit(subject, chart.pen(), factor)) }
-        @for run in runs(&outcome.trace) { (curve(run, subject, chart.pen(), factor)) }
+        @if reach > 90.0 { (contact_limit(scene, chart.pen(), factor)) }
+        @for run in runs(&outcome.trace) { (curve(run, scene, chart.pen(), factor)) }
     };
     chart.draw(&html! {}, &curves, &html! {})
 }
 
 /// The regions of a rotor that spins so fast that friction drives one way all the time.
-fn fast_plane(subject: &Subject) -> Option<Plane> {
-    let machine = &subject.machine;
+fn fast_plane(scene: &Scene) -> Option<Plane> {
+    let machine = &scene.machine();
     let unit = (machine.gravity * machine.clearance).sqrt();
-    let fast = machine.radius * subject.spin.abs() > FAST * unit;
+    let fast = machine.radius * scene.rotor.spin.abs() > FAST * unit;
     let friction = Plane::FRICTION.contains(&machine.friction);
     (unit > 0.0 && fast && friction)
         .then(|| Plane::new(machine.gravity / machine.clearance, machine.friction))
 }
 
 /// Angle in degrees and its rate in rad/s, if the rotor is near the wall.
-fn at_wall(state: &RotorState, subject: &Subject) -> Option<(f64, f64)> {
+fn at_wall(state: &RotorState, scene: &Scene) -> Option<(f64, f64)> {
     let ([x, y], [vx, vy]) = (state.position, state.velocity);
     let radius = f64::hypot(x, y);
-    let near = radius > NEAR * subject.machine.clearance;
+    let near = radius > NEAR * scene.retainer.clearance;
     near.then(|| {
         (
             x.atan2(-y).to_degrees(),
@@ -112,17 +112,17 @@ fn at_wall(state: &RotorState, subject: &Subject) -> Option<(f64, f64)> {
 }
 
 /// Where the angle wraps, the curve runs out at one side and in at the other.
-fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
+fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Markup {
     let mut last: Option<(f64, f64, &TracePoint)> = None;
     for point in run {
-        let Some((angle, rate)) = at_wall(&point.state, subject) else {
+        let Some((angle, rate)) = at_wall(&point.state, scene) else {
             pen.lift();
             last = None;
             continue;
         };
         let rate = rate * factor;
         match last {
-            Some((_, _, from)) if far(from, point, subject.machine.clearance) => {
+            Some((_, _, from)) if far(from, point, scene.retainer.clearance) => {
                 pen.dot(angle, rate)
             }
             Some((before, slower, _)) if (angle - before).abs() > 180.0 => {
@@ -140,8 +140,8 @@ fn curve(run: &[TracePoint], subject: &Subject, mut pen: Pen<'_>, factor: f64) -
 }
 
 /// Where the wall's force vanishes: `theta-dot^2 = -(g/clearance) cos theta`.
-fn contact_limit(subject: &Subject, mut pen: Pen<'_>, factor: f64) -> Markup {
-    let pressing = subject.machine.gravity / subject.machine.clearance;
+fn contact_limit(scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Markup {
+    let pressing = scene.run.gravity / scene.retainer.clearance;
     for side in [-1.0, 1.0] {
         for half in [90..=180, -180..=-90] {
             pen.lift();

@@ -1,6 +1,5 @@
 //! The detector's events and the impacts, as tables.
 
-use super::Subject;
 use maud::{Markup, html};
 use touchdown_base::history::Impact;
 use touchdown_chart::table::{OPEN, table};
@@ -8,6 +7,7 @@ use touchdown_chart::text::{column, error, ms, ms_or_dash, si};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches};
 use touchdown_run::outcome::{DetectedEvent, Outcome};
+use touchdown_scene::Scene;
 use touchdown_scene::names::event_name;
 
 /// Velocity jump from which the detector is designed to find an impact, m/s.
@@ -79,13 +79,13 @@ fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> 
 }
 
 /// The true impacts, whether they were detected, and the model's error at each.
-pub fn impacts(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Markup {
+pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     let truth = &outcome.truth.impacts;
     if truth.is_empty() {
         return html! { p { "None." } };
     }
     let found: Vec<&Match> = matches.of_kind(EventKind::Impact).collect();
-    let hard = |impact: &Impact| impact.normal_impulse / subject.machine.mass >= DESIGN_JUMP;
+    let hard = |impact: &Impact| impact.normal_impulse / scene.rotor.mass >= DESIGN_JUMP;
     let hard: Vec<bool> = truth.iter().map(hard).collect();
     let detected = found.iter().filter(|it| it.detected.is_some()).count();
     let hard_found = found

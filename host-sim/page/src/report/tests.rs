@@ -1,11 +1,10 @@
 //! Structure of the page.
 
-use super::{Subject, fixture, render};
+use super::{fixture, render};
 use std::path::Path;
 use touchdown_base::history::{Recorder, RotorState};
-use touchdown_base::machine::{Machine, Start};
+use touchdown_base::machine::Start;
 use touchdown_chart::text::si;
-use touchdown_run::fidelity::force::Press;
 use touchdown_run::outcome::{Detection, Outcome, Severity};
 
 /// Every element is closed by its own end tag, in order; `path` and the like must be, inside `svg`.
@@ -78,8 +77,8 @@ fn keep(name: &str, page: &str) {
 
 #[test]
 fn the_drop_of_the_paper() {
-    let subject = fixture::subject();
-    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    let scene = fixture::scene();
+    let page = render(&scene, &fixture::outcome(&scene, &fixture::start()));
     keep("paper", &page);
     assert_sound(&page);
     assert!(page.contains("No whirl at the end: the rotor swings"));
@@ -88,16 +87,11 @@ fn the_drop_of_the_paper() {
 
 #[test]
 fn slow_spin_ends_in_rolling() {
-    let subject = Subject {
-        machine: Machine {
-            friction: 0.15,
-            ..fixture::subject().machine
-        },
-        spin: -31.415_926_535_897_93,
-        duration: 0.8,
-        ..fixture::subject()
-    };
-    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    let mut scene = fixture::scene();
+    scene.retainer.friction = 0.15;
+    scene.rotor.spin = -31.415_926_535_897_93;
+    scene.run.duration = 0.8;
+    let page = render(&scene, &fixture::outcome(&scene, &fixture::start()));
     keep("rolling", &page);
     assert_sound(&page);
     assert!(page.contains("Rolling, first, ms"));
@@ -105,16 +99,14 @@ fn slow_spin_ends_in_rolling() {
 
 #[test]
 fn lift_offs_from_the_wall() {
-    let subject = Subject {
-        spin: 3141.592653589793,
-        duration: 0.1437,
-        ..fixture::subject()
-    };
+    let mut scene = fixture::scene();
+    scene.rotor.spin = 3141.592653589793;
+    scene.run.duration = 0.1437;
     let start = Start::Wall {
         angle: 0.2,
         tangential: 0.09,
     };
-    let page = render(&subject, &fixture::outcome(&subject, &start));
+    let page = render(&scene, &fixture::outcome(&scene, &start));
     keep("lift-off", &page);
     assert_sound(&page);
     assert!(page.contains("starts on the retainer"));
@@ -127,11 +119,9 @@ fn backward_whirl_grows_without_bound() {
         tangential: 0.10047681387,
     };
     for (name, duration) in [("whirl", 0.04498), ("fast-whirl", 0.2)] {
-        let subject = Subject {
-            duration,
-            ..fixture::subject()
-        };
-        let page = render(&subject, &fixture::outcome(&subject, &start));
+        let mut scene = fixture::scene();
+        scene.run.duration = duration;
+        let page = render(&scene, &fixture::outcome(&scene, &start));
         keep(name, &page);
         assert_sound(&page);
         assert!(page.contains("driven into backward whirl"));
@@ -140,16 +130,10 @@ fn backward_whirl_grows_without_bound() {
 
 #[test]
 fn minutes_of_bouncing_stay_small() {
-    let subject = Subject {
-        machine: Machine {
-            friction: 0.0,
-            restitution: 1.0,
-            ..fixture::subject().machine
-        },
-        duration: 600.0,
-        ..fixture::subject()
-    };
-    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    let mut scene = fixture::scene();
+    (scene.retainer.friction, scene.retainer.restitution) = (0.0, 1.0);
+    scene.run.duration = 600.0;
+    let page = render(&scene, &fixture::outcome(&scene, &fixture::start()));
     keep("bouncing", &page);
     assert_sound(&page);
     assert!(page.contains("in the JSON output only"));
@@ -157,66 +141,50 @@ fn minutes_of_bouncing_stay_small() {
 
 #[test]
 fn nothing_to_show_renders() {
-    let subject = fixture::subject();
+    let scene = fixture::scene();
     for (levitated, duration) in [(0.2, 0.001), (0.0, 0.0), (0.2, 86_400.0)] {
-        assert_sound(&render(&subject, &still(levitated, duration)));
+        assert_sound(&render(&scene, &still(levitated, duration)));
     }
 }
 
 #[test]
 fn without_gravity_renders() {
-    let subject = Subject {
-        machine: Machine {
-            gravity: 0.0,
-            ..fixture::subject().machine
-        },
-        spin: 0.0,
-        ..fixture::subject()
-    };
-    let falling = fixture::outcome(&fixture::subject(), &fixture::start());
-    assert_sound(&render(&subject, &falling));
+    let falling = fixture::outcome(&fixture::scene(), &fixture::start());
+    let mut scene = fixture::scene();
+    (scene.run.gravity, scene.rotor.spin) = (0.0, 0.0);
+    assert_sound(&render(&scene, &falling));
 }
 
 #[test]
 fn unusable_points_are_left_out() {
-    let subject = fixture::subject();
-    let mut outcome = fixture::outcome(&subject, &fixture::start());
+    let scene = fixture::scene();
+    let mut outcome = fixture::outcome(&scene, &fixture::start());
     for point in outcome.trace.iter_mut().step_by(7) {
         point.state.position = [f64::NAN, f64::INFINITY];
     }
-    assert_sound(&render(&subject, &outcome));
+    assert_sound(&render(&scene, &outcome));
 }
 
 #[test]
 fn titles_are_escaped() {
-    let subject = Subject {
-        title: "<b>5 & 6</b>".to_owned(),
-        ..fixture::subject()
-    };
-    let page = render(&subject, &fixture::outcome(&subject, &fixture::start()));
+    let mut scene = fixture::scene();
+    scene.title = Some("<b>5 & 6</b>".to_owned());
+    let page = render(&scene, &fixture::outcome(&scene, &fixture::start()));
     assert!(page.contains("&lt;b&gt;5 &amp; 6&lt;/b&gt;"));
     assert!(!page.contains("<b>"));
 }
 
 #[test]
 fn force_is_drawn_where_the_materials_are_known() {
-    let rigid = fixture::subject();
+    let rigid = fixture::scene();
     let outcome = fixture::outcome(&rigid, &fixture::start());
     let page = render(&rigid, &outcome);
     assert!(page.contains("has no table [materials]"));
     assert!(!page.contains("Force of the first impact"));
 
-    // Point contact of the rig, steel on steel: K of sphere in sphere, N/m^1.5.
-    let stiffness =
-        4.0 / 3.0 * (3.625e11 / std::f64::consts::PI) / (1.0 / 0.024_f64 - 1.0 / 0.0243).sqrt();
-    let press = Press {
-        stiffness,
-        exponent: 1.5,
-    };
-    let steel = Subject {
-        press: Some(press),
-        ..fixture::subject()
-    };
+    // Point contact, steel on steel.
+    let mut steel = fixture::scene();
+    steel.materials.given = true;
     let page = render(&steel, &outcome);
     assert_sound(&page);
     assert!(page.contains("Force of the first impact"));

@@ -1,6 +1,6 @@
 //! Phases over time: the truth above, the detector below.
 
-use super::Subject;
+use super::rings;
 use super::window::Window;
 use crate::report::phase::{PHASES, phase_class};
 use maud::{Markup, html};
@@ -8,6 +8,7 @@ use touchdown_base::history::{History, Phase, PhaseKind};
 use touchdown_chart::plot::{Axis, columns};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
+use touchdown_scene::Scene;
 use touchdown_scene::names::{event_name, phase_name};
 
 const BAR: f64 = 24.0;
@@ -22,7 +23,7 @@ const NARROW: f64 = 330.0;
 const LETTER: f64 = 6.4;
 
 /// Draws the strip for a stretch of time.
-pub fn timeline(title: &str, window: Window, subject: &Subject, outcome: &Outcome) -> Markup {
+pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
     let events = &outcome.detection.events;
     let estimated = detected_phases(&outcome.detection, window.end, |event| event.onset_s);
@@ -35,7 +36,7 @@ pub fn timeline(title: &str, window: Window, subject: &Subject, outcome: &Outcom
         let hits = truth.impacts.iter().map(|it| it.state.time);
         (name, truth.phases.clone(), hits.collect())
     };
-    let rings = subject.rings.iter().zip(&outcome.rings);
+    let rings = rings(scene).iter().zip(&outcome.rings);
     let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
         vec![true_row("Truth (reference)".to_owned(), &outcome.truth)];
     rows.extend(

@@ -1,6 +1,5 @@
 //! The head of the page: what happened, in a line and a few figures.
 
-use super::Subject;
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 use touchdown_base::history::{History, PhaseKind, Regime};
@@ -8,18 +7,19 @@ use touchdown_chart::text::{ms, si, significant};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches, regime_event};
 use touchdown_run::outcome::Outcome;
+use touchdown_scene::Scene;
 use touchdown_scene::names::regime_name;
 
 /// Draws the title, the verdict and the key figures.
-pub fn verdict(subject: &Subject, outcome: &Outcome, matches: &Matches) -> Markup {
+pub fn verdict(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     let truth = &outcome.truth;
     let contact = first_contact(truth);
     let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
     html! {
         header {
             p.kind { "Touchdown report" }
-            h1 { (subject.title) }
-            @if !subject.source.is_empty() { p.note { (subject.source) } }
+            h1 { (scene.heading()) }
+            p.note { (scene.source.as_ref().unwrap_or(&scene.name)) }
             p class=(if whirls { "verdict alarm" } else { "verdict" }) {
                 (motion(truth)) " " (detection(outcome, matches))
             }

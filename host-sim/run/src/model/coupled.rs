@@ -9,7 +9,7 @@ use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start, Stepper};
 
 use super::once::Once;
-use super::seen::{ModelRun, RingEnd, STILL, Seen, steps_of_run};
+use super::seen::{ModelRun, RaceEnd, RingEnd, STILL, Seen, steps_of_run};
 use super::{InNumbers, Subject, Use, in_numbers, scaled};
 use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::ledger::{Ledger, entries};
@@ -345,7 +345,8 @@ fn followed<R: Precision, const N: usize, const Q: usize>(
     let still = STILL * scales.speed;
     let rings = rings.into_iter().zip(ends);
     let unit = scene.rotor.mass * scales.speed * scales.speed;
-    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales, peaks[ring]));
+    let gap = scene.stator_gap;
+    let seats = (0..N).map(|ring| ring_end(model, &state, ring, unit, scales, peaks[ring], gap));
     let energy = [begun, model.energy(&state).to_f64()];
     let mut run = ModelRun {
         given_up,
@@ -407,17 +408,25 @@ fn ring_end<R: Precision, const N: usize, const Q: usize>(
     unit: f64,
     scales: &Scales<f64>,
     [radius, excursion]: [f64; 2],
+    stator_gap: Option<f64>,
 ) -> RingEnd {
     let motion = model.ring(state, ring);
+    let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
+    let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
+    let peak_radius_m = radius * scales.length;
     RingEnd {
-        position: motion.position.map(|x| x.to_f64() * scales.length),
-        velocity: motion.velocity.map(|v| v.to_f64() * scales.speed),
-        peak_radius: radius * scales.length,
-        peak_excursion: excursion * scales.length,
-        held_peak: model.load(state, ring).held_peak.to_f64() * unit / scales.length,
-        race: motion.race.map(|race| {
-            let [spin, cage] = [race.spin, race.cage].map(|spin| spin.to_f64() * scales.spin);
-            [spin, cage, race.temperature.to_f64()]
+        x_m,
+        y_m,
+        vx_m_s,
+        vy_m_s,
+        peak_radius_m,
+        peak_excursion_m: excursion * scales.length,
+        clearance_left_m: stator_gap.map(|gap| gap - peak_radius_m),
+        held_peak_force_n: model.load(state, ring).held_peak.to_f64() * unit / scales.length,
+        race: motion.race.map(|race| RaceEnd {
+            inner_ring_rad_s: race.spin.to_f64() * scales.spin,
+            cage_rad_s: race.cage.to_f64() * scales.spin,
+            temperature_rise_k: race.temperature.to_f64(),
         }),
     }
 }

@@ -6,7 +6,7 @@ mod seen;
 mod simulate;
 
 use once::Once;
-pub use seen::{ModelRun, RingEnd, steps_of_run};
+pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 pub use simulate::{run, simulate, simulate_to_verdict};
 
 use touchdown_models::{Euler, Hertz, Line, Moreau, Point, Scheme as ContactScheme, Shape, Verlet};

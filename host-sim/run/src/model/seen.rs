@@ -1,5 +1,6 @@
 //! What a model made of a drop, in SI.
 
+use serde::Serialize;
 use touchdown_base::history::{Impact, ModelEvent, Pulse, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_base::rings::Histories;
@@ -26,21 +27,40 @@ pub struct ModelRun {
     pub seats: Vec<RingEnd>,
 }
 
-/// A retainer ring at the end of a run, SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A retainer ring at the end of a run; its place is that from where it rests.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RingEnd {
-    /// From its rest place, m.
-    pub position: [f64; 2],
+    /// m.
+    pub x_m: f64,
+    /// m.
+    pub y_m: f64,
     /// m/s.
-    pub velocity: [f64; 2],
+    pub vx_m_s: f64,
+    /// m/s.
+    pub vy_m_s: f64,
     /// Farthest of the axis there from the bearing's centre, of all steps and impacts, m.
-    pub peak_radius: f64,
+    pub peak_radius_m: f64,
     /// Farthest from its rest place, of all steps, m.
-    pub peak_excursion: f64,
+    pub peak_excursion_m: f64,
+    /// Between that radius and the stator, where there is one; below 0 it was reached, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance_left_m: Option<f64>,
     /// Largest normal force in permanent contact, mean of a step, N.
-    pub held_peak: f64,
-    /// Of a ball bearing: spin of inner ring and cage, rad/s, and temperature above the surroundings, K.
-    pub race: Option<[f64; 3]>,
+    pub held_peak_force_n: f64,
+    /// The ball bearing in it.
+    #[serde(flatten)]
+    pub race: Option<RaceEnd>,
+}
+
+/// A ball bearing at the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RaceEnd {
+    /// Spin of the inner ring, rad/s.
+    pub inner_ring_rad_s: f64,
+    /// Spin of the cage, rad/s.
+    pub cage_rad_s: f64,
+    /// Above the surroundings, K.
+    pub temperature_rise_k: f64,
 }
 
 /// Whole steps, and the part of one that is left. A duration that is a whole number of steps but for

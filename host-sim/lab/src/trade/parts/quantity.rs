@@ -69,12 +69,12 @@ pub fn values(run: &ModelRun, scene: &Scene) -> Values {
         first,
         greatest(impacts().map(|it| it.normal_speed)),
         greatest(impacts().map(|it| it.normal_impulse)),
-        greatest(rings().map(|it| it.held_peak)),
+        greatest(rings().map(|it| it.held_peak_force_n)),
         Some(in_contact(history, scene.run.duration)),
-        greatest(rings().map(|it| it.peak_radius)),
+        greatest(rings().map(|it| it.peak_radius_m)),
         whirls.then(|| frequency(history)),
-        greatest(races().map(|[spin, ..]| spin.abs())),
-        greatest(races().map(|[.., warmer]| warmer)),
+        greatest(races().map(|it| it.inner_ring_rad_s.abs())),
+        greatest(races().map(|it| it.temperature_rise_k)),
     ]
 }
 

@@ -9,9 +9,10 @@
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
 //! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
 
-use super::surroundings::{Body, Magnet, Pull, Surroundings};
+use super::surroundings::{Body, Pull, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
+use touchdown_scene::{Base, Magnet, Support};
 
 /// A retainer's bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,19 +29,6 @@ pub struct Ring {
     pub restitution: f64,
 }
 
-/// What the retainer ring stands on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mount {
-    /// Of the ring, kg.
-    pub mass: f64,
-    /// Spring, N/m.
-    pub stiffness: f64,
-    /// Damper, N s/m.
-    pub damping: f64,
-    /// Way of the ring from its rest place to a hard stop, m: without friction and rebound.
-    pub travel: Option<f64>,
-}
-
 /// Inner ring of a ball bearing, with the clearance added to the rotor's radius as its bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Race {
@@ -52,13 +40,14 @@ pub struct Race {
     pub viscous_drag: f64,
 }
 
-/// A ring and what holds it; without mount it is fixed, without race it doesn't turn.
+/// A ring and what holds it; without mount it is fixed, without race it doesn't turn. The mount's hard stop has neither
+/// friction nor rebound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retainer {
     /// Place, gap and contact.
     pub ring: Ring,
     /// Under the ring.
-    pub mount: Option<Mount>,
+    pub mount: Option<Support>,
     /// In the ring.
     pub race: Option<Race>,
 }
@@ -93,17 +82,6 @@ pub struct Bending {
     pub at_centre: f64,
 }
 
-/// Goes by its amplitude times the cosine of an angle that grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Base {
-    /// m.
-    pub amplitude: [f64; 2],
-    /// rad/s.
-    pub rate: f64,
-    /// At the release, rad.
-    pub phase: f64,
-}
-
 /// Rotor and surroundings, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledMachine {
@@ -119,8 +97,8 @@ pub struct CoupledMachine {
     pub retainers: Vec<Retainer>,
     /// None by default.
     pub unbalance: Unbalance,
-    /// Each with its damping, force against the axis' speed, N s/m.
-    pub magnets: Vec<(Magnet, f64)>,
+    /// Any number.
+    pub magnets: Vec<Magnet>,
     /// Any number.
     pub bending: Vec<Bending>,
     /// What it stands on, and is seen from, where that moves.
@@ -129,7 +107,7 @@ pub struct CoupledMachine {
 
 impl CoupledMachine {
     /// A rotor in one ring, at its centre of mass: it never tilts.
-    pub fn level(rotor: &Machine, mount: Option<Mount>, race: Option<Race>) -> Self {
+    pub fn level(rotor: &Machine, mount: Option<Support>, race: Option<Race>) -> Self {
         let ring = Ring {
             place: 0.0,
             radius: rotor.radius,
@@ -246,14 +224,10 @@ impl CoupledMachine {
             shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
             ..Body::default()
         }));
-        let magnet = |(i, (magnet, damping)): (usize, &(Magnet, f64))| {
-            let shares = self.axis(magnet.place, |mode| mode.at_magnets[i]);
-            Pull {
-                magnet: *magnet,
-                damping: *damping,
-                shares,
-                on: magnet.on.is_none(),
-            }
+        let magnet = |(i, magnet): (usize, &Magnet)| Pull {
+            magnet: *magnet,
+            shares: self.axis(magnet.place, |mode| mode.at_magnets[i]),
+            on: magnet.on.is_none(),
         };
         let drags = self
             .retainers

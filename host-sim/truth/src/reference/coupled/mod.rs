@@ -40,7 +40,6 @@ mod system;
 mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
-pub use machine::{Base, Bending, CoupledMachine, Mount, Race, Retainer, Ring, Unbalance};
+pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
 pub use mode::Mode;
 pub use start::CoupledStart;
-pub use surroundings::Magnet;

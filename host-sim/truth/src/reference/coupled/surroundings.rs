@@ -4,31 +4,16 @@
 use super::share::shared;
 use super::system::Law;
 use super::tape::Term;
+use touchdown_scene::Magnet;
 
 /// Of the moment at which a magnet is switched, relative.
 const MOMENT_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// What is left of a magnetic bearing: a force on the axis, and one that grows with its
-/// displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnet {
-    /// Along the axis from the centre of mass, m.
-    pub place: f64,
-    /// Outward force over displacement, N/m: negative holds the rotor.
-    pub stiffness: f64,
-    /// N.
-    pub force: [f64; 2],
-    /// From when and until when it is on, s after the release; always without.
-    pub on: Option<[f64; 2]>,
-}
 
 /// A magnet in a machine.
 #[derive(Clone, Debug)]
 pub struct Pull {
     /// What it does.
     pub magnet: Magnet,
-    /// N s/m.
-    pub damping: f64,
     /// Parts of the bodies in the displacement there.
     pub shares: Vec<f64>,
     /// Whether it does it now.
@@ -95,7 +80,7 @@ impl Law for Surroundings {
             let (shares, magnet) = (&pull.shares, &pull.magnet);
             let (at, rate) = (shared(shares, place), shared(shares, speed));
             for axis in 0..2 {
-                let held = at[axis] * magnet.stiffness - rate[axis] * pull.damping;
+                let held = at[axis] * magnet.stiffness - rate[axis] * magnet.damping;
                 let force = held + constant(magnet.force[axis]);
                 for (k, share) in shares
                     .iter()
