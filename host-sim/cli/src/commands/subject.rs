@@ -23,7 +23,7 @@ pub(super) fn subject(scene: &Scene) -> Subject {
         spin: scene.rotor.spin,
         duration: scene.run.duration,
         sample_rate: scene.run.sample_rate,
-        precision: scene.model.precision.name().to_owned(),
+        precision: scene.model.precision.to_string(),
         step: scene.model.step,
         seed: scene.run.seed,
         noise: scene.sensors.noise,
