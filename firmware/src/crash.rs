@@ -9,7 +9,7 @@ pub const WORDS: usize = 8;
 const MAGIC: u32 = u32::from_le_bytes(*b"TDX\x02");
 
 /// Why the program stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum Cause {
     /// A panic.
@@ -92,9 +92,8 @@ impl Crash {
         if magic != MAGIC || sum != checksum(words) {
             return None;
         }
-        let causes = [Cause::Panic, Cause::HardFault, Cause::StrayInterrupt];
         Some(Self {
-            cause: causes.into_iter().find(|&it| it as u32 == cause)?,
+            cause: Cause::from_repr(u8::try_from(cause).ok()?)?,
             place,
             detail,
             status: FaultStatus {

@@ -106,12 +106,6 @@ pub trait LogStore: Log {
         latched: Option<Cause>,
         fetch: impl FnOnce() -> Option<block::Block>,
     ) -> bool;
-
-    /// Times switched on.
-    fn boot(&self) -> u32;
-
-    /// The drop that nobody has cleared.
-    fn uncleared(&self) -> Option<Cause>;
 }
 
 impl<F: Ready, const SLOTS: usize> LogStore for DropLog<F, SLOTS> {
@@ -122,14 +116,6 @@ impl<F: Ready, const SLOTS: usize> LogStore for DropLog<F, SLOTS> {
         fetch: impl FnOnce() -> Option<block::Block>,
     ) -> bool {
         !self.flash().is_ready() || self.work(counted, latched, fetch)
-    }
-
-    fn boot(&self) -> u32 {
-        self.boot()
-    }
-
-    fn uncleared(&self) -> Option<Cause> {
-        self.uncleared()
     }
 }
 

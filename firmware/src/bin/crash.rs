@@ -4,9 +4,7 @@
 
 #[cfg(target_os = "none")]
 mod image {
-    use core::panic::PanicInfo;
-
-    use cortex_m_rt::{ExceptionFrame, entry, exception};
+    use cortex_m_rt::entry;
     use defmt_semihosting as _;
     use semihosting::experimental::env;
     use stm32f4::stm32f405::{Interrupt, NVIC, interrupt};
@@ -59,21 +57,7 @@ mod image {
         }
     }
 
-    #[panic_handler]
-    fn panic(info: &PanicInfo) -> ! {
-        f405::on_panic(info)
-    }
-
-    // The runtime asks for unsafe functions; there is nothing unsafe in them.
-    #[exception]
-    unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-        f405::on_hard_fault(frame.pc(), frame.lr())
-    }
-
-    #[exception]
-    unsafe fn DefaultHandler(number: i16) -> ! {
-        f405::on_stray_interrupt(number)
-    }
+    touchdown_firmware::last_acts!(f405::drop_outputs);
 
     #[interrupt]
     fn ADC() {}

@@ -3,9 +3,7 @@
 
 #[cfg(target_os = "none")]
 mod image {
-    use core::panic::PanicInfo;
-
-    use cortex_m_rt::{ExceptionFrame, entry, exception};
+    use cortex_m_rt::{entry, exception};
     use defmt_rtt as _;
     use stm32g4::stm32g474::interrupt;
     use touchdown_firmware::{board::g474, memory::Memory};
@@ -26,21 +24,7 @@ mod image {
         g474::on_waiting();
     }
 
-    #[panic_handler]
-    fn panic(info: &PanicInfo) -> ! {
-        g474::on_panic(info)
-    }
-
-    // The runtime asks for unsafe functions; there is nothing unsafe in them.
-    #[exception]
-    unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-        g474::on_hard_fault(frame.pc(), frame.lr())
-    }
-
-    #[exception]
-    unsafe fn DefaultHandler(number: i16) -> ! {
-        g474::on_stray_interrupt(number)
-    }
+    touchdown_firmware::last_acts!(g474::drop_outputs);
 }
 
 #[cfg(not(target_os = "none"))]

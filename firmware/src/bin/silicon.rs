@@ -3,9 +3,7 @@
 
 #[cfg(target_os = "none")]
 mod image {
-    use core::panic::PanicInfo;
-
-    use cortex_m_rt::{ExceptionFrame, entry, exception};
+    use cortex_m_rt::{entry, exception};
     use defmt_rtt as _;
     use stm32f4::stm32f405::interrupt;
     use touchdown_firmware::{board::f405, memory::Memory};
@@ -26,21 +24,7 @@ mod image {
         f405::on_waiting();
     }
 
-    #[panic_handler]
-    fn panic(info: &PanicInfo) -> ! {
-        f405::on_panic(info)
-    }
-
-    // The runtime asks for unsafe functions; there is nothing unsafe in them.
-    #[exception]
-    unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-        f405::on_hard_fault(frame.pc(), frame.lr())
-    }
-
-    #[exception]
-    unsafe fn DefaultHandler(number: i16) -> ! {
-        f405::on_stray_interrupt(number)
-    }
+    touchdown_firmware::last_acts!(f405::drop_outputs);
 }
 
 #[cfg(not(target_os = "none"))]

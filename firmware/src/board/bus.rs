@@ -59,6 +59,7 @@ impl<R: SpiRegisters> SpiDevice for Bus<R> {
 }
 
 /// Waits by counting cycles of a core at so many MHz.
+#[derive(Clone, Copy)]
 pub struct CycleDelay<const MHZ: u32>;
 
 impl<const MHZ: u32> DelayNs for CycleDelay<MHZ> {

@@ -1,26 +1,34 @@
 //! A chip below the tick, whatever its registers.
 
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::Ordering;
 
 use cortex_m::peripheral::{DWT, SCB};
-use touchdown_core::sample::Sample;
+use embedded_hal::delay::DelayNs;
 use touchdown_protocol::link::{Frame, Refusal};
 
-use super::held::Held;
+use super::bus::SpiRegisters;
+use super::inputs::InputRegisters;
 use super::line::{Line, LineRegisters};
-use super::{Abilities, Board, record};
-use crate::intake::{Incoming, Intake};
+use super::silicon::{ChipBoard, ChipLog, ChipTasks, OutputRegisters, Watchdog};
+use super::{Abilities, record};
 use crate::journal;
-use crate::overrun::Overruns;
-use crate::platform::{JournalEntry, LogStore, Platform, SampleSource};
+use crate::platform::{JournalEntry, Platform, SampleSource};
 use crate::tick::TickTask;
 
-/// Registers of a chip that the main loop uses.
-pub trait Chip: 'static {
-    /// As the tick sees it.
-    type Board: Board;
-    /// Where drops are kept.
-    type Log: LogStore;
+/// Registers of a chip.
+pub trait Chip: Sized + 'static {
+    /// Of the outputs.
+    type Pins: OutputRegisters;
+    /// Of the watchdog.
+    type Watchdog: Watchdog;
+    /// The converter.
+    type Source: SampleSource;
+    /// What comes with the positions.
+    type Inputs: InputRegisters;
+    /// SPI of the log's flash.
+    type Spi: SpiRegisters;
+    /// Waits.
+    type Wait: DelayNs + Copy;
     /// The line.
     type Port: LineRegisters;
     /// Of its core.
@@ -28,11 +36,8 @@ pub trait Chip: 'static {
     /// What a configuration has to fit.
     const ABILITIES: Abilities;
 
-    /// The tick.
-    fn tick() -> &'static Held<TickTask<'static, Self::Board>>;
-
-    /// Cycle counter at the last sample.
-    fn sampled() -> &'static AtomicU32;
+    /// What interrupts and main loop share.
+    fn tasks() -> &'static ChipTasks<Self>;
 
     /// A word of the noise source; none where it fails.
     fn word(&self) -> Option<u32>;
@@ -48,26 +53,27 @@ pub trait Chip: 'static {
 pub struct ChipPlatform<C: Chip> {
     chip: C,
     line: Line<C::Port>,
-    log: Option<C::Log>,
+    log: Option<ChipLog<C>>,
 }
 
 impl<C: Chip> ChipPlatform<C> {
     /// Of the parts that are up.
-    pub fn new(chip: C, line: Line<C::Port>, log: Option<C::Log>) -> Self {
+    pub fn new(chip: C, line: Line<C::Port>, log: Option<ChipLog<C>>) -> Self {
         Self { chip, line, log }
     }
 }
 
 impl<C: Chip> Platform for ChipPlatform<C> {
-    type Board = C::Board;
-    type Log = C::Log;
+    type Board = ChipBoard<C>;
+    type Log = ChipLog<C>;
 
     fn abilities(&self) -> Abilities {
         C::ABILITIES
     }
 
-    fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, C::Board>) -> T) -> T {
-        C::tick()
+    fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, ChipBoard<C>>) -> T) -> T {
+        C::tasks()
+            .tick
             .with(act)
             .unwrap_or_else(|| unreachable!("the tick is in its place, and held by one"))
     }
@@ -88,7 +94,7 @@ impl<C: Chip> Platform for ChipPlatform<C> {
         self.line.push() && self.line.is_done()
     }
 
-    fn log(&mut self) -> &mut Option<C::Log> {
+    fn log(&mut self) -> &mut Option<ChipLog<C>> {
         &mut self.log
     }
 
@@ -97,7 +103,7 @@ impl<C: Chip> Platform for ChipPlatform<C> {
     }
 
     fn age_us(&mut self) -> u32 {
-        DWT::cycle_count().wrapping_sub(C::sampled().load(Ordering::Relaxed)) / C::MHZ
+        DWT::cycle_count().wrapping_sub(C::tasks().sampled.load(Ordering::Relaxed)) / C::MHZ
     }
 
     fn unknown(&mut self) -> u64 {
@@ -116,53 +122,5 @@ impl<C: Chip> Platform for ChipPlatform<C> {
 
     fn reset(&mut self) {
         SCB::sys_reset();
-    }
-}
-
-/// What comes with the positions.
-pub trait SampleInputs {
-    /// Spin, rad/s, where it is known.
-    fn spin(&mut self) -> Option<f32>;
-
-    /// Whether levitation is commanded on, where that is wired.
-    fn levitated(&self) -> Option<bool>;
-
-    /// Whether the service input is on.
-    fn service(&self) -> bool;
-}
-
-/// What a sampling interrupt has.
-pub struct Sampling<S, I> {
-    source: S,
-    inputs: I,
-    overruns: Overruns,
-    intake: Intake<'static>,
-}
-
-impl<S: SampleSource, I: SampleInputs> Sampling<S, I> {
-    /// Of what was not sampled yet.
-    pub fn new(source: S, inputs: I, intake: Intake<'static>) -> Self {
-        Self {
-            source,
-            inputs,
-            overruns: Overruns::default(),
-            intake,
-        }
-    }
-
-    /// Takes what was converted; whether the outputs must be safe now.
-    pub fn take(&mut self) -> bool {
-        let lost = self.overruns.tick(self.source.number());
-        let sample = Sample {
-            spin: self.inputs.spin(),
-            levitated: self.inputs.levitated(),
-            ..self.source.take()
-        };
-        let arrival = Incoming {
-            sample,
-            service: self.inputs.service(),
-            clear: false,
-        };
-        self.intake.take(arrival, lost)
     }
 }

@@ -3,19 +3,25 @@
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
-use cortex_m::peripheral::SCB;
+use cortex_m::Peripherals;
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
 use cortex_m::peripheral::scb::SystemHandler;
 use cortex_m::register::basepri;
 
 /// Of the sampling interrupt: only what logs holds it off, for a few microseconds. The four upper bits count.
-pub const SAMPLING: u8 = 0x40;
+const SAMPLING: u8 = 0x40;
 /// Of PendSV, in which ticks run.
 const TICK: u8 = 0x80;
 
-/// Puts PendSV in its place.
-pub fn set_tick_priority(block: &mut SCB) {
-    // SAFETY: nothing that is held is in use yet, and interrupts of sampling are above.
-    unsafe { block.set_priority(SystemHandler::PendSV, TICK) };
+/// Puts PendSV in its place, and above it the interrupt of sampling, which comes from now on.
+pub fn unmask(core: &mut Peripherals, sampling: impl InterruptNumber) {
+    // SAFETY: what the handlers need is in place, nothing that is held is in use yet, and sampling is above.
+    unsafe {
+        core.SCB.set_priority(SystemHandler::PendSV, TICK);
+        core.NVIC.set_priority(sampling, SAMPLING);
+        NVIC::unmask(sampling);
+    }
 }
 
 /// A value for one at a time: who acts on it holds off the tick, and not the sampling.

@@ -13,11 +13,15 @@ mod held;
 #[cfg(target_os = "none")]
 mod image;
 #[cfg(target_os = "none")]
+mod inputs;
+#[cfg(target_os = "none")]
 mod line;
 #[cfg(all(target_os = "none", feature = "f405"))]
 pub mod qemu;
 #[cfg(target_os = "none")]
-mod record;
+pub mod record;
+#[cfg(target_os = "none")]
+mod silicon;
 #[cfg(target_os = "none")]
 mod slots;
 

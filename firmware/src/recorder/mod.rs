@@ -233,7 +233,7 @@ impl<'m> Recorder<'m> {
         }
         self.skip -= 1;
         for notice in notices {
-            self.note(notice);
+            self.hear(notice);
         }
         self.watch();
         self.tick += 1;
@@ -249,11 +249,6 @@ impl<'m> Recorder<'m> {
         {
             place.update(state);
         }
-    }
-
-    /// What the forecast says between two ticks, or what was ordered.
-    pub fn hear(&mut self, notice: &Notice) {
-        self.note(notice);
     }
 
     /// The next block to be stored, if one is ready. Bounded: copies at most a block. A block is
@@ -284,9 +279,7 @@ impl<'m> Recorder<'m> {
     /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call
     /// counts.
     pub fn set_severity(&mut self, severity: &Severity) {
-        if let Drop::Recorded(at) = self.drop
-            && let Some(capture) = self.captures.get_mut(at)
-        {
+        if let Some(capture) = self.open() {
             capture.set_severity(severity);
         }
     }
@@ -303,10 +296,9 @@ impl<'m> Recorder<'m> {
 
     #[inline(never)]
     fn note_switched(&mut self) {
-        if let Drop::Recorded(at) = self.drop
-            && let Some(capture) = self.captures.get_mut(at)
-        {
-            capture.push(&Record::Switching(self.switched));
+        let record = Record::Switching(self.switched);
+        if let Some(capture) = self.open() {
+            capture.push(&record);
         }
     }
 
@@ -325,6 +317,14 @@ impl<'m> Recorder<'m> {
     /// What was counted since reset.
     pub fn counted(&self) -> Counted {
         self.counted
+    }
+
+    /// The capture of the drop that goes on.
+    fn open(&mut self) -> Option<&mut Capture> {
+        match self.drop {
+            Drop::Recorded(at) => self.captures.get_mut(at),
+            Drop::None | Drop::Lost => None,
+        }
     }
 
     fn is_idle(&self, at: usize) -> bool {
@@ -351,7 +351,8 @@ impl<'m> Recorder<'m> {
         }
     }
 
-    fn note(&mut self, notice: &Notice) {
+    /// Takes a notice of the tick, what the forecast says between two ticks, or what was ordered.
+    pub fn hear(&mut self, notice: &Notice) {
         match notice {
             // The waveform shows them: the episode has no room for those of every bounce.
             Notice::Touch(touch) => {
@@ -360,9 +361,7 @@ impl<'m> Recorder<'m> {
                 return;
             }
             Notice::Alarm(_) | Notice::Ordered(_) => {
-                if let Drop::Recorded(at) = self.drop
-                    && let Some(capture) = self.captures.get_mut(at)
-                {
+                if let Some(capture) = self.open() {
                     capture.note_aside(notice);
                 }
                 return;
@@ -380,9 +379,7 @@ impl<'m> Recorder<'m> {
             matches!(notice, Notice::Declared(event) if event.kind == EventKind::Levitated);
         let withdrawn = matches!(notice, Notice::Withdrawn { .. });
         let mut untouched = true;
-        if let Drop::Recorded(at) = self.drop
-            && let Some(capture) = self.captures.get_mut(at)
-        {
+        if let Some(capture) = self.open() {
             capture.note(notice);
             untouched = !capture.has_touched();
         }
@@ -409,14 +406,13 @@ impl<'m> Recorder<'m> {
     }
 
     fn end(&mut self, closing: Closing) {
-        if let Drop::Recorded(at) = self.drop
-            && let Some(capture) = self.captures.get_mut(at)
-        {
-            capture.end(Closed {
-                why: closing,
-                tick: self.tick,
-                latched: self.switched.shown.latched(),
-            });
+        let closed = Closed {
+            why: closing,
+            tick: self.tick,
+            latched: self.switched.shown.latched(),
+        };
+        if let Some(capture) = self.open() {
+            capture.end(closed);
         }
         self.drop = Drop::None;
     }

@@ -75,7 +75,6 @@ pub struct Store<const SLOTS: usize> {
     ledger: Ledger,
     slots: Slots<SLOTS>,
     state: State,
-    clearing: bool,
     /// Lost drops and touches since reset that are counted in.
     lost: u32,
     touches: u32,
@@ -109,7 +108,6 @@ impl<const SLOTS: usize> Store<SLOTS> {
             ledger,
             slots,
             state: State::Unprepared,
-            clearing: false,
             lost: 0,
             touches: 0,
             latched: None,
@@ -133,7 +131,6 @@ impl<const SLOTS: usize> Store<SLOTS> {
                 Some(next) => self.write(flash, slot, block, &next).map(|()| true),
                 None => Ok(false),
             },
-            _ if self.clearing => self.clear_next(flash),
             State::Unprepared => self.prepare(flash),
             State::Erasing { slot, sector } => self.erase(flash, slot, sector).map(|()| true),
             State::Ready { slot } => match fetch() {
@@ -251,11 +248,6 @@ impl<const SLOTS: usize> Store<SLOTS> {
         Ok(())
     }
 
-    /// Gives up all episodes that are not locked, one a call of [`Self::work`].
-    pub fn clear(&mut self) {
-        self.clearing = true;
-    }
-
     /// Marks the oldest episode as given up, if its slot has one.
     fn prepare<F: MultiwriteNorFlash>(&mut self, flash: &mut F) -> Result<bool, F::Error> {
         let Some(slot) = self.slots.oldest() else {
@@ -266,16 +258,6 @@ impl<const SLOTS: usize> Store<SLOTS> {
         }
         self.state = State::Erasing { slot, sector: 0 };
         Ok(true)
-    }
-
-    fn clear_next<F: MultiwriteNorFlash>(&mut self, flash: &mut F) -> Result<bool, F::Error> {
-        match self.slots.oldest_used() {
-            Some(slot) => self.release(flash, slot).map(|()| true),
-            None => {
-                self.clearing = false;
-                Ok(true)
-            }
-        }
     }
 
     fn release<F: NorFlash>(&mut self, flash: &mut F, slot: usize) -> Result<(), F::Error> {

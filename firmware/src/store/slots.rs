@@ -62,18 +62,9 @@ impl<const SLOTS: usize> Slots<SLOTS> {
 
     /// Slot to be written next: an empty one, or else the oldest that is not locked.
     pub(super) fn oldest(&self) -> Option<usize> {
-        self.least(|_| true)
-    }
-
-    /// Oldest episode that is not locked.
-    pub(super) fn oldest_used(&self) -> Option<usize> {
-        self.least(|slot| slot.sequence != 0)
-    }
-
-    fn least(&self, among: impl Fn(&Slot) -> bool) -> Option<usize> {
         let slots = self.0.iter().enumerate();
         slots
-            .filter(|(_, slot)| !slot.locked && among(slot))
+            .filter(|(_, slot)| !slot.locked)
             .min_by_key(|(_, slot)| slot.sequence)
             .map(|(number, _)| number)
     }

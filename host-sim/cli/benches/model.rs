@@ -50,7 +50,7 @@ impl Use for Parts<'_> {
 
     fn with<R: Precision, M: Stepper<R>>(self, subject: &Subject<R, M>) -> Result<(), ConfigError> {
         let model = &subject.model;
-        let digits = self.precision.name();
+        let digits: &str = self.precision.into();
         let mut group = self.criterion.benchmark_group("rigid");
 
         let released = state_at(subject, 0);
@@ -117,7 +117,7 @@ impl Use for Drops<'_> {
         }: &Subject<R, M>,
     ) -> Result<(), ConfigError> {
         let step = self.scene.model.step;
-        let digits = self.scene.model.precision.name();
+        let digits: &str = self.scene.model.precision.into();
         let steps = whole_steps(self.scene.run.duration, step);
         let mut history: Vec<ModelEvent<R>> = Vec::new();
         let mut group = self.criterion.benchmark_group("drop of 0.3 s");

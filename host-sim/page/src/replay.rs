@@ -152,7 +152,7 @@ fn events(replay: &Replay) -> Markup {
                 "{} of {}: {}",
                 event_name(it.event),
                 fault.channel,
-                fault.kind.name()
+                fault.kind
             ),
             None => event_name(it.event).to_owned(),
         })

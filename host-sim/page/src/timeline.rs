@@ -274,7 +274,7 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     }
     let told = outcome.detection.events.iter().filter_map(|event| {
         let fault = event.fault?;
-        let (channel, kind) = (fault.channel, fault.kind.name());
+        let (channel, kind) = (fault.channel, fault.kind);
         let at = millis(event.declared_s);
         Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
     });
@@ -289,7 +289,7 @@ fn samples_line(detection: &Detection) -> String {
     let conditions = (0..).zip(detection.conditions);
     let bad: String = conditions
         .filter(|(_, condition)| *condition != Condition::Ok)
-        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it.name()))
+        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it))
         .collect();
     format!(
         "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
@@ -315,7 +315,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
         let fault = event
             .fault
-            .map(|fault| format!("  {} {}", fault.channel, fault.kind.name()));
+            .map(|fault| format!("  {} {}", fault.channel, fault.kind));
         let line = format!(
             "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             event_name(event.event),

@@ -110,7 +110,6 @@ impl ControllerTrace {
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();
         let (state, counters) = (&self.state, self.state.counters);
-        let faults = Fault::ALL.into_iter();
         Controller {
             outputs: switchings
                 .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
@@ -127,7 +126,7 @@ impl ControllerTrace {
                 firmware: self.hello.firmware.to_string(),
                 sample_rate_hz: self.hello.sample_rate,
                 mode: state.mode,
-                faults: faults.filter(|it| state.faults.contains(*it)).collect(),
+                faults: state.faults.iter().collect(),
                 lost_samples: counters.lost_samples,
                 unusable_values: counters.unusable_values,
                 lost_notices: counters.lost_notices,

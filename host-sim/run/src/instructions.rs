@@ -68,10 +68,10 @@ impl Instructions {
 
 fn mean(table: &str, model: &Model, class: &str) -> Option<f64> {
     let key = [
-        model.rung.name(),
-        model.scheme.name(),
-        model.precision.name(),
-        model.math.name(),
+        model.rung.into(),
+        model.scheme.into(),
+        model.precision.into(),
+        model.math.into(),
         class,
     ];
     table.lines().find_map(|line| {

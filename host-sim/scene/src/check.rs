@@ -205,7 +205,7 @@ fn two_plane(
 fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
     let rung = match table.rung.as_deref() {
         None => needed,
-        Some(name) => named("model", "rung", name, &Fidelity::ALL, Fidelity::name)?,
+        Some(name) => named("model", "rung", name, &Fidelity::ALL, Fidelity::into)?,
     };
     let parts = match rung {
         Fidelity::Support => "[support] or [ball_bearing]",
@@ -221,20 +221,20 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
         return Err(Diagnostic::new("model", "rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {
-        let rule = format!("rung = \"{}\" needs {parts}", rung.name());
+        let rule = format!("rung = \"{}\" needs {parts}", rung);
         return Err(Diagnostic::new("model", "rung", rule));
     }
     let scheme = match table.scheme.as_deref() {
         None => rung.schemes()[0],
-        Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::name)?,
+        Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::into)?,
     };
     let precision = match table.precision.as_deref() {
         None => Precision::F64,
-        Some(name) => named("model", "precision", name, &Precision::ALL, Precision::name)?,
+        Some(name) => named("model", "precision", name, &Precision::ALL, Precision::into)?,
     };
     let math = match table.math.as_deref() {
         None => Math::Libm,
-        Some(name) => named("model", "math", name, precision.maths(), Math::name)?,
+        Some(name) => named("model", "math", name, precision.maths(), Math::into)?,
     };
     let step = match table.step_us {
         Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,

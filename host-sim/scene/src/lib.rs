@@ -182,10 +182,7 @@ impl Scene {
             if part.asked && !part.modelled {
                 warnings.push(format!(
                     "{}: {}: {}, the scene has rung {}",
-                    self.name,
-                    part.name,
-                    part.reason,
-                    self.model.rung.name()
+                    self.name, part.name, part.reason, self.model.rung
                 ));
             }
         }

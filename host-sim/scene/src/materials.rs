@@ -3,7 +3,8 @@
 use touchdown_models::Materials as Elastic;
 
 /// How rotor and retainer touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Contact {
     /// Sphere in sphere.
     Point,
@@ -12,16 +13,6 @@ pub enum Contact {
         /// Axial, m.
         length: f64,
     },
-}
-
-impl Contact {
-    /// As in a scene file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Point => "point",
-            Self::Line { .. } => "line",
-        }
-    }
 }
 
 /// What rotor and retainer are made of, and how they touch. Rung `hertz`.

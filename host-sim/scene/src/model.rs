@@ -3,8 +3,11 @@
 use serde::Serialize;
 
 /// Rung of the ladder of models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Fidelity {
     /// Restitution and Coulomb friction on a rigid ring, each impact located.
     Rigid,
@@ -21,8 +24,11 @@ pub enum Fidelity {
 }
 
 /// How a rung goes through time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Scheme {
     /// From the launch to the next change, in closed form or by series. Rung `rigid`.
     Launch,
@@ -36,8 +42,11 @@ pub enum Scheme {
 }
 
 /// Number format of the model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Precision {
     /// Single.
     F32,
@@ -46,8 +55,11 @@ pub enum Precision {
 }
 
 /// Where square roots, sines and the like come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Math {
     /// The libm crate.
     Libm,
@@ -86,18 +98,6 @@ impl Fidelity {
         Self::Coupled,
     ];
 
-    /// As in a scene file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rigid => "rigid",
-            Self::Moreau => "moreau",
-            Self::Hertz => "hertz",
-            Self::Support => "support",
-            Self::TwoPlane => "two-plane",
-            Self::Coupled => "coupled",
-        }
-    }
-
     /// Its schemes; the first is the default.
     pub fn schemes(self) -> &'static [Scheme] {
         match self {
@@ -108,46 +108,15 @@ impl Fidelity {
     }
 }
 
-impl Scheme {
-    /// As in a scene file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Launch => "launch",
-            Self::Midpoint => "midpoint",
-            Self::Euler => "euler",
-            Self::Verlet => "verlet",
-        }
-    }
-}
-
 impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::F32, Self::F64];
-
-    /// As in a scene file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        }
-    }
 
     /// The functions that exist in it.
     pub fn maths(self) -> &'static [Math] {
         match self {
             Self::F32 => &[Math::Libm, Math::Polynomial, Math::Micromath],
             Self::F64 => &[Math::Libm, Math::Polynomial],
-        }
-    }
-}
-
-impl Math {
-    /// As in a scene file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Libm => "libm",
-            Self::Polynomial => "polynomial",
-            Self::Micromath => "micromath",
         }
     }
 }

@@ -3,21 +3,27 @@
 use super::model::{Fidelity, Math, Model, Precision, Scheme};
 
 /// Something that a drop gives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Output {
     /// Regime at the end of the run.
     Regime,
     /// Times of the first ten impacts.
+    #[strum(serialize = "impact times")]
     ImpactTime,
     /// Speeds into the wall at the first ten impacts.
+    #[strum(serialize = "impact speeds")]
     ImpactSpeed,
     /// Starts and ends of permanent contact, and starts of rolling.
     Phases,
     /// Load m v^2/rho0 of a whirl at the end of the run.
+    #[strum(serialize = "whirl load")]
     WhirlLoad,
     /// Greatest contact force of the first impact.
+    #[strum(serialize = "peak force")]
     PeakForce,
     /// Duration of the first impact.
+    #[strum(serialize = "contact time")]
     ContactTime,
 }
 
@@ -77,19 +83,6 @@ impl Fixed {
 }
 
 impl Output {
-    /// For people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Regime => "regime",
-            Self::ImpactTime => "impact times",
-            Self::ImpactSpeed => "impact speeds",
-            Self::Phases => "phases",
-            Self::WhirlLoad => "whirl load",
-            Self::PeakForce => "peak force",
-            Self::ContactTime => "contact time",
-        }
-    }
-
     /// An error or tolerance of this output, for people.
     pub fn show(self, error: f64) -> String {
         match self {

@@ -39,7 +39,7 @@ impl Moment {
 }
 
 /// What happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -68,25 +68,8 @@ pub enum EventKind {
     SensorFault = 10,
 }
 
-impl EventKind {
-    /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 11] = [
-        Self::FreeFall,
-        Self::Impact,
-        Self::Sliding,
-        Self::Rolling,
-        Self::Pendulum,
-        Self::ForwardWhirl,
-        Self::BackwardWhirl,
-        Self::LiftOff,
-        Self::Rest,
-        Self::Levitated,
-        Self::SensorFault,
-    ];
-}
-
 /// Where it happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum Plane {
     /// Sensor plane a.
@@ -98,7 +81,7 @@ pub enum Plane {
 }
 
 /// How the rotor moved, as far as both planes show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum Motion {
     /// Its ends went the same way; also where only one is seen.
@@ -212,7 +195,7 @@ pub struct Outlook {
 }
 
 /// Which limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -221,11 +204,6 @@ pub enum Level {
     Alert = 0,
     /// The higher one, which trips.
     Danger = 1,
-}
-
-impl Level {
-    /// In the order of their codes.
-    pub const ALL: [Self; 2] = [Self::Alert, Self::Danger];
 }
 
 /// A plane rose through a limit.

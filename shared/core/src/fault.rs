@@ -3,10 +3,11 @@
 use crate::sample::CHANNELS;
 
 /// What is wrong with a channel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::Display)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[strum(serialize_all = "snake_case")]
 pub enum FaultKind {
     /// A few samples without a value.
     Dropped = 0,
@@ -40,48 +41,6 @@ pub enum FaultKind {
     Moved = 14,
 }
 
-impl FaultKind {
-    /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 15] = [
-        Self::Dropped,
-        Self::Missing,
-        Self::Short,
-        Self::Open,
-        Self::Saturated,
-        Self::Stuck,
-        Self::Spike,
-        Self::Shift,
-        Self::Drift,
-        Self::Gain,
-        Self::Reversed,
-        Self::Swapped,
-        Self::Mirrored,
-        Self::Disagree,
-        Self::Moved,
-    ];
-
-    /// As it stands in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dropped => "dropped",
-            Self::Missing => "missing",
-            Self::Short => "short",
-            Self::Open => "open",
-            Self::Saturated => "saturated",
-            Self::Stuck => "stuck",
-            Self::Spike => "spike",
-            Self::Shift => "shift",
-            Self::Drift => "drift",
-            Self::Gain => "gain",
-            Self::Reversed => "reversed",
-            Self::Swapped => "swapped",
-            Self::Mirrored => "mirrored",
-            Self::Disagree => "disagree",
-            Self::Moved => "moved",
-        }
-    }
-}
-
 /// The channel of the speed, behind those of the positions.
 pub const SPEED: u8 = CHANNELS as u8;
 
@@ -95,10 +54,13 @@ pub struct Fault {
 }
 
 /// What can be had of a channel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, strum::FromRepr, strum::Display,
+)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[strum(serialize_all = "snake_case")]
 pub enum Condition {
     /// Nothing is known against it.
     #[default]
@@ -107,20 +69,6 @@ pub enum Condition {
     Suspect = 1,
     /// Not used.
     Lost = 2,
-}
-
-impl Condition {
-    /// All conditions, in the order of their codes.
-    pub const ALL: [Self; 3] = [Self::Ok, Self::Suspect, Self::Lost];
-
-    /// As it stands in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ok => "ok",
-            Self::Suspect => "suspect",
-            Self::Lost => "lost",
-        }
-    }
 }
 
 /// A fault that a tick found.

@@ -102,11 +102,6 @@ impl Reading {
         let mut planes = self.planes.iter().zip(channels);
         planes.any(|(plane, channels)| plane.is_some() && self.unusable & channels == 0)
     }
-
-    /// Mean over the usable planes, m, and how many they are.
-    pub fn mean(&self) -> Option<([f32; 2], u8)> {
-        mean(&self.planes)
-    }
 }
 
 /// Position of each plane, m, where it is seen.

@@ -1,7 +1,11 @@
 //! What the safety controller is doing: its mode, its faults and its outputs.
 
+use strum::VariantArray as _;
+
 /// What the controller is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, strum::FromRepr, strum::VariantArray,
+)]
 #[repr(u8)]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -19,19 +23,8 @@ pub enum Mode {
     Faulted = 4,
 }
 
-impl Mode {
-    /// All modes, in the order of their codes.
-    pub const ALL: [Self; 5] = [
-        Self::SelfTest,
-        Self::Arming,
-        Self::Watching,
-        Self::Dropped,
-        Self::Faulted,
-    ];
-}
-
 /// Why the outputs are as they are; a trip's stays until cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::FromRepr)]
 #[repr(u8)]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -57,19 +50,6 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All causes, in the order of their codes.
-    pub const ALL: [Self; 9] = [
-        Self::NoProof,
-        Self::Danger,
-        Self::LevitationOff,
-        Self::PositionsLost,
-        Self::Fall,
-        Self::Whirl,
-        Self::Contact,
-        Self::Fault,
-        Self::Order,
-    ];
-
     /// In a byte: 0 for none, else one more than its code.
     pub const fn byte_of(cause: Option<Self>) -> u8 {
         match cause {
@@ -80,8 +60,7 @@ impl Cause {
 
     /// From that byte. A cause that is not known here is one all the same.
     pub fn of_byte(byte: u8) -> Option<Self> {
-        let known = Self::ALL.get(usize::from(byte.checked_sub(1)?));
-        Some(known.copied().unwrap_or(Self::Contact))
+        Some(Self::from_repr(byte.checked_sub(1)?).unwrap_or(Self::Contact))
     }
 }
 
@@ -153,7 +132,7 @@ impl Outputs {
 }
 
 /// What can be wrong with the controller; latched until cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
 #[repr(u8)]
 #[derive(serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -183,21 +162,6 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults, in the order of their codes.
-    pub const ALL: [Self; 11] = [
-        Self::Overrun,
-        Self::Overload,
-        Self::SensorsLost,
-        Self::ConfigChanged,
-        Self::ConfigDamaged,
-        Self::WatchdogReset,
-        Self::Crash,
-        Self::Unconfigured,
-        Self::ConfigMisfit,
-        Self::MemoryChanged,
-        Self::ImageDamaged,
-    ];
-
     /// Whether it trips; the others only put out the ready lamp.
     pub const fn trips(self) -> bool {
         !matches!(self, Self::Overrun)
@@ -231,6 +195,12 @@ impl Faults {
         self.0 & (1 << fault as u8) != 0
     }
 
+    /// Each, in the order of their codes.
+    pub fn iter(self) -> impl Iterator<Item = Fault> {
+        let all = Fault::VARIANTS.iter().copied();
+        all.filter(move |it| self.contains(*it))
+    }
+
     /// Whether one of them trips.
     pub const fn trip(self) -> bool {
         self.0 & Self::TRIPPING != 0
@@ -248,7 +218,10 @@ impl Faults {
 }
 
 /// Why the controller does not do what it was asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, strum::FromRepr,
+)]
+#[repr(u8)]
 pub enum Busy {
     /// The rotor falls, bounces, slides or whirls.
     DropRuns,
@@ -270,21 +243,6 @@ pub enum Busy {
     Configuration,
 }
 
-impl Busy {
-    /// All reasons, in the order of their codes.
-    pub const ALL: [Self; 9] = [
-        Self::DropRuns,
-        Self::Blind,
-        Self::Watching,
-        Self::Latched,
-        Self::NoRight,
-        Self::Service,
-        Self::Locked,
-        Self::Last,
-        Self::Configuration,
-    ];
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -299,16 +257,14 @@ mod tests {
 
     #[test]
     fn codes_are_the_order() {
-        for (code, fault) in Fault::ALL.into_iter().enumerate() {
+        for (code, &fault) in Fault::VARIANTS.iter().enumerate() {
             assert_eq!(fault as usize, code);
             assert_eq!(Faults::NONE.with(fault).0, 1 << code);
             assert_eq!(Faults::NONE.with(fault).trip(), fault.trips());
         }
-        for (code, cause) in Cause::ALL.into_iter().enumerate() {
-            assert_eq!(cause as usize, code);
-        }
-        for (code, mode) in Mode::ALL.into_iter().enumerate() {
-            assert_eq!(mode as usize, code);
-        }
+        let causes = (0..).map_while(Cause::from_repr);
+        assert!(causes.map(|it| it as usize).eq(0..9));
+        let modes = Mode::VARIANTS.iter();
+        assert!(modes.map(|it| *it as usize).eq(0..5));
     }
 }

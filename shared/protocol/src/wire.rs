@@ -295,12 +295,12 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
     Some(match bytes[0] {
         DECLARED => Record::Notice(Notice::Declared(Event {
             number,
-            kind: *EventKind::ALL.get(usize::from(bytes[1]))?,
+            kind: EventKind::from_repr(bytes[1])?,
             onset: Moment(i64::from_le_bytes(eight(8))),
             declared: sample,
-            plane: plane(bytes[2])?,
+            plane: Plane::from_repr(bytes[2])?,
             normal_speed: real(24),
-            motion: *[Motion::Cylindrical, Motion::Conical].get(usize::from(bytes[3]))?,
+            motion: Motion::from_repr(bytes[3])?,
             fault: fault(bytes[6], bytes[7])?,
         })),
         CONFIRMED => Record::Notice(Notice::Confirmed { number, sample }),
@@ -316,8 +316,8 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             }),
         })),
         ALARM => Record::Notice(Notice::Alarm(Alarm {
-            plane: plane(bytes[2])?,
-            level: *Level::ALL.get(usize::from(bytes[1]))?,
+            plane: Plane::from_repr(bytes[2])?,
+            level: Level::from_repr(bytes[1])?,
             fraction: real(24),
             sample,
         })),
@@ -326,7 +326,7 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             let length = u64::from(u32::from_le_bytes(four(28)));
             Record::Notice(Notice::Touch(Touch {
                 number,
-                plane: plane(bytes[2])?,
+                plane: Plane::from_repr(bytes[2])?,
                 onset,
                 declared: sample,
                 end: (bytes[1] != 0).then_some(onset.saturating_add(length)),
@@ -342,13 +342,13 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
             sample,
             shown: Shown {
                 outputs: Outputs::from_bits(bytes[1])?,
-                mode: *Mode::ALL.get(usize::from(bytes[2]))?,
-                cause: some_of(&Cause::ALL, bytes[3])?,
+                mode: Mode::from_repr(bytes[2])?,
+                cause: some_of(Cause::from_repr, bytes[3])?,
             },
         }),
         CLEARED => Record::Cleared(Cleared {
             sample,
-            refused: some_of(&Busy::ALL, bytes[1])?,
+            refused: some_of(Busy::from_repr, bytes[1])?,
         }),
         SEVERITY => Record::Severity(Severity {
             impacts: u16::from_le_bytes([bytes[2], bytes[3]]),
@@ -370,31 +370,23 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
     })
 }
 
-fn plane(code: u8) -> Option<Plane> {
-    let planes = [Plane::A, Plane::B, Plane::Both];
-    planes.get(usize::from(code)).copied()
-}
-
 /// None for code 0, else the one of that place, from 1; nothing where there is none.
-fn some_of<T: Copy>(all: &[T], code: u8) -> Option<Option<T>> {
-    let Some(place) = code.checked_sub(1) else {
-        return Some(None);
-    };
-    all.get(usize::from(place)).copied().map(Some)
+fn some_of<T>(of: impl Fn(u8) -> Option<T>, code: u8) -> Option<Option<T>> {
+    match code.checked_sub(1) {
+        None => Some(None),
+        Some(code) => of(code).map(Some),
+    }
 }
 
 fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {
-    let Some(kind) = code.checked_sub(1) else {
-        return Some(None);
-    };
-    let kind = *FaultKind::ALL.get(usize::from(kind))?;
-    (channel <= SPEED).then_some(Some(Fault { channel, kind }))
+    let kind = some_of(FaultKind::from_repr, code)?;
+    (kind.is_none() || channel <= SPEED).then_some(kind.map(|kind| Fault { channel, kind }))
 }
 
 fn conditions(codes: [u8; CHANNELS]) -> Option<[Condition; CHANNELS]> {
     let mut conditions = [Condition::Ok; CHANNELS];
     for (condition, code) in conditions.iter_mut().zip(codes) {
-        *condition = *Condition::ALL.get(usize::from(code))?;
+        *condition = Condition::from_repr(code)?;
     }
     Some(conditions)
 }

@@ -211,10 +211,10 @@ fn whole_drops_take_what_their_parts_add_up_to() {
     for model in models(&scene.model) {
         scene.model = model;
         let names = [
-            model.rung.name(),
-            model.scheme.name(),
-            model.precision.name(),
-            model.math.name(),
+            model.rung.into(),
+            model.scheme.into(),
+            model.precision.into(),
+            model.math.into(),
         ];
         let each = Instructions::find(&table, &model).expect("a counted model");
         for step in counted_steps(model.rung) {
@@ -240,6 +240,6 @@ fn whole_drops_take_what_their_parts_add_up_to() {
             compared += 1;
         }
     }
-    let of_plane = |line: &&str| PLANAR.iter().any(|rung| line.starts_with(rung.name()));
+    let of_plane = |line: &&str| PLANAR.iter().any(|rung| line.starts_with(&rung.to_string()));
     assert_eq!(compared, 2 * table.lines().filter(of_plane).count() / 4);
 }

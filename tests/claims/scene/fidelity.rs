@@ -40,19 +40,19 @@ fn model(row: &Value) -> Model {
     Model {
         rung: Fidelity::ALL
             .into_iter()
-            .find(|it| it.name() == name("rung"))
+            .find(|it| it.to_string() == name("rung"))
             .unwrap(),
         scheme: schemes
             .into_iter()
-            .find(|it| it.name() == name("scheme"))
+            .find(|it| it.to_string() == name("scheme"))
             .unwrap(),
         precision: Precision::ALL
             .into_iter()
-            .find(|it| it.name() == name("precision"))
+            .find(|it| it.to_string() == name("precision"))
             .unwrap(),
         math: maths
             .into_iter()
-            .find(|it| it.name() == name("math"))
+            .find(|it| it.to_string() == name("math"))
             .unwrap(),
         step: row["step_s"].as_f64().unwrap(),
         cutoff: 0.0,

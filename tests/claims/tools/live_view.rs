@@ -196,7 +196,7 @@ fn any_state() -> impl Strategy<Value = Said> {
         any::<u64>(),
         any::<u32>(),
         0..6_usize,
-        0..5_usize,
+        0..5_u8,
         any::<u16>(),
     )
         .prop_map(|(sample, age_us, phase, mode, faults)| {
@@ -212,7 +212,7 @@ fn any_state() -> impl Strategy<Value = Said> {
                 sample,
                 age_us,
                 phase: phases[phase],
-                mode: Mode::ALL[mode],
+                mode: Mode::from_repr(mode).unwrap(),
                 faults: Faults(faults),
                 ..state()
             })
@@ -224,8 +224,8 @@ fn any_update() -> impl Strategy<Value = Said> {
         Just(greeting()),
         any::<String>().prop_map(Said::Lost),
         any_state(),
-        (any::<u16>(), 0..11_usize, 0..1_u64 << 40)
-            .prop_map(|(number, kind, at)| Said::Notice(event(number, EventKind::ALL[kind], at))),
+        (any::<u16>(), 0..11_u8, 0..1_u64 << 40)
+            .prop_map(|(number, kind, at)| Said::Notice(event(number, EventKind::from_repr(kind).unwrap(), at))),
         (any::<u16>(), any::<u64>())
             .prop_map(|(number, sample)| Said::Notice(Notice::Confirmed { number, sample })),
         (any::<u64>(), any::<u16>()).prop_map(|(sample, step)| Said::Recent(circle(sample, step))),

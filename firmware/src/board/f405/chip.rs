@@ -4,13 +4,8 @@ use embedded_hal::delay::DelayNs;
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{Bus, CycleDelay, SpiRegisters};
-use crate::w25q::W25q;
+use crate::board::bus::{CycleDelay, SpiRegisters};
 
-/// The chip.
-pub type Chip = W25q<Spi, Wait>;
-/// Its bus.
-pub type Spi = Bus<Spi1>;
 /// Waits by counting cycles.
 pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 

@@ -3,6 +3,8 @@
 use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
+use crate::board::silicon::{OutputRegisters, Watchdog};
+
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4, of the same port, is the service input, high while on.
 pub struct OutputPins(GPIOC);
@@ -22,8 +24,16 @@ impl OutputPins {
         outputs
     }
 
-    /// Sets all levels at once.
-    pub fn drive(&self, outputs: Outputs) {
+    /// Whether the service input is on.
+    pub fn service() -> bool {
+        // SAFETY: a read of a register that reading does not change.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
+    }
+}
+
+impl OutputRegisters for OutputPins {
+    fn drive(&self, outputs: Outputs) {
         // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
         self.0.bsrr().write(|w| {
             drop_all(w)
@@ -38,16 +48,7 @@ impl OutputPins {
         });
     }
 
-    /// Whether the service input is on.
-    pub fn service() -> bool {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.idr().read().idr4().bit_is_set()
-    }
-
-    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
-    /// top.
-    pub fn drop_now() {
+    fn drop_now() {
         // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOC::ptr() };
         pins.bsrr().write(drop_all);
@@ -62,27 +63,15 @@ fn drop_all(w: &mut Levels) -> &mut Levels {
 
 /// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms (1.3
 /// to 3.8 ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
-pub struct Watchdog(IWDG);
+pub struct IndependentWatchdog {
+    watchdog: IWDG,
+    debug: DBGMCU,
+}
 
-impl Watchdog {
+impl IndependentWatchdog {
     /// Not started.
-    pub fn new(iwdg: IWDG) -> Self {
-        Self(iwdg)
-    }
-
-    /// Starts it; it stands still while a debugger halts the core.
-    pub fn start(&self, dbgmcu: &DBGMCU) {
-        dbgmcu.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
-        self.0.kr().write(|w| w.key().start());
-        self.0.kr().write(|w| w.key().unlock());
-        self.0.pr().write(|w| w.pr().divide_by4());
-        self.0.rlr().write(|w| w.rl().set(15));
-        self.feed();
-    }
-
-    /// Gives it another 2 ms.
-    pub fn feed(&self) {
-        self.0.kr().write(|w| w.key().feed());
+    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
+        Self { watchdog, debug }
     }
 
     /// Whether it has bitten since power was applied or [`Self::forget`] was called.
@@ -93,5 +82,22 @@ impl Watchdog {
     /// Forgets that it has bitten.
     pub fn forget(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    }
+}
+
+impl Watchdog for IndependentWatchdog {
+    fn start(&self) {
+        self.debug
+            .apb1_fz()
+            .modify(|_, w| w.dbg_iwdg_stop().set_bit());
+        self.watchdog.kr().write(|w| w.key().start());
+        self.watchdog.kr().write(|w| w.key().unlock());
+        self.watchdog.pr().write(|w| w.pr().divide_by4());
+        self.watchdog.rlr().write(|w| w.rl().set(15));
+        self.feed();
+    }
+
+    fn feed(&self) {
+        self.watchdog.kr().write(|w| w.key().feed());
     }
 }

@@ -1,18 +1,18 @@
 //! The link's pins, and what the main loop has of the chip.
 
-use core::sync::atomic::AtomicU32;
-
 use stm32f4::stm32f405::{FLASH, GPIOB, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
+use super::chip::{Spi1, Wait};
 use super::clocks::CORE_HZ;
+use super::converter::Converter;
+use super::inputs::PinInputs;
 use super::line::Port;
-use super::outputs::Watchdog;
-use super::{ABILITIES, ChipLog, SAMPLED, Silicon, TICK};
+use super::outputs::{IndependentWatchdog, OutputPins};
+use super::{ABILITIES, TASKS};
 use crate::board::chip_platform::Chip;
-use crate::board::held::Held;
+use crate::board::silicon::ChipTasks;
 use crate::board::{Abilities, slots};
-use crate::tick::TickTask;
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
@@ -45,18 +45,18 @@ impl F405 {
 }
 
 impl Chip for F405 {
-    type Board = Silicon;
-    type Log = ChipLog;
+    type Pins = OutputPins;
+    type Watchdog = IndependentWatchdog;
+    type Source = Converter;
+    type Inputs = PinInputs;
+    type Spi = Spi1;
+    type Wait = Wait;
     type Port = Port;
     const MHZ: u32 = CORE_HZ / 1_000_000;
     const ABILITIES: Abilities = ABILITIES;
 
-    fn tick() -> &'static Held<TickTask<'static, Silicon>> {
-        &TICK
-    }
-
-    fn sampled() -> &'static AtomicU32 {
-        &SAMPLED
+    fn tasks() -> &'static ChipTasks<Self> {
+        &TASKS
     }
 
     // RM0090, random number generator. It takes 40 of its cycles.
@@ -73,6 +73,6 @@ impl Chip for F405 {
     }
 
     fn forget_reset(&self) {
-        Watchdog::forget(&self.rcc);
+        IndependentWatchdog::forget(&self.rcc);
     }
 }

@@ -3,6 +3,8 @@
 use stm32g4::stm32g474::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
+use crate::board::silicon::{OutputRegisters, Watchdog};
+
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4 is the service input, high while on.
 pub struct OutputPort(GPIOC);
@@ -27,8 +29,16 @@ impl OutputPort {
         outputs
     }
 
-    /// Sets all levels at once.
-    pub fn drive(&self, outputs: Outputs) {
+    /// Whether the service input is on.
+    pub fn service() -> bool {
+        // SAFETY: a read of a register that reading does not change.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
+    }
+}
+
+impl OutputRegisters for OutputPort {
+    fn drive(&self, outputs: Outputs) {
         let levels = [
             (outputs.run, 6),
             (outputs.no_brake, 7),
@@ -42,16 +52,7 @@ impl OutputPort {
             .write(|w| unsafe { w.bits(set.iter().fold(DROP_ALL, |all, it| all | it)) });
     }
 
-    /// Whether the service input is on.
-    pub fn service() -> bool {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.idr().read().idr4().bit_is_set()
-    }
-
-    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
-    /// top.
-    pub fn drop_now() {
+    fn drop_now() {
         // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOC::ptr() };
         // SAFETY: likewise.
@@ -60,31 +61,15 @@ impl OutputPort {
 }
 
 /// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms of its oscillator.
-pub struct IndependentWatchdog(IWDG);
+pub struct IndependentWatchdog {
+    watchdog: IWDG,
+    debug: DBGMCU,
+}
 
 impl IndependentWatchdog {
     /// Not started.
-    pub fn new(iwdg: IWDG) -> Self {
-        Self(iwdg)
-    }
-
-    /// Starts it; it stands still while a debugger halts the core.
-    pub fn start(&self, dbgmcu: &DBGMCU) {
-        dbgmcu.apb1l_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
-        // SAFETY: keys of RM0440, IWDG_KR: start, unlock. A quarter of 32 kHz, 16 of it.
-        unsafe {
-            self.0.kr().write(|w| w.bits(0xcccc));
-            self.0.kr().write(|w| w.bits(0x5555));
-            self.0.pr().write(|w| w.bits(0));
-            self.0.rlr().write(|w| w.bits(15));
-        }
-        self.feed();
-    }
-
-    /// Gives it another 2 ms.
-    pub fn feed(&self) {
-        // SAFETY: the key of RM0440, IWDG_KR.
-        self.0.kr().write(|w| unsafe { w.bits(0xaaaa) });
+    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
+        Self { watchdog, debug }
     }
 
     /// Whether it has bitten since power was applied or [`Self::forget`] was called.
@@ -95,5 +80,26 @@ impl IndependentWatchdog {
     /// Forgets it.
     pub fn forget(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    }
+}
+
+impl Watchdog for IndependentWatchdog {
+    fn start(&self) {
+        self.debug
+            .apb1l_fz()
+            .modify(|_, w| w.dbg_iwdg_stop().set_bit());
+        // SAFETY: keys of RM0440, IWDG_KR: start, unlock. A quarter of 32 kHz, 16 of it.
+        unsafe {
+            self.watchdog.kr().write(|w| w.bits(0xcccc));
+            self.watchdog.kr().write(|w| w.bits(0x5555));
+            self.watchdog.pr().write(|w| w.bits(0));
+            self.watchdog.rlr().write(|w| w.bits(15));
+        }
+        self.feed();
+    }
+
+    fn feed(&self) {
+        // SAFETY: the key of RM0440, IWDG_KR.
+        self.watchdog.kr().write(|w| unsafe { w.bits(0xaaaa) });
     }
 }

@@ -1,19 +1,19 @@
 //! What the main loop has of the chip.
 
-use core::sync::atomic::AtomicU32;
-
 use stm32g4::stm32g474::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
 use super::clocks::CORE_HZ;
+use super::converter::ExternalConverter;
+use super::inputs::TimerInputs;
 use super::line::ChannelPort;
-use super::outputs::IndependentWatchdog;
-use super::{ABILITIES, ChipLog, Nucleo, SAMPLED, TICK};
+use super::outputs::{IndependentWatchdog, OutputPort};
+use super::spi::{SelectedSpi, Wait};
+use super::{ABILITIES, TASKS};
 use crate::board::chip_platform::Chip;
-use crate::board::held::Held;
+use crate::board::silicon::ChipTasks;
 use crate::board::slots::ConfigFlash;
 use crate::board::{Abilities, slots};
-use crate::tick::TickTask;
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 10_000;
@@ -38,18 +38,18 @@ impl G474 {
 }
 
 impl Chip for G474 {
-    type Board = Nucleo;
-    type Log = ChipLog;
+    type Pins = OutputPort;
+    type Watchdog = IndependentWatchdog;
+    type Source = ExternalConverter;
+    type Inputs = TimerInputs;
+    type Spi = SelectedSpi;
+    type Wait = Wait;
     type Port = ChannelPort;
     const MHZ: u32 = CORE_HZ / 1_000_000;
     const ABILITIES: Abilities = ABILITIES;
 
-    fn tick() -> &'static Held<TickTask<'static, Nucleo>> {
-        &TICK
-    }
-
-    fn sampled() -> &'static AtomicU32 {
-        &SAMPLED
+    fn tasks() -> &'static ChipTasks<Self> {
+        &TASKS
     }
 
     // RM0440, random number generator.

@@ -16,7 +16,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::SCB;
 use defmt::{Debug2Format, Display2Format, error, info};
-use stm32f4::stm32f405::{Interrupt, NVIC, Peripherals, TIM2};
+use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
@@ -262,13 +262,8 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         given: 0,
         in_real_time: head.in_real_time,
     });
-    held::set_tick_priority(&mut core.SCB);
     SAMPLING.with(|it| start_timer(&it.timer, abilities.sample_rate));
-    // SAFETY: what the handlers need is in place.
-    unsafe {
-        core.NVIC.set_priority(Interrupt::TIM2, held::SAMPLING);
-        NVIC::unmask(Interrupt::TIM2);
-    }
+    held::unmask(&mut core, Interrupt::TIM2);
     let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
     Ok((below, EmulatorPlatform::new(line, abilities, file, log)))
 }

@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 use touchdown_core::event::{Act, Notice, Ordered};
-use touchdown_protocol::controller::Fault;
 use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
@@ -82,9 +81,7 @@ fn shown(metres: f64) -> f64 {
 }
 
 fn state(state: &State, watched: &Watched) -> Value {
-    let faults = Fault::ALL
-        .into_iter()
-        .filter(|it| state.faults.contains(*it));
+    let faults = state.faults.iter();
     let sample = (state.sample != u64::MAX).then_some(state.sample);
     json!({
         "sample": sample,

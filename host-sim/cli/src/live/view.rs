@@ -6,7 +6,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 use touchdown_core::detect::Phase;
-use touchdown_protocol::controller::{Fault, Mode};
+use touchdown_protocol::controller::Mode;
 use touchdown_protocol::link::State;
 
 use super::orbit::orbit;
@@ -224,10 +224,7 @@ fn outputs(head: &'static str, outputs: [(&str, bool); 2], pen: Pen) -> Line<'st
 }
 
 fn faults(state: &State, pen: Pen) -> Line<'static> {
-    let all = Fault::ALL
-        .into_iter()
-        .filter(|it| state.faults.contains(*it));
-    let names: Vec<_> = all.map(fault_name).collect();
+    let names: Vec<_> = state.faults.iter().map(fault_name).collect();
     let text = if names.is_empty() {
         Span::raw("none")
     } else {
@@ -247,7 +244,7 @@ fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {
     let fate = match (event.confirmed_s, event.withdrawn_s, &event.fault) {
         (_, Some(_), _) => " withdrawn".to_owned(),
         (Some(_), None, _) => " confirmed".to_owned(),
-        (None, None, Some(fault)) => format!(" {} {}", fault.channel, fault.kind.name()),
+        (None, None, Some(fault)) => format!(" {} {}", fault.channel, fault.kind),
         (None, None, None) => String::new(),
     };
     let speed = event

@@ -149,7 +149,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         };
         let fault = event
             .fault
-            .map(|it| format!("  {} {}", it.channel, it.kind.name()));
+            .map(|it| format!("  {} {}", it.channel, it.kind));
         let fault = fault.unwrap_or_default();
         text += &format!(
             "{:<16}{:>12.4}{:>14.4}{speed:>10}{fault}\n",

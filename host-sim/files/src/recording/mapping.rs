@@ -64,16 +64,19 @@ pub struct TextHints {
 }
 
 /// Between fields.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, strum::Display)]
 pub enum Delimiter {
     /// `,`
     #[serde(rename = ",", alias = "comma")]
+    #[strum(serialize = "commas")]
     Comma,
     /// `;`
     #[serde(rename = ";", alias = "semicolon")]
+    #[strum(serialize = "semicolons")]
     Semicolon,
     /// A tabulator.
     #[serde(rename = "\t", alias = "tab")]
+    #[strum(serialize = "tabs")]
     Tab,
 }
 
@@ -87,15 +90,6 @@ impl Delimiter {
             Self::Comma => b',',
             Self::Semicolon => b';',
             Self::Tab => b'\t',
-        }
-    }
-
-    /// For people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Comma => "commas",
-            Self::Semicolon => "semicolons",
-            Self::Tab => "tabs",
         }
     }
 }

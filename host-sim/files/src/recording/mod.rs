@@ -282,7 +282,7 @@ fn of_comtrade<R: Read + 'static>(
         meter,
         rate: cfg.rate(),
         header: 1,
-        format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data.name())),
+        format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data)),
         learnt: Before::default(),
         is_episode,
         size,
@@ -309,6 +309,6 @@ fn format_of(layout: &Layout) -> String {
     format!(
         "text, {} columns with {} between{decimal}{before}",
         layout.columns.len(),
-        layout.delimiter.name()
+        layout.delimiter
     )
 }

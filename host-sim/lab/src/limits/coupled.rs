@@ -119,7 +119,7 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
             seen.impact(&scene, &ours, truth, late);
         }
     }
-    let name = format!("{}: {name}", scene.model.rung.name());
+    let name = format!("{}: {name}", scene.model.rung);
     Ok(seen.rows(&name, precision))
 }
 

@@ -69,11 +69,7 @@ fn summary(rows: &[Row], paint: Paint) -> String {
     for row in broken {
         text += &format!(
             "  {} ({}): {:e} {}, limit {:e}\n",
-            row.extreme,
-            row.precision.name(),
-            row.measured,
-            row.unit,
-            row.limit
+            row.extreme, row.precision, row.measured, row.unit, row.limit
         );
     }
     text

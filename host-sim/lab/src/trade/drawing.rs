@@ -68,14 +68,13 @@ fn key(rows: &[Row]) -> Markup {
         .map(|rung| {
             (
                 format!("{} f32", rung_class(rung)),
-                format!("rung {}", rung.name()),
+                format!("rung {}", rung),
             )
         })
         .collect();
-    entries.extend(Precision::ALL.map(|precision| {
-        let name = precision.name();
-        (format!("levitated {name}"), name.to_owned())
-    }));
+    entries.extend(
+        Precision::ALL.map(|precision| (format!("levitated {precision}"), precision.to_string())),
+    );
     html! {
         @for (index, (class, name)) in entries.iter().enumerate() {
             @let y = 0.5 * HEIGHT + 20.0 * index as f64;
@@ -94,7 +93,7 @@ fn shown(rows: &[Row]) -> impl Iterator<Item = Fidelity> {
 
 /// Style class of a rung.
 pub(super) fn rung_class(rung: Fidelity) -> String {
-    format!("rung-{}", rung.name())
+    format!("rung-{}", rung)
 }
 
 struct Axes {
@@ -150,7 +149,7 @@ impl Axes {
         html! {
             @for (row, cost) in known {
                 @let y = (1.0 - self.error.fraction(height(row.worst_error))) * HEIGHT;
-                @let class = format!("{} {}", rung_class(row.rung), row.precision.name());
+                @let class = format!("{} {}", rung_class(row.rung), row.precision);
                 @let large = row.pareto && self.of == Cost::Here;
                 circle class=(class) cx=(self.cost.percent(cost)) cy=(format!("{y:.1}"))
                     r=(if large { "6" } else { "3.5" }) {
@@ -181,10 +180,10 @@ pub(super) fn legend(rows: &[Row]) -> Markup {
     html! {
         ul.legend {
             @for rung in shown(rows) {
-                li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung.name()) }
+                li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung) }
             }
             @for precision in Precision::ALL {
-                li { (dot(&format!("levitated {}", precision.name()))) (precision.name()) }
+                li { (dot(&format!("levitated {precision}"))) (precision) }
             }
             li { "large and joined: the front" }
         }

@@ -75,10 +75,7 @@ impl Row {
     pub fn name(&self) -> String {
         format!(
             "{} {} {} {}",
-            self.rung.name(),
-            self.scheme.name(),
-            self.precision.name(),
-            self.math.name()
+            self.rung, self.scheme, self.precision, self.math
         )
     }
 }

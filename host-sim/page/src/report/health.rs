@@ -14,13 +14,13 @@ pub fn health(outcome: &Outcome) -> Markup {
     let faults: Vec<_> = faults.filter_map(|it| Some((it, it.fault?))).collect();
     let table = table("Sensor faults", &faults)
         .words("Channel", |it| it.1.channel)
-        .words("Fault", |it| it.1.kind.name())
+        .words("Fault", |it| it.1.kind.to_string())
         .number("since, ms", |it| ms(it.0.onset_s))
         .number("told, ms", |it| ms(it.0.declared_s));
     let bad: Vec<String> = (0..)
         .zip(detection.conditions)
         .filter(|(_, condition)| *condition != Condition::Ok)
-        .map(|(channel, condition)| format!("{} is {}", channel_name(channel), condition.name()))
+        .map(|(channel, condition)| format!("{} is {}", channel_name(channel), condition))
         .collect();
     html! {
         p {

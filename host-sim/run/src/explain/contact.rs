@@ -14,7 +14,7 @@ pub(super) fn contact(scene: &Scene) -> Vec<Row> {
     };
     let micros = |seconds: f64| format!("{:.4} us", seconds * 1e6);
     vec![
-        ("shape", scene.materials.contact.name().to_owned()),
+        ("shape", scene.materials.contact.to_string()),
         (
             "K, force is K d^n",
             format!("{:.6e} N/m^{exponent}", compliance.stiffness),

@@ -45,10 +45,10 @@ pub(super) fn model(scene: &Scene) -> Vec<Row> {
     let (count, which) = degrees_of_freedom(scene);
     let mut rows = vec![
         ("rung", rung.to_owned()),
-        ("scheme", scene.model.scheme.name().to_owned()),
+        ("scheme", scene.model.scheme.to_string()),
         ("degrees of freedom", format!("{count}: {which}")),
-        ("number format", scene.model.precision.name().to_owned()),
-        ("functions", scene.model.math.name().to_owned()),
+        ("number format", scene.model.precision.to_string()),
+        ("functions", scene.model.math.to_string()),
         ("step", step),
         ("state", state(scene)),
     ];

@@ -22,7 +22,7 @@ pub fn explain(choice: &Choice) -> String {
             let _ = writeln!(
                 text,
                 "  {}: {}, asked {}",
-                request.output.name(),
+                request.output,
                 request.output.show(errors.fold(f64::INFINITY, f64::min)),
                 request.output.show(request.tolerance)
             );
@@ -45,7 +45,7 @@ pub fn explain(choice: &Choice) -> String {
         let _ = writeln!(
             text,
             "  {}: {}, asked {}",
-            request.output.name(),
+            request.output,
             request.output.show(error),
             request.output.show(request.tolerance)
         );
@@ -71,9 +71,7 @@ fn lacks(candidate: &Candidate, choice: &Choice) -> String {
         .iter()
         .zip(&candidate.errors)
         .filter(|(request, error)| **error > request.tolerance)
-        .map(|(request, &error)| {
-            format!("{} {}", request.output.name(), request.output.show(error))
-        })
+        .map(|(request, &error)| format!("{} {}", request.output, request.output.show(error)))
         .collect();
     format!(
         "{}, {}: {}",
@@ -87,10 +85,10 @@ fn lacks(candidate: &Candidate, choice: &Choice) -> String {
 pub(crate) fn name(model: &Model) -> String {
     format!(
         "{} {} {} {}, step {} us",
-        model.rung.name(),
-        model.scheme.name(),
-        model.precision.name(),
-        model.math.name(),
+        model.rung,
+        model.scheme,
+        model.precision,
+        model.math,
         (model.step * 1e9).round() / 1e3
     )
 }

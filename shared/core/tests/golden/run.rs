@@ -83,7 +83,7 @@ fn declared(event: &Event) -> String {
         write!(text, ", {} m/s", event.normal_speed).expect("a string");
     }
     if let Some(fault) = event.fault {
-        write!(text, ", {} of channel {}", fault.kind.name(), fault.channel).expect("a string");
+        write!(text, ", {} of channel {}", fault.kind, fault.channel).expect("a string");
     }
     text
 }
@@ -102,7 +102,7 @@ fn end(state: &MonitorState) -> String {
         state.motion(),
         state.is_armed()
     );
-    let channels = state.conditions().map(|it| it.name());
+    let channels = state.conditions().map(|it| it.to_string());
     writeln!(
         text,
         "channels {channels:?}, {} values without use",

@@ -10,7 +10,7 @@ pub const HEAD_BYTES: usize = 8;
 pub const PAYLOAD_BYTES: usize = BLOCK_BYTES - HEAD_BYTES - 4;
 
 /// What a block carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum Kind {
     /// [`super::header::Header`].
@@ -27,22 +27,6 @@ pub enum Kind {
     Severity = b'S',
     /// [`super::ending::Ending`].
     Ending = b'Z',
-}
-
-impl Kind {
-    const ALL: [Self; 7] = [
-        Self::Header,
-        Self::Learnt,
-        Self::Waveform,
-        Self::Pulses,
-        Self::Events,
-        Self::Severity,
-        Self::Ending,
-    ];
-
-    fn of(code: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&kind| kind as u8 == code)
-    }
 }
 
 /// A block before it has a place.
@@ -148,7 +132,7 @@ impl<'a> Page<'a> {
         Self::Sealed(Sealed {
             sequence: u32::from_le_bytes([bytes[4], bytes[5], bytes[6], bytes[7]]),
             index: u16::from_le_bytes([bytes[2], bytes[3]]),
-            kind: Kind::of(bytes[0]),
+            kind: Kind::from_repr(bytes[0]),
             payload,
         })
     }

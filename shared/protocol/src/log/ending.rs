@@ -7,7 +7,7 @@ use crate::controller::Cause;
 pub const ENDING_BYTES: usize = 29;
 
 /// Why an episode ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -20,10 +20,6 @@ pub enum Closing {
     Quiet = 2,
     /// As long as an episode may be; the drop goes on.
     Longest = 3,
-}
-
-impl Closing {
-    const ALL: [Self; 4] = [Self::Levitated, Self::Withdrawn, Self::Quiet, Self::Longest];
 }
 
 /// What an episode added up to.
@@ -70,7 +66,7 @@ impl Ending {
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut fields = Fields(bytes);
         Some(Self {
-            closing: *Closing::ALL.get(usize::from(fields.u8()?))?,
+            closing: Closing::from_repr(fields.u8()?)?,
             landing: fields.u8()? != 0,
             blocks: fields.u16()?,
             samples: fields.u32()?,

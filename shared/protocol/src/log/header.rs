@@ -114,7 +114,7 @@ impl Header {
         let decimation = fields.u16()?;
         let full_scale = fields.u16()?;
         let fitted = fields.u8()?;
-        let trigger_kind = *EventKind::ALL.get(usize::from(fields.u8()?))?;
+        let trigger_kind = EventKind::from_repr(fields.u8()?)?;
         let mut header = Self {
             decimation,
             full_scale,

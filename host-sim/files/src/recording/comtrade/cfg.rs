@@ -52,7 +52,8 @@ pub struct Analog {
 }
 
 /// How the data are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "UPPERCASE", ascii_case_insensitive)]
 pub enum Data {
     /// Numbers with commas.
     Ascii,
@@ -62,28 +63,6 @@ pub enum Data {
     Binary32,
     /// IEEE 754, 32 bit.
     Float32,
-}
-
-impl Data {
-    /// As the file has it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ascii => "ASCII",
-            Self::Binary => "BINARY",
-            Self::Binary32 => "BINARY32",
-            Self::Float32 => "FLOAT32",
-        }
-    }
-}
-
-impl FromStr for Data {
-    type Err = ();
-
-    fn from_str(text: &str) -> Result<Self, ()> {
-        let all = [Self::Ascii, Self::Binary, Self::Binary32, Self::Float32];
-        let is = |it: &Self| text.trim().eq_ignore_ascii_case(it.name());
-        all.into_iter().find(is).ok_or(())
-    }
 }
 
 /// The lines of the text, one after the other, with their numbers.
@@ -168,7 +147,7 @@ impl Cfg {
             instant("the trigger's time")?,
         );
         let kind = lines.next("the kind of the data file")?;
-        let Ok(data) = kind.parse() else {
+        let Ok(data) = kind.trim().parse() else {
             let rule = "must be ASCII, BINARY, BINARY32 or FLOAT32";
             return lines.fail(format!("the kind of the data file {rule}, is {kind:?}"));
         };
