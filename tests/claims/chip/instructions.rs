@@ -210,7 +210,7 @@ fn whole_drops_take_what_their_parts_add_up_to() {
     let mut compared = 0;
     for model in models(&scene.model) {
         scene.model = model;
-        let names = [
+        let names: [&str; 4] = [
             model.rung.into(),
             model.scheme.into(),
             model.precision.into(),

@@ -47,7 +47,7 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
         .number("Difference", |it| it[3].clone());
     html! {
         p {
-            "The model ran in " (scene.model.precision.name()) " with an output interval of "
+            "The model ran in " (scene.model.precision) " with an output interval of "
             (si(scene.model.step, "s")) ". The reference is an independent solver in f64."
             @if let Some(line) = given_up { " " strong { "The " (line) "." } }
         }

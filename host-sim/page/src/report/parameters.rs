@@ -37,7 +37,7 @@ pub fn parameters(scene: &Scene) -> Markup {
             si(scene.sensors.noise, "m"),
         ),
         ("Noise seed", scene.run.seed.to_string()),
-        ("Model precision", scene.model.precision.name().to_owned()),
+        ("Model precision", scene.model.precision.to_string()),
         ("Model output interval", si(scene.model.step, "s")),
     ];
     html! {
