@@ -3,51 +3,14 @@
 use core::sync::atomic::Ordering;
 
 use cortex_m::peripheral::{DWT, SCB};
-use embedded_hal::delay::DelayNs;
 use touchdown_protocol::link::{Frame, Refusal};
 
-use super::bus::SpiRegisters;
-use super::inputs::InputRegisters;
-use super::line::{Line, LineRegisters};
-use super::silicon::{ChipBoard, ChipLog, ChipTasks, OutputRegisters, Watchdog};
+use super::line::Line;
+use super::silicon::{Chip, ChipBoard, ChipLog};
 use super::{Abilities, record};
 use crate::journal;
-use crate::platform::{JournalEntry, Platform, SampleSource};
+use crate::platform::{JournalEntry, Platform};
 use crate::tick::TickTask;
-
-/// Registers of a chip.
-pub trait Chip: Sized + 'static {
-    /// Of the outputs.
-    type Pins: OutputRegisters;
-    /// Of the watchdog.
-    type Watchdog: Watchdog;
-    /// The converter.
-    type Source: SampleSource;
-    /// What comes with the positions.
-    type Inputs: InputRegisters;
-    /// SPI of the log's flash.
-    type Spi: SpiRegisters;
-    /// Waits.
-    type Wait: DelayNs + Copy;
-    /// The line.
-    type Port: LineRegisters;
-    /// Of its core.
-    const MHZ: u32;
-    /// What a configuration has to fit.
-    const ABILITIES: Abilities;
-
-    /// What interrupts and main loop share.
-    fn tasks() -> &'static ChipTasks<Self>;
-
-    /// A word of the noise source; none where it fails.
-    fn word(&self) -> Option<u32>;
-
-    /// Keeps a valid configuration.
-    fn store(&self, block: &[u8]) -> Result<(), Refusal>;
-
-    /// Forgets that the watchdog has bitten.
-    fn forget_reset(&self);
-}
 
 /// The chip, its line and the log.
 pub struct ChipPlatform<C: Chip> {

@@ -11,12 +11,13 @@ use touchdown_core::event::Notice;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
+use touchdown_protocol::link::Refusal;
 use touchdown_rotor::error::ConfigError;
 
-use super::bus::Bus;
-use super::chip_platform::{Chip, ChipPlatform};
+use super::bus::{Bus, SpiRegisters};
 use super::held::{self, Held};
-use super::inputs::Inputs;
+use super::inputs::{InputRegisters, Inputs};
+use super::line::LineRegisters;
 use super::slots::{self, ConfigFlash};
 use super::{Abilities, Board, SAMPLE_RATE_HZ, image, record};
 use crate::drop_log::DropLog;
@@ -24,7 +25,7 @@ use crate::intake::{Incoming, Intake};
 use crate::main_loop::MainLoop;
 use crate::memory::{self, Memory};
 use crate::overrun::Overruns;
-use crate::platform::SampleSource;
+use crate::platform::{Platform, SampleSource};
 use crate::power_on::{InForce, PowerOn};
 use crate::recorder::Identity;
 use crate::tick::TickTask;
@@ -51,6 +52,40 @@ pub trait Watchdog {
 
     /// Gives it another 2 ms.
     fn feed(&self);
+}
+
+/// Registers of a chip.
+pub trait Chip: Sized + 'static {
+    /// Of the outputs.
+    type Pins: OutputRegisters;
+    /// Of the watchdog.
+    type Watchdog: Watchdog;
+    /// The converter.
+    type Source: SampleSource;
+    /// What comes with the positions.
+    type Inputs: InputRegisters;
+    /// SPI of the log's flash.
+    type Spi: SpiRegisters;
+    /// Waits.
+    type Wait: DelayNs + Copy;
+    /// The line.
+    type Port: LineRegisters;
+    /// Of its core.
+    const MHZ: u32;
+    /// What a configuration has to fit.
+    const ABILITIES: Abilities;
+
+    /// What interrupts and main loop share.
+    fn tasks() -> &'static ChipTasks<Self>;
+
+    /// A word of the noise source; none where it fails.
+    fn word(&self) -> Option<u32>;
+
+    /// Keeps a valid configuration.
+    fn store(&self, block: &[u8]) -> Result<(), Refusal>;
+
+    /// Forgets that the watchdog has bitten.
+    fn forget_reset(&self);
 }
 
 /// What the tick has of the chip.
@@ -214,7 +249,7 @@ impl<C: Chip> ChipTasks<C> {
 
 /// The main loop, where all is up.
 #[inline(always)]
-pub fn run<C: Chip>(started: Option<(MainLoop, ChipPlatform<C>)>) -> ! {
+pub fn run<P: Platform>(started: Option<(MainLoop, P)>) -> ! {
     if let Some((mut below, mut chip)) = started {
         below.run(&mut chip);
     }

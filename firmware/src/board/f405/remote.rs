@@ -10,8 +10,7 @@ use super::inputs::PinInputs;
 use super::line::Port;
 use super::outputs::{IndependentWatchdog, OutputPins};
 use super::{ABILITIES, TASKS};
-use crate::board::chip_platform::Chip;
-use crate::board::silicon::ChipTasks;
+use crate::board::silicon::{Chip, ChipTasks};
 use crate::board::{Abilities, slots};
 
 /// Looks at the noise source, far more than a word takes.

@@ -10,8 +10,7 @@ use super::line::ChannelPort;
 use super::outputs::{IndependentWatchdog, OutputPort};
 use super::spi::{SelectedSpi, Wait};
 use super::{ABILITIES, TASKS};
-use crate::board::chip_platform::Chip;
-use crate::board::silicon::ChipTasks;
+use crate::board::silicon::{Chip, ChipTasks};
 use crate::board::slots::ConfigFlash;
 use crate::board::{Abilities, slots};
 
