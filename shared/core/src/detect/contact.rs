@@ -4,8 +4,9 @@ use core::f32::consts::TAU;
 
 use crate::config::{DetectorConfig, MachineConfig, NEAREST_WALL};
 use crate::detect::estimate::Place;
-use crate::detect::lift_off::LiftOff;
+use crate::detect::lift_off::{LiftOff, MEMORY};
 use crate::detect::measurement::Measurement;
+use crate::detect::retainer_wall::RetainerWall;
 use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Kind, Slip, Verdict};
 use crate::detect::still::Still;
@@ -153,10 +154,11 @@ impl ContactTest {
         }
     }
 
-    /// Takes the next sample, or its absence.
+    /// Takes the next sample, or its absence. It shows where the wall is.
     pub(crate) fn take(
         &self,
         state: &mut Touching,
+        wall: &mut RetainerWall,
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -177,7 +179,7 @@ impl ContactTest {
         }
         let sample = measurement.map(|measurement| (measurement.position, measurement.variance));
         self.filter.take(&mut state.track, sample, slip);
-        if let Some(age) = measurement.and_then(|measurement| self.lift_off(state, measurement)) {
+        if let Some(age) = measurement.and_then(|it| self.lift_off(state, wall, it)) {
             return [Some(Finding::LiftOff(age)), None];
         }
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
@@ -187,11 +189,31 @@ impl ContactTest {
         [kind, regime]
     }
 
-    fn lift_off(&self, state: &mut Touching, measurement: &Measurement) -> Option<f32> {
-        let (_, radius) = direction(measurement.position);
+    /// Samples since the rotor has left the wall. Until then it shows where that is.
+    fn lift_off(
+        &self,
+        state: &mut Touching,
+        wall: &mut RetainerWall,
+        measurement: &Measurement,
+    ) -> Option<f32> {
         let lift = &mut state.lift;
-        let found = lift.take(radius, measurement.variance, self.threshold);
-        found.or_else(|| lift.carried(self.nearest))
+        let (beside, variance) = (wall.beside(measurement.position), measurement.variance);
+        let found = lift.take(
+            beside.radius,
+            beside.gap,
+            variance + beside.variance,
+            self.threshold,
+        );
+        if lift.is_at_wall() {
+            if beside.variance > variance / MEMORY {
+                wall.learn(&beside, variance);
+            } else {
+                wall.follow(&beside, 1.0 / MEMORY);
+            }
+        }
+        // A slow lift took the wall along.
+        let is_carried = lift.is_settled() && lift.lately < self.nearest;
+        found.or_else(|| is_carried.then_some(MEMORY))
     }
 
     /// `slip` as against a wall that does not turn, m/s, where measured.
@@ -317,9 +339,9 @@ impl ContactTest {
 }
 
 impl Touching {
-    /// Radius at which the wall seems to be, m.
+    /// Radius at which the wall has lately been, m.
     pub(crate) fn wall(&self) -> f32 {
-        self.lift.wall
+        self.lift.lately
     }
 
     /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
@@ -327,20 +349,17 @@ impl Touching {
         self.lift.wavering()
     }
 
-    /// As it goes on at one end of the rotor alone, where the wall seems to be `shift` (m) farther.
-    pub(crate) fn at_one_end(&self, shift: f32) -> Self {
-        Self {
-            lift: self.lift.at_one_end(shift),
-            ..*self
-        }
+    /// As it goes on at one end of the rotor alone, where the sensors show all by `way` (m) elsewhere.
+    pub(crate) fn at_one_end(&self, way: [f32; 2]) -> Self {
+        let mut it = *self;
+        let [x, y] = self.outward();
+        it.lift = it.lift.at_one_end(way[0] * x + way[1] * y);
+        it
     }
 
-    /// As that of one end goes on for both: where the wall is must be learnt anew.
-    pub(crate) fn of_both(&self) -> Self {
-        Self {
-            lift: LiftOff::default(),
-            ..*self
-        }
+    /// Where the wall is must be learnt anew.
+    pub(crate) fn learn_anew(&mut self) {
+        self.lift = LiftOff::default();
     }
 
     /// Unit vector from the centre to the contact.

@@ -562,12 +562,10 @@ impl DetectorState {
             *origin = sum(*origin, way);
         }
         if !self.ends.are_alone() {
-            let outward = self.rotor.contact.outward();
-            let farther = way[0] * outward[0] + way[1] * outward[1];
             let track = &mut self.rotor.flight.track;
             track.position = sum(track.position, way);
-            self.rotor.flight.shift_wall(way);
-            self.rotor.contact = self.rotor.contact.at_one_end(farther);
+            self.rotor.flight.wall.shift(way);
+            self.rotor.contact = self.rotor.contact.at_one_end(way);
         }
     }
 

@@ -131,14 +131,11 @@ impl EndsTest {
         fixes: [&Measurement; PLANES],
         threshold_scale: f32,
     ) {
-        let outward = rotor.contact.outward();
         let [_, e] = ends.mean;
-        let wall = e[0] * outward[0] + e[1] * outward[1];
-        for ((phase_state, measurement), wall) in
-            ends.alone.iter_mut().zip(fixes).zip([wall, -wall])
-        {
+        let ways = [e, e.map(|it| -it)];
+        for ((phase_state, measurement), way) in ends.alone.iter_mut().zip(fixes).zip(ways) {
             self.phase_machine
-                .part(phase_state, rotor, measurement, wall, threshold_scale);
+                .part(phase_state, rotor, measurement, way, threshold_scale);
         }
         ends.are_alone = true;
         ends.together = 0;
@@ -222,7 +219,7 @@ impl EndsTest {
             _ if a.phase == Phase::Levitated && b.phase == Phase::Levitated => a,
             _ => return None,
         };
-        joined.contact = joined.contact.of_both();
+        self.phase_machine.both(joined);
         ends.are_alone = false;
         ends.apart = 0;
         Some(joined)

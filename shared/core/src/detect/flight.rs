@@ -8,7 +8,8 @@ use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::Jump;
 use crate::detect::track::{Ballistic, Track};
-use crate::vector::{direction, square};
+use crate::event::Moment;
+use crate::vector::{direction, less, square};
 use touchdown_rotor::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
@@ -32,6 +33,8 @@ const PULL_ERROR: f32 = 5.0;
 const WELL_KNOWN: f32 = 2e-3;
 /// Acceleration beside told gravity from which on a motion is no fall, m/s^2: magnets that hold, shocks.
 const BESIDE: f32 = 2.0 * PULL_ERROR;
+/// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
+const STEADY: f32 = 0.2;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -86,8 +89,10 @@ pub(crate) struct Airborne {
     pub(crate) series: Series,
     /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
     pull: Option<([f32; 2], f32)>,
-    /// The wall, once an impact has shown it.
-    seen_wall: Option<RetainerWall>,
+    /// The wall, as impacts and contacts have shown it.
+    pub(crate) wall: RetainerWall,
+    /// Where the last impact showed it (m), and the variance of that (m^2): taken in with the next sample.
+    shown: Option<([f32; 2], f32)>,
     /// Samples since it began, or since the last jump.
     flown: u16,
     near_wall: u32,
@@ -111,18 +116,11 @@ impl Airborne {
         self.lying = 0;
     }
 
-    /// The sensors show the wall by `way` (m) elsewhere.
-    pub(crate) fn shift_wall(&mut self, way: [f32; 2]) {
-        if let Some(wall) = &mut self.seen_wall {
-            wall.shift(way);
-        }
-    }
-
     /// What is known of another one, but for impacts under way.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.track = other.track;
         self.series = other.series;
-        self.seen_wall = other.seen_wall;
+        self.wall = other.wall;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -195,8 +193,8 @@ struct Hit {
     foreseen: bool,
     /// With which the flight before it had left the wall, m/s; 0 where it is the first.
     launch_speed: f32,
-    /// From the centre, m.
-    radius: f32,
+    /// m.
+    place: [f32; 2],
     /// Variance of that, m^2, where it shows the wall: it ended a fall.
     shown: Option<f32>,
 }
@@ -255,24 +253,29 @@ impl FlightTest {
         flight.pull.unwrap_or(told)
     }
 
-    /// The wall, where impacts have shown it elsewhere than told.
-    fn wall<'a>(&self, flight: &'a Airborne) -> Option<&'a RetainerWall> {
-        (flight.seen_wall.as_ref()).filter(|it| it.is_elsewhere(&self.told))
+    /// A contact begins.
+    pub(crate) fn begin_contact(&self, flight: &mut Airborne) {
+        flight.wall.begin_contact(&self.told);
     }
 
-    /// Distance from which on a rotor in the direction `n` is at the wall, m: a gain that is too large shows the wall
-    /// farther out where the others show it as told.
-    pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
-        (self.wall(flight)).map_or(self.near, |wall| wall.likely(n, &self.told).min(self.near))
-    }
-
-    /// The same from which on it may be there: a wall that impacts have shown as told is no nearer.
-    fn nearest(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
-        match (&flight.seen_wall, self.wall(flight)) {
-            (Some(wall), None) => self.near.min(wall.likely(n, &self.told)),
-            (_, Some(wall)) => wall.nearest(n, &self.told),
-            (None, None) => RetainerWall::told(&self.told).nearest(n, &self.told),
+    /// A contact ended where it showed the wall, or where a slow lift took the wall along.
+    pub(crate) fn end_contact(&self, flight: &mut Airborne, shows: bool) {
+        if shows {
+            flight.wall.see(&self.told);
+        } else {
+            flight.wall = RetainerWall::default();
         }
+    }
+
+    /// Distance from which on a rotor in the direction `n` is at the wall, m.
+    pub(crate) fn near(&self, flight: &Airborne, n: [f32; 2]) -> f32 {
+        flight.wall.near(n, &self.told)
+    }
+
+    /// Unit vector out of the wall in the direction of `position` (m), and that direction from the told centre.
+    fn outward(&self, flight: &Airborne, position: [f32; 2]) -> ([f32; 2], [f32; 2]) {
+        let (n, _) = direction(position);
+        (flight.wall.normal(n), n)
     }
 
     /// The flight of one end that goes on from that of both; its velocity has to be found.
@@ -291,7 +294,7 @@ impl FlightTest {
             self.pull(both),
         );
         flight.series = both.series.anew();
-        flight.seen_wall = both.seen_wall;
+        flight.wall = both.wall;
         flight.lies = both.lies;
         flight.restart(threshold_scale);
     }
@@ -330,14 +333,18 @@ impl FlightTest {
         self.jumps.skip(&mut flight.bank);
     }
 
-    /// Takes the next sample, of a fall that is certain or not yet confirmed.
+    /// Takes the next sample; `open` has the onset of a fall that is not yet confirmed, and where the rotor would be.
     pub(crate) fn take(
         &self,
         flight: &mut Airborne,
         measurement: &Measurement,
-        is_certain: bool,
+        open: Option<(Moment, [f32; 2])>,
     ) -> Option<Landing> {
         flight.flown = flight.flown.saturating_add(1);
+        if let Some((place, variance)) = flight.shown.take() {
+            flight.wall.take(place, variance, &self.told);
+            self.lie_at(flight, place);
+        }
         self.ballistic.predict(&mut flight.track);
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
@@ -353,7 +360,7 @@ impl FlightTest {
             measurement.position,
             measurement.variance,
         );
-        let (outward, _) = direction(flight.track.position);
+        let (outward, _) = self.outward(flight, flight.track.position);
         let [u, v] = flight.track.velocity;
         let approach = Approach {
             inward: outward.map(|n| -n),
@@ -363,7 +370,7 @@ impl FlightTest {
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
-            let impact = self.judge(flight, &jump, measurement, is_certain);
+            let impact = self.judge(flight, &jump, measurement, open);
             flight.flown = 0;
             flight.track.shift(&jump);
             flight.bank.restart();
@@ -385,18 +392,19 @@ impl FlightTest {
             series.go_on(hit.bounce, machine, self.period);
         } else {
             series.take(hit.bounce, hit.launch_speed, machine, self.period);
-            if let Some(variance) = hit.shown {
-                let told = RetainerWall::told(&self.told);
-                let wall = flight.seen_wall.get_or_insert(told);
-                wall.take(hit.bounce.outward, hit.radius, variance);
-            }
-            let near = self.near(flight, hit.bounce.outward);
-            flight.lies = near.max(hit.radius - self.uneven);
+            flight.shown = hit.shown.map(|variance| (hit.place, variance));
+            self.lie_at(flight, hit.place);
             flight.near_wall = 0;
             flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
         }
         flight.seen_near = 0;
         flight.lying = 0;
+    }
+
+    /// The rotor may come to lie where an impact was, at `place` (m).
+    fn lie_at(&self, flight: &mut Airborne, place: [f32; 2]) {
+        let (n, radius) = direction(place);
+        flight.lies = self.near(flight, n).max(radius - self.uneven);
     }
 
     /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
@@ -440,12 +448,14 @@ impl FlightTest {
         flight: &Airborne,
         jump: &Jump,
         measurement: &Measurement,
-        is_certain: bool,
+        open: Option<(Moment, [f32; 2])>,
     ) -> Option<Hit> {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
-        let (outward, radius) = direction(after.position_before(since));
+        let place = after.position_before(since);
+        let (outward, n) = self.outward(flight, place);
+        let (_, radius) = direction(place);
         let [u, v] = after.velocity_before(since);
         let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
@@ -490,11 +500,15 @@ impl FlightTest {
                 }
             }
         }
-        let shows = is_certain && self.falls(flight, pull);
+        let is_steady = |(onset, home)| {
+            let time = bounce.at.since(onset) * self.period;
+            is_steady(less(place, home), before, pull, time)
+        };
+        let shows = self.falls(flight, pull) && open.is_none_or(is_steady);
         let near = if shows {
-            self.nearest(flight, outward)
+            flight.wall.nearest(n, &self.told)
         } else {
-            self.near(flight, outward)
+            self.near(flight, n)
         };
         let is_hit = radius >= near && bounce.normal_speed > least;
         is_hit.then_some(Hit {
@@ -502,7 +516,7 @@ impl FlightTest {
             age,
             foreseen,
             launch_speed,
-            radius,
+            place,
             shown: shows.then(|| after.spread(0.0) * after.spread(0.0)),
         })
     }
@@ -525,19 +539,14 @@ impl FlightTest {
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
         let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
-        let ([x, y], _) = direction(track.position);
-        let [u, v] = track.velocity;
-        let normal_acceleration = self.normal_acceleration(track).max(self.slowest);
-        u * x + v * y
-            > self.min_detectable_speed(normal_acceleration, measurement.variance * threshold_scale)
-    }
-
-    /// With what the wall presses on a rotor there, m/s^2.
-    fn normal_acceleration(&self, track: &Track) -> f32 {
-        let ([x, y], _) = direction(track.position);
+        let ([x, y], _) = self.outward(flight, track.position);
         let [u, v] = track.velocity;
         let along = v * x - u * y;
-        along * along / self.machine.clearance + self::along(track.acceleration, [x, y])
+        let normal_acceleration =
+            along * along / self.machine.clearance + self::along(track.acceleration, [x, y]);
+        let normal_acceleration = normal_acceleration.max(self.slowest);
+        u * x + v * y
+            > self.min_detectable_speed(normal_acceleration, measurement.variance * threshold_scale)
     }
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
@@ -588,6 +597,12 @@ impl FlightTest {
     }
 }
 
+/// Whether way (m), velocity and acceleration are those of one acceleration since `time` (s): magnets that hold change it.
+fn is_steady(way: [f32; 2], velocity: [f32; 2], acceleration: [f32; 2], time: f32) -> bool {
+    let gone = [0, 1].map(|axis| (velocity[axis] - 0.5 * acceleration[axis] * time) * time);
+    square(way, gone) < STEADY * STEADY * square(way, [0.0; 2])
+}
+
 /// Part of `vector` along a unit vector.
 fn along([u, v]: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     u * x + v * y
@@ -599,7 +614,6 @@ mod tests {
     use crate::config::Tuning;
     use crate::detect::noise::white;
     use crate::detect::series::tests::MACHINE;
-    use crate::event::Moment;
 
     fn test(sample_rate: f32) -> FlightTest {
         let config = DetectorConfig {

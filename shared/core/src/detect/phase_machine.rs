@@ -107,20 +107,21 @@ impl PhaseMachine {
         phase_state.still = Still::default();
     }
 
-    /// One end, `measurement`, goes on from the rotor as a whole; where that lies on the wall, the end does so `wall` (m)
-    /// farther out.
+    /// One end, `measurement`, goes on from the rotor as a whole; where that lies on the wall, the end does so `way` (m)
+    /// beside it.
     pub(crate) fn part(
         &self,
         phase_state: &mut PhaseState,
         rotor: &PhaseState,
         measurement: &Measurement,
-        wall: f32,
+        way: [f32; 2],
         threshold_scale: f32,
     ) {
         phase_state.phase = rotor.phase;
         if rotor.phase.is_contact() {
             phase_state.flight.follow(&rotor.flight);
-            phase_state.contact = rotor.contact.at_one_end(wall);
+            phase_state.flight.wall.shift(way);
+            phase_state.contact = rotor.contact.at_one_end(way);
             phase_state.still = rotor.still;
         } else {
             (self.flight).part(
@@ -132,6 +133,13 @@ impl PhaseMachine {
             phase_state.contact = rotor.contact;
             phase_state.still = Still::default();
         }
+    }
+
+    /// One end goes on for both: where the wall is must be learnt anew.
+    pub(crate) fn both(&self, phase_state: &mut PhaseState) {
+        self.flight.end_contact(&mut phase_state.flight, false);
+        self.flight.begin_contact(&mut phase_state.flight);
+        phase_state.contact.learn_anew();
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
@@ -219,7 +227,8 @@ impl PhaseMachine {
         writer: &mut EventWriter,
     ) {
         let flight = &mut phase_state.flight;
-        let landing = self.flight.take(flight, measurement, pending.is_none());
+        let open = (pending.as_ref()).map(|it| (it.since, centre));
+        let landing = self.flight.take(flight, measurement, open);
         if signals.levitated == Some(false) {
             writer.resolve(pending, true);
         }
@@ -296,6 +305,7 @@ impl PhaseMachine {
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
         let velocity = phase_state.flight.track.velocity;
+        self.flight.begin_contact(&mut phase_state.flight);
         phase_state.contact = self
             .contact
             .start(measurement, velocity, spread, age, slip_left);
@@ -313,9 +323,12 @@ impl PhaseMachine {
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
-        let findings = self
-            .contact
-            .take(&mut phase_state.contact, measurement, signals);
+        let findings = self.contact.take(
+            &mut phase_state.contact,
+            &mut phase_state.flight.wall,
+            measurement,
+            signals,
+        );
         let lifting = whose(&phase_state.contact);
         if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;
@@ -340,6 +353,8 @@ impl PhaseMachine {
                 Finding::LiftOff(age) => {
                     let wall = Some(phase_state.contact.wall());
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
+                    self.flight
+                        .end_contact(&mut phase_state.flight, wall.is_some());
                     if let Some(measurement) = measurement {
                         self.fly(phase_state, measurement, wall, threshold_scale);
                     }

@@ -1,20 +1,25 @@
-//! Where the retainer's wall is: as told, or as impacts have shown it.
+//! Where the retainer's wall is: as told, or as impacts and contact have shown it.
 //!
-//! The distance from the told centre to the wall in the direction n is R + c n, with the radius R and the centre c. Each impact
-//! shows it in one direction; what it says of others follows from the errors that R and c may have.
+//! The distance from the told centre to the wall in the direction of the angle f is R + a cos f + b sin f, with the radius R
+//! and the centre (a, b). Each place on the wall shows it in one direction. What it says of others follows from the errors
+//! that the three may have: a Kalman filter. Its covariance is kept as U D U^T, with D a diagonal and U an upper triangle with
+//! ones on the diagonal, by Bierman's algorithm: in f32 the covariance itself would not stay positive (Bierman: Factorization
+//! Methods for Discrete Sequential Estimation, 1977, chapter V).
 
+use crate::vector::direction;
+use core::iter::once;
 use touchdown_rotor::real::sqrt;
 
-/// Parts of the told clearance by which radius and centre may be wrong before an impact has shown it: standard deviations.
+/// Part of the told clearance by which radius and centre may be wrong before the wall was met: a standard deviation.
 const TOLD: f32 = 0.15;
-/// The same by which the wall may differ from a circle: gains, skew, a ring that moves.
-const UNEVEN: f32 = 0.003;
 /// Standard deviations within which the wall is.
 const WITHIN: f32 = 3.0;
 /// Part of the tolerance from which on the wall is elsewhere than told.
 const APART: f32 = 0.5;
 /// Part of the told clearance that no wall is within, as for the guard.
 const LEAST: f32 = 0.67;
+
+const STATES: usize = 3;
 
 /// What is told, m.
 #[derive(Clone, Copy, Debug)]
@@ -24,82 +29,277 @@ pub(crate) struct ToldWall {
     pub(crate) tolerance: f32,
 }
 
-/// Radius and centre, m, and their covariance, m^2.
-#[derive(Clone, Copy, Debug)]
+impl ToldWall {
+    /// Distance from which on a rotor is near it, m.
+    pub(crate) fn near(&self) -> f32 {
+        self.radius - self.tolerance
+    }
+
+    /// Distance within which no wall is, m.
+    fn least(&self) -> f32 {
+        LEAST * self.radius
+    }
+}
+
+/// What was seen of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Seen {
+    #[default]
+    Nothing,
+    /// That it is where it is told to be.
+    AsTold,
+    Elsewhere,
+}
+
+/// The estimate.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RetainerWall {
-    radius: f32,
-    centre: [f32; 2],
-    /// Of radius, of it with x and y, of x, of x with y, of y.
-    covariance: [f32; 6],
+    seen: Seen,
+    /// R, a and b, m.
+    shape: [f32; STATES],
+    /// D, m^2, and the columns of U above its diagonal, but for the first, which has nothing there.
+    diagonal: [f32; STATES],
+    columns: [[f32; STATES - 1]; STATES - 1],
+}
+
+/// A place as the wall has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Beside {
+    /// From the told centre, m.
+    pub(crate) radius: f32,
+    /// From the wall, inward, m.
+    pub(crate) gap: f32,
+    /// Variance of the wall there, m^2.
+    pub(crate) variance: f32,
+    /// U^T times the waves there.
+    factors: [f32; STATES],
 }
 
 impl RetainerWall {
-    /// As told, before an impact.
-    pub(crate) fn told(told: &ToldWall) -> Self {
-        let variance = TOLD * TOLD * told.radius * told.radius;
-        Self {
-            radius: told.radius,
-            centre: [0.0; 2],
-            covariance: [variance, 0.0, 0.0, variance, 0.0, variance],
+    /// A contact begins. It shows anew a wall that is not known to be elsewhere.
+    pub(crate) fn begin_contact(&mut self, told: &ToldWall) {
+        if self.seen != Seen::Elsewhere {
+            self.forget(told);
         }
     }
 
-    /// Whether impacts have shown it clearly elsewhere than told, in whatever direction.
-    pub(crate) fn is_elsewhere(&self, told: &ToldWall) -> bool {
-        let ([x, y], off) = (self.centre, self.radius - told.radius);
-        off.abs() + sqrt(x * x + y * y) > APART * told.tolerance
+    /// As told, before it was met.
+    fn forget(&mut self, told: &ToldWall) {
+        let error = TOLD * told.radius;
+        *self = Self {
+            seen: self.seen,
+            shape: [told.radius, 0.0, 0.0],
+            diagonal: [error * error; STATES],
+            columns: Default::default(),
+        };
+    }
+
+    /// It was met: is it as told, or clearly elsewhere, in whatever direction.
+    pub(crate) fn see(&mut self, told: &ToldWall) {
+        let [radius, x, y] = self.shape;
+        let off = (radius - told.radius).abs() + sqrt(x * x + y * y);
+        self.seen = if off > APART * told.tolerance {
+            Seen::Elsewhere
+        } else {
+            Seen::AsTold
+        };
+    }
+
+    /// Distance from which on a rotor in the direction `n` is at the wall, m: a gain that is too large shows the wall
+    /// farther out where the others show it as told.
+    pub(crate) fn near(&self, n: [f32; 2], told: &ToldWall) -> f32 {
+        match self.seen {
+            Seen::Elsewhere => self.likely(n, told).min(told.near()),
+            _ => told.near(),
+        }
+    }
+
+    /// The same from which on it may be there: a wall that impacts have shown as told is no nearer.
+    pub(crate) fn nearest(&self, n: [f32; 2], told: &ToldWall) -> f32 {
+        match self.seen {
+            Seen::Nothing => told.least(),
+            Seen::AsTold => self.likely(n, told).min(told.near()),
+            Seen::Elsewhere => {
+                let spread = sqrt(self.variance(&self.factors(n)));
+                (self.likely(n, told) - WITHIN * spread).max(told.least())
+            }
+        }
     }
 
     /// Distance from which on a rotor in the direction `n` is at the wall, if that is where it seems to be, m.
-    pub(crate) fn likely(&self, n: [f32; 2], told: &ToldWall) -> f32 {
-        (self.distance(n) - told.tolerance).max(LEAST * told.radius)
-    }
-
-    /// Distance from which on a rotor in the direction `n` may be at the wall, m.
-    pub(crate) fn nearest(&self, n: [f32; 2], told: &ToldWall) -> f32 {
-        let [r, x, y] = self.spread(n);
-        let variance = r + x * n[0] + y * n[1];
-        (self.likely(n, told) - WITHIN * sqrt(variance.max(0.0))).max(LEAST * told.radius)
+    fn likely(&self, n: [f32; 2], told: &ToldWall) -> f32 {
+        (self.distance(n) - told.tolerance).max(told.least())
     }
 
     /// From the told centre to the wall in the direction `n`, m.
-    fn distance(&self, [x, y]: [f32; 2]) -> f32 {
-        self.radius + self.centre[0] * x + self.centre[1] * y
+    pub(crate) fn distance(&self, n: [f32; 2]) -> f32 {
+        dot(&self.shape, &waves(n))
     }
 
-    /// Covariance of the distance in the direction `n` with radius and centre.
-    fn spread(&self, [x, y]: [f32; 2]) -> [f32; 3] {
-        let [rr, rx, ry, xx, xy, yy] = self.covariance;
-        [
-            rr + rx * x + ry * y,
-            rx + xx * x + xy * y,
-            ry + xy * x + yy * y,
-        ]
+    /// Unit vector out of the wall in the direction `n`.
+    pub(crate) fn normal(&self, n: [f32; 2]) -> [f32; 2] {
+        if self.seen != Seen::Elsewhere {
+            return n;
+        }
+        let [x, y] = n;
+        let [_, a, b] = self.shape;
+        let tilt = (b * x - a * y) / self.distance(n);
+        direction([x + tilt * y, y - tilt * x]).0
     }
 
-    /// Takes an impact in the direction `n` at `distance` from the told centre, known to `variance` (m^2).
-    pub(crate) fn take(&mut self, n: [f32; 2], distance: f32, variance: f32) {
-        let uneven = UNEVEN * UNEVEN * self.radius * self.radius;
-        for index in [0, 3, 5] {
-            if let Some(it) = self.covariance.get_mut(index) {
-                *it += uneven;
+    /// A place, m from the told centre.
+    pub(crate) fn beside(&self, position: [f32; 2]) -> Beside {
+        let (n, radius) = direction(position);
+        let factors = self.factors(n);
+        Beside {
+            radius,
+            gap: self.distance(n) - radius,
+            variance: self.variance(&factors),
+            factors,
+        }
+    }
+
+    /// U^T times the waves in the direction `n`.
+    fn factors(&self, n: [f32; 2]) -> [f32; STATES] {
+        let waves = waves(n);
+        let mut factors = waves;
+        let columns = factors.iter_mut().skip(1).zip(&self.columns);
+        for (number, (factor, column)) in columns.enumerate() {
+            let above = column.iter().zip(&waves).take(number + 1);
+            *factor += above.map(|(u, wave)| u * wave).sum::<f32>();
+        }
+        factors
+    }
+
+    /// Variance of the wall where these are the factors, m^2.
+    fn variance(&self, factors: &[f32; STATES]) -> f32 {
+        let parts = self.diagonal.iter().zip(factors);
+        parts.map(|(d, factor)| d * factor * factor).sum()
+    }
+
+    /// Takes a place where an impact was, known to `variance` (m^2).
+    pub(crate) fn take(&mut self, position: [f32; 2], variance: f32, told: &ToldWall) {
+        if self.seen == Seen::Nothing {
+            self.forget(told);
+        }
+        let beside = self.beside(position);
+        self.learn(&beside, variance);
+        self.see(told);
+    }
+
+    /// Takes a place that is on the wall, known to `variance` (m^2).
+    pub(crate) fn learn(&mut self, beside: &Beside, variance: f32) {
+        let (mut gains, mut total) = ([0.0; STATES], variance);
+        let mut per_total = 1.0 / total;
+        let mut first = [0.0; STATES - 1];
+        let columns = once(&mut first).chain(&mut self.columns);
+        let diagonal = self.diagonal.iter_mut().zip(columns);
+        for (number, ((d, column), factor)) in diagonal.zip(beside.factors).enumerate() {
+            let (part, scale) = (*d * factor, factor * per_total);
+            let before = total;
+            total += part * factor;
+            per_total = 1.0 / total;
+            *d *= before * per_total;
+            for (u, gain) in column.iter_mut().zip(&mut gains).take(number) {
+                let was = *u;
+                *u -= scale * *gain;
+                *gain += was * part;
+            }
+            if let Some(gain) = gains.get_mut(number) {
+                *gain = part;
             }
         }
-        let [r, x, y] = self.spread(n);
-        let scale = 1.0 / (r + x * n[0] + y * n[1] + variance + uneven);
-        let off = (distance - self.distance(n)) * scale;
-        self.radius += r * off;
-        self.centre[0] += x * off;
-        self.centre[1] += y * off;
-        let products = [r * r, r * x, r * y, x * x, x * y, y * y];
-        for (covariance, product) in self.covariance.iter_mut().zip(products) {
-            *covariance -= product * scale;
+        let off = -beside.gap * per_total;
+        for (state, gain) in self.shape.iter_mut().zip(gains) {
+            *state += gain * off;
         }
+    }
+
+    /// Takes a place on the wall where that is known well: it moves everywhere by `part` of the way there.
+    pub(crate) fn follow(&mut self, beside: &Beside, part: f32) {
+        let [radius, ..] = &mut self.shape;
+        *radius -= part * beside.gap;
     }
 
     /// The sensors show all by `way` (m) elsewhere.
     pub(crate) fn shift(&mut self, [x, y]: [f32; 2]) {
-        self.centre[0] += x;
-        self.centre[1] += y;
+        let [_, u, v] = &mut self.shape;
+        *u += x;
+        *v += y;
+    }
+}
+
+/// The waves in the direction `n`: 1, cos f, sin f.
+fn waves([x, y]: [f32; 2]) -> [f32; STATES] {
+    [1.0, x, y]
+}
+
+fn dot(a: &[f32; STATES], b: &[f32; STATES]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::noise::white;
+    use core::f32::consts::{FRAC_PI_2, TAU};
+
+    const TOLD_WALL: ToldWall = ToldWall {
+        radius: 750e-6,
+        tolerance: 50e-6,
+    };
+
+    /// On a circle of 0.9 of the told radius whose centre is 0.2 of it off, seen through gains 5 % apart.
+    fn place(angle: f32) -> [f32; 2] {
+        let (sin, cos) = libm::sincosf(angle);
+        let (radius, off) = (0.9 * TOLD_WALL.radius, 0.2 * TOLD_WALL.radius);
+        [1.05 * (radius * cos + 0.6 * off), radius * sin - 0.8 * off]
+    }
+
+    fn noisy(angle: f32, seed: &mut u64) -> [f32; 2] {
+        let [x, y] = place(angle);
+        [x + 1e-6 * white(seed), y + 1e-6 * white(seed)]
+    }
+
+    #[test]
+    fn a_turn_shows_centre_and_radius() {
+        let (mut wall, mut seed) = (RetainerWall::default(), 1);
+        wall.begin_contact(&TOLD_WALL);
+        for k in 0..2_000 {
+            let beside = wall.beside(noisy(TAU * k as f32 / 2_000.0, &mut seed));
+            wall.learn(&beside, 1e-12);
+        }
+        wall.see(&TOLD_WALL);
+        assert_eq!(wall.seen, Seen::Elsewhere);
+        for k in 0..12 {
+            let beside = wall.beside(place(k as f32));
+            // Waves of second order, of the gains and of the centre, are left out.
+            assert!(beside.gap.abs() < 0.04 * TOLD_WALL.radius, "{beside:?}");
+            let n = wall.normal(direction(place(k as f32)).0);
+            let next = place(k as f32 + 1e-2);
+            let along = direction([next[0] - place(k as f32)[0], next[1] - place(k as f32)[1]]).0;
+            let aside = n[0] * along[0] + n[1] * along[1];
+            assert!(aside.abs() < 0.08, "{k}: {aside}");
+        }
+    }
+
+    /// A swing at the bottom shows little of the rest: in f32 the covariance itself loses its sign here.
+    #[test]
+    fn long_swings_leave_the_wall_where_it_is() {
+        let (mut wall, mut seed) = (RetainerWall::default(), 1);
+        wall.begin_contact(&TOLD_WALL);
+        for k in 0..100_000 {
+            let angle = 0.3 * libm::sinf(TAU * k as f32 / 700.0) - FRAC_PI_2;
+            let beside = wall.beside(noisy(angle, &mut seed));
+            if beside.variance > 1e-12 / 256.0 {
+                wall.learn(&beside, 1e-12);
+            } else {
+                wall.follow(&beside, 1.0 / 256.0);
+            }
+            let beside = wall.beside(place(angle));
+            assert!(beside.variance > 0.0);
+            let known = 4e-6 + 5.0 * sqrt(beside.variance);
+            assert!(beside.gap.abs() < known, "{k}: {beside:?}");
+        }
     }
 }
