@@ -571,6 +571,10 @@ impl Rng {
     pub fn uniform(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * ((self.next_u64() >> 11) as f64 / (1u64 << 53) as f64)
     }
+    /// One of these.
+    pub fn any<T: Copy>(&mut self, of: &[T]) -> T {
+        of[(self.next_u64() % of.len() as u64) as usize]
+    }
     /// Normal, mean 0, sigma 1.
     pub fn normal(&mut self) -> f64 {
         let u = 1.0 - self.uniform(0.0, 1.0);

@@ -317,28 +317,6 @@ impl Rotor {
     }
 }
 
-/// Deterministic random numbers (splitmix64).
-#[derive(Clone, Debug)]
-pub struct Rng(pub u64);
-
-impl Rng {
-    pub fn next_u64(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-    pub fn uniform(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * ((self.next_u64() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-    pub fn normal(&mut self) -> f64 {
-        let u = 1.0 - self.uniform(0.0, 1.0);
-        (-2.0 * u.ln()).sqrt() * self.uniform(0.0, std::f64::consts::TAU).cos()
-    }
-    pub fn any<T: Copy>(&mut self, of: &[T]) -> T {
-        of[(self.next_u64() % of.len() as u64) as usize]
-    }
-}
 impl Rotor {
     /// Whether it goes round so fast that samples do not show it.
     pub fn lies_fast(&self) -> bool {
