@@ -75,7 +75,9 @@ pub struct Run {
     pub chain: Chain,
     rate: f64,
     told_gap: f64,
-    /// Readings of the last sample, as parts of the told gap: the plane further out.
+    /// Readings of the last sample, as parts of the told gap: of each plane, and of that farther out.
+    pub readings: [f64; 2],
+    /// Likewise.
     pub reading: f64,
     /// Of the last sample.
     pub notices: Notices,
@@ -113,6 +115,7 @@ impl Run {
             chain,
             rate,
             told_gap,
+            readings: [0.0; 2],
             reading: 0.0,
             notices: Notices::new(),
         }
@@ -149,9 +152,9 @@ impl Run {
             edges: [None; TACHOMETERS],
         };
         let place = |count: u16| (f64::from(count) - 2_048.0) * 2_000e-6 / 4_096.0;
-        let [a, b] = [[counts[0], counts[1]], [counts[2], counts[3]]]
+        self.readings = [[counts[0], counts[1]], [counts[2], counts[3]]]
             .map(|[x, y]| place(x).hypot(place(y)) / self.told_gap);
-        self.reading = a.max(b);
+        self.reading = self.readings[0].max(self.readings[1]);
         self.app
             .tick(&mut self.board, &sample, 0, &mut self.notices);
         Some((truth, self.app.shown()))
