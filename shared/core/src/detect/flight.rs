@@ -258,12 +258,11 @@ impl FlightTest {
         flight.wall.begin_contact(&self.told);
     }
 
-    /// A contact ended where it showed the wall, or where a slow lift took the wall along.
-    pub(crate) fn end_contact(&self, flight: &mut Airborne, shows: bool) {
-        if shows {
-            flight.wall.see(&self.told);
-        } else {
-            flight.wall = RetainerWall::default();
+    /// A contact ended where it showed the wall, at that radius (m), or where a slow lift took the wall along.
+    pub(crate) fn end_contact(&self, flight: &mut Airborne, radius: Option<f32>) {
+        match radius {
+            Some(radius) => flight.wall.see(radius, &self.told),
+            None => flight.wall = RetainerWall::default(),
         }
     }
 

@@ -137,7 +137,7 @@ impl PhaseMachine {
 
     /// One end goes on for both: where the wall is must be learnt anew.
     pub(crate) fn both(&self, phase_state: &mut PhaseState) {
-        self.flight.end_contact(&mut phase_state.flight, false);
+        self.flight.end_contact(&mut phase_state.flight, None);
         self.flight.begin_contact(&mut phase_state.flight);
         phase_state.contact.learn_anew();
     }
@@ -353,8 +353,7 @@ impl PhaseMachine {
                 Finding::LiftOff(age) => {
                     let wall = Some(phase_state.contact.wall());
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
-                    self.flight
-                        .end_contact(&mut phase_state.flight, wall.is_some());
+                    self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {
                         self.fly(phase_state, measurement, wall, threshold_scale);
                     }

@@ -94,15 +94,14 @@ impl RetainerWall {
         };
     }
 
-    /// It was met: is it as told, or clearly elsewhere, in whatever direction.
-    pub(crate) fn see(&mut self, told: &ToldWall) {
-        let [radius, x, y] = self.shape;
-        let off = (radius - told.radius).abs() + sqrt(x * x + y * y);
-        self.seen = if off > APART * told.tolerance {
-            Seen::Elsewhere
-        } else {
-            Seen::AsTold
-        };
+    /// It was met at `radius` (m) from the told centre: as told, or clearly elsewhere. A few places in a row say little of
+    /// radius and centre apart, so the estimate does not decide.
+    pub(crate) fn see(&mut self, radius: f32, told: &ToldWall) {
+        if (radius - told.radius).abs() > APART * told.tolerance {
+            self.seen = Seen::Elsewhere;
+        } else if self.seen == Seen::Nothing {
+            self.seen = Seen::AsTold;
+        }
     }
 
     /// Distance from which on a rotor in the direction `n` is at the wall, m: a gain that is too large shows the wall
@@ -184,7 +183,7 @@ impl RetainerWall {
         }
         let beside = self.beside(position);
         self.learn(&beside, variance);
-        self.see(told);
+        self.see(beside.radius, told);
     }
 
     /// Takes a place that is on the wall, known to `variance` (m^2).
@@ -269,7 +268,7 @@ mod tests {
             let beside = wall.beside(noisy(TAU * k as f32 / 2_000.0, &mut seed));
             wall.learn(&beside, 1e-12);
         }
-        wall.see(&TOLD_WALL);
+        wall.see(0.9 * TOLD_WALL.radius, &TOLD_WALL);
         assert_eq!(wall.seen, Seen::Elsewhere);
         for k in 0..12 {
             let beside = wall.beside(place(k as f32));
