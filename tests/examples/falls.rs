@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use touchdown_tests::fall_runs::{self, Falls};
-use touchdown_tests::family::Family;
+use touchdown_tests::family::{Asked, Family};
 use touchdown_tests::record::record;
 
 const COMMAND: &str = "cargo run --release -p touchdown-tests --example falls --";
@@ -10,15 +10,8 @@ const COMMAND: &str = "cargo run --release -p touchdown-tests --example falls --
 /// Runs the whole controller over machines that are disturbed, and counts what it confirms and what it misses
 #[derive(Parser)]
 struct Arguments {
-    /// Families whose name contains this
-    #[arg(long, default_value = "")]
-    only: String,
-    /// Runs of each family
-    #[arg(long, default_value_t = 100)]
-    runs: u64,
-    /// First seed
-    #[arg(long, default_value_t = 1)]
-    first_seed: u64,
+    #[command(flatten)]
+    asked: Asked,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -29,7 +22,12 @@ struct Arguments {
 
 fn main() {
     let arguments = Arguments::parse();
-    let families = fall_runs::run(&arguments.only, arguments.runs, arguments.first_seed);
+    let Asked {
+        only,
+        runs,
+        first_seed,
+    } = arguments.asked;
+    let families = fall_runs::run(&only, runs, first_seed);
     if arguments.json {
         println!(
             "{}",
@@ -42,9 +40,6 @@ fn main() {
             eprintln!("{failure}");
         }
         if arguments.record {
-            let Arguments {
-                runs, first_seed, ..
-            } = arguments;
             let command = format!("{COMMAND} --runs {runs} --first-seed {first_seed}");
             record("docs/know/detector.md", "detector-falls", &command, &table)
                 .unwrap_or_else(|why| panic!("{why}"));

@@ -5,6 +5,20 @@ use serde::Serialize;
 
 use crate::plant::Rng;
 
+/// Which runs of a campaign are asked for.
+#[derive(Debug, clap::Args)]
+pub struct Asked {
+    /// Families whose name contains this
+    #[arg(long, default_value = "")]
+    pub only: String,
+    /// Runs of each family
+    #[arg(long, default_value_t = 100)]
+    pub runs: u64,
+    /// First seed
+    #[arg(long, default_value_t = 1)]
+    pub first_seed: u64,
+}
+
 /// What a family of runs must show, and what it showed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Family {

@@ -15,7 +15,7 @@ use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::SensingConfig;
-use touchdown_tests::family::seeds;
+use touchdown_tests::family::{Asked, seeds};
 use touchdown_tests::plant::Rng;
 use touchdown_tests::record::record;
 
@@ -24,15 +24,8 @@ const COMMAND: &str = "cargo run --release -p touchdown-tests --example believed
 /// Drops machines that are not as told, and counts what the monitor finds, loses and invents
 #[derive(Parser)]
 struct Arguments {
-    /// Families whose name contains this
-    #[arg(long, default_value = "")]
-    only: String,
-    /// Runs of each family
-    #[arg(long, default_value_t = 100)]
-    runs: u64,
-    /// First seed
-    #[arg(long, default_value_t = 1)]
-    first_seed: u64,
+    #[command(flatten)]
+    asked: Asked,
     /// Each run with its truth and its events
     #[arg(long)]
     show: bool,
@@ -587,12 +580,15 @@ fn quantile(values: &[f64], part: f64) -> Option<f64> {
 
 fn main() {
     let Arguments {
-        only,
-        runs,
-        first_seed,
+        asked,
         show,
         record: recorded,
     } = Arguments::parse();
+    let Asked {
+        only,
+        runs,
+        first_seed,
+    } = asked;
     let mut table =
         "| family | found, of impacts that noise does not hide | drops with invented ones | onset off, samples, 99 % | speed off, 99 % | contact off, 95 % | contacts missed, false | false of whirls | severity over truth, 10 to 90 % | confirmed |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n".to_owned();
     for (name, make) in FAMILIES.iter().filter(|(name, _)| name.contains(&only)) {

@@ -407,3 +407,40 @@ impl Touching {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Tuning;
+    use crate::detect::retainer_wall::ToldWall;
+    use crate::detect::series::tests::MACHINE;
+    use crate::event::Moment;
+
+    /// 1.4 mm/s, where an orbit of 10 um wavers more than the wall's learnt place lags.
+    #[test]
+    fn a_slow_lift_that_takes_the_wall_along_is_found() {
+        let config = DetectorConfig {
+            sample_rate: 20_000.0,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        let test = ContactTest::new(&config, 25.0);
+        let (mut state, mut wall) = (Touching::default(), RetainerWall::default());
+        wall.begin_contact(&ToldWall {
+            radius: MACHINE.clearance,
+            tolerance: 0.07 * MACHINE.clearance,
+        });
+        let lifted = |k: u16| 1.4e-3 * (f32::from(k) - 2_000.0).max(0.0) / 20_000.0;
+        let found = (0..6_000).find(|&k| {
+            let radius = 300e-6 + 10e-6 * libm::sinf(0.05 * f32::from(k)) - lifted(k);
+            let measurement = Measurement {
+                now: Moment::of_sample(k.into()),
+                position: [0.0, -radius],
+                variance: 2e-10,
+            };
+            test.lift_off(&mut state, &mut wall, &measurement).is_some()
+        });
+        let lifted = lifted(found.expect("found"));
+        assert!((185e-6..215e-6).contains(&lifted), "{lifted}");
+    }
+}

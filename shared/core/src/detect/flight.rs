@@ -110,6 +110,7 @@ impl Airborne {
     /// Nothing has been seen of the wall yet.
     fn restart(&mut self, threshold_scale: f32) {
         self.bank.begin(threshold_scale);
+        self.shown = None;
         self.flown = 0;
         self.near_wall = 0;
         self.seen_near = 0;

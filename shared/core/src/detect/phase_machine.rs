@@ -135,10 +135,12 @@ impl PhaseMachine {
         }
     }
 
-    /// One end goes on for both: where the wall is must be learnt anew.
+    /// One end goes on for both: on the wall, where that is must be learnt anew.
     pub(crate) fn both(&self, phase_state: &mut PhaseState) {
-        self.flight.end_contact(&mut phase_state.flight, None);
-        self.flight.begin_contact(&mut phase_state.flight);
+        if phase_state.phase.is_contact() {
+            self.flight.end_contact(&mut phase_state.flight, None);
+            self.flight.begin_contact(&mut phase_state.flight);
+        }
         phase_state.contact.learn_anew();
     }
 
