@@ -1,5 +1,6 @@
 //! What the tests share: reference cases and their tolerances, and the counts of the emulated target.
 
+pub mod accuracy_runs;
 pub mod binary;
 pub mod cases;
 pub mod close;

@@ -10,7 +10,8 @@ use touchdown_run::target::Target;
 use touchdown_scene::Scene;
 
 fn samples(scene: &Scene) -> Vec<Sample> {
-    let (_, stream) = drop::run(scene, &Target::Host, Some(Vec::new())).expect("valid scene");
+    let (_, stream) =
+        drop::by_reference(scene, &Target::Host, Some(Vec::new())).expect("valid scene");
     let bytes = stream.expect("memory").expect("a stream");
     StreamReader::new("drop", &bytes[..])
         .expect("own stream")

@@ -6,6 +6,7 @@ use touchdown_core::sample::CHANNELS;
 
 use touchdown_base::history::{History, Impact, Phase, Regime, RotorState};
 use touchdown_base::ledger::Ledger;
+use touchdown_run::accuracy::RunAccuracy;
 use touchdown_run::controller_trace::Controller;
 use touchdown_run::model::RingEnd;
 use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome, Severity, TouchEvent};
@@ -23,6 +24,8 @@ struct DropJson<'a> {
     history: HistoryJson<'a>,
     #[serde(rename = "final")]
     end: EndJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<&'a RunAccuracy>,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth_given_up_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -165,6 +168,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             ledger,
             imbalance_j: ledger.imbalance_j(),
         }),
+        accuracy: outcome.accuracy.as_ref(),
         truth_given_up_s: outcome.given_up,
         model_given_up_s: outcome.model_given_up,
         validity: validity(scene),

@@ -27,6 +27,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
+    text.extend(accuracy(outcome).into_iter().map(|line| line + "\n"));
     text += &forecasts(&outcome.detection, paint);
     text += &severity(&outcome.detection);
     text += &outcome.conduct.told(Timebase::of(scene)).text(paint);
@@ -132,13 +133,28 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     }
     let head = format!(
         "\n{:<8}{:>12}{:>10}{:>13}{:>15}{:>10}{:>12}",
-        "impact", "at ms", "mm/s", "model off by", "onset error ms", "seen mm/s", "latency ms"
+        "impact",
+        "at ms",
+        "mm/s",
+        if outcome.by_reference {
+            "model off by"
+        } else {
+            "accurate to"
+        },
+        "onset error ms",
+        "seen mm/s",
+        "latency ms"
     );
     let mut text = paint.bold(&head) + "\n";
     let found = matches.of_kind(EventKind::Impact);
     for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
-        let model = outcome.model.impacts.get(index);
-        let off = model.map(|model| seconds(model.state.time - impact.state.time));
+        let off = if outcome.by_reference {
+            let model = outcome.model.impacts.get(index);
+            model.map(|model| seconds(model.state.time - impact.state.time))
+        } else {
+            let known = outcome.accuracy.as_ref().map(|it| it.impacts[index]);
+            known.map(|it| it.map_or("not certain".to_owned(), |it| seconds(it.time_s)))
+        };
         text += &format!(
             "{:<8}{:>12}{:>10.2}{:>13}",
             index,
@@ -238,30 +254,58 @@ fn severity(detection: &Detection) -> String {
     text
 }
 
-/// Of a truth that would take too long.
-pub fn given_up(outcome: &Outcome) -> Option<String> {
-    let end = millis(outcome.model.end.time);
-    if outcome.given_up? <= 0.0 {
-        return Some(format!(
-            "no truth: nothing is sensed after the release. The model ends at {end} ms"
+/// Of a model or a truth that would take too long.
+pub fn given_up(outcome: &Outcome) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(at) = outcome.model_given_up {
+        let too = if outcome.by_reference {
+            ""
+        } else {
+            ", sensors and detector too"
+        };
+        let at = millis(at);
+        lines.push(format!(
+            "model given up at {at} ms{too}: it would take too long"
         ));
     }
-    let at = millis(outcome.given_up?);
-    Some(format!(
-        "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
-    ))
+    if let Some(at) = outcome.given_up {
+        let (at, end) = (millis(at), millis(outcome.model.end.time));
+        lines.push(format!(
+            "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
+        ));
+    }
+    lines
+}
+
+/// How far to trust the model's numbers.
+pub fn accuracy(outcome: &Outcome) -> Vec<String> {
+    let Some(accuracy) = &outcome.accuracy else {
+        return Vec::new();
+    };
+    let mut lines = Vec::new();
+    if let Some(worst) = accuracy.worst() {
+        let (time, speed) = (worst.time_s, worst.normal_speed_m_s * 1e3);
+        lines.push(format!(
+            "accuracy: times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s"
+        ));
+    }
+    if let Some(index) = accuracy.uncertain_from() {
+        lines.push(format!(
+            "accuracy: from impact {index} on not certain: read statistics"
+        ));
+    } else if let Some(end) = accuracy.end {
+        let place = end.position_m * 1e3;
+        lines.push(format!("accuracy: place at the end to {place:.0e} mm"));
+    }
+    if !accuracy.regime_is_certain {
+        lines.push("accuracy: the regime is not certain".to_owned());
+    }
+    lines
 }
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text = String::new();
-    if let Some(at) = outcome.model_given_up {
-        let line = format!(
-            "model given up at {} ms: it would take too long",
-            millis(at)
-        );
-        text += &(paint.bad(&line) + "\n");
-    }
-    if let Some(line) = given_up(outcome) {
+    for line in given_up(outcome) {
         text += &(paint.bad(&line) + "\n");
     }
     if outcome.model.regime != outcome.truth.regime {

@@ -1,4 +1,4 @@
-//! A simulated drop: the reference moves the rotor, the sensors see it, the monitor judges.
+//! A simulated drop: the model or the reference moves the rotor, the sensors see it, the monitor judges.
 
 use std::io::{self, Write};
 
@@ -6,8 +6,9 @@ use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
+use crate::accuracy;
 use crate::detection::detection;
-use crate::model::{self, ModelRun};
+use crate::model::{self, FollowedDrop, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
 use crate::procedure::Procedure;
 use crate::target::Target;
@@ -20,56 +21,70 @@ use touchdown_base::spectrogram::{Analyser, Spectrogram};
 use touchdown_files::stream::{Columns, StreamWriter, to_row};
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
-use touchdown_truth::{Moving, Truth};
+use touchdown_truth::{Moving, TrueState, Truth};
 
-/// Drops the rotor of `scene`, with the detector on `target`. What the sensors read also goes to
+/// Drops the rotor of `scene` as its model has it, with the detector on `target`. What the sensors read also goes to
 /// `stream`.
 pub fn run<W: Write>(
     scene: &Scene,
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    follow(scene, target, stream, Truth::new(scene))
+    let refused = |error| refused(scene, &error);
+    let mover = Mover::Model(model::follow(scene).map_err(refused)?);
+    let (mut outcome, stream) = sensed(scene, target, stream, mover)?;
+    outcome.accuracy = accuracy::estimate(scene, &outcome.model).map_err(refused)?;
+    Ok((outcome, stream))
 }
 
-/// The same by the model alone: there is no truth, so nothing is sensed after the release.
-pub fn without_truth(scene: &Scene, target: &Target) -> Result<Outcome, Failure> {
-    let done = follow(scene, target, None::<io::Sink>, Truth::none(scene));
-    done.map(|(outcome, _)| outcome)
-}
-
-fn follow<W: Write>(
+/// The same, but the reference moves the rotor, and the model is held against it.
+pub fn by_reference<W: Write>(
     scene: &Scene,
     target: &Target,
     stream: Option<W>,
-    truth: Truth<'_>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let refused = |error: ConfigError| Failure::Usage(format!("{}: {error}", scene.name));
-    let ModelRun {
-        histories,
-        given_up: model_given_up,
-        ledger,
-        ring,
-        seats,
-    } = model::run(scene).map_err(refused)?;
-    let mut feed = SampleSource::new(scene, stream, truth).map_err(refused)?;
+    let model = model::run(scene).map_err(|error| refused(scene, &error))?;
+    let mover = Mover::Reference(Box::new((Truth::new(scene), model)));
+    sensed(scene, target, stream, mover)
+}
+
+fn refused(scene: &Scene, error: &ConfigError) -> Failure {
+    Failure::Usage(format!("{}: {error}", scene.name))
+}
+
+fn sensed<W: Write>(
+    scene: &Scene,
+    target: &Target,
+    stream: Option<W>,
+    mover: Mover<'_>,
+) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
+    let mut feed =
+        SampleSource::new(scene, stream, mover).map_err(|error| refused(scene, &error))?;
     let procedure = Procedure {
         zones: scene.zones,
         ..Procedure::default()
     };
     let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, &mut feed)?;
     let timebase = Timebase::of(scene);
-    let given_up = feed.truth.given_up();
-    let (truth, trace, spectrogram, stream) = feed.finish();
-    let rings = histories.rings.into_iter().zip(truth.rings);
-    let outcome = Outcome {
-        model: histories.whole,
-        truth: truth.whole,
+    let (moved, trace, spectrogram, stream) = feed.finish();
+    let Moved {
+        model,
+        reference,
         given_up,
-        model_given_up,
-        ledger,
-        ring,
-        seats,
+    } = moved;
+    let by_reference = reference.is_some();
+    let truth = reference.unwrap_or_else(|| model.histories.clone());
+    let rings = model.histories.rings.into_iter().zip(truth.rings);
+    let outcome = Outcome {
+        model: model.histories.whole,
+        truth: truth.whole,
+        accuracy: None,
+        by_reference,
+        given_up,
+        model_given_up: model.given_up,
+        ledger: model.ledger,
+        ring: model.ring,
+        seats: model.seats,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace,
         spectrogram,
@@ -80,10 +95,59 @@ fn follow<W: Write>(
     Ok((outcome, stream))
 }
 
+/// What moves the rotor that the sensors see.
+enum Mover<'a> {
+    Model(Box<dyn FollowedDrop + 'a>),
+    /// The model has run beside it.
+    Reference(Box<(Truth<'a>, ModelRun)>),
+}
+
+/// What became of it.
+struct Moved {
+    model: ModelRun,
+    reference: Option<Histories>,
+    /// Of the reference, s.
+    given_up: Option<f64>,
+}
+
+impl Mover<'_> {
+    fn advance(&mut self, time: f64) -> TrueState {
+        match self {
+            Self::Model(model) => model.advance(time),
+            Self::Reference(it) => it.0.advance(time),
+        }
+    }
+
+    fn given_up(&self) -> Option<f64> {
+        match self {
+            Self::Model(model) => model.given_up(),
+            Self::Reference(it) => it.0.given_up(),
+        }
+    }
+
+    fn finish(self) -> Moved {
+        match self {
+            Self::Model(model) => Moved {
+                model: model.finish(),
+                reference: None,
+                given_up: None,
+            },
+            Self::Reference(it) => {
+                let (truth, model) = *it;
+                Moved {
+                    model,
+                    given_up: truth.given_up(),
+                    reference: Some(truth.finish()),
+                }
+            }
+        }
+    }
+}
+
 /// The samples of a drop, one after the other.
 struct SampleSource<'a, W> {
     scene: &'a Scene,
-    truth: Truth<'a>,
+    mover: Mover<'a>,
     sensors: Sensors,
     seen: SensorsState,
     faults: Faults,
@@ -99,7 +163,7 @@ struct SampleSource<'a, W> {
 }
 
 impl<'a, W: Write> SampleSource<'a, W> {
-    fn new(scene: &'a Scene, stream: Option<W>, truth: Truth<'a>) -> Result<Self, ConfigError> {
+    fn new(scene: &'a Scene, stream: Option<W>, mover: Mover<'a>) -> Result<Self, ConfigError> {
         let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
         let levitated = scene.levitated_samples();
         // An end that is a whole number of samples but for rounding has its own sample.
@@ -115,7 +179,7 @@ impl<'a, W: Write> SampleSource<'a, W> {
         };
         Ok(Self {
             scene,
-            truth,
+            mover,
             seen: sensors.start(scene.run.seed),
             sensors,
             faults: Faults::new(&scene.faults, &scene.sensors),
@@ -130,21 +194,14 @@ impl<'a, W: Write> SampleSource<'a, W> {
         })
     }
 
-    fn finish(
-        self,
-    ) -> (
-        Histories,
-        Vec<TracePoint>,
-        Spectrogram,
-        io::Result<Option<W>>,
-    ) {
+    fn finish(self) -> (Moved, Vec<TracePoint>, Spectrogram, io::Result<Option<W>>) {
         let stream = match self.stream {
             Some(stream) => stream.and_then(StreamWriter::finish).map(Some),
             None => Ok(None),
         };
         let spectrogram = self.analyser.finish();
         (
-            self.truth.finish(),
+            self.mover.finish(),
             self.trace.finish(),
             spectrogram,
             stream,
@@ -162,8 +219,8 @@ impl<W: Write> Iterator for SampleSource<'_, W> {
         let time = (self.next as f64 - self.levitated as f64) / self.scene.run.sample_rate;
         self.next += 1;
         self.progress.at(self.next);
-        let state = self.truth.advance(time);
-        if self.truth.given_up().is_some() {
+        let state = self.mover.advance(time);
+        if self.mover.given_up().is_some() {
             return None;
         }
         let motion = Motion {

@@ -4,6 +4,7 @@ pub mod model;
 
 pub mod monitor_run;
 
+pub mod accuracy;
 pub mod controller_run;
 pub mod controller_trace;
 pub mod emulator;
@@ -23,6 +24,7 @@ pub mod replay;
 
 pub mod compare;
 
+pub mod ensemble;
 pub mod explain;
 pub mod fidelity;
 pub mod instructions;

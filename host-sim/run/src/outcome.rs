@@ -1,6 +1,7 @@
 //! What a drop gives: the model's history, the reference's, what the sensors saw and what the
 //! detector said.
 
+use crate::accuracy::RunAccuracy;
 use crate::controller_trace::ControllerTrace;
 use crate::model::RingEnd;
 use crate::timebase::Timebase;
@@ -159,11 +160,15 @@ pub struct TracePoint {
 pub struct Outcome {
     /// The model under test.
     pub model: History,
-    /// The independent reference.
+    /// What the sensors saw: the model's again, or the independent reference's.
     pub truth: History,
-    /// When it was given up, s: it would take too long. The stream of the sensors ends there.
+    /// How far the model's numbers may be off; none where the reference tells, or where it is not known.
+    pub accuracy: Option<RunAccuracy>,
+    /// Whether the reference moved the rotor.
+    pub by_reference: bool,
+    /// When the reference was given up, s: it would take too long. The stream of the sensors ends there.
     pub given_up: Option<f64>,
-    /// When the model was, s; its end is there.
+    /// When the model was, s; its end is there, and that of the stream where it moves the rotor.
     pub model_given_up: Option<f64>,
     /// The model's energy, where its rung keeps account of it.
     pub ledger: Option<Ledger>,

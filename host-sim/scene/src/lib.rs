@@ -190,24 +190,36 @@ impl Scene {
         warnings
     }
 
-    fn step_warning(&self) -> Option<String> {
-        let step = self.model.step;
-        let (longest, of, then) = match self.model.rung {
+    /// The longest step that follows all that the model moves, s, what sets it, and what comes of longer ones; none where
+    /// any step does.
+    fn longest_step(&self) -> Option<(f64, &'static str, &'static str)> {
+        match self.model.rung {
             Fidelity::Hertz => {
                 let limit = compliance(self).ok()?.accurate_step();
-                (limit, "T_c/25", "forces and contact times are inaccurate")
+                Some((limit, "T_c/25", "forces and contact times are inaccurate"))
             }
             Fidelity::Coupled => {
                 let fastest = self.two_plane.as_ref()?.fastest(self.rotor.spin);
                 let limit = 5.0 * limits::ANGLE_OF_STEP / fastest;
-                (
+                Some((
                     limit,
                     "half a radian of the fastest motion",
                     "it is not followed",
-                )
+                ))
             }
-            _ => return None,
-        };
+            _ => None,
+        }
+    }
+
+    /// Whether the model's step follows all that it moves.
+    pub fn step_is_short(&self) -> bool {
+        let longest = self.longest_step();
+        longest.is_none_or(|(longest, ..)| self.model.step <= longest)
+    }
+
+    fn step_warning(&self) -> Option<String> {
+        let step = self.model.step;
+        let (longest, of, then) = self.longest_step()?;
         (step > longest).then(|| {
             format!(
                 "{}: step_us is {}, above {of} = {:.4} us: {then}",

@@ -61,8 +61,6 @@ impl TrueState {
 enum Source {
     Planar(Box<Reference>),
     Coupled(Box<CoupledReference>),
-    /// Nobody asks for it.
-    None,
 }
 
 /// A drop of a scene's machine, followed from its release.
@@ -80,9 +78,11 @@ impl<'a> Truth<'a> {
         Self::of(scene, source(scene))
     }
 
-    /// Given up before it begins.
-    pub fn none(scene: &'a Scene) -> Self {
-        Self::of(scene, Source::None)
+    /// By the reference that has all parts, to another accuracy: the size of the last terms of its series.
+    pub fn to_accuracy(scene: &'a Scene, accuracy: f64) -> Self {
+        let mut reference = coupled(scene);
+        reference.set_accuracy(accuracy);
+        Self::of(scene, Source::Coupled(Box::new(reference)))
     }
 
     fn of(scene: &'a Scene, source: Source) -> Self {
@@ -104,7 +104,6 @@ impl<'a> Truth<'a> {
             return held(self.scene, time);
         }
         let (rotor, sensed, moving) = match &mut self.source {
-            Source::None => return held(self.scene, 0.0),
             Source::Planar(reference) => {
                 let whole = &mut self.whole;
                 let state = reference.advance(time, &mut |happening| whole.take(happening));
@@ -139,7 +138,6 @@ impl<'a> Truth<'a> {
     pub fn given_up(&self) -> Option<f64> {
         match &self.source {
             Source::Planar(_) => None,
-            Source::None => Some(0.0),
             Source::Coupled(reference) => reference.given_up(),
         }
     }
@@ -150,7 +148,6 @@ impl<'a> Truth<'a> {
         let end = self.advance(duration).rotor;
         let (still, ends) = match &mut self.source {
             Source::Planar(reference) => (reference.still_speed(), Vec::new()),
-            Source::None => (0.0, vec![end; self.rings.len()]),
             Source::Coupled(reference) => {
                 let state = reference.advance(duration, &mut |_, _| ());
                 let rings = state.rings.iter().zip(&state.turns_in_contact);
@@ -174,15 +171,19 @@ impl<'a> Truth<'a> {
 }
 
 fn source(scene: &Scene) -> Source {
-    let spin = scene.rotor.spin;
-    let machine = match (&scene.two_plane, scene.support, scene.ball_bearing) {
-        (Some(machine), ..) => tilting(scene, machine),
-        (None, None, None) => {
-            let reference = Reference::new(&scene.machine(), &scene.start, spin);
-            return Source::Planar(Box::new(reference));
-        }
-        (None, support, bearing) => {
-            CoupledMachine::level(&scene.machine(), support, bearing.as_ref().map(race))
+    if let (None, None, None) = (&scene.two_plane, scene.support, scene.ball_bearing) {
+        let reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
+        return Source::Planar(Box::new(reference));
+    }
+    Source::Coupled(Box::new(coupled(scene)))
+}
+
+fn coupled(scene: &Scene) -> CoupledReference {
+    let machine = match &scene.two_plane {
+        Some(machine) => tilting(scene, machine),
+        None => {
+            let race = scene.ball_bearing.as_ref().map(race);
+            CoupledMachine::level(&scene.machine(), scene.support, race)
         }
     };
     let tilted = scene.two_plane.as_ref();
@@ -191,7 +192,7 @@ fn source(scene: &Scene) -> Source {
         tilt_rate: tilted.map_or([0.0; 2], |it| it.tilt_rate),
         ..CoupledStart::level(&scene.start, scene.retainer.clearance)
     };
-    Source::Coupled(Box::new(CoupledReference::new(&machine, &start, spin)))
+    CoupledReference::new(&machine, &start, scene.rotor.spin)
 }
 
 fn race(bearing: &touchdown_scene::BallBearing) -> Race {
@@ -254,7 +255,7 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
 }
 
 /// By the magnetic bearings, before the release.
-fn held(scene: &Scene, time: f64) -> TrueState {
+pub fn held(scene: &Scene, time: f64) -> TrueState {
     let position = match scene.start {
         Start::Free { position, .. } => position,
         Start::Wall { .. } => [0.0; 2],

@@ -3,7 +3,7 @@
 mod follow;
 pub mod reference;
 
-pub use follow::{Moving, TrueState, Truth};
+pub use follow::{Moving, TrueState, Truth, held};
 
 use touchdown_base::history::History;
 use touchdown_scene::Scene;

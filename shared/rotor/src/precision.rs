@@ -6,7 +6,7 @@ use core::ops::IndexMut;
 use crate::real::{Micro32, Poly32, Poly64, Real};
 
 /// Constants of the model that follow the precision.
-pub trait Precision: Real {
+pub trait Precision: Real + 'static {
     /// Order of the Taylor series of a contact. Chosen, because at the accuracy of `SERIES_TOLERANCE` a
     /// higher one costs a step what it saves a run.
     const SERIES_ORDER: usize;

@@ -9,7 +9,7 @@ use crate::state::Solved;
 /// A rotor model that goes by equal steps.
 pub trait Stepper<R: Precision> {
     /// The rotor's state.
-    type State: Clone;
+    type State: Clone + 'static;
 
     /// The state at time 0, and what happens there; `spin` is the surface speed.
     fn start(

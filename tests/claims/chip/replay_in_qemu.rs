@@ -19,7 +19,7 @@ use touchdown_tests::binary::touchdown;
 
 fn outcome(name: &str, target: &Target) -> Outcome {
     let scene = Scene::load(name).expect("built-in scene");
-    let (outcome, _) = drop::run::<Sink>(&scene, target, None)
+    let (outcome, _) = drop::by_reference::<Sink>(&scene, target, None)
         .unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
     outcome
 }
@@ -58,7 +58,7 @@ fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
     let mut scene = Scene::load("rig").expect("built-in scene");
     // 1 s without a notice ends an episode.
     scene.run.duration = 2.5;
-    let (outcome, _) = drop::run::<Sink>(&scene, &qemu(), None).expect("drops");
+    let (outcome, _) = drop::by_reference::<Sink>(&scene, &qemu(), None).expect("drops");
     let fall = &outcome.detection.events[0];
     assert_eq!(fall.event, EventKind::FreeFall);
     let confirmed = fall.confirmed_s.expect("confirmed") + 0.2;
@@ -120,7 +120,7 @@ fn an_image_with_a_wrong_bit_never_gives_current() {
         damaged[at] ^= 1 << bit;
         std::fs::write(&path, damaged).expect("a file");
         let emulator = Emulator::find(Some(&path)).unwrap_or_else(|error| panic!("{error}"));
-        let (outcome, _) = drop::run::<Sink>(&scene, &Target::Qemu(emulator), None).expect("drops");
+        let (outcome, _) = drop::by_reference::<Sink>(&scene, &Target::Qemu(emulator), None).expect("drops");
         let state = outcome.conduct.state;
         assert!(state.faults.contains(Fault::ImageDamaged), "{at:#x}");
         for switched in &outcome.conduct.outputs {

@@ -447,7 +447,7 @@ fn sensors_that_are_lost_in_the_emulator_trip_20_ticks_later() {
         })
         .to_vec();
     let target = Target::Qemu(Emulator::find(None).unwrap_or_else(|error| panic!("{error}")));
-    let (outcome, _) = drop::run::<Sink>(&scene, &target, None).expect("drops");
+    let (outcome, _) = drop::by_reference::<Sink>(&scene, &target, None).expect("drops");
     let conduct = &outcome.conduct;
     let safe = conduct.outputs.last().expect("a change");
     let lost = ((start + 0.2) * scene.run.sample_rate).round() as u64;

@@ -21,7 +21,7 @@ fn dropped(name: &str, rate: f64, seed: u64) -> (Outcome, Matches) {
 }
 
 fn watched(scene: &Scene) -> (Outcome, Matches) {
-    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
+    let (outcome, _) = drop::by_reference::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
     let matches = match_events(&outcome.truth, &outcome.detection);
     (outcome, matches)
 }

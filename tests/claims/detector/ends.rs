@@ -338,7 +338,7 @@ fn symmetric_drops_are_never_split() {
                 }
                 scene.run.seed = seed;
                 scene.sensors.runout = runout;
-                let (outcome, _) = drop::run::<Sink>(&scene, &Target::Host, None).expect("drops");
+                let (outcome, _) = drop::by_reference::<Sink>(&scene, &Target::Host, None).expect("drops");
                 let split =
                     |event: &&DetectedEvent| event.plane != "both" || event.motion != "cylindrical";
                 let found = outcome.detection.events.iter().find(split);

@@ -32,7 +32,7 @@ fn rig(planes: u8, seed: u64) -> Scene {
 }
 
 fn dropped(scene: &Scene) -> Outcome {
-    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
+    let (outcome, _) = drop::by_reference::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
     outcome
 }
 

@@ -76,7 +76,7 @@ fn whirl_is_declared_within_a_turn_and_never_the_wrong_way() {
 }
 
 fn detected(scene: &Scene) -> Detection {
-    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
+    let (outcome, _) = drop::by_reference::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
     outcome.detection
 }
 

@@ -142,6 +142,7 @@ fn drop_json_has_the_documented_shape() {
     assert_eq!(
         keys(&json),
         [
+            "accuracy",
             "contact_starts_s",
             "controller",
             "detector",

@@ -409,7 +409,7 @@ fn a_truth_that_would_take_too_long_is_given_up_and_the_drop_ends() {
     // A random machine whose light rings chatter on their stops.
     let scene = touchdown(folder.path()).args(["limits", "--machine", "1"]).assert().success();
     fs::write(folder.path().join("stiff.toml"), &scene.get_output().stdout).expect("a file");
-    let run = touchdown(folder.path()).args(["drop", "stiff.toml", "--json", "-"]).assert().success();
+    let run = touchdown(folder.path()).args(["drop", "stiff.toml", "--truth", "--json", "-"]).assert().success();
     let json: Value = serde_json::from_slice(&run.get_output().stdout).expect("JSON");
     let given_up = json["truth_given_up_s"].as_f64().expect("a time");
     assert!(given_up > 0.01 && given_up < 0.05, "{given_up}");
@@ -417,7 +417,7 @@ fn a_truth_that_would_take_too_long_is_given_up_and_the_drop_ends() {
     assert!(!json["detector"]["events"].as_array().expect("events").is_empty());
     assert_eq!(json["final"]["time_s"], 0.05);
     // A scene whose truth ends says nothing of it.
-    let run = touchdown(folder.path()).args(["drop", "rig", "--json", "-"]).assert().success();
+    let run = touchdown(folder.path()).args(["drop", "rig", "--truth", "--json", "-"]).assert().success();
     let json: Value = serde_json::from_slice(&run.get_output().stdout).expect("JSON");
     assert!(json.get("truth_given_up_s").is_none());
 }

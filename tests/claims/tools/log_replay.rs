@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The log after a drop, and what the controller told.
 fn dropped(scene: &Scene) -> (Dump, Vec<DetectedEvent>) {
-    let (outcome, _) = drop::run::<Sink>(scene, &Target::Host, None).expect("drops");
+    let (outcome, _) = drop::by_reference::<Sink>(scene, &Target::Host, None).expect("drops");
     (Dump::of(&outcome.conduct.flash), outcome.detection.events)
 }
 
@@ -254,7 +254,7 @@ fn an_exported_drop_compares_with_its_own_stream() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path();
     let scene = Scene::load("rig").expect("built-in scene");
-    let (outcome, _) = drop::run::<Sink>(&scene, &Target::Host, None).expect("drops");
+    let (outcome, _) = drop::by_reference::<Sink>(&scene, &Target::Host, None).expect("drops");
     fs::write(at.join("flash.bin"), &outcome.conduct.flash).expect("a dump");
     for run in [
         &["drop", "rig", "--stream", "rig.csv"][..],

@@ -134,8 +134,11 @@ pub(super) struct DropArgs {
     /// What the sensors read, as CSV that `replay` takes
     #[arg(long, value_name = "FILE")]
     pub stream: Option<String>,
-    /// Run the model alone: no reference to judge it by, nothing sensed after the release
-    #[arg(long, conflicts_with = "stream")]
+    /// Move the rotor by the independent reference, and hold the model against it
+    #[arg(long)]
+    pub truth: bool,
+    /// The default: the model moves the rotor
+    #[arg(long, conflicts_with = "truth", hide = true)]
     pub no_truth: bool,
     #[command(flatten)]
     pub place: Place,

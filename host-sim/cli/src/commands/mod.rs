@@ -89,32 +89,31 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
         .open()?;
     let mut scene = load(&args.scene)?;
     let why = choose(&mut scene)?;
-    let outcome = if args.no_truth {
-        drop::without_truth(&scene, &target)?
+    let moved = if args.truth {
+        drop::by_reference
     } else {
-        let (outcome, stream) = drop::run(&scene, &target, out.file("--stream"))?;
-        stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
-        outcome
+        drop::run
     };
+    let (outcome, stream) = moved(&scene, &target, out.file("--stream"))?;
+    stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
     out.json("--json", || json::drop(&scene, &outcome))?;
     out.put("--report", || report::render(&scene, &outcome))?;
     let text = timeline::drop(&scene, &outcome, out.paint());
     out.finish(&(why + &text))
 }
 
-/// Takes the cheapest model that gives what the scene asks, where it leaves the model open; why, for
-/// people.
+/// Takes the cheapest model that gives what the scene asks, where it leaves the model open, or what comes nearest; why,
+/// for people.
 fn choose(scene: &mut Scene) -> Result<String, Failure> {
     let Some(auto) = &scene.auto else {
         return Ok(String::new());
     };
-    let choice = fidelity::choose(scene, auto);
-    let why = fidelity::explain(&choice);
-    let Some(best) = choice.best() else {
-        return Err(Failure::Usage(format!("{}: {why}", scene.name)));
+    let Some(choice) = fidelity::choose(scene, auto) else {
+        let rule = "no model has all that [model] says";
+        return Err(Failure::Usage(format!("{}: {rule}", scene.name)));
     };
-    scene.model = best.model;
-    Ok(why + "\n")
+    scene.model = choice.taken().model;
+    Ok(fidelity::explain(&choice) + "\n")
 }
 
 fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {

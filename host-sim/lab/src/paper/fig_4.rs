@@ -32,7 +32,7 @@ pub fn drops() -> Result<Vec<Drawn>, Failure> {
         .into_iter()
         .map(|(figure, name)| {
             let scene = Scene::load(name)?;
-            let (outcome, _) = drop::run(&scene, &Target::Host, None::<io::Sink>)?;
+            let (outcome, _) = drop::by_reference(&scene, &Target::Host, None::<io::Sink>)?;
             Ok(Drawn {
                 scene,
                 outcome,

@@ -1,12 +1,16 @@
-//! The model under test against the independent reference.
+//! How far the model's numbers may be off: estimated, or by the independent reference.
 
 use maud::{Markup, html};
 use touchdown_base::history::History;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{error, ms, si, significant};
+use touchdown_run::accuracy::RunAccuracy;
 use touchdown_run::outcome::Outcome;
 use touchdown_scene::Scene;
 use touchdown_scene::names::regime_name;
+
+/// Impacts whose numbers are listed.
+const IMPACTS: usize = 10;
 
 /// Quantity, model, reference, difference.
 type Row = [String; 4];
@@ -14,8 +18,90 @@ type Row = [String; 4];
 /// Times of one kind, s.
 type Times = fn(&History) -> &[f64];
 
-/// Draws times and end state side by side, with differences.
+/// How far the model's numbers may be off.
 pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
+    html! {
+        p {
+            "The model ran in " (scene.model.precision) " with an output interval of "
+            (si(scene.model.step, "s")) ". "
+            @if outcome.by_reference { "The reference is an independent solver in f64." }
+            @else if outcome.accuracy.is_some() {
+                "The same drop was run again three times: from starts that differ by a rounding, and where the model steps, by other steps."
+            }
+            @else { "Its errors are not known: it is too long to be run again, or its step too long for other steps to tell." }
+            @for line in crate::timeline::given_up(outcome) { " " strong { "The " (line) "." } }
+        }
+        @if outcome.by_reference { (against_reference(scene, outcome)) }
+        @else if let Some(accuracy) = &outcome.accuracy { (estimated(&outcome.model, accuracy)) }
+    }
+}
+
+/// The model's numbers with their estimated errors.
+fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
+    let mut rows = Vec::new();
+    for (index, (impact, known)) in model.impacts.iter().zip(&accuracy.impacts).enumerate() {
+        let [time, speed] = [ms(impact.state.time), mm_s(impact.normal_speed)];
+        let name = format!("Impact {index}");
+        rows.push([
+            format!("{name}, ms"),
+            time,
+            bound(known.map(|it| it.time_s), "s"),
+        ]);
+        let speed_error = bound(known.map(|it| it.normal_speed_m_s), "m/s");
+        rows.push([format!("{name}, mm/s"), speed, speed_error]);
+        if known.is_none() || index + 1 == IMPACTS {
+            break;
+        }
+    }
+    let starts: [(_, &[f64], &[Option<f64>]); 3] = [
+        (
+            "Permanent contact, first, ms",
+            &model.contact_starts,
+            &accuracy.contact_starts_s,
+        ),
+        (
+            "Rolling, first, ms",
+            &model.rolling_starts,
+            &accuracy.rolling_starts_s,
+        ),
+        (
+            "Lift-off, first, ms",
+            &model.lift_offs,
+            &accuracy.lift_offs_s,
+        ),
+    ];
+    for (name, times, errors) in starts {
+        if let (Some(time), Some(error)) = (times.first(), errors.first()) {
+            rows.push([name.to_owned(), ms(*time), bound(*error, "s")]);
+        }
+    }
+    let regime = if accuracy.regime_is_certain {
+        "certain"
+    } else {
+        "not certain"
+    };
+    rows.push([
+        "Regime".to_owned(),
+        regime_name(model.regime).to_owned(),
+        regime.to_owned(),
+    ]);
+    let table = table("The model's numbers, and what they may be off", &rows)
+        .words("Quantity", |it| it[0].clone())
+        .number("Model", |it| it[1].clone())
+        .number("Off by at most", |it| it[2].clone());
+    table.draw()
+}
+
+fn bound(error: Option<f64>, unit: &str) -> String {
+    error.map_or("not certain".to_owned(), |error| si(error, unit))
+}
+
+fn mm_s(speed: f64) -> String {
+    significant(speed * 1e3, 5)
+}
+
+/// Times and end state side by side, with differences.
+fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
     let mut rows = vec![
         count_row("Impacts", model.impacts.len(), truth.impacts.len()),
@@ -39,20 +125,12 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
     rows.push(["Regime", ours, theirs, same].map(str::to_owned));
     let apart = error(apart(model, truth) / scene.retainer.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
-    let given_up = crate::timeline::given_up(outcome);
     let table = table("Model against reference", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())
         .number("Reference", |it| it[2].clone())
         .number("Difference", |it| it[3].clone());
-    html! {
-        p {
-            "The model ran in " (scene.model.precision) " with an output interval of "
-            (si(scene.model.step, "s")) ". The reference is an independent solver in f64."
-            @if let Some(line) = given_up { " " strong { "The " (line) "." } }
-        }
-        (table.draw())
-    }
+    table.draw()
 }
 
 fn first_impact(history: &History) -> Option<f64> {
@@ -79,8 +157,7 @@ fn time_row(name: &str, model: Option<f64>, truth: Option<f64>) -> Row {
 }
 
 fn speed_row(model: Option<f64>, truth: Option<f64>) -> Row {
-    let speed = |value: f64| significant(value * 1e3, 5);
-    row("Peak impact speed, mm/s", model, truth, "m/s", speed)
+    row("Peak impact speed, mm/s", model, truth, "m/s", mm_s)
 }
 
 fn row(

@@ -80,6 +80,8 @@ pub fn outcome(scene: &Scene, start: &Start) -> Outcome {
         ledger: None,
         seats: Vec::new(),
         ring: None,
+        accuracy: None,
+        by_reference: true,
         given_up: None,
         model_given_up: None,
         model: truth.clone(),

@@ -65,7 +65,7 @@ fn impulses(window: Window, impacts: &[Impact]) -> Markup {
     let y = Axis::new(0.0, 1.1 * highest, "normal impulse, mN s", 4.0);
     let chart = Chart {
         title: "Impulses of the impacts",
-        description: "Of the reference: an upright line for each impact, as high as its impulse.",
+        description: "An upright line for each impact, as high as its impulse.",
         x: &x,
         y: &y,
         height: HEIGHT,
@@ -116,7 +116,7 @@ fn pulse(first: &Impact, meeting: &Meeting) -> Markup {
         p.note {
             "The first impact, at " (ms(first.state.time)) "\u{a0}ms: " (si(first.normal_impulse, "N s")) " in "
             (si(duration, "s")) ", at most " (si(peak, "N"))
-            ". From the scene's materials, with the reference's impulse: where the model is rigid it does not see this force."
+            ". From the scene's materials, with the impact's impulse: where the model is rigid it does not see this force."
         }
     }
 }

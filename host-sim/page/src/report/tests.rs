@@ -42,6 +42,8 @@ fn still(levitated: f64, duration: f64) -> Outcome {
     };
     let truth = Recorder::new(levitated).finish(end, 0.0);
     Outcome {
+        accuracy: None,
+        by_reference: true,
         given_up: None,
         model_given_up: None,
         ledger: None,

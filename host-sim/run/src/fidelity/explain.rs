@@ -2,61 +2,58 @@
 
 use std::fmt::Write;
 
-use super::{Candidate, Choice};
+use super::{Candidate, Choice, Tried};
 use touchdown_scene::Model;
 
 /// Cheaper combinations that are listed.
 const LISTED: usize = 3;
 
-/// The choice, what it costs, and what the next cheaper ones lack.
+/// The choice, what it costs, how often it holds, and what the next cheaper ones lack.
 pub fn explain(choice: &Choice) -> String {
-    let mut text = String::new();
-    let Some(best) = choice.best() else {
-        let _ = writeln!(
-            text,
-            "fidelity: none of {} combinations gives all that is asked; the best of each output:",
-            choice.candidates.len()
-        );
-        for (index, request) in choice.asked.iter().enumerate() {
-            let errors = choice.candidates.iter().map(|it| it.errors[index]);
-            let _ = writeln!(
-                text,
-                "  {}: {}, asked {}",
-                request.output,
-                request.output.show(errors.fold(f64::INFINITY, f64::min)),
-                request.output.show(request.tolerance)
-            );
-        }
-        return text;
+    let taken = choice.taken();
+    let mut text = format!(
+        "fidelity: {}; of {} combinations\n",
+        name(&taken.model),
+        choice.candidates.len()
+    );
+    text += &if choice.suffices() {
+        format!(
+            "the cheapest that suffices, measured over {} s\n",
+            choice.measured
+        )
+    } else {
+        format!(
+            "the nearest: none gives all that is asked, measured over {} s\n",
+            choice.measured
+        )
     };
-    let _ = writeln!(
-        text,
-        "fidelity: {}; of {} combinations\nthe cheapest that suffices, measured over {} s",
-        name(&best.model),
-        choice.candidates.len(),
-        choice.measured
-    );
-    let _ = writeln!(
-        text,
-        "  {} instructions a simulated second on the target",
-        count(best.cost)
-    );
-    for (request, &error) in choice.asked.iter().zip(&best.errors) {
+    if let Some(cost) = taken.cost {
         let _ = writeln!(
             text,
-            "  {}: {}, asked {}",
-            request.output,
-            request.output.show(error),
-            request.output.show(request.tolerance)
+            "  {} instructions a simulated second on the target",
+            count(cost)
         );
     }
-    let cheaper = choice
+    for (index, request) in choice.asked.iter().enumerate() {
+        let show = |error| request.output.show(error);
+        let _ = write!(text, "  {}: {}", request.output, show(taken.errors[index]));
+        if let Some(tried) = &taken.tried {
+            let _ = write!(text, ", at worst {}", show(tried.worst[index]));
+        }
+        let _ = writeln!(text, ", asked {}", show(request.tolerance));
+    }
+    if let Some(Tried { drops, kept, .. }) = taken.tried {
+        let _ = writeln!(text, "  kept in {kept} of {drops} drops around this one");
+    }
+    if !choice.suffices() {
+        return text;
+    }
+    let cheaper: Vec<&Candidate> = choice
         .candidates
         .iter()
-        .take_while(|it| !it.suffices(&choice.asked));
-    let cheaper: Vec<&Candidate> = cheaper.collect();
-    let shown = cheaper.iter().rev().take(LISTED);
-    for candidate in shown {
+        .take_while(|it| *it != taken)
+        .collect();
+    for candidate in cheaper.iter().rev().take(LISTED) {
         let _ = writeln!(text, "  cheaper, but: {}", lacks(candidate, choice));
     }
     if cheaper.len() > LISTED {
@@ -66,17 +63,26 @@ pub fn explain(choice: &Choice) -> String {
 }
 
 fn lacks(candidate: &Candidate, choice: &Choice) -> String {
+    let errors = candidate
+        .tried
+        .as_ref()
+        .map_or(&candidate.errors, |it| &it.worst);
     let faults: Vec<String> = choice
         .asked
         .iter()
-        .zip(&candidate.errors)
+        .zip(errors)
         .filter(|(request, error)| **error > request.tolerance)
         .map(|(request, &error)| format!("{} {}", request.output, request.output.show(error)))
         .collect();
+    let around = if candidate.tried.is_some() {
+        ", in a drop around this one"
+    } else {
+        ""
+    };
+    let cost = candidate.cost.map_or("not counted".to_owned(), count);
     format!(
-        "{}, {}: {}",
+        "{}, {cost}: {}{around}",
         name(&candidate.model),
-        count(candidate.cost),
         faults.join(", ")
     )
 }

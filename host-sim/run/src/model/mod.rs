@@ -1,11 +1,17 @@
 //! The model under test over a scene.
 
 pub mod coupled;
+mod follow;
+mod machine;
 mod once;
+mod parts;
+mod plane;
 mod seen;
 mod simulate;
 
+pub use follow::FollowedDrop;
 use once::Once;
+pub use plane::follow;
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 pub use simulate::{run, simulate, simulate_to_verdict};
 
@@ -25,7 +31,7 @@ pub trait Use {
     type Output;
 
     /// Uses `subject`.
-    fn with<R: Precision, M: Stepper<R>>(
+    fn with<R: Precision, M: Stepper<R> + Clone + 'static>(
         self,
         subject: &Subject<R, M>,
     ) -> Result<Self::Output, ConfigError>;
@@ -116,8 +122,8 @@ fn hertz<R, C, D, S, U>(scene: &Scene, shape: C, what: U) -> Result<U::Output, C
 where
     R: Precision,
     C: Shape<f64>,
-    D: Shape<R>,
-    S: ContactScheme,
+    D: Shape<R> + 'static,
+    S: ContactScheme + 'static,
     U: Use,
 {
     let model = Hertz::<f64, C, S>::try_new(&compliant(scene, shape))?;

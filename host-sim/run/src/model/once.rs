@@ -5,6 +5,7 @@ use touchdown_rotor::{Kinematics, ModelEvent, Precision, Solved, Start, Stepper}
 
 /// The model, whose sink is called through a pointer: built for each use of it, the larger rungs in all
 /// kinds of numbers would take the most of this crate's compile time.
+#[derive(Clone)]
 pub(super) struct Once<M>(pub M);
 
 impl<R: Precision, M: Stepper<R>> Stepper<R> for Once<M> {

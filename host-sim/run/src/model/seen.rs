@@ -1,7 +1,7 @@
 //! What a model made of a drop, in SI.
 
 use serde::Serialize;
-use touchdown_base::history::{Impact, ModelEvent, Pulse, RotorState};
+use touchdown_base::history::{History, Impact, ModelEvent, Pulse, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_base::rings::Histories;
 use touchdown_rotor as model;
@@ -25,6 +25,22 @@ pub struct ModelRun {
     pub ring: Option<RingEnd>,
     /// Each ring of a rotor that tilts.
     pub seats: Vec<RingEnd>,
+}
+
+impl ModelRun {
+    /// Where nothing moves but the rotor.
+    pub(super) fn of_rotor(whole: History) -> Self {
+        Self {
+            histories: Histories {
+                whole,
+                rings: Vec::new(),
+            },
+            given_up: None,
+            ledger: None,
+            ring: None,
+            seats: Vec::new(),
+        }
+    }
 }
 
 /// A retainer ring at the end of a run; its place is that from where it rests.

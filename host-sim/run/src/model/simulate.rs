@@ -7,7 +7,6 @@ use touchdown_rotor::{Precision, Stepper};
 use super::seen::{ModelRun, STILL, Seen, steps_of_run};
 use super::{Subject, Use, coupled, with_model};
 use touchdown_base::history::{History, Recorder};
-use touchdown_base::rings::Histories;
 use touchdown_scene::{Fidelity, Scene};
 
 /// Runs the scene's model from the release to the end.
@@ -16,22 +15,10 @@ pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
         Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
             coupled::watch(scene, &mut |_| ())
         }
-        _ => Ok(ModelRun {
-            histories: Histories {
-                whole: with_model(
-                    scene,
-                    Simulate {
-                        scene,
-                        to_verdict: false,
-                    },
-                )?,
-                rings: Vec::new(),
-            },
-            given_up: None,
-            ledger: None,
-            ring: None,
-            seats: Vec::new(),
-        }),
+        _ => {
+            let to_verdict = false;
+            with_model(scene, Simulate { scene, to_verdict }).map(ModelRun::of_rotor)
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 
 mod drawing;
 mod effect;
-mod ensemble;
 mod quantity;
 mod table;
 
@@ -17,12 +16,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use touchdown_base::progress;
+use touchdown_run::ensemble::varied;
 use touchdown_run::fidelity::cost::LONGEST;
 use touchdown_run::model;
 use touchdown_scene::Scene;
 use touchdown_scene::leave_out::{removable, without};
 
-use ensemble::varied;
 use quantity::{COUNT, Values, values};
 
 /// Steps of all drops together where no number of drops is asked for: some 20 s of processor time.

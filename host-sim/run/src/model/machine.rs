@@ -1,0 +1,375 @@
+//! The machine of the rungs `support`, `two-plane` and `coupled`, step by step: what happens in each ring and to it.
+
+use touchdown_models::{CoupledEnergy, CoupledState, RingEvent, Whole};
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::scales::Scales;
+use touchdown_rotor::{Precision, Stepper};
+
+use super::follow::FollowedDrop;
+use super::parts::{ends, modelled_modes, seats, shape};
+use super::seen::{ModelRun, RaceEnd, RingEnd, STILL, Seen, steps_of_run};
+use touchdown_base::history::{Recorder, RotorState};
+use touchdown_base::ledger::{Ledger, entries};
+use touchdown_base::rings::{Histories, Merge};
+use touchdown_scene::sensors::PLANES;
+use touchdown_scene::{Fidelity, RINGS, Scene};
+use touchdown_truth::{Moving, TrueState, held};
+
+/// Stretches tried beyond one a step, of all of a run, before it is given up: some seconds of processor time. What
+/// chatters on a stiff ring would take hundreds in each step.
+const MOST_TRIED: u64 = 200_000;
+
+/// The machine after a step.
+#[derive(Clone, Copy, Debug)]
+pub struct StepView {
+    /// Farthest of the axis beyond the wall of any ring, its clearance, and of a ring beyond its hard stop, rho0; below
+    /// 0 before any.
+    pub beyond: f64,
+    /// What energy there is and was, in m V^2.
+    pub energy: CoupledEnergy<f64>,
+}
+
+/// A drop of the machine of a scene.
+pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
+    scene: &'a Scene,
+    of: Whole<R, N, Q>,
+    scales: Scales<f64>,
+    state: CoupledState<R, N, Q>,
+    done: u64,
+    told: Told<N>,
+    peaks: [[f64; 2]; N],
+    /// Turned by the inner rings up to the last step, rad.
+    turned: [f64; N],
+    begun: CoupledEnergy<f64>,
+    given_up: Option<f64>,
+}
+
+/// What has happened.
+struct Told<const N: usize> {
+    seen: [Seen; N],
+    whole: Recorder,
+    rings: Vec<Recorder>,
+    merge: Merge,
+    /// Farthest of the axis at an impact, rho0.
+    struck: [f64; N],
+}
+
+impl<const N: usize> Told<N> {
+    fn new(scene: &Scene, scales: &Scales<f64>) -> Self {
+        let recorder = Recorder::new(-scene.first_sample_time());
+        let radii: Vec<f64> = seats(scene).iter().map(|it| it.ring.radius).collect();
+        Self {
+            // Spin is told as surface speed in the ring.
+            seen: std::array::from_fn(|ring| Seen {
+                scales: Scales {
+                    spin: scales.speed / radii[ring],
+                    ..*scales
+                },
+                step: scene.model.step,
+                mass: scene.rotor.mass,
+            }),
+            whole: recorder.clone(),
+            rings: vec![recorder; N],
+            merge: Merge::new(N),
+            struck: [0.0; N],
+        }
+    }
+
+    fn take<R: Precision>(&mut self, it: &RingEvent<R>) {
+        let [x, y] = it.event.after.position.map(R::to_f64);
+        self.struck[it.ring] = f64::max(self.struck[it.ring], x.hypot(y));
+        let happening = self.seen[it.ring].happening(&it.event);
+        self.rings[it.ring].take(happening);
+        if let Some(happening) = self.merge.take(it.ring, happening) {
+            self.whole.take(happening);
+        }
+    }
+}
+
+impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> {
+    /// At the release.
+    pub(super) fn new(
+        scene: &'a Scene,
+        of: Whole<R, N, Q>,
+        scales: Scales<f64>,
+    ) -> Result<Self, ConfigError> {
+        let mut told = Told::new(scene, &scales);
+        let spin = R::lit(scene.rotor.spin / scales.spin);
+        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+        let state = of.model.start(&of.start, spin, take)?;
+        Ok(Self {
+            scene,
+            begun: of.model.energy(&state).to_f64(),
+            of,
+            scales,
+            state,
+            done: 0,
+            told,
+            peaks: [[0.0; 2]; N],
+            turned: [0.0; N],
+            given_up: None,
+        })
+    }
+
+    /// One step, unless the run is given up.
+    fn step(&mut self) {
+        let step = self.scene.model.step;
+        if self.state.tried().saturating_sub(self.done) > MOST_TRIED {
+            self.given_up.get_or_insert(self.done as f64 * step);
+            return;
+        }
+        let before = self.race_spins(&self.state);
+        let told = &mut self.told;
+        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+        self.of.model.step(&mut self.state, take);
+        let after = self.race_spins(&self.state);
+        for (turned, (a, b)) in self.turned.iter_mut().zip(before.iter().zip(after)) {
+            *turned += 0.5 * (a + b) * step;
+        }
+        self.farthest();
+        self.done += 1;
+    }
+
+    fn race_spins(&self, state: &CoupledState<R, N, Q>) -> [f64; N] {
+        std::array::from_fn(|ring| {
+            let race = self.of.model.ring(state, ring).race;
+            race.map_or(0.0, |race| race.spin.to_f64() * self.scales.spin)
+        })
+    }
+
+    /// Runs to the end, watched after each step.
+    pub(super) fn watched(mut self, each: &mut dyn FnMut(StepView)) -> ModelRun {
+        let (steps, _) = self.steps(self.scene.run.duration);
+        while self.done < steps && self.given_up.is_none() {
+            let done = self.done;
+            self.step();
+            if self.done > done {
+                each(self.view());
+            }
+        }
+        self.ended()
+    }
+
+    fn steps(&self, time: f64) -> (u64, f64) {
+        steps_of_run(time / self.scene.model.step)
+    }
+
+    fn to(&mut self, steps: u64) {
+        while self.done < steps && self.given_up.is_none() {
+            self.step();
+        }
+    }
+
+    fn ended(mut self) -> ModelRun {
+        let scene = self.scene;
+        let (steps, fraction) = self.steps(scene.run.duration);
+        self.to(steps);
+        if fraction > 0.0 && self.given_up.is_none() {
+            let told = &mut self.told;
+            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+            self.of
+                .model
+                .part_step(&mut self.state, R::lit(fraction), take);
+            self.farthest();
+        }
+        for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {
+            *radius = f64::max(*radius, struck);
+        }
+        let (model, state, scales) = (&self.of.model, &self.state, &self.scales);
+        let duration = self.given_up.unwrap_or(scene.run.duration);
+        let ends: Vec<RotorState> = (0..N)
+            .map(|ring| {
+                let at_ring = &self.told.seen[ring].scales;
+                Seen::state(&model.kinematics_at(state, ring), duration, at_ring)
+            })
+            .collect();
+        let end = Seen::state(&self.of.kinematics(state), duration, scales);
+        let still = STILL * scales.speed;
+        let unit = scene.rotor.mass * scales.speed * scales.speed;
+        let seats = (0..N).map(|ring| self.ring_end(ring, unit));
+        let energy = [self.begun, model.energy(state).to_f64()];
+        let mut run = ModelRun {
+            given_up: self.given_up,
+            ring: None,
+            seats: Vec::new(),
+            ledger: Some(ledger(scene, unit, &energy)),
+            histories: Histories {
+                whole: self.told.whole.clone().finish(end, still),
+                rings: Vec::new(),
+            },
+        };
+        if scene.model.rung == Fidelity::Support {
+            run.ring = seats.last();
+        } else {
+            run.seats = seats.collect();
+            let rings = self.told.rings.into_iter().zip(ends);
+            run.histories.rings = rings.map(|(ring, end)| ring.finish(end, still)).collect();
+        }
+        run
+    }
+
+    fn view(&self) -> StepView {
+        let (model, state) = (&self.of.model, &self.state);
+        let walls = (0..N).map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
+        let stops = (0..N).filter_map(|ring| model.beyond_stop(state, ring).map(R::to_f64));
+        // NaN is the worst there is.
+        let worse = |worst: f64, it: f64| if it <= worst { worst } else { it };
+        StepView {
+            beyond: walls.chain(stops).fold(-1.0, worse),
+            energy: model.energy(state).to_f64(),
+        }
+    }
+
+    /// Keeps the farthest of the axis in each ring from the bearing's centre, and of the ring from its rest place, rho0.
+    fn farthest(&mut self) {
+        let (model, state) = (&self.of.model, &self.state);
+        for (ring, peaks) in self.peaks.iter_mut().enumerate() {
+            let places = [
+                model.kinematics_at(state, ring).position,
+                model.ring(state, ring).position,
+            ];
+            for (peak, place) in peaks.iter_mut().zip(places) {
+                let [x, y] = place.map(R::to_f64);
+                *peak = f64::max(*peak, x.hypot(y));
+            }
+        }
+    }
+
+    /// `unit` in J.
+    fn ring_end(&self, ring: usize, unit: f64) -> RingEnd {
+        let (model, scales) = (&self.of.model, &self.scales);
+        let [radius, excursion] = self.peaks[ring];
+        let motion = model.ring(&self.state, ring);
+        let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
+        let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
+        let peak_radius_m = radius * scales.length;
+        RingEnd {
+            x_m,
+            y_m,
+            vx_m_s,
+            vy_m_s,
+            peak_radius_m,
+            peak_excursion_m: excursion * scales.length,
+            clearance_left_m: self.scene.stator_gap.map(|gap| gap - peak_radius_m),
+            held_peak_force_n: model.load(&self.state, ring).held_peak.to_f64() * unit
+                / scales.length,
+            race: motion.race.map(|race| RaceEnd {
+                inner_ring_rad_s: race.spin.to_f64() * scales.spin,
+                cage_rad_s: race.cage.to_f64() * scales.spin,
+                temperature_rise_k: race.temperature.to_f64(),
+            }),
+        }
+    }
+
+    /// Where the sensors see the rotor, m.
+    fn sensed(&self, state: &CoupledState<R, N, Q>) -> [[f64; 2]; PLANES] {
+        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.scales.length);
+        let Some(machine) = ends(self.scene) else {
+            return [metres(state.centre().0); PLANES];
+        };
+        machine.sensors.map(|place| {
+            let modes = shape(self.scene, place).map(R::lit);
+            let shape = self.of.model.shape_at(R::lit(place), modes);
+            metres(state.axis_at(&shape).0)
+        })
+    }
+
+    fn moving(&self, state: &CoupledState<R, N, Q>, since: f64) -> Moving {
+        let model = &self.of.model;
+        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.scales.length);
+        if self.scene.two_plane.is_some() {
+            return Moving::Ends(std::array::from_fn::<_, RINGS, _>(|ring| {
+                metres(model.displacement(state, ring.min(N - 1)))
+            }));
+        }
+        let race_spin = self.race_spins(state)[0];
+        Moving::Ring {
+            position: metres(model.ring(state, 0).position),
+            race_spin,
+            race_angle: self.turned[0] + since * race_spin,
+        }
+    }
+}
+
+impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<'_, R, N, Q> {
+    fn advance(&mut self, time: f64) -> TrueState {
+        if time < 0.0 {
+            return held(self.scene, time);
+        }
+        let (steps, fraction) = self.steps(time);
+        self.to(steps);
+        let mut state = self.state;
+        if fraction > 0.0 {
+            let ignore: &mut dyn FnMut(RingEvent<R>) = &mut |_| ();
+            self.of
+                .model
+                .part_step(&mut state, R::lit(fraction), ignore);
+        }
+        TrueState {
+            rotor: Seen::state(&self.of.kinematics(&state), time, &self.scales),
+            phase: self.told.whole.phase(),
+            sensed: self.sensed(&state),
+            moving: self.moving(&state, fraction * self.scene.model.step),
+        }
+    }
+
+    fn given_up(&self) -> Option<f64> {
+        self.given_up
+    }
+
+    fn finish(self: Box<Self>) -> ModelRun {
+        self.ended()
+    }
+}
+
+/// Of the parts that there are; `unit` in J.
+fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> Ledger {
+    let seats = seats(scene);
+    let mounts = seats.iter().filter_map(|it| it.mount);
+    let stops = mounts.clone().any(|it| it.travel.is_some());
+    let mounts = mounts.count() > 0;
+    let races = seats.iter().any(|it| it.race.is_some());
+    let bends = modelled_modes(scene).next().is_some();
+    let machine = ends(scene);
+    let magnets = machine.is_some_and(|it| !it.magnets.is_empty());
+    let driven = machine.is_some_and(|it| it.unbalance[0] != 0.0 || it.skew[0] != 0.0);
+    let moved = machine
+        .is_some_and(|it| it.base.is_some() || it.magnets.iter().any(|magnet| magnet.on.is_some()));
+    Ledger {
+        start_j: unit * start.stored(),
+        stored: entries(
+            unit,
+            [
+                (true, "motion", end.motion),
+                (true, "spin", end.spin),
+                (true, "height", end.height),
+                (magnets, "magnets", end.magnets),
+                (bends, "bending", end.bending),
+                (mounts, "ring", end.rings),
+                (mounts, "spring", end.springs),
+                (races, "inner ring", end.races),
+            ],
+        ),
+        gone: entries(
+            unit,
+            [
+                (true, "friction heat", end.heat),
+                (true, "impacts", end.lost),
+                (mounts, "damper", end.mounts),
+                (stops, "hard stop", end.stops),
+                (races, "drag", end.drag),
+                (
+                    bends || magnets,
+                    "damping of bending and magnets",
+                    end.damped,
+                ),
+                (driven && !moved, "by the drive of the spin", -end.driven),
+                (
+                    moved,
+                    "by base, switched magnets and drive of the spin",
+                    -end.driven,
+                ),
+            ],
+        ),
+    }
+}

@@ -1,0 +1,56 @@
+//! The errors that a run tells of itself cover its true ones.
+
+use std::process::Command;
+
+use serde_json::Value;
+use touchdown_tests::accuracy_runs;
+use touchdown_tests::binary::program;
+
+/// Drops of each kind; all of it: `--example accuracy`.
+const DROPS: u64 = 48;
+
+#[test]
+fn told_errors_cover_the_true_ones() {
+    let kinds = accuracy_runs::run(DROPS, 1_000_001);
+    for it in &kinds {
+        println!("{it:?}");
+        assert!(it.impacts > 300, "{it:?}");
+        assert!(it.over[0] < 15.0, "{it:?}");
+    }
+    let [plane, two_ends] = &kinds[..] else {
+        panic!("two kinds");
+    };
+    assert_eq!((plane.told, plane.beyond), (plane.impacts, 0), "{plane:?}");
+    assert!(2 * two_ends.told > two_ends.impacts, "{two_ends:?}");
+    // One in a hundred; measured, one in 200.
+    assert!(100 * two_ends.beyond <= two_ends.told, "{two_ends:?}");
+}
+
+fn accuracy(arguments: &[&str]) -> (String, Value) {
+    let said = Command::new(program())
+        .arg("drop")
+        .args(arguments)
+        .args(["--json", "-"])
+        .output()
+        .expect("runs");
+    assert!(said.status.success(), "{said:?}");
+    let json: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+    let text = String::from_utf8(said.stderr).expect("text");
+    (text, json["accuracy"].clone())
+}
+
+#[test]
+fn a_drop_tells_how_far_to_trust_it() {
+    let (text, rig) = accuracy(&["rig"]);
+    assert!(text.contains("accuracy: times of impacts to "), "{text}");
+    let time = rig["impacts"][0]["time_s"].as_f64().expect("a time");
+    assert!(time > 0.0 && time < 1e-15, "{time}");
+    assert_eq!(rig["regime_is_certain"], true);
+    let (text, chaotic) = accuracy(&["york-ymc2"]);
+    assert!(text.contains("on not certain: read statistics"), "{text}");
+    let impacts = chaotic["impacts"].as_array().expect("a list");
+    assert!(impacts[0].is_object() && impacts.last().expect("some").is_null());
+    // The reference tells itself.
+    let (text, none) = accuracy(&["rig", "--truth"]);
+    assert!(text.contains("model off by") && none.is_null(), "{text}");
+}
