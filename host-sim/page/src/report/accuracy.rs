@@ -85,10 +85,10 @@ fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
         regime_name(model.regime).to_owned(),
         regime.to_owned(),
     ]);
-    let table = table("The model's numbers, and what they may be off", &rows)
+    let table = table("The model's numbers and their estimated errors", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())
-        .number("Off by at most", |it| it[2].clone());
+        .number("Estimated error", |it| it[2].clone());
     table.draw()
 }
 

@@ -104,7 +104,7 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
         section { h2 { "Impacts" } (tables::impacts(scene, outcome, &matches)) }
         section { h2 { "Severity" } (severity::severity(outcome)) }
         section { h2 { "Sensors" } (health::health(outcome)) }
-        section { h2 { "Model against reference" } (accuracy::accuracy(scene, outcome)) }
+        section { h2 { "Accuracy of the model" } (accuracy::accuracy(scene, outcome)) }
         @if let Some(ledger) = &outcome.ledger {
             section { h2 { "Energy" } (energy::energy(ledger)) }
         }
