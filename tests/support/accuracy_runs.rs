@@ -117,7 +117,7 @@ fn look(seed: u64, scene: &Scene) -> Option<Seen> {
         return None;
     }
     let ours = run.histories.whole;
-    let told = accuracy::estimate(scene, &ours).expect("a valid scene")?;
+    let told = accuracy::estimate(scene, &ours)?;
     let truths = if scene.model.rung == Fidelity::Rigid {
         [
             Some(touchdown_truth::simulate(scene)),

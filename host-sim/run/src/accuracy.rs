@@ -3,8 +3,7 @@
 //! The same drop is run again in f64: the rigid rung from starts that differ by a rounding, which shows how fast an error
 //! grows; a rung that steps also by half, twice and four times the step, which shows what the step costs. An
 //! impact's error is the greatest distance to its nearest in any of these runs. It does not shrink from one impact
-//! to the next; it is not told from the first impact on that one of the runs does not have. How often that covers the true
-//! error: docs/know/accuracy.md.
+//! to the next; it is not told from the first impact on that one of the runs lacks. How good that is: docs/know/accuracy.md.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -85,12 +84,11 @@ impl RunAccuracy {
     }
 }
 
-/// Of what `scene`'s model gave; none where the run is too long to be run again, or its step too long for other steps to
-/// tell.
-pub fn estimate(scene: &Scene, history: &History) -> Result<Option<RunAccuracy>, ConfigError> {
+/// Of what `scene`'s model gave; none where the run or its step is too long, or another start or step is refused.
+pub fn estimate(scene: &Scene, history: &History) -> Option<RunAccuracy> {
     let stepped = scene.model.rung != Fidelity::Rigid;
     if stepped && scene.run.duration > LONGEST || !scene.step_is_short() {
-        return Ok(None);
+        return None;
     }
     let runs = if stepped { STEPPED } else { NOT_STEPPED };
     let bar = progress::bar("accuracy", runs.len() as u64);
@@ -102,8 +100,9 @@ pub fn estimate(scene: &Scene, history: &History) -> Result<Option<RunAccuracy>,
             bar.inc(1);
             Ok(Other { history, weight })
         })
-        .collect::<Result<Vec<_>, _>>()?;
+        .collect::<Result<Vec<_>, ConfigError>>();
     bar.finish_and_clear();
+    let others = others.ok()?;
     let units = Units::of(scene);
     let limit = OTHER * units.time;
     let times = |of: fn(&History) -> &[f64]| {
@@ -122,14 +121,14 @@ pub fn estimate(scene: &Scene, history: &History) -> Result<Option<RunAccuracy>,
             ..worst
         }));
     }
-    Ok(Some(RunAccuracy {
+    Some(RunAccuracy {
         impacts,
         contact_starts_s: times(|it| &it.contact_starts),
         lift_offs_s: times(|it| &it.lift_offs),
         rolling_starts_s: times(|it| &it.rolling_starts),
         regime_is_certain: others.iter().all(|it| it.history.regime == history.regime),
         end: end(history, &others, &units),
-    }))
+    })
 }
 
 /// The same drop, run again.

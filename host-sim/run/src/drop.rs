@@ -30,10 +30,11 @@ pub fn run<W: Write>(
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let refused = |error| refused(scene, &error);
-    let mover = Mover::Model(model::follow(scene).map_err(refused)?);
-    let (mut outcome, stream) = sensed(scene, target, stream, mover)?;
-    outcome.accuracy = accuracy::estimate(scene, &outcome.model).map_err(refused)?;
+    let model = model::follow(scene).map_err(|error| refused(scene, &error))?;
+    let (mut outcome, stream) = sensed(scene, target, stream, Mover::Model(model))?;
+    if outcome.model_given_up.is_none() {
+        outcome.accuracy = accuracy::estimate(scene, &outcome.model);
+    }
     Ok((outcome, stream))
 }
 

@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use serde_json::Value;
+use touchdown_scene::BUILT_IN;
 use touchdown_tests::accuracy_runs;
 use touchdown_tests::binary::program;
 
@@ -53,4 +54,18 @@ fn a_drop_tells_how_far_to_trust_it() {
     // The reference tells itself.
     let (text, none) = accuracy(&["rig", "--truth"]);
     assert!(text.contains("model off by") && none.is_null(), "{text}");
+}
+
+/// Where a start that is a rounding off may be beyond the wall.
+#[test]
+fn a_drop_that_cannot_be_run_again_is_done_all_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("wall.toml");
+    for start in ["x_mm = 0.3", "y_mm = -0.3", "x_mm = -0.3\nvx_mm_s = 5"] {
+        let text = BUILT_IN[0].text.replace("x_mm = 0.02", start);
+        assert!(text.contains(start) && text.contains("clearance_mm = 0.3"));
+        std::fs::write(&path, text).expect("written");
+        let (text, _) = accuracy(&[path.to_str().expect("text")]);
+        assert!(text.contains("regime"), "{start}: {text}");
+    }
 }
