@@ -144,13 +144,13 @@ fn a_drop_says_what_was_taken_and_why() {
 
 #[test]
 fn what_nothing_gives_is_answered_by_the_nearest() {
-    drop_of(&text("rig", "", "impact_time_us = 1e-12"))
+    drop_of(&text("rig", "rung = \"rigid\"", "impact_time_us = 1e-12"))
         .success()
         .stdout(contains("the nearest: none gives all that is asked"))
         .stdout(contains("impact times: "))
         .stdout(contains("kept in 0 of "));
     // A rotor with two ends has no count of instructions on the target.
-    drop_of(&text("york-ymc2", "step_us = 10", "regime = true\nimpact_time_us = 1"))
+    drop_of(&text("york-ymc2", "step_us = 10\nprecision = \"f64\"", "regime = true\nimpact_time_us = 1"))
         .success()
         .stdout(contains("fidelity: coupled midpoint"));
 }
