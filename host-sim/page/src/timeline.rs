@@ -136,11 +136,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         "impact",
         "at ms",
         "mm/s",
-        if outcome.by_reference {
-            "model off by"
-        } else {
-            "accurate to"
-        },
+        ["accurate to", "model off by"][usize::from(outcome.by_reference)],
         "onset error ms",
         "seen mm/s",
         "latency ms"
@@ -258,15 +254,12 @@ fn severity(detection: &Detection) -> String {
 pub fn given_up(outcome: &Outcome) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(at) = outcome.model_given_up {
-        let too = if outcome.by_reference {
-            ""
-        } else {
-            ", sensors and detector too"
-        };
-        let at = millis(at);
-        lines.push(format!(
-            "model given up at {at} ms{too}: it would take too long"
-        ));
+        let too = [", sensors and detector too", ""][usize::from(outcome.by_reference)];
+        let line = format!(
+            "model given up at {} ms{too}: it would take too long",
+            millis(at)
+        );
+        lines.push(line);
     }
     if let Some(at) = outcome.given_up {
         let (at, end) = (millis(at), millis(outcome.model.end.time));

@@ -151,13 +151,10 @@ impl Other {
             let speed = (it.normal_speed - impact.normal_speed) / units.speed;
             time.abs().max(speed.abs())
         };
-        let limit = OTHER * units.time;
-        let of_time = |time: f64| {
-            let before = |it: &Impact| it.state.time < time;
-            self.history.impacts.partition_point(before)
-        };
-        let time = impact.state.time;
-        let near = &self.history.impacts[of_time(time - limit)..of_time(time + limit)];
+        let (time, limit) = (impact.state.time, OTHER * units.time);
+        let all = &self.history.impacts;
+        let of_time = |time: f64| all.partition_point(|it| it.state.time < time);
+        let near = &all[of_time(time - limit)..of_time(time + limit)];
         let nearest = near.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
         let of = |ours: f64, theirs: f64| self.weight * (ours - theirs).abs();
         (apart(nearest) <= OTHER).then(|| ImpactError {

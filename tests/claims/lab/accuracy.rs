@@ -16,15 +16,15 @@ fn told_errors_cover_the_true_ones() {
     for it in &kinds {
         println!("{it:?}");
         assert!(it.impacts > 300, "{it:?}");
-        assert!(it.over[0] < 15.0, "{it:?}");
+        assert!(it.over[0] < 10.0, "{it:?}");
     }
     let [plane, two_ends] = &kinds[..] else {
         panic!("two kinds");
     };
     assert_eq!((plane.told, plane.beyond), (plane.impacts, 0), "{plane:?}");
     assert!(2 * two_ends.told > two_ends.impacts, "{two_ends:?}");
-    // Measured: one in 80.
-    assert!(40 * two_ends.beyond <= two_ends.told, "{two_ends:?}");
+    // Of these seeds. Over more, one in 80 (docs/know/accuracy.md); aimed at, one in 1000.
+    assert_eq!(two_ends.beyond, 0, "{two_ends:?}");
 }
 
 fn accuracy(arguments: &[&str]) -> (String, Value) {

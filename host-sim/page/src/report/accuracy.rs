@@ -40,51 +40,33 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
 fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
     let mut rows = Vec::new();
     for (index, (impact, known)) in model.impacts.iter().zip(&accuracy.impacts).enumerate() {
-        let [time, speed] = [ms(impact.state.time), mm_s(impact.normal_speed)];
-        let name = format!("Impact {index}");
+        let errors = known.map(|it| [it.time_s, it.normal_speed_m_s]);
+        let [time, speed] =
+            [(0, "s"), (1, "m/s")].map(|(k, unit)| bound(errors.map(|it| it[k]), unit));
+        rows.push([format!("Impact {index}, ms"), ms(impact.state.time), time]);
         rows.push([
-            format!("{name}, ms"),
-            time,
-            bound(known.map(|it| it.time_s), "s"),
+            format!("Impact {index}, mm/s"),
+            mm_s(impact.normal_speed),
+            speed,
         ]);
-        let speed_error = bound(known.map(|it| it.normal_speed_m_s), "m/s");
-        rows.push([format!("{name}, mm/s"), speed, speed_error]);
         if known.is_none() || index + 1 == IMPACTS {
             break;
         }
     }
-    let starts: [(_, &[f64], &[Option<f64>]); 3] = [
-        (
-            "Permanent contact, first, ms",
-            &model.contact_starts,
-            &accuracy.contact_starts_s,
-        ),
-        (
-            "Rolling, first, ms",
-            &model.rolling_starts,
-            &accuracy.rolling_starts_s,
-        ),
-        (
-            "Lift-off, first, ms",
-            &model.lift_offs,
-            &accuracy.lift_offs_s,
-        ),
-    ];
-    for (name, times, errors) in starts {
+    let mut first = |name: &str, times: &[f64], errors: &[Option<f64>]| {
         if let (Some(time), Some(error)) = (times.first(), errors.first()) {
-            rows.push([name.to_owned(), ms(*time), bound(*error, "s")]);
+            rows.push([format!("{name}, first, ms"), ms(*time), bound(*error, "s")]);
         }
-    }
-    let regime = if accuracy.regime_is_certain {
-        "certain"
-    } else {
-        "not certain"
     };
-    rows.push([
-        "Regime".to_owned(),
-        regime_name(model.regime).to_owned(),
-        regime.to_owned(),
-    ]);
+    first(
+        "Permanent contact",
+        &model.contact_starts,
+        &accuracy.contact_starts_s,
+    );
+    first("Rolling", &model.rolling_starts, &accuracy.rolling_starts_s);
+    first("Lift-off", &model.lift_offs, &accuracy.lift_offs_s);
+    let regime = ["not certain", "certain"][usize::from(accuracy.regime_is_certain)];
+    rows.push(["Regime", regime_name(model.regime), regime].map(str::to_owned));
     let table = table("The model's numbers and their estimated errors", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())

@@ -94,7 +94,10 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
         .filter(|(it, hard)| **hard && it.detected.is_some());
     let forces = outcome.model.has_forces();
     let rows: Vec<Row<'_>> = (truth.iter().enumerate().zip(&found))
-        .map(|((index, truth), found)| (index, truth, outcome.model.impacts.get(index), *found))
+        .map(|((index, truth), found)| {
+            let model = outcome.model.impacts.get(index);
+            (index, truth, model, model_errors(outcome, index), *found)
+        })
         .collect();
     html! {
         p {
@@ -104,15 +107,37 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
         }
         (impact_table(&rows, forces))
         p.note {
-            "Normal speed: into the wall just before. The series ends where the bounce speed is below the reference's "
-            "cut-off; its last impacts are far below any sensor's noise. Model and reference are compared by index."
+            "Normal speed: into the wall just before. The series ends where the bounce speed is below a "
+            "cut-off; its last impacts are far below any sensor's noise. "
+            @if outcome.by_reference { "Model and reference are compared by index." }
+            @else { "The model's errors are estimated; a dash stands where they are not certain." }
             @if forces { " Peak force and length of the contact are the model's; an impact that turns into permanent contact has none of its own." }
         }
     }
 }
 
-/// Index, by the reference, by the model, as detected.
-type Row<'a> = (usize, &'a Impact, Option<&'a Impact>, &'a Match);
+/// Of the model's time, s, and of its speed, relative: against the reference, else estimated.
+fn model_errors(outcome: &Outcome, index: usize) -> Option<[f64; 2]> {
+    let truth = &outcome.truth.impacts[index];
+    if !outcome.by_reference {
+        let known = outcome.accuracy.as_ref()?.impacts[index]?;
+        return Some([known.time_s, known.normal_speed_m_s / truth.normal_speed]);
+    }
+    let model = outcome.model.impacts.get(index)?;
+    Some([
+        model.state.time - truth.state.time,
+        model.normal_speed / truth.normal_speed - 1.0,
+    ])
+}
+
+/// Index, as the sensors saw it, by the model, the model's errors, as detected.
+type Row<'a> = (
+    usize,
+    &'a Impact,
+    Option<&'a Impact>,
+    Option<[f64; 2]>,
+    &'a Match,
+);
 
 fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
     let text =
@@ -124,18 +149,15 @@ fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
         .number("Normal speed\nmm/s", |it| column(it.1.normal_speed * 1e3))
         .number("Impulse\nmN\u{a0}s", |it| column(it.1.normal_impulse * 1e3))
         .words("Detected", |it| {
-            if it.3.detected.is_some() { "yes" } else { "no" }
+            if it.4.detected.is_some() { "yes" } else { "no" }
         })
-        .number("Latency\nms", |it| ms_or_dash(it.3.latency_s))
-        .number("Onset error\nms", |it| ms_or_dash(it.3.onset_error_s))
-        .number("Model: time error\ns", |(_, truth, model, _)| {
-            text(model.map(|it| it.state.time - truth.state.time), error)
+        .number("Latency\nms", |it| ms_or_dash(it.4.latency_s))
+        .number("Onset error\nms", |it| ms_or_dash(it.4.onset_error_s))
+        .number("Model: time error\ns", |it| {
+            text(it.3.map(|it| it[0]), error)
         })
-        .number("Model: speed error\nrelative", |(_, truth, model, _)| {
-            text(
-                model.map(|it| it.normal_speed / truth.normal_speed - 1.0),
-                error,
-            )
+        .number("Model: speed error\nrelative", |it| {
+            text(it.3.map(|it| it[1]), error)
         });
     if !forces {
         return table.draw();

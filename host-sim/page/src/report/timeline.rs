@@ -32,13 +32,14 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
         let impacts = events.iter().filter(|it| it.event == EventKind::Impact);
         impacts.map(time).collect()
     };
+    let whose = ["Truth (model)", "Truth (reference)"][usize::from(outcome.by_reference)];
     let true_row = |name: String, truth: &'_ History| {
         let hits = truth.impacts.iter().map(|it| it.state.time);
         (name, truth.phases.clone(), hits.collect())
     };
     let rings = rings(scene).iter().zip(&outcome.rings);
     let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
-        vec![true_row("Truth (reference)".to_owned(), &outcome.truth)];
+        vec![true_row(whose.to_owned(), &outcome.truth)];
     rows.extend(
         rings.map(|(ring, [_, truth])| true_row(format!("Truth, ring {}", ring.name), truth)),
     );

@@ -278,9 +278,11 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let model = &self.of.model;
         let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.scales.length);
         if self.scene.two_plane.is_some() {
-            return Moving::Ends(std::array::from_fn::<_, RINGS, _>(|ring| {
-                metres(model.displacement(state, ring.min(N - 1)))
-            }));
+            let mut ends = [[0.0; 2]; RINGS];
+            for (ring, end) in ends.iter_mut().enumerate().take(N) {
+                *end = metres(model.displacement(state, ring));
+            }
+            return Moving::Ends(ends);
         }
         let race_spin = self.race_spins(state)[0];
         Moving::Ring {
