@@ -185,12 +185,12 @@ impl Monitor {
     /// Third part: what the sensors say, and whether they can be believed.
     #[inline]
     pub fn sense(&self, state: &mut MonitorState, sample: &Sample) -> Seen {
-        let phases = state.detector.phases();
+        let contact = (state.detector.phases(), state.detector.wall_gives());
         let reading = self.health.update(
             &mut state.health,
             &self.sensing,
             sample,
-            phases,
+            contact,
             &state.touch,
         );
         let spin_fault = if state.odd_spins == 0 && self.spin.follows(sample.spin, state.spin) {

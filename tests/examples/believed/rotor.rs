@@ -295,6 +295,11 @@ impl Rotor {
             touch.jump += push * h;
             touch.length = t - touch.time;
             if touch.length > LONG / frequency && !self.stop_hit {
+                // It begins as a touch does: as an impact, which nobody has to find.
+                self.truth.impacts.push(Impact {
+                    jump: 0.0,
+                    ..*touch
+                });
                 self.truth.contacts.push([touch.time, f64::INFINITY]);
                 self.truth.turned.push(0.0);
                 self.stop_hit = true;

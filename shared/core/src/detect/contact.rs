@@ -134,13 +134,13 @@ impl ContactTest {
         }
     }
 
-    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`; `slip_left` is
-    /// the slip (m/s) that is certainly left.
+    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`, on a wall that gives way by `give` (m);
+    /// `slip_left` is the slip (m/s) that is certainly left.
     pub(crate) fn start(
         &self,
         measurement: &Measurement,
-        velocity: [f32; 2],
-        spread: f32,
+        (velocity, spread): ([f32; 2], f32),
+        give: f32,
         age: f32,
         slip_left: f32,
     ) -> Touching {
@@ -148,17 +148,20 @@ impl ContactTest {
         let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
         Touching {
             track: self.filter.start(outward, speed, spread),
+            lift: LiftOff::on(give),
             age: age as u32,
             slip_left,
             ..Touching::default()
         }
     }
 
-    /// Takes the next sample, or its absence. It shows where the wall is.
+    /// Takes the next sample, or its absence. It shows where the wall is. `pull`: acceleration of flights and its standard
+    /// deviation, m/s^2, where the rotor moves as one.
     pub(crate) fn take(
         &self,
         state: &mut Touching,
         wall: &mut RetainerWall,
+        pull: Option<([f32; 2], f32)>,
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -185,7 +188,7 @@ impl ContactTest {
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
         let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
         let on_wall = measurement.filter(|_| state.lift.is_at_wall());
-        let regime = on_wall.and_then(|measurement| self.regime(state, measurement, surface, slip));
+        let regime = on_wall.and_then(|it| self.regime(state, pull, it, [surface, slip]));
         [kind, regime]
     }
 
@@ -286,21 +289,25 @@ impl ContactTest {
         }
     }
 
-    /// Whether it is bound to go round: it has the energy to pass the top with the wall still pressing. Friction
-    /// that drives it only adds to that, and rolling takes less, so no more need be known than the way of the slip.
-    fn goes_round(&self, state: &Touching, slip: f32) -> bool {
+    /// Whether it is bound to go round: it has the energy to pass the highest place against the pull with the wall still
+    /// pressing. Friction that drives it only adds to that, and rolling takes less, so no more need be known than the way of
+    /// the slip.
+    fn goes_round(&self, state: &Touching, (pull, error): ([f32; 2], f32), slip: f32) -> bool {
         let swing = state.swing();
         let rate = swing.rate.abs() - SURE * state.track.rate_spread();
-        let over_the_top = self.machine.gravity / self.machine.clearance * (3.0 + 2.0 * swing.cos);
+        let ([x, y], strength) = direction(pull);
+        let [u, v] = state.outward();
+        let down = strength * (x * u + y * v);
+        let over_the_top = (3.0 * (strength + error) + 2.0 * down) / self.machine.clearance;
         rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
     }
 
     fn regime(
         &self,
         state: &mut Touching,
+        pull: Option<([f32; 2], f32)>,
         measurement: &Measurement,
-        surface: f32,
-        slip: f32,
+        [surface, slip]: [f32; 2],
     ) -> Option<Finding> {
         let swing = *state.swing();
         let block = state.still.take(measurement.position, self.still_samples);
@@ -312,7 +319,8 @@ impl ContactTest {
             SWINGS
         };
         let has_turned = swing.turned.abs() >= TAU;
-        let (found, age) = if has_turned || self.goes_round(state, slip) {
+        let (found, age) = if has_turned || pull.is_some_and(|it| self.goes_round(state, it, slip))
+        {
             let way = if has_turned { swing.turned } else { swing.rate };
             let with_spin = way * surface >= 0.0;
             let whirl = if with_spin {

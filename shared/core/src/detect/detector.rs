@@ -474,10 +474,14 @@ impl Detector {
         let ends = &mut state.ends;
         let whose = |contact: &Touching| ends.lifting(contact);
         let (rotor, measurement) = (&mut state.rotor, measurement.as_ref());
-        if !self
-            .phase_machine
-            .touching(rotor, measurement, signals, threshold_scale, whose, writer)
-        {
+        if !self.phase_machine.touching(
+            rotor,
+            measurement,
+            signals,
+            (threshold_scale, true),
+            whose,
+            writer,
+        ) {
             state.ends.lift_one();
         }
     }
@@ -588,6 +592,12 @@ impl DetectorState {
     /// Whether the rotor lies still, as a whole.
     pub fn rests(&self) -> bool {
         self.ends.alone().is_empty() && self.rotor.phase.is_contact() && self.rotor.contact.rests()
+    }
+
+    /// Whether the wall has given way.
+    pub(crate) fn wall_gives(&self) -> bool {
+        let ends = self.ends.alone().iter();
+        self.rotor.flight.gives || ends.fold(false, |gives, it| gives || it.flight.gives)
     }
 
     /// Slip in contact, where it is measured against an inner ring that turns.

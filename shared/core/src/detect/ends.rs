@@ -170,7 +170,7 @@ impl EndsTest {
                         phase_state,
                         measurement.as_ref(),
                         signals,
-                        threshold_scale,
+                        (threshold_scale, false),
                         |_| Lifting::Both,
                         writer,
                     );

@@ -1,6 +1,7 @@
 //! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
 
 use crate::config::{DetectorConfig, MachineConfig};
+use crate::detect::give::{OpenTouch, TouchStage};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
@@ -29,10 +30,6 @@ const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
-/// Time in which a flight shows its acceleration to 0.8 m/s^2, at 0.75 um and 20 kHz, s.
-const WELL_KNOWN: f32 = 2e-3;
-/// Acceleration beside told gravity from which on a motion is no fall, m/s^2: magnets that hold, shocks.
-const BESIDE: f32 = 2.0 * PULL_ERROR;
 /// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
 const STEADY: f32 = 0.2;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
@@ -47,6 +44,8 @@ const LOUD: f32 = 1.5;
 
 /// Part of the wall's tolerance by which its radius may differ from where the last impact was.
 const UNEVEN: f32 = 0.33;
+/// What pushes evenly more from nothing on is dated as a jump that begins after 0.46 of its time.
+const GROWS: f32 = 1.85;
 /// Samples in a row that no flight and no impact explains, which are left out: a spike. More are a motion.
 const LEFT_OUT: u8 = 2;
 /// Way of an impact in the sample after it, in samples' ways of the speed before it: twice that speed is the most that
@@ -72,8 +71,8 @@ pub(crate) struct FlightTest {
     uneven: f32,
     /// Acceleration towards the wall that a bounce feels, m/s^2.
     slowest: f32,
-    /// Samples of a flight that show its acceleration well.
-    well_known: u16,
+    /// Over the horizon of the jumps, 1/s.
+    per_horizon: f32,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
     listen_samples: f32,
@@ -93,8 +92,12 @@ pub(crate) struct Airborne {
     pub(crate) wall: RetainerWall,
     /// Where the last impact showed it (m), and the variance of that (m^2): taken in with the next sample.
     shown: Option<([f32; 2], f32)>,
-    /// Samples since it began, or since the last jump.
-    flown: u16,
+    /// Whether the wall has given way.
+    pub(crate) gives: bool,
+    /// The touch of the last impact, until the rotor has left the wall.
+    touch: Option<OpenTouch>,
+    /// When the last impact was.
+    met: Option<Moment>,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -111,10 +114,16 @@ impl Airborne {
     fn restart(&mut self, threshold_scale: f32) {
         self.bank.begin(threshold_scale);
         self.shown = None;
-        self.flown = 0;
+        self.touch = None;
+        self.met = None;
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
+    }
+
+    /// How far the wall has given way where the rotor came to lie on it, m.
+    pub(crate) fn give(&self) -> f32 {
+        self.touch.as_ref().map_or(0.0, |it| it.give)
     }
 
     /// What is known of another one, but for impacts under way.
@@ -122,6 +131,7 @@ impl Airborne {
         self.track = other.track;
         self.series = other.series;
         self.wall = other.wall;
+        self.gives = other.gives;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -221,7 +231,7 @@ impl FlightTest {
             near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
             slowest,
-            well_known: (WELL_KNOWN * config.sample_rate) as u16,
+            per_horizon: 1.0 / tuning.impact_horizon,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
         }
@@ -245,11 +255,13 @@ impl FlightTest {
         );
         flight.series = Series::default();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
-        flight.restart(threshold_scale);
+        // What it has been from the release on, it is after a lift-off.
+        let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale());
+        flight.restart(threshold_scale.max(heard));
     }
 
     /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
-    fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
+    pub(crate) fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
         let told = ([0.0, -self.machine.gravity], PULL_ERROR);
         flight.pull.unwrap_or(told)
     }
@@ -295,8 +307,9 @@ impl FlightTest {
         );
         flight.series = both.series.anew();
         flight.wall = both.wall;
+        flight.gives = both.gives;
         flight.lies = both.lies;
-        flight.restart(threshold_scale);
+        flight.restart(threshold_scale.max(both.bank.threshold_scale()));
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
@@ -340,12 +353,14 @@ impl FlightTest {
         measurement: &Measurement,
         open: Option<(Moment, [f32; 2])>,
     ) -> Option<Landing> {
-        flight.flown = flight.flown.saturating_add(1);
         if let Some((place, variance)) = flight.shown.take() {
             flight.wall.take(place, variance, &self.told);
             self.lie_at(flight, place);
         }
         self.ballistic.predict(&mut flight.track);
+        if flight.touch.as_ref().is_some_and(OpenTouch::gives) {
+            return self.pushed(flight, measurement);
+        }
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
                 flight.left_out += 1;
@@ -355,38 +370,113 @@ impl FlightTest {
         } else {
             flight.left_out = 0;
         }
-        let innovation = self.ballistic.correct(
-            &mut flight.track,
-            measurement.position,
-            measurement.variance,
-        );
+        let (track, seen) = (&mut flight.track, measurement.position);
+        let innovation = (self.ballistic).correct(track, seen, measurement.variance);
         let (outward, _) = self.outward(flight, flight.track.position);
-        let [u, v] = flight.track.velocity;
+        let is_clear = self.told.excludes(flight.track.position);
         let approach = Approach {
             inward: outward.map(|n| -n),
-            speed: u * outward[0] + v * outward[1],
+            speed: along(flight.track.velocity, outward),
             pull: along(flight.track.acceleration, outward),
             restitution: flight.series.restitution(&self.machine),
+            is_sudden: !flight.gives && !is_clear,
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
-            let impact = self.judge(flight, &jump, measurement, open);
-            flight.flown = 0;
+            let is_of_a_wall = !is_clear && is_of_a_wall(&jump, outward);
+            let impact = is_of_a_wall.then(|| self.judge(flight, &jump, measurement, open));
             flight.track.shift(&jump);
             flight.bank.restart();
-            if let Some(hit) = impact {
-                self.take_in(flight, &hit);
-                return Some(Landing::Impact {
-                    age: hit.age,
-                    normal_speed: hit.bounce.normal_speed,
-                });
+            match impact {
+                Some(Some(hit)) => return Some(self.take_in(flight, &hit)),
+                Some(None) => {}
+                None => flight.bank.listen(),
             }
         }
         self.relaunch(flight, measurement);
-        self.contact(flight, measurement)
+        self.follow_touch(flight, measurement);
+        let landing = self.contact(flight, measurement)?;
+        // Where the wall gives way a series ends at once, with a touch that stays.
+        let met = flight.met.filter(|_| flight.gives);
+        Some(match (landing, met) {
+            (Landing::Contact { .. }, Some(met)) => Landing::Contact {
+                age: measurement.now.since(met),
+            },
+            (landing, _) => landing,
+        })
     }
 
-    fn take_in(&self, flight: &mut Airborne, hit: &Hit) {
+    /// Whether the wall where the last impact was has been left, or gives way.
+    #[inline(never)]
+    fn follow_touch(&self, flight: &mut Airborne, measurement: &Measurement) {
+        let speed = self.touched_with(flight);
+        let (Some(touch), Some(met)) = (&mut flight.touch, flight.met) else {
+            return;
+        };
+        let seen = flight.wall.beyond(direction(measurement.position));
+        let out = seen - flight.wall.beyond(touch.place);
+        // Where a wall is known from many impacts that says more than the last one, but for one that gives way.
+        let out = if flight.gives { out } else { out.min(seen) };
+        let gone = speed * measurement.now.since(met) * self.period;
+        let noise = measurement.variance * flight.bank.threshold_scale();
+        match touch.look(out, sqrt(noise), gone) {
+            TouchStage::GivesWay => {
+                flight.gives = true;
+                flight.wall.shrink(touch.slack);
+                let track = &flight.track;
+                flight.track = Track::new(
+                    measurement.position,
+                    measurement.variance,
+                    (track.velocity, speed),
+                    (track.acceleration, speed * self.per_horizon),
+                );
+            }
+            TouchStage::Left => flight.touch = None,
+            _ => {}
+        }
+    }
+
+    /// Speed into the wall with which the touch began, m/s.
+    fn touched_with(&self, flight: &Airborne) -> f32 {
+        flight.series.last().map_or(0.0, |last| last.normal_speed)
+    }
+
+    /// On a wall that gives way.
+    #[inline(never)]
+    fn pushed(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+        // A wall that takes the speed off in less than the horizon of the jumps would be seen as a jump.
+        let push = self.touched_with(flight) * self.per_horizon;
+        let (track, bounce) = (&mut flight.track, flight.series.last()?);
+        track.loosen(push * push * self.per_horizon * self.period);
+        let (position, variance) = (measurement.position, measurement.variance);
+        self.ballistic.correct(track, position, variance);
+        let (n, radius) = direction(track.position);
+        let speed = along(track.velocity, flight.wall.normal(n));
+        let touch = flight.touch.as_mut()?;
+        let stage = touch.follow(
+            radius - flight.wall.distance(n) - flight.wall.beyond(touch.place),
+            sqrt(variance * flight.bank.threshold_scale()),
+            (speed, track.speed_error()),
+            bounce.normal_acceleration * self.period,
+        );
+        let age = measurement.now.since(flight.met?);
+        if stage == TouchStage::Lies || age > self.dwell as f32 {
+            return Some(Landing::Contact { age });
+        }
+        if stage == TouchStage::Left {
+            flight.touch = None;
+            flight.track.accelerate(self.pull(flight));
+            let velocity = flight.track.velocity;
+            (flight.series).left(measurement.now, velocity, &self.machine, self.period);
+            flight.bank.restart();
+            flight.near_wall = 0;
+            flight.seen_near = 0;
+            flight.lying = 0;
+        }
+        None
+    }
+
+    fn take_in(&self, flight: &mut Airborne, hit: &Hit) -> Landing {
         let (series, machine) = (&mut flight.series, &self.machine);
         if hit.foreseen {
             series.go_on(hit.bounce, machine, self.period);
@@ -397,8 +487,17 @@ impl FlightTest {
             flight.near_wall = 0;
             flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
         }
+        // Of a wall that gives way the date has been stretched, of another one it would be.
+        let part = (GROWS - 1.0) / if flight.gives { GROWS } else { 1.0 };
+        let way = hit.bounce.normal_speed * part * hit.age * self.period;
+        flight.met = Some(hit.bounce.at);
+        flight.touch = Some(OpenTouch::new(direction(hit.place), way));
         flight.seen_near = 0;
         flight.lying = 0;
+        Landing::Impact {
+            age: hit.age,
+            normal_speed: hit.bounce.normal_speed,
+        }
     }
 
     /// The rotor may come to lie where an impact was, at `place` (m).
@@ -453,16 +552,18 @@ impl FlightTest {
         let since = jump.age * self.period;
         let mut after = flight.track;
         after.shift(jump);
-        let place = after.position_before(since);
+        let [u, v] = after.velocity_before(since);
+        let before = less([u, v], jump.change);
+        let stretch = if flight.gives { GROWS } else { 1.0 };
+        let earlier = (stretch - 1.0) * since;
+        let place = less(after.position_before(since), before.map(|it| it * earlier));
         let (outward, n) = self.outward(flight, place);
         let (_, radius) = direction(place);
-        let [u, v] = after.velocity_before(since);
-        let before = [u - jump.change[0], v - jump.change[1]];
         let normal_speed = before[0] * outward[0] + before[1] * outward[1];
         let along = v * outward[0] - u * outward[1];
         let pull = after.acceleration;
         let mut bounce = Bounce {
-            at: measurement.now.later(-jump.age),
+            at: measurement.now.later(-stretch * jump.age),
             normal_speed,
             along,
             outward,
@@ -470,7 +571,7 @@ impl FlightTest {
             normal_acceleration: along * along / self.machine.clearance
                 + self::along(pull, outward),
         };
-        let mut age = jump.dated;
+        let mut age = stretch * jump.dated;
         let mut least = self.min_detectable_speed(
             bounce.normal_acceleration,
             measurement.variance * flight.bank.threshold_scale(),
@@ -504,7 +605,7 @@ impl FlightTest {
             let time = bounce.at.since(onset) * self.period;
             is_steady(less(place, home), before, pull, time)
         };
-        let shows = self.falls(flight, pull) && open.is_none_or(is_steady);
+        let shows = open.is_none_or(is_steady);
         let near = if shows {
             flight.wall.nearest(n, &self.told)
         } else {
@@ -517,14 +618,11 @@ impl FlightTest {
             foreseen,
             launch_speed,
             place,
-            shown: shows.then(|| after.spread(0.0) * after.spread(0.0)),
+            shown: shows.then(|| {
+                let earlier = earlier * bounce.normal_speed;
+                after.spread(0.0) * after.spread(0.0) + earlier * earlier
+            }),
         })
-    }
-
-    /// Whether the flight with the acceleration `pull` (m/s^2) before a jump was a fall, rather than held.
-    fn falls(&self, flight: &Airborne, pull: [f32; 2]) -> bool {
-        let told = [0.0, -self.machine.gravity];
-        flight.flown >= self.well_known && square(pull, told) < BESIDE * BESIDE
     }
 
     /// How long the flight after an impact would last on a flat wall, s: it leaves with the speed v = `launch` and comes
@@ -601,6 +699,13 @@ impl FlightTest {
 fn is_steady(way: [f32; 2], velocity: [f32; 2], acceleration: [f32; 2], time: f32) -> bool {
     let gone = [0, 1].map(|axis| (velocity[axis] - 0.5 * acceleration[axis] * time) * time);
     square(way, gone) < STEADY * STEADY * square(way, [0.0; 2])
+}
+
+/// Whether a wall can have made a jump: it pushes inward, and its friction gives less than that across.
+fn is_of_a_wall(jump: &Jump, [x, y]: [f32; 2]) -> bool {
+    let [u, v] = jump.change;
+    let across = (v * x - u * y).abs();
+    across < FASTER * sqrt(jump.variance) - (u * x + v * y)
 }
 
 /// Part of `vector` along a unit vector.

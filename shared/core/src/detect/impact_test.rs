@@ -15,8 +15,12 @@ const AROUND: usize = 4;
 const JUMP_SPREAD: f32 = 0.2;
 /// The same for the date of an impact: a wrong jump spoils the flight after it, a wrong date itself alone.
 const DATE_SPREAD: f32 = 0.1;
+/// Times that the threshold is raised by a jump that cannot be an impact.
+const LOUDER: f32 = 1.5;
 /// Part of the speed into the wall that every impact takes off, for all that noise does.
 const STOPPED: f32 = 0.8;
+/// The same of one on a wall that gives way, where it shows beyond doubt: less is another force.
+const BEGUN: f32 = 0.3;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +66,11 @@ impl JumpBank {
         self.threshold_scale
     }
 
+    /// A jump where no wall is: the sensors, or other forces, are louder than was known.
+    pub(crate) fn listen(&mut self) {
+        self.threshold_scale *= LOUDER;
+    }
+
     /// Forgets what was under way.
     pub(crate) fn restart(&mut self) {
         self.live = 0;
@@ -87,6 +96,8 @@ pub(crate) struct Approach {
     pub(crate) pull: f32,
     /// Of the impact.
     pub(crate) restitution: f32,
+    /// Whether the speed goes at once: a wall that gives way takes it off little by little, and no wall has no restitution.
+    pub(crate) is_sudden: bool,
 }
 
 /// What restitution makes of a jump at an instant of the bank.
@@ -103,9 +114,9 @@ struct Guess {
 }
 
 impl Guess {
-    /// Whether such a jump at least stops the rotor at the wall.
-    fn stops(&self) -> bool {
-        self.jump >= STOPPED * self.speed
+    /// Whether such a jump takes off that part of the speed into the wall.
+    fn takes(&self, part: f32) -> bool {
+        self.jump >= part * self.speed
     }
 
     /// Logarithm of how likely the instant is, where the jump may differ from restitution's by `spread`, a part of it.
@@ -237,7 +248,7 @@ impl JumpTest {
                 continue;
             }
             let guess = candidate.guess(self.age(bank, index), approach, self.period);
-            if !(guess.stops() || past_doubt) {
+            if approach.is_sudden && !guess.takes(STOPPED) && !(past_doubt && guess.takes(BEGUN)) {
                 continue;
             }
             let value = guess.likelihood(JUMP_SPREAD);
@@ -322,7 +333,11 @@ impl Candidate {
             jump,
             variance,
             speed,
-            expected: (1.0 + approach.restitution) * speed.max(0.0),
+            expected: if approach.is_sudden {
+                (1.0 + approach.restitution) * speed.max(0.0)
+            } else {
+                jump
+            },
         }
     }
 

@@ -29,11 +29,21 @@ pub(crate) struct LiftOff {
     count: u16,
     /// Mean square of that distance on the wall, m^2.
     square: f32,
+    /// The same on a wall that gives way; 0 on one that does not.
+    give: f32,
     sum: f32,
     age: u16,
 }
 
 impl LiftOff {
+    /// On a wall that gives way by so much, m.
+    pub(crate) fn on(give: f32) -> Self {
+        Self {
+            give: 0.25 * give * give,
+            ..Self::default()
+        }
+    }
+
     /// Whether the last sample was at the wall.
     pub(crate) fn is_at_wall(&self) -> bool {
         self.age == 0
@@ -68,7 +78,7 @@ impl LiftOff {
         variance: f32,
         threshold: f32,
     ) -> Option<f32> {
-        let sigma = sqrt(variance);
+        let sigma = sqrt(variance.max(self.give));
         self.gap = gap.min(self.lately - radius);
         let inward = self.gap / sigma;
         self.sum = (self.sum + SHIFT * (inward.min(MAX_INWARD_SIGMA) - 0.5 * SHIFT)).max(0.0);
@@ -82,6 +92,9 @@ impl LiftOff {
             self.lately += gain * (radius - self.lately);
             if self.count > 1 {
                 self.square += gain * (gap * gap - self.square);
+            }
+            if self.give > 0.0 {
+                self.give += (gap * gap - self.give) / MEMORY;
             }
             return None;
         }

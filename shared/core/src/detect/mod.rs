@@ -11,6 +11,7 @@
 //! | `fall` | whether it falls |
 //! | `track` | position and velocity in flight |
 //! | `impact_test` | whether the velocity jumped: an impact |
+//! | `give` | whether the wall gives way, and how long a touch lasts |
 //! | `series` | when the bounces will have died out |
 //! | `retainer_wall` | where the wall is |
 //! | `wall` | angle on the wall; sliding or rolling |
@@ -32,6 +33,7 @@ mod event_writer;
 mod exposure;
 mod fall;
 mod flight;
+mod give;
 mod impact_test;
 mod levitation;
 mod lift_off;

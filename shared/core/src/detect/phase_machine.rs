@@ -235,7 +235,7 @@ impl PhaseMachine {
             writer.resolve(pending, true);
         }
         if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
-            let fell = landing.speed() > LANDING_SPEED
+            let fell = landing.speed() > self.landing_speed(open, measurement.now)
                 || self.fell(open, measurement.now, measurement.position, centre);
             writer.resolve(pending, fell);
         }
@@ -253,6 +253,13 @@ impl PhaseMachine {
     /// Whether no caught disturbance goes from `centre` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], centre: [f32; 2]) -> bool {
         square(position, centre) > self.travel * self.travel
+    }
+
+    /// Speed into the wall, m/s, that shows a fall: no controller puts a rotor down as fast, and a fall that begins upward
+    /// goes less far than gravity's way.
+    fn landing_speed(&self, pending: &Pending, now: Moment) -> f32 {
+        let time = now.since(pending.since) * self.period;
+        LANDING_SPEED.min(FALLS * self.machine.gravity * time)
     }
 
     /// Whether a rotor that went from `centre` to `at` (m) since the fall was declared went as fast as one
@@ -306,28 +313,32 @@ impl PhaseMachine {
         let machine = &self.machine;
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
-        let velocity = phase_state.flight.track.velocity;
+        let velocity = (phase_state.flight.track.velocity, spread);
+        let give = phase_state.flight.give();
         self.flight.begin_contact(&mut phase_state.flight);
         phase_state.contact = self
             .contact
-            .start(measurement, velocity, spread, age, slip_left);
+            .start(measurement, velocity, give, age, slip_left);
         phase_state.phase = Phase::Sliding;
     }
 
-    /// In contact; `whose` says whose lift-off it would be. False where it is that of one end: nothing is
+    /// In contact, of the rotor as a whole or of one end; `whose` says whose lift-off it would be. False where it is that of one end: nothing is
     /// told then.
     pub(crate) fn touching(
         &self,
         phase_state: &mut PhaseState,
         measurement: Option<&Measurement>,
         signals: &Signals,
-        threshold_scale: f32,
+        (threshold_scale, is_whole): (f32, bool),
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
+        // One end of a rotor that tilts is moved by the other one too.
+        let pull = is_whole.then(|| self.flight.pull(&phase_state.flight));
         let findings = self.contact.take(
             &mut phase_state.contact,
             &mut phase_state.flight.wall,
+            pull,
             measurement,
             signals,
         );

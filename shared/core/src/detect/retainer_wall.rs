@@ -35,6 +35,11 @@ impl ToldWall {
         self.radius - self.tolerance
     }
 
+    /// Whether no wall is at a place, m.
+    pub(crate) fn excludes(&self, [x, y]: [f32; 2]) -> bool {
+        x * x + y * y < self.least() * self.least()
+    }
+
     /// Distance within which no wall is, m.
     fn least(&self) -> f32 {
         LEAST * self.radius
@@ -135,6 +140,11 @@ impl RetainerWall {
         dot(&self.shape, &waves(n))
     }
 
+    /// How far outside of the wall's shape a place is, in the direction `n` at `radius` (m), m.
+    pub(crate) fn beyond(&self, (n, radius): ([f32; 2], f32)) -> f32 {
+        radius - self.distance(n)
+    }
+
     /// Unit vector out of the wall in the direction `n`.
     pub(crate) fn normal(&self, n: [f32; 2]) -> [f32; 2] {
         if self.seen != Seen::Elsewhere {
@@ -218,6 +228,13 @@ impl RetainerWall {
     pub(crate) fn follow(&mut self, beside: &Beside, part: f32) {
         let [radius, ..] = &mut self.shape;
         *radius -= part * beside.gap;
+    }
+
+    /// It is farther in by some `way` (m) than it seemed to be.
+    pub(crate) fn shrink(&mut self, way: f32) {
+        let ([radius, ..], [variance, ..]) = (&mut self.shape, &mut self.diagonal);
+        *radius -= way;
+        *variance += way * way;
     }
 
     /// The sensors show all by `way` (m) elsewhere.

@@ -44,6 +44,7 @@ impl Bounce {
     /// Time, s, from a launch with speed `launch` to the end of the series. The launch speed falls by
     /// (1 - restitution)/2 times what the wall presses, whatever the bounces, and [`FOLLOWS`] the pressing; meanwhile the
     /// rotor slides along the wall as if it lay on it. `None` where the wall ceases to press.
+    #[inline(never)]
     fn rest(&self, launch: f32, restitution: f32, machine: &MachineConfig) -> Option<f32> {
         let loss = 0.5 * (1.0 - restitution);
         if loss <= 0.0 || self.normal_acceleration <= 0.0 {
@@ -166,6 +167,24 @@ impl Series {
             last.along * last.along / machine.clearance + pull[0] * x + pull[1] * y;
         let rest = last.rest(self.launch, restitution, machine);
         self.ends = rest.map(|time| last.at.later(time / period));
+    }
+
+    /// The touch of the last impact ends with this velocity, m/s.
+    pub(crate) fn left(
+        &mut self,
+        at: Moment,
+        velocity: [f32; 2],
+        machine: &MachineConfig,
+        period: f32,
+    ) {
+        let Some(last) = self.last.as_mut() else {
+            return;
+        };
+        last.at = at;
+        let [[u, v], [x, y]] = [velocity, last.outward];
+        self.launch = -(u * x + v * y);
+        let pull = last.pull;
+        self.relaunch(velocity, pull, machine, period);
     }
 
     /// Speed with which the rotor left the wall at the last impact; it comes back with that.

@@ -169,6 +169,18 @@ impl Track {
         sqrt(self.covariance[5].max(0.0))
     }
 
+    /// The variance of the acceleration grows by this, (m/s^2)^2.
+    pub(crate) fn loosen(&mut self, variance: f32) {
+        self.covariance[5] += variance;
+    }
+
+    /// The acceleration is another one, m/s^2, known to this.
+    pub(crate) fn accelerate(&mut self, (acceleration, error): ([f32; 2], f32)) {
+        self.acceleration = acceleration;
+        let [pp, pv, _, vv, ..] = self.covariance;
+        self.covariance = [pp, pv, 0.0, vv, 0.0, error * error];
+    }
+
     /// Takes a velocity jump in.
     pub(crate) fn shift(&mut self, jump: &Jump) {
         let Jump {

@@ -62,13 +62,13 @@ impl ContactCheck {
         }
     }
 
-    /// Takes a position, m, of an end that is in contact or not; where it has been, if it cannot. `rest` takes the mean
+    /// Takes a position, m, of an end that is in contact or not, on a wall that gives way or not; where it has been, if it cannot. `rest` takes the mean
     /// place, and those at its beginning and its end.
     pub(crate) fn take(
         &self,
         it: &mut ContactCheckState,
         position: [f32; 2],
-        touches: bool,
+        (touches, gives): (bool, bool),
         rest: impl FnOnce([f32; 2], [[f32; 2]; 2]),
     ) -> Option<Place> {
         if it.looks == 0 {
@@ -97,6 +97,7 @@ impl ContactCheck {
         let (touches, far) = (it.touches, it.far);
         *it = ContactCheckState::default();
         self.judge(mean, far, touches)
+            .filter(|it| !(gives && matches!(it, Place::Beyond(_))))
     }
 
     fn judge(&self, [x, y]: [f32; 2], far: [f32; 2], touches: bool) -> Option<Place> {

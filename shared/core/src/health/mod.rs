@@ -117,13 +117,14 @@ impl Health {
         }
     }
 
-    /// One tick: what of `sample` is fit for use. `phases` are those of the rotor's ends so far.
+    /// One tick: what of `sample` is fit for use. The phases are those of the rotor's ends so far; beside them whether
+    /// the wall has given way.
     pub fn update(
         &self,
         state: &mut HealthState,
         sensing: &Sensing,
         sample: &Sample,
-        phases: [Phase; PLANES],
+        (phases, gives): ([Phase; PLANES], bool),
         touches: &TouchState,
     ) -> Reading {
         let floats = phases == [Phase::Levitated; PLANES];
@@ -166,7 +167,7 @@ impl Health {
         state.planes.wait += 1;
         if state.planes.wait >= self.look_every {
             state.planes.wait = 0;
-            self.look(state, &mut reading, phases, sample.spin, touches);
+            self.look(state, &mut reading, (phases, gives), sample.spin, touches);
         }
         reading.moved = self.pair.take(
             &mut state.planes.pairing,
@@ -221,7 +222,7 @@ impl Health {
         &self,
         state: &mut HealthState,
         reading: &mut Reading,
-        phases: [Phase; PLANES],
+        (phases, gives): ([Phase; PLANES], bool),
         spin: Option<f32>,
         touches: &TouchState,
     ) {
@@ -238,7 +239,8 @@ impl Health {
                 continue;
             };
             let rest = |mean, ends| self.wall.rest(wall, mean, ends);
-            let Some(place) = self.lie.take(it, position, phase.is_contact(), rest) else {
+            let contact = (phase.is_contact(), gives);
+            let Some(place) = self.lie.take(it, position, contact, rest) else {
                 continue;
             };
             let (axis, kind) = match place {
