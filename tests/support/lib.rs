@@ -16,6 +16,7 @@ pub mod file_options;
 pub mod growth;
 pub mod guard_runs;
 pub mod led_rounds;
+pub mod machine_runs;
 pub mod minimal_scene;
 pub mod moment;
 pub mod plant;
