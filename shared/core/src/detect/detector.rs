@@ -596,8 +596,8 @@ impl DetectorState {
 
     /// Whether the wall has given way.
     pub(crate) fn wall_gives(&self) -> bool {
-        let ends = self.ends.alone().iter();
-        self.rotor.flight.gives || ends.fold(false, |gives, it| gives || it.flight.gives)
+        let mut ends = self.ends.alone().iter();
+        self.rotor.flight.gives || ends.any(|it| it.flight.gives)
     }
 
     /// Slip in contact, where it is measured against an inner ring that turns.
