@@ -413,10 +413,14 @@ impl FlightTest {
         let (Some(touch), Some(met)) = (&mut flight.touch, flight.met) else {
             return;
         };
-        let seen = flight.wall.beyond(direction(measurement.position));
-        let out = seen - flight.wall.beyond(touch.place);
+        let here = direction(measurement.position);
+        let out = flight.wall.beyond(here) - flight.wall.beyond(touch.place);
         // Where a wall is known from many impacts that says more than the last one, but for one that gives way.
-        let out = if flight.gives { out } else { out.min(seen) };
+        let out = if flight.gives {
+            out
+        } else {
+            out.min(flight.wall.surely_beyond(here, &self.told))
+        };
         let gone = speed * measurement.now.since(met) * self.period;
         let noise = measurement.variance * flight.bank.threshold_scale();
         match touch.look(out, sqrt(noise), gone) {

@@ -145,6 +145,15 @@ impl RetainerWall {
         radius - self.distance(n)
     }
 
+    /// The same at least: a wall that was met as told is no farther in than that, whatever a few places say of its shape.
+    pub(crate) fn surely_beyond(&self, place: ([f32; 2], f32), told: &ToldWall) -> f32 {
+        let beyond = self.beyond(place);
+        match self.seen {
+            Seen::Elsewhere => beyond,
+            _ => beyond.min(place.1 - told.radius),
+        }
+    }
+
     /// Unit vector out of the wall in the direction `n`.
     pub(crate) fn normal(&self, n: [f32; 2]) -> [f32; 2] {
         if self.seen != Seen::Elsewhere {
