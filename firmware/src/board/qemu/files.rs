@@ -15,7 +15,7 @@ use crate::intake::Incoming;
 const COMMAND_LINE_BYTES: usize = 512;
 const CONFIG_BYTES: usize = 1024;
 /// Samples that are read at once.
-const BLOCK_SAMPLES: usize = 32;
+const BLOCK_SAMPLES: usize = 30;
 
 /// What the command line names.
 pub struct Files {
