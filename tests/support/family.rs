@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::plant::Rng;
+use crate::record::record;
 
 /// Which runs of a campaign are asked for.
 #[derive(Debug, clap::Args)]
@@ -17,6 +18,60 @@ pub struct Asked {
     /// First seed
     #[arg(long, default_value_t = 1)]
     pub first_seed: u64,
+}
+
+/// What is asked of a campaign, and where its result goes.
+#[derive(Debug, clap::Args)]
+pub struct Campaign {
+    #[command(flatten)]
+    /// Which runs.
+    pub asked: Asked,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+    /// Write the table into the docs
+    #[arg(long, conflicts_with_all = ["only", "json"])]
+    record: bool,
+}
+
+/// A table of the docs and the example that makes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Path of the document in the workspace.
+    pub document: &'static str,
+    /// Name of its table.
+    pub table: &'static str,
+    /// The example.
+    pub example: &'static str,
+}
+
+impl Campaign {
+    /// Prints `results` as JSON, or their `table` and to stderr what failed; writes the table into its `place` if that is
+    /// asked for.
+    ///
+    /// # Panics
+    /// If the table cannot be written.
+    pub fn tell(&self, results: &impl Serialize, table: &str, failures: &[String], place: Place) {
+        if self.json {
+            let json = serde_json::to_string_pretty(results);
+            return println!("{}", json.expect("a value"));
+        }
+        print!("{table}");
+        for failure in failures {
+            eprintln!("{failure}");
+        }
+        if self.record {
+            let Asked {
+                runs, first_seed, ..
+            } = self.asked;
+            let command = format!(
+                "cargo run --release -p touchdown-tests --example {} -- --runs {runs} --first-seed {first_seed}",
+                place.example
+            );
+            record(place.document, place.table, &command, table)
+                .unwrap_or_else(|why| panic!("{why}"));
+        }
+    }
 }
 
 /// What a family of runs must show, and what it showed.

@@ -383,8 +383,8 @@ impl FlightTest {
         };
         let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
         if let Some(jump) = jump {
-            let is_of_a_wall = !is_clear && is_of_a_wall(&jump, outward);
-            let impact = is_of_a_wall.then(|| self.judge(flight, &jump, measurement, open));
+            let by_wall = !is_clear && is_of_a_wall(&jump, outward);
+            let impact = by_wall.then(|| self.judge(flight, &jump, measurement, open));
             flight.track.shift(&jump);
             flight.bank.restart();
             match impact {
