@@ -410,7 +410,7 @@ impl FlightTest {
     #[inline(never)]
     fn follow_touch(&self, flight: &mut Airborne, measurement: &Measurement) {
         let speed = self.touched_with(flight);
-        let (Some(touch), Some(met)) = (&mut flight.touch, flight.met) else {
+        let Some(touch) = &mut flight.touch else {
             return;
         };
         let here = direction(measurement.position);
@@ -421,9 +421,8 @@ impl FlightTest {
         } else {
             out.min(flight.wall.surely_beyond(here, &self.told))
         };
-        let gone = speed * measurement.now.since(met) * self.period;
         let noise = measurement.variance * flight.bank.threshold_scale();
-        match touch.look(out, sqrt(noise), gone) {
+        match touch.look(out, sqrt(noise)) {
             TouchStage::GivesWay => {
                 flight.gives = true;
                 flight.wall.shrink(touch.slack);

@@ -322,8 +322,8 @@ impl PhaseMachine {
         phase_state.phase = Phase::Sliding;
     }
 
-    /// In contact, of the rotor as a whole or of one end; `whose` says whose lift-off it would be. False where it is that of one end: nothing is
-    /// told then.
+    /// In contact, of the rotor as a whole or of one end; `whose` says whose lift-off it would be. False where it is that of
+    /// one end: nothing is told then.
     pub(crate) fn touching(
         &self,
         phase_state: &mut PhaseState,
