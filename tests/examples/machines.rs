@@ -29,13 +29,13 @@ fn main() {
 }
 
 fn table(machines: &[Machine]) -> String {
-    let mut table = "| machine | drops | fall confirmed | touches found | drops with invented impacts | rate below, 95 % | false of whirls | drops with a sensor fault |\n|---|---:|---:|---:|---:|---:|---:|---:|\n".to_owned();
+    let mut table = "| machine | drops | fall confirmed | touches found | drops with invented impacts | rate below, 95 % | false of whirls | drops with a sensor fault | drops ended early |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|\n".to_owned();
     for it in machines {
         let [clear, found] = it.touches;
         let [whirls, false_whirls] = it.whirls;
         table += &format!(
-            "| {} | {} | {} | {found} of {clear} | {} | {:.2} | {false_whirls} of {whirls} | {} |\n",
-            it.name, it.drops, it.confirmed, it.invented, it.rate_below, it.faults
+            "| {} | {} | {} | {found} of {clear} | {} | {:.2} | {false_whirls} of {whirls} | {} | {} |\n",
+            it.name, it.drops, it.confirmed, it.invented, it.rate_below, it.faults, it.cut
         );
     }
     table

@@ -2,7 +2,7 @@
 //! against the reference.
 //!
 //! A touch is all that a rotor does in a ring from meeting it to leaving it for a millisecond: a ring on a soft mount is met
-//! many times in one. Ends touch apart.
+//! many times in one. Ends touch apart. A drop ends early where the reference is given up.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -42,6 +42,8 @@ pub struct Machine {
     pub whirls: [usize; 2],
     /// Drops with a fault of a sensor.
     pub faults: usize,
+    /// Drops that end early, as the reference was given up.
+    pub cut: usize,
     /// Numbers of the drops that failed in one of these.
     pub failures: Vec<u64>,
 }
@@ -75,6 +77,7 @@ fn machine(name: &'static str, drops: u64, first: u64) -> Machine {
         all.whirls[0] += it.whirls[0];
         all.whirls[1] += it.whirls[1];
         all.faults += usize::from(it.faults > 0);
+        all.cut += usize::from(it.cut);
         if it.invented + it.whirls[1] + it.faults > 0 {
             all.failures.push(it.number);
         }
@@ -91,6 +94,7 @@ struct Seen {
     invented: usize,
     whirls: [usize; 2],
     faults: usize,
+    cut: bool,
 }
 
 /// A contact with a ring, s, and the turns done in it.
@@ -117,6 +121,9 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
     for k in 0..(levitated + scene.run.duration * rate) as u64 {
         let time = (k as f64 - levitated) / rate;
         let at = truth.advance(time);
+        if truth.given_up().is_some_and(|end| end < time) {
+            break;
+        }
         let turns = at.rotor.turns_in_contact;
         match contacts.last_mut().filter(|it| it.ends.is_infinite()) {
             Some(contact) if turns == 0.0 => contact.ends = time,
@@ -155,13 +162,16 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
             .any(|it| it.turns * sign >= TURN || it.ends.is_infinite())
     };
     seen.whirls = [whirls.len(), whirls.iter().filter(|it| !comes(it)).count()];
+    let given_up = truth.given_up();
+    seen.cut = given_up.is_some();
     let histories = truth.finish();
     let rings = if histories.rings.is_empty() {
         vec![&histories.whole]
     } else {
         histories.rings.iter().collect()
     };
-    judge(&rings, scene.run.duration, &impacts, &mut seen);
+    let end = given_up.unwrap_or(scene.run.duration);
+    judge(&rings, end, &impacts, &mut seen);
     seen
 }
 

@@ -94,7 +94,9 @@ pub(crate) struct Airborne {
     shown: Option<([f32; 2], f32)>,
     /// Whether the wall has given way.
     pub(crate) gives: bool,
-    /// The touch of the last impact, until the rotor has left the wall.
+    /// Whether the rotor has come to lie on it without that.
+    is_rigid: bool,
+    /// The touch of the last impact on a wall that may give way, until the rotor has left it.
     touch: Option<OpenTouch>,
     /// When the last impact was.
     met: Option<Moment>,
@@ -132,6 +134,7 @@ impl Airborne {
         self.series = other.series;
         self.wall = other.wall;
         self.gives = other.gives;
+        self.is_rigid = other.is_rigid;
         self.lies = other.lies;
         self.restart(other.bank.threshold_scale());
     }
@@ -268,6 +271,7 @@ impl FlightTest {
 
     /// A contact begins.
     pub(crate) fn begin_contact(&self, flight: &mut Airborne) {
+        flight.is_rigid |= !flight.gives && flight.series.last().is_some();
         flight.wall.begin_contact(&self.told);
     }
 
@@ -308,6 +312,7 @@ impl FlightTest {
         flight.series = both.series.anew();
         flight.wall = both.wall;
         flight.gives = both.gives;
+        flight.is_rigid = both.is_rigid;
         flight.lies = both.lies;
         flight.restart(threshold_scale.max(both.bank.threshold_scale()));
     }
@@ -410,9 +415,10 @@ impl FlightTest {
     #[inline(never)]
     fn follow_touch(&self, flight: &mut Airborne, measurement: &Measurement) {
         let speed = self.touched_with(flight);
-        let Some(touch) = &mut flight.touch else {
+        let (Some(touch), Some(met)) = (&mut flight.touch, flight.met) else {
             return;
         };
+        let gone = speed * measurement.now.since(met) * self.period;
         let here = direction(measurement.position);
         let out = flight.wall.beyond(here) - flight.wall.beyond(touch.place);
         // Where a wall is known from many impacts that says more than the last one, but for one that gives way.
@@ -422,7 +428,7 @@ impl FlightTest {
             out.min(flight.wall.surely_beyond(here, &self.told))
         };
         let noise = measurement.variance * flight.bank.threshold_scale();
-        match touch.look(out, sqrt(noise)) {
+        match touch.look(out, sqrt(noise), gone) {
             TouchStage::GivesWay => {
                 flight.gives = true;
                 flight.wall.shrink(touch.slack);
@@ -494,7 +500,7 @@ impl FlightTest {
         let part = (GROWS - 1.0) / if flight.gives { GROWS } else { 1.0 };
         let way = hit.bounce.normal_speed * part * hit.age * self.period;
         flight.met = Some(hit.bounce.at);
-        flight.touch = Some(OpenTouch::new(direction(hit.place), way));
+        flight.touch = (!flight.is_rigid).then(|| OpenTouch::new(direction(hit.place), way));
         flight.seen_near = 0;
         flight.lying = 0;
         Landing::Impact {

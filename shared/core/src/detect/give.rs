@@ -5,6 +5,9 @@
 const CLEAR: f32 = 3.0;
 /// Samples in a row in which it is beyond: no rigid wall lets it stay there.
 const BEYOND: u8 = 4;
+/// Times the distance that is clear which the rotor would have gone without the wall. On a spring that gives way by 1.6 times
+/// that distance and more it is clear then: sin x > x/4 below x = 2.47.
+const SHOWN: f32 = 4.0;
 /// Part of the pressing that turns a rotor round in the mean, between its greatest speeds. One that has left the wall: 1. One
 /// that lies on a spring and swings so far that it just does not leave it: 2/pi.
 const SWINGS: f32 = 0.8;
@@ -58,13 +61,15 @@ impl OpenTouch {
         self.beyond >= BEYOND
     }
 
-    /// On a wall that has not given way: takes how much farther out than there the rotor is seen (m), known to `spread`.
-    pub(crate) fn look(&mut self, seen: f32, spread: f32) -> TouchStage {
+    /// On a wall that has not given way: takes how much farther out than there the rotor is seen, known to `spread`, and how
+    /// far it would have `gone` without the wall, m.
+    pub(crate) fn look(&mut self, seen: f32, spread: f32, gone: f32) -> TouchStage {
         let clear = CLEAR * spread;
-        self.beyond = if seen > clear { self.beyond + 1 } else { 0 };
+        let is_beyond = seen > clear;
+        self.beyond = if is_beyond { self.beyond + 1 } else { 0 };
         match () {
             () if self.gives() => TouchStage::GivesWay,
-            () if seen < -clear => TouchStage::Left,
+            () if seen < -clear || !is_beyond && gone > SHOWN * clear => TouchStage::Left,
             () => TouchStage::Open,
         }
     }
@@ -124,7 +129,7 @@ mod tests {
             let stage = if touch.gives() {
                 touch.follow(out, NOISE, (speed, 1e-3), G * PERIOD)
             } else {
-                touch.look(out, NOISE)
+                touch.look(out, NOISE, SPEED * f32::from(k) * PERIOD)
             };
             let time = f32::from(k) * PERIOD;
             match stage {
@@ -161,7 +166,7 @@ mod tests {
         // Seen inside of where the impact was, as restitution takes it.
         for k in 1..10_u16 {
             let time = f32::from(k) * PERIOD;
-            let stage = touch.look(-0.02 * time, NOISE);
+            let stage = touch.look(-0.02 * time, NOISE, SPEED * time);
             assert!(
                 matches!(stage, TouchStage::Open | TouchStage::Left),
                 "{stage:?}"
@@ -171,7 +176,15 @@ mod tests {
         let mut touch = OpenTouch::new(([0.0, -1.0], 3e-4), 0.0);
         for k in 0..100 {
             let seen = if k % 4 == 3 { 0.0 } else { 4.0 * NOISE };
-            assert_eq!(touch.look(seen, NOISE), TouchStage::Open);
+            assert_eq!(touch.look(seen, NOISE, 0.0), TouchStage::Open);
         }
+    }
+
+    #[test]
+    fn a_wall_that_does_not_give_way_at_once_is_a_hard_one() {
+        let mut touch = OpenTouch::new(([0.0, -1.0], 3e-4), 0.0);
+        let gone = |k: u16| SPEED * f32::from(k) * PERIOD;
+        assert_eq!(touch.look(0.0, NOISE, gone(3)), TouchStage::Open);
+        assert_eq!(touch.look(0.0, NOISE, gone(4)), TouchStage::Left);
     }
 }
