@@ -97,11 +97,11 @@ struct Seen {
     cut: bool,
 }
 
-/// A contact with a ring, s, and the turns done in it.
+/// A contact with a ring, s, and the most turns done in it the one way and the other. They begin anew with another ring.
 struct Contact {
     begins: f64,
     ends: f64,
-    turns: f64,
+    turns: [f64; 2],
 }
 
 fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
@@ -127,11 +127,17 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         let turns = at.rotor.turns_in_contact;
         match contacts.last_mut().filter(|it| it.ends.is_infinite()) {
             Some(contact) if turns == 0.0 => contact.ends = time,
-            Some(contact) => contact.turns = turns,
+            Some(Contact {
+                turns: [right, left],
+                ..
+            }) => {
+                *right = right.max(-turns);
+                *left = left.max(turns);
+            }
             None if turns != 0.0 => contacts.push(Contact {
                 begins: time,
                 ends: f64::INFINITY,
-                turns,
+                turns: [0.0; 2],
             }),
             None => {}
         }
@@ -159,7 +165,7 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         contacts
             .iter()
             .filter(during)
-            .any(|it| it.turns * sign >= TURN || it.ends.is_infinite())
+            .any(|it| it.turns[usize::from(sign > 0.0)] >= TURN || it.ends.is_infinite())
     };
     seen.whirls = [whirls.len(), whirls.iter().filter(|it| !comes(it)).count()];
     let given_up = truth.given_up();

@@ -302,19 +302,15 @@ impl FlightTest {
         measurement: &Measurement,
         threshold_scale: f32,
     ) {
-        let velocity = both.track.velocity;
+        flight.follow(both);
         flight.track = Track::new(
             measurement.position,
             measurement.variance,
-            (velocity, UNKNOWN_SPEED),
+            (both.track.velocity, UNKNOWN_SPEED),
             self.pull(both),
         );
         flight.series = both.series.anew();
-        flight.wall = both.wall;
-        flight.gives = both.gives;
-        flight.is_rigid = both.is_rigid;
-        flight.lies = both.lies;
-        flight.restart(threshold_scale.max(both.bank.threshold_scale()));
+        (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale()));
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
