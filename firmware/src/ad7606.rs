@@ -76,8 +76,7 @@ impl<S: SpiDevice, C: OutputPin, B: InputPin, R: OutputPin> Ad7606<S, C, B, R> {
         Ok(())
     }
 
-    /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample
-    /// without valid channels.
+    /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample without valid channels.
     pub fn take(&mut self, delay: &mut impl DelayNs) -> Sample {
         let codes = self.codes(delay);
         Sample {

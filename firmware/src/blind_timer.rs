@@ -1,7 +1,6 @@
 //! How long the monitor has not seen the rotor: no plane delivers, or samples are lost.
 
-/// Longest time that it may be blind, s: a fall from rest goes 5 um in it, a 60th of the clearance of
-/// the rig.
+/// Longest time that it may be blind, s: a fall from rest goes 5 um in it, a 60th of the clearance of the rig.
 const TIME: f32 = 1e-3;
 
 /// Counts blind samples.
@@ -37,8 +36,7 @@ impl BlindTimer {
         self.dark >= self.limit
     }
 
-    /// Takes how many samples were lost before this one; whether it was too many, in one gap or by
-    /// losses that keep coming.
+    /// Takes how many samples were lost before this one; whether it was too many, in one gap or by losses that keep coming.
     pub fn miss(&mut self, lost: u32) -> bool {
         self.missed = match lost {
             0 => self.missed.saturating_sub(1),

@@ -2,8 +2,7 @@
 //!
 //! A program or erase is started, not waited for: the next command waits. So a task that asks
 //! [`W25q::is_busy`] first never waits at all. Commands and times: Winbond data sheet W25Q64JV,
-//! instruction set table and AC electrical characteristics; its smaller and larger sisters have the
-//! same.
+//! instruction set table and AC electrical characteristics; its smaller and larger sisters have the same.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{Operation, SpiDevice};

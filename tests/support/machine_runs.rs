@@ -40,6 +40,8 @@ pub struct Machine {
     pub rate_below: f64,
     /// Whirls told, and those of them that did not come.
     pub whirls: [usize; 2],
+    /// Ways round in which a contact of a drop completes a turn, and those of them in which a whirl was told.
+    pub turning: [usize; 2],
     /// Drops with a fault of a sensor.
     pub faults: usize,
     /// Drops that end early, as the reference was given up.
@@ -76,6 +78,8 @@ fn machine(name: &'static str, drops: u64, first: u64) -> Machine {
         all.invented += usize::from(it.invented > 0);
         all.whirls[0] += it.whirls[0];
         all.whirls[1] += it.whirls[1];
+        all.turning[0] += it.turning[0];
+        all.turning[1] += it.turning[1];
         all.faults += usize::from(it.faults > 0);
         all.cut += usize::from(it.cut);
         if it.invented + it.whirls[1] + it.faults > 0 {
@@ -93,6 +97,7 @@ struct Seen {
     touches: [usize; 2],
     invented: usize,
     whirls: [usize; 2],
+    turning: [usize; 2],
     faults: usize,
     cut: bool,
 }
@@ -167,6 +172,10 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
             .filter(during)
             .any(|it| it.turns[usize::from(sign > 0.0)] >= TURN || it.ends.is_infinite())
     };
+    let ways = [-1.0, 1.0].into_iter().enumerate();
+    let ways = ways.filter(|&(way, _)| contacts.iter().any(|it| it.turns[way] >= 1.0));
+    let told = |&(_, sign): &(usize, f64)| whirls.iter().any(|it| it.1 == sign);
+    seen.turning = [ways.clone().count(), ways.filter(told).count()];
     seen.whirls = [whirls.len(), whirls.iter().filter(|it| !comes(it)).count()];
     let given_up = truth.given_up();
     seen.cut = given_up.is_some();

@@ -17,6 +17,7 @@ mod toolchain;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::thread;
 
 use clap::{Parser, Subcommand};
 
@@ -114,6 +115,18 @@ enum Task {
     },
 }
 
+/// Builds both at once: linking an image keeps one core busy.
+fn images_and_tests() -> anyhow::Result<()> {
+    let mut cargo = toolchain::default_cargo();
+    cargo.args(["test", "--workspace", "--no-run"]);
+    thread::scope(|scope| {
+        let tests = scope.spawn(|| toolchain::run(&mut cargo, "the tests do not build"));
+        // These first: the others take their names.
+        let images = firmware::build_planted().and_then(|()| firmware::build(None));
+        images.and(tests.join().expect("it does not panic"))
+    })
+}
+
 fn main() -> ExitCode {
     let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
@@ -140,9 +153,7 @@ fn main() -> ExitCode {
             faults::run(&faults::Choice { only, slice }, json.as_deref())
         }
         Task::Test { yes } => setup::run(yes)
-            // These first: the others take their names.
-            .and_then(|()| firmware::build_planted())
-            .and_then(|()| firmware::build(None))
+            .and_then(|()| images_and_tests())
             .and_then(|()| test::run())
             .and_then(|()| faults::run(&faults::sample(), None)),
     };

@@ -11,7 +11,6 @@ use crate::workspace;
 
 /// Runs all tests; fails if one fails or if a layer ran none.
 pub fn run() -> anyhow::Result<()> {
-    println!("Tests: building");
     // One pipe for both, so that cargo's headings stay before the results below them.
     let (reader, writer) = io::pipe()?;
     let mut cargo = default_cargo();

@@ -32,8 +32,7 @@ pub struct MachineConfig {
     pub spin: f32,
 }
 
-/// Thresholds and times, SI; `docs/know/detector.md` derives each. The defaults suit the rig of the source
-/// paper.
+/// Thresholds and times, SI; `docs/know/detector.md` derives each. The defaults suit the rig of the source paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]

@@ -171,8 +171,7 @@ pub struct Ordered {
 /// When a whirl begins, and how it grows; s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Onset {
-    /// From the sample that the outlook was made at to the start of the contact that whirls; negative
-    /// where it has begun.
+    /// From the sample that the outlook was made at to the start of the contact that whirls; negative where it has begun.
     pub time_left: f32,
     /// From the beginning to unbounded growth without gravity, t* = rho0/(mu |v_t|) with v_t along the
     /// wall at the beginning; infinite without friction.

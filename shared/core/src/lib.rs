@@ -3,9 +3,8 @@
 //! Touchdown of a rotor on active magnetic bearings: the phase detector and its monitor, which
 //! run on the microcontroller and, with the same bits, on the desktop.
 //!
-//! Everything that runs per sample comes as three types: `XConfig` (SI units, public, validated),
-//! `X` (coefficients) and `XState`. Building an `X` can fail; the per-sample call cannot: it is
-//! bounded, allocates nothing and never panics.
+//! Everything that runs per sample comes as three types: `XConfig` (SI units, public, validated), `X` (coefficients) and
+//! `XState`. Building an `X` can fail; the per-sample call cannot: it is bounded, allocates nothing and never panics.
 
 pub mod checksum;
 pub mod config;

@@ -315,8 +315,7 @@ impl MonitorState {
         self.faults
     }
 
-    /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers
-    /// values of its own.
+    /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers values of its own.
     pub fn position(&self) -> Option<[f32; 2]> {
         mean(&self.planes).map(|(position, _)| position)
     }
@@ -389,8 +388,7 @@ impl MonitorState {
     }
 }
 
-/// Fingerprint of the state over a run: equal on two machines only if every tick left the same
-/// bits. Not part of the tick.
+/// Fingerprint of the state over a run: equal on two machines only if every tick left the same bits. Not part of the tick.
 #[derive(Clone)]
 pub struct Fingerprint(Digest<'static, u32>);
 

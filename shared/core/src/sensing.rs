@@ -1,5 +1,4 @@
-//! Counts to displacement: what the converter delivers becomes the rotor's position in the scene's
-//! axes.
+//! Counts to displacement: what the converter delivers becomes the rotor's position in the scene's axes.
 
 use crate::fault::Found;
 use crate::sample::{CHANNELS, Sample};
@@ -195,8 +194,7 @@ impl Sensing {
         })
     }
 
-    /// Each plane's position, m, of those channels that are valid and neither at 0 nor at full scale, and of nothing
-    /// else.
+    /// Each plane's position, m, of those channels that are valid and neither at 0 nor at full scale, and of nothing else.
     #[inline]
     pub fn planes(&self, sample: &Sample) -> [Option<[f32; 2]>; PLANES] {
         let [ax, ay, bx, by] = sample.counts;

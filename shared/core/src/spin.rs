@@ -84,9 +84,8 @@ impl SpinCheck {
     }
 
     /// What is wrong with a speed that is gone in this `sample`, or believed again or anew: the `spin` now, and before it
-    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it
-    /// takes to believe another. A rotor that stops has no pulses either, so a spin that was no more than a change is not
-    /// missed.
+    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it takes
+    /// to believe another. A rotor that stops has no pulses either, so a spin that was no more than a change is not missed.
     pub(crate) fn find(
         &self,
         state: &mut SpinFaults,

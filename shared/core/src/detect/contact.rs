@@ -1,6 +1,6 @@
 //! On the wall: slides or rolls, swings, whirls, rests, lifts off.
 
-use core::f32::consts::TAU;
+use core::f32::consts::{PI, TAU};
 
 use crate::config::{DetectorConfig, MachineConfig, NEAREST_WALL};
 use crate::detect::estimate::Place;
@@ -156,12 +156,12 @@ impl ContactTest {
     }
 
     /// Takes the next sample, or its absence. It shows where the wall is. `pull`: acceleration of flights and its standard
-    /// deviation, m/s^2, where the rotor moves as one.
+    /// deviation, m/s^2; whether the rotor moves as one.
     pub(crate) fn take(
         &self,
         state: &mut Touching,
         wall: &mut RetainerWall,
-        pull: Option<([f32; 2], f32)>,
+        pull: (([f32; 2], f32), bool),
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -305,7 +305,7 @@ impl ContactTest {
     fn regime(
         &self,
         state: &mut Touching,
-        pull: Option<([f32; 2], f32)>,
+        (pull, is_whole): (([f32; 2], f32), bool),
         measurement: &Measurement,
         [surface, slip]: [f32; 2],
     ) -> Option<Finding> {
@@ -319,8 +319,9 @@ impl ContactTest {
             SWINGS
         };
         let has_turned = swing.turned.abs() >= TAU;
-        let (found, age) = if has_turned || pull.is_some_and(|it| self.goes_round(state, it, slip))
-        {
+        // One end of a rotor that tilts is moved by the other one too: it has to have passed the highest place.
+        let is_bound = (is_whole || swing.turned.abs() >= PI) && self.goes_round(state, pull, slip);
+        let (found, age) = if has_turned || is_bound {
             let way = if has_turned { swing.turned } else { swing.rate };
             let with_spin = way * surface >= 0.0;
             let whirl = if with_spin {
@@ -450,5 +451,54 @@ mod tests {
         });
         let lifted = lifted(found.expect("found"));
         assert!((185e-6..215e-6).contains(&lifted), "{lifted}");
+    }
+
+    /// Turns done when a whirl of 100 turns a second against the spin is told.
+    fn turns_when_told(is_whole: bool) -> f32 {
+        let config = DetectorConfig {
+            sample_rate: 20_000.0,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        let test = ContactTest::new(&config, 25.0);
+        let told = ToldWall {
+            radius: MACHINE.clearance,
+            tolerance: 0.07 * MACHINE.clearance,
+        };
+        let turns = |k: u32| -MACHINE.spin.signum() * 5e-3 * k as f32;
+        let measurement = |k: u32| {
+            let (sin, cos) = libm::sincosf(TAU * turns(k));
+            Measurement {
+                now: Moment::of_sample(k.into()),
+                position: [MACHINE.clearance * sin, -MACHINE.clearance * cos],
+                variance: 1e-12,
+            }
+        };
+        let mut wall = RetainerWall::default();
+        wall.begin_contact(&told);
+        let speed = [TAU * 100.0 * turns(1).signum() * MACHINE.clearance, 0.0];
+        let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
+        let pull = ([0.0, -MACHINE.gravity], 0.0);
+        let signals = Signals::default();
+        let whirl = (1..2_000).find(|&k| {
+            let now = measurement(k);
+            let found = test.take(
+                &mut state,
+                &mut wall,
+                (pull, is_whole),
+                Some(&now),
+                &signals,
+            );
+            let is_whirl = |it: &Finding| matches!(it, Finding::Regime(Regime::BackwardWhirl, _));
+            found.iter().flatten().any(is_whirl)
+        });
+        turns(whirl.expect("it is told")).abs()
+    }
+
+    #[test]
+    fn a_whirl_of_one_end_is_told_once_it_has_passed_the_highest_place() {
+        assert!(turns_when_told(true) < 0.25);
+        let turns = turns_when_told(false);
+        assert!((0.5..0.6).contains(&turns), "{turns}");
     }
 }

@@ -191,8 +191,7 @@ impl Detector {
         })
     }
 
-    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends
-    /// move as one.
+    /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends move as one.
     pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
         if state.ends.are_alone() {
             return None;

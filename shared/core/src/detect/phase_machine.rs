@@ -333,8 +333,7 @@ impl PhaseMachine {
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
-        // One end of a rotor that tilts is moved by the other one too.
-        let pull = is_whole.then(|| self.flight.pull(&phase_state.flight));
+        let pull = (self.flight.pull(&phase_state.flight), is_whole);
         let findings = self.contact.take(
             &mut phase_state.contact,
             &mut phase_state.flight.wall,

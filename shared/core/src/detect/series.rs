@@ -33,8 +33,7 @@ pub(crate) struct Bounce {
     pub(crate) normal_acceleration: f32,
 }
 
-/// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three
-/// times as many are gone.
+/// Steps in which the rest of a series is followed, for a rest under constant pressing; up to three times as many are gone.
 const REST_STEPS: u8 = 8;
 /// A flight under an acceleration a at first and b at last ends with (a + 2 b)/(2 a + b) of the speed that it began with,
 /// so the launch speed goes with this power of the pressing besides.

@@ -85,8 +85,7 @@ impl WallFilter {
         }
     }
 
-    /// Contact at `outward` (unit vector) with `speed` along the wall (m/s, counter-clockwise), known
-    /// to `spread` (m/s).
+    /// Contact at `outward` (unit vector) with `speed` along the wall (m/s, counter-clockwise), known to `spread` (m/s).
     pub(crate) fn start(&self, outward: [f32; 2], speed: f32, spread: f32) -> WallTrack {
         let swing = WallAngle {
             sin: outward[0],
