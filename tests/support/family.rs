@@ -23,8 +23,8 @@ pub struct Asked {
 /// What is asked of a campaign, and where its result goes.
 #[derive(Debug, clap::Args)]
 pub struct Campaign {
-    #[command(flatten)]
     /// Which runs.
+    #[command(flatten)]
     pub asked: Asked,
     /// As JSON
     #[arg(long)]

@@ -93,7 +93,7 @@ pub(crate) struct Airborne {
     shown: Option<([f32; 2], f32)>,
     /// Whether the wall has given way.
     pub(crate) gives: bool,
-    /// Whether the rotor has come to lie on it without that.
+    /// Whether the rotor has come to lie on it without that, in this drop.
     is_rigid: bool,
     /// The touch of the last impact on a wall that may give way, until the rotor has left it.
     touch: Option<OpenTouch>,
@@ -256,6 +256,7 @@ impl FlightTest {
             self.pull(flight),
         );
         flight.series = Series::default();
+        flight.is_rigid &= wall.is_some();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         // What it has been from the release on, it is after a lift-off.
         let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale());
@@ -766,6 +767,25 @@ mod tests {
     #[test]
     fn runout_is_louder() {
         assert!(level(20_000.0, 3e-6) > 4.0 * WHITE_LEVEL);
+    }
+
+    /// One landing on a soft mount may show nothing of it.
+    #[test]
+    fn a_rigid_wall_is_one_for_the_drop() {
+        let test = test(20_000.0);
+        let mut flight = Airborne {
+            is_rigid: true,
+            ..Airborne::default()
+        };
+        let measurement = Measurement {
+            now: Moment::default(),
+            position: [0.0, -0.9 * MACHINE.clearance],
+            variance: 1e-12,
+        };
+        test.start(&mut flight, &measurement, Some(MACHINE.clearance), 1.0);
+        assert!(flight.is_rigid, "after a lift-off");
+        test.start(&mut flight, &measurement, None, 1.0);
+        assert!(!flight.is_rigid, "in another fall");
     }
 
     /// A rotor that was off the wall after the foreseen end did not lie there since.
