@@ -27,3 +27,13 @@ pub(crate) fn less(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
 pub(crate) fn sum(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
+
+/// Product of two displacements as complex numbers x + i y.
+pub(crate) fn product([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
+    [a * c - b * d, a * d + b * c]
+}
+
+/// Conjugate complex number.
+pub(crate) fn conjugate([a, b]: [f32; 2]) -> [f32; 2] {
+    [a, -b]
+}

@@ -446,6 +446,7 @@ mod tests {
                 now: Moment::of_sample(k.into()),
                 position: [0.0, -radius],
                 variance: 2e-10,
+                spin: 0.0,
             };
             test.lift_off(&mut state, &mut wall, &measurement).is_some()
         });
@@ -472,6 +473,7 @@ mod tests {
                 now: Moment::of_sample(k.into()),
                 position: [MACHINE.clearance * sin, -MACHINE.clearance * cos],
                 variance: 1e-12,
+                spin: 0.0,
             }
         };
         let mut wall = RetainerWall::default();

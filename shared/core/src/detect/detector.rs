@@ -140,7 +140,7 @@ impl Detector {
         }
         self.orbiting.advance(&mut state.orbit, signals.spin);
         let planes = self.possible(state, &reading.planes);
-        let measurement = self.measurement(state, &planes);
+        let measurement = self.measurement(state, &planes, signals.spin);
         match planes {
             [Some(a), Some(b)] if state.noise.is_known() => {
                 let floats = state.rotor.phase == Phase::Levitated;
@@ -156,7 +156,7 @@ impl Detector {
         } else {
             self.together(state, measurement.as_ref(), signals, &mut writer);
             if state.ends.have_parted() {
-                self.part(state, &planes, &mut writer);
+                self.part(state, &planes, signals.spin, &mut writer);
             }
         }
         state.next_number = next_number;
@@ -178,6 +178,7 @@ impl Detector {
         &self,
         state: &mut DetectorState,
         planes: &PlanePositions,
+        spin: Option<f32>,
     ) -> Option<Measurement> {
         let Some((position, planes)) = mean(planes) else {
             state.noise.skip();
@@ -188,6 +189,7 @@ impl Detector {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(planes, self.resolution),
+            spin: spin.unwrap_or(self.config.machine.spin),
         })
     }
 
@@ -214,11 +216,13 @@ impl Detector {
         &self,
         state: &DetectorState,
         planes: &PlanePositions,
+        spin: Option<f32>,
     ) -> [Option<Measurement>; PLANES] {
         let measurement = |position| Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(1, self.resolution),
+            spin: spin.unwrap_or(self.config.machine.spin),
         };
         planes.map(|position| position.map(measurement))
     }
@@ -486,8 +490,14 @@ impl Detector {
     }
 
     /// Gives each end a ladder of its own where they have moved apart.
-    fn part(&self, state: &mut DetectorState, planes: &PlanePositions, writer: &mut EventWriter) {
-        let [Some(a), Some(b)] = self.fixes(state, planes) else {
+    fn part(
+        &self,
+        state: &mut DetectorState,
+        planes: &PlanePositions,
+        spin: Option<f32>,
+        writer: &mut EventWriter,
+    ) {
+        let [Some(a), Some(b)] = self.fixes(state, planes, spin) else {
             return;
         };
         let ends = [&a, &b];
@@ -533,7 +543,7 @@ impl Detector {
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        let fixes = &self.fixes(state, planes);
+        let fixes = &self.fixes(state, planes, signals.spin);
         let (ends, pending) = (&mut state.ends, &mut state.pending);
         let floating = (&state.levitation, state.listener.threshold_scale());
         self.ends

@@ -9,7 +9,7 @@ use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Jump, Track};
 use crate::event::Moment;
-use crate::vector::{direction, less, square};
+use crate::vector::{direction, less, square, sum};
 use touchdown_rotor::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
@@ -254,6 +254,7 @@ impl FlightTest {
             measurement.variance,
             ([0.0; 2], UNKNOWN_SPEED),
             self.pull(flight),
+            turning(measurement, threshold_scale),
         );
         flight.series = Series::default();
         flight.is_rigid &= wall.is_some();
@@ -308,6 +309,7 @@ impl FlightTest {
             measurement.variance,
             (both.track.velocity, UNKNOWN_SPEED),
             self.pull(both),
+            turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
         (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale()));
@@ -330,10 +332,11 @@ impl FlightTest {
                 variance,
                 ([0.0; 2], UNKNOWN_SPEED),
                 ([0.0; 2], 0.0),
+                0.0,
             );
             flight.bank.begin(0.0);
         }
-        self.ballistic.predict(&mut flight.track);
+        self.ballistic.predict(&mut flight.track, None);
         let innovation = (self.ballistic).correct(&mut flight.track, position, variance);
         self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
@@ -343,7 +346,7 @@ impl FlightTest {
 
     /// To the next sample without a usable position.
     pub(crate) fn skip(&self, flight: &mut Airborne) {
-        self.ballistic.predict(&mut flight.track);
+        self.ballistic.predict(&mut flight.track, None);
         self.jumps.skip(&mut flight.bank);
     }
 
@@ -358,7 +361,7 @@ impl FlightTest {
             flight.wall.take(place, variance, &self.told);
             self.lie_at(flight, place);
         }
-        self.ballistic.predict(&mut flight.track);
+        (self.ballistic).predict(&mut flight.track, Some(measurement.spin));
         if flight.touch.as_ref().is_some_and(OpenTouch::gives) {
             return self.pushed(flight, measurement);
         }
@@ -373,11 +376,11 @@ impl FlightTest {
         }
         let (track, seen) = (&mut flight.track, measurement.position);
         let innovation = (self.ballistic).correct(track, seen, measurement.variance);
-        let (outward, _) = self.outward(flight, flight.track.position);
-        let is_clear = self.told.excludes(flight.track.position);
+        let (outward, _) = self.outward(flight, flight.track.seen());
+        let is_clear = self.told.excludes(flight.track.seen());
         let approach = Approach {
             inward: outward.map(|n| -n),
-            speed: along(flight.track.velocity, outward),
+            speed: along(flight.track.velocity_seen(), outward),
             pull: along(flight.track.acceleration, outward),
             restitution: flight.series.restitution(&self.machine),
             is_sudden: !flight.gives && !is_clear,
@@ -428,13 +431,8 @@ impl FlightTest {
             TouchStage::GivesWay => {
                 flight.gives = true;
                 flight.wall.shrink(touch.slack);
-                let track = &flight.track;
-                flight.track = Track::new(
-                    measurement.position,
-                    measurement.variance,
-                    (track.velocity, speed),
-                    (track.acceleration, speed * self.per_horizon),
-                );
+                let (at, noise) = (measurement.position, measurement.variance);
+                (flight.track).go_on_at(at, noise, speed, speed * self.per_horizon);
             }
             TouchStage::Left => flight.touch = None,
             _ => {}
@@ -455,7 +453,7 @@ impl FlightTest {
         track.loosen(push * push * self.per_horizon * self.period);
         let (position, variance) = (measurement.position, measurement.variance);
         self.ballistic.correct(track, position, variance);
-        let (n, radius) = direction(track.position);
+        let (n, radius) = direction(track.seen());
         let speed = along(track.velocity, flight.wall.normal(n));
         let touch = flight.touch.as_mut()?;
         let stage = touch.follow(
@@ -518,8 +516,8 @@ impl FlightTest {
         let [u, v] = track.velocity;
         let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
         let kick = KICK * self.period * speed;
-        let ([nx, ny], _) = direction(track.position);
-        let [x, y] = track.position;
+        let [x, y] = track.seen();
+        let ([nx, ny], _) = direction([x, y]);
         let [dx, dy] = [measurement.position[0] - x, measurement.position[1] - y];
         let (out, along) = (dx * nx + dy * ny, dy * nx - dx * ny);
         out < noise && out > -noise - kick && along.abs() < noise + kick
@@ -561,10 +559,12 @@ impl FlightTest {
         let before = less([u, v], jump.change);
         let stretch = if flight.gives { GROWS } else { 1.0 };
         let earlier = (stretch - 1.0) * since;
-        let place = less(after.position_before(since), before.map(|it| it * earlier));
+        let offset = after.offset_before(since + earlier);
+        let centre = less(after.position_before(since), before.map(|it| it * earlier));
+        let place = sum(centre, offset);
         let (outward, n) = self.outward(flight, place);
         let (_, radius) = direction(place);
-        let normal_speed = before[0] * outward[0] + before[1] * outward[1];
+        let normal_speed = self::along(sum(before, after.circling(offset)), outward);
         let along = v * outward[0] - u * outward[1];
         let pull = after.acceleration;
         let mut bounce = Bounce {
@@ -642,8 +642,8 @@ impl FlightTest {
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
         let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
-        let ([x, y], _) = self.outward(flight, track.position);
-        let [u, v] = track.velocity;
+        let ([x, y], _) = self.outward(flight, track.seen());
+        let [u, v] = track.velocity_seen();
         let along = v * x - u * y;
         let normal_acceleration =
             along * along / self.machine.clearance + self::along(track.acceleration, [x, y]);
@@ -670,7 +670,7 @@ impl FlightTest {
             let age = flight.seen_near as f32;
             return Some(Landing::Contact { age });
         }
-        let (_, radius) = direction(flight.track.position);
+        let (_, radius) = direction(flight.track.seen());
         if radius < near {
             flight.near_wall = 0;
             flight.lying = 0;
@@ -713,6 +713,15 @@ fn is_of_a_wall(jump: &Jump, [x, y]: [f32; 2]) -> bool {
     across < FASTER * sqrt(jump.variance) - (u * x + v * y)
 }
 
+/// Spin whose unbalance a flight shows, rad/s. Where the sensors are loud while the rotor floats, that is in the loudness.
+fn turning(measurement: &Measurement, threshold_scale: f32) -> f32 {
+    if threshold_scale > 1.0 {
+        0.0
+    } else {
+        measurement.spin
+    }
+}
+
 /// Part of `vector` along a unit vector.
 fn along([u, v]: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     u * x + v * y
@@ -747,6 +756,7 @@ mod tests {
                     1e-6 * white(&mut seed) + runout * sin,
                 ],
                 variance: 1e-12,
+                spin: 0.0,
             };
             test.listen(&mut listener, &mut flight, &measurement);
         }
@@ -781,6 +791,7 @@ mod tests {
             now: Moment::default(),
             position: [0.0, -0.9 * MACHINE.clearance],
             variance: 1e-12,
+            spin: 0.0,
         };
         test.start(&mut flight, &measurement, Some(MACHINE.clearance), 1.0);
         assert!(flight.is_rigid, "after a lift-off");
@@ -812,6 +823,7 @@ mod tests {
                     now: Moment::of_sample(sample),
                     position: [0.0, y],
                     variance: 1e-12,
+                    spin: 0.0,
                 };
                 test.contact(&mut flight, &measurement).is_some()
             })

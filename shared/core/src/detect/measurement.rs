@@ -11,4 +11,6 @@ pub(crate) struct Measurement {
     pub(crate) position: [f32; 2],
     /// Of one axis, m^2.
     pub(crate) variance: f32,
+    /// Of the rotor, counter-clockwise positive, as measured or else as told, rad/s.
+    pub(crate) spin: f32,
 }

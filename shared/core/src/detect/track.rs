@@ -1,6 +1,8 @@
-//! Position, velocity and acceleration in flight: a Kalman filter, the same for both axes.
+//! Path in flight: a Kalman filter on complex numbers x + i y. Its states are position, velocity and acceleration of the
+//! centre of mass, and the offset of the shaft's centre, which unbalance lets circle around it.
 
-use touchdown_rotor::real::sqrt;
+use crate::vector::{conjugate, less, product, sum};
+use touchdown_rotor::real::{sin_cos, sqrt};
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +17,16 @@ const CORRELATION_TIME: f32 = 1e-3;
 /// Change of the acceleration along a flight: its variance grows by the square of this in a second, m/s^2.
 const DRIFT: f32 = 1.0;
 
+/// Velocity of the shaft's centre around that of the mass, m/s, one standard deviation on each axis: balance quality G 6.3
+/// (ISO 21940-11).
+const BALANCE: f32 = 6.3e-3;
+/// Times that from which on it is no unbalance that moves the rotor.
+const UNBALANCED: f32 = 3.0;
+/// Slowest shaft whose offset is followed, rad/s: a flight is less than a turn of it.
+const SLOWEST: f32 = 50.0;
+/// Error of the speed, a part of it: the offset is unknown by so much of itself after a radian.
+const SPEED_ERROR: f32 = 0.05;
+
 /// The estimate and its covariance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Track {
@@ -24,9 +36,16 @@ pub(crate) struct Track {
     pub(crate) velocity: [f32; 2],
     /// m/s^2.
     pub(crate) acceleration: [f32; 2],
-    /// Of each axis: of the position, of it with velocity and acceleration, of the velocity, of it with the acceleration, of
-    /// the acceleration.
-    covariance: [f32; 6],
+    /// From there to the shaft's centre, which the sensors see, m.
+    pub(crate) offset: [f32; 2],
+    /// The offset turns with it, rad/s.
+    spin: f32,
+    /// Of position, velocity, acceleration and offset, each on one axis.
+    variances: [f32; 4],
+    /// Of position with velocity, position with acceleration, velocity with acceleration.
+    covariances: [[f32; 2]; 3],
+    /// Of position, velocity and acceleration with the offset.
+    with_offset: [[f32; 2]; 3],
 }
 
 /// What a sample told the filter.
@@ -68,65 +87,183 @@ impl Ballistic {
         }
     }
 
-    /// To the next sample.
-    pub(crate) fn predict(&self, track: &mut Track) {
+    /// To the next sample, with this spin (rad/s), or that of the last one.
+    pub(crate) fn predict(&self, track: &mut Track, spin: Option<f32>) {
         let dt = self.period;
         let axes = track.position.iter_mut().zip(&mut track.velocity);
         for ((position, velocity), acceleration) in axes.zip(track.acceleration) {
             *position += (*velocity + 0.5 * acceleration * dt) * dt;
             *velocity += acceleration * dt;
         }
-        let [pp, pv, pa, vv, va, aa] = track.covariance;
-        let pa_next = pa + va * dt;
-        track.covariance = [
-            pp + (2.0 * pv + vv * dt) * dt,
-            pv + (vv + pa_next) * dt,
+        let [pp, vv, aa, oo] = track.variances;
+        let [pv, pa, va] = track.covariances;
+        let pa_next = later(pa, va, dt);
+        track.covariances = [
+            later(pv, [vv + pa_next[0], pa_next[1]], dt),
             pa_next,
-            vv + (2.0 * va + aa * dt) * dt + self.process_noise[0],
-            va + aa * dt,
-            aa + self.process_noise[1],
+            later(va, [aa, 0.0], dt),
         ];
+        track.variances = [
+            pp + (2.0 * pv[0] + vv * dt) * dt,
+            vv + (2.0 * va[0] + aa * dt) * dt + self.process_noise[0],
+            aa + self.process_noise[1],
+            oo,
+        ];
+        track.spin = spin.unwrap_or(track.spin);
+        if oo > 0.0 {
+            track.turn(dt);
+        }
     }
 
     /// Takes a position (m) whose axes have this variance (m^2).
-    pub(crate) fn correct(&self, track: &mut Track, [x, y]: [f32; 2], variance: f32) -> Innovation {
-        let [pp, pv, pa, vv, va, aa] = track.covariance;
-        let total = pp + variance;
-        let scale = 1.0 / total;
-        let gain = [pp * scale, pv * scale, pa * scale];
-        let residual = [x - track.position[0], y - track.position[1]];
-        track.add(gain, residual);
-        let keep = variance * scale;
-        track.covariance = [
-            pp * keep,
-            pv * keep,
-            pa * keep,
-            vv - gain[1] * pv,
-            va - gain[1] * pa,
-            aa - gain[2] * pa,
+    pub(crate) fn correct(&self, track: &mut Track, seen: [f32; 2], variance: f32) -> Innovation {
+        let [pp, vv, aa, oo] = track.variances;
+        let [pv, pa, va] = track.covariances;
+        let [po, vo, ao] = track.with_offset;
+        // Covariance of each state with what is seen.
+        let shared = [
+            sum(po, [pp, 0.0]),
+            sum(conjugate(pv), vo),
+            sum(conjugate(pa), ao),
+            sum(conjugate(po), [oo, 0.0]),
         ];
+        let total = shared[0][0] + shared[3][0] + variance;
+        let scale = 1.0 / total;
+        let residual = less(seen, track.seen());
+        let gain = shared.map(|it| it.map(|it| it * scale));
+        let Track {
+            position,
+            velocity,
+            acceleration,
+            offset,
+            ..
+        } = track;
+        for (state, gain) in [position, velocity, acceleration, offset]
+            .into_iter()
+            .zip(gain)
+        {
+            *state = sum(*state, product(gain, residual));
+        }
+        let [p, v, a, o] = shared;
+        let [of_p, of_v, of_a, of_o] = gain;
+        let less_own = |own: f32, a: [f32; 2], b: [f32; 2]| own - (a[0] * b[0] + a[1] * b[1]);
+        track.variances = [
+            less_own(pp, p, of_p),
+            less_own(vv, v, of_v),
+            less_own(aa, a, of_a),
+            less_own(oo, o, of_o),
+        ];
+        track.covariances = [
+            less(pv, product(of_p, conjugate(v))),
+            less(pa, product(of_p, conjugate(a))),
+            less(va, product(of_v, conjugate(a))),
+        ];
+        if oo > 0.0 {
+            track.with_offset = [
+                less(po, product(of_p, conjugate(o))),
+                less(vo, product(of_v, conjugate(o))),
+                less(ao, product(of_a, conjugate(o))),
+            ];
+        }
+        track.limit_offset();
         Innovation {
             residual,
             variance: total,
-            gain,
+            gain: [of_p[0], of_v[0], of_a[0]],
         }
     }
 }
 
 impl Track {
-    /// At `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to these.
+    /// The shaft's centre is at `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to these. The offset is
+    /// that of unbalance at this spin, rad/s; of none at a spin of 0.
     pub(crate) fn new(
         position: [f32; 2],
         variance: f32,
         velocity: ([f32; 2], f32),
         acceleration: ([f32; 2], f32),
+        spin: f32,
     ) -> Self {
         let ((velocity, spread), (acceleration, error)) = (velocity, acceleration);
-        Self {
-            position,
+        let offset = if spin.abs() > SLOWEST {
+            BALANCE / spin
+        } else {
+            0.0
+        };
+        let mut track = Self {
             velocity,
             acceleration,
-            covariance: [variance, 0.0, 0.0, spread * spread, 0.0, error * error],
+            spin,
+            variances: [0.0, 0.0, 0.0, offset * offset],
+            ..Self::default()
+        };
+        track.go_on_at(position, variance, spread, error);
+        track
+    }
+
+    /// The shaft's centre is at `seen` (m), known to `variance` (m^2), and its velocity (m/s) and acceleration (m/s^2) to
+    /// these: only of the offset is known what was.
+    pub(crate) fn go_on_at(
+        &mut self,
+        seen: [f32; 2],
+        variance: f32,
+        speed: f32,
+        acceleration: f32,
+    ) {
+        self.position = less(seen, self.offset);
+        let [.., offset] = self.variances;
+        self.variances = [
+            variance + offset,
+            speed * speed,
+            acceleration * acceleration,
+            offset,
+        ];
+        self.covariances = [[0.0; 2]; 3];
+        self.with_offset = [[-offset, 0.0], [0.0; 2], [0.0; 2]];
+    }
+
+    /// The shaft's centre, m.
+    pub(crate) fn seen(&self) -> [f32; 2] {
+        sum(self.position, self.offset)
+    }
+
+    /// Velocity of the shaft's centre, m/s.
+    pub(crate) fn velocity_seen(&self) -> [f32; 2] {
+        sum(self.velocity, self.circling(self.offset))
+    }
+
+    /// Offset `time` seconds ago, m.
+    pub(crate) fn offset_before(&self, time: f32) -> [f32; 2] {
+        let (sin, cos) = sin_cos(self.spin * time);
+        product(self.offset, [cos, -sin])
+    }
+
+    /// Velocity of the shaft's centre around that of the mass with this offset (m), m/s.
+    pub(crate) fn circling(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        [-self.spin * y, self.spin * x]
+    }
+
+    /// The offset turns for `time` seconds.
+    fn turn(&mut self, time: f32) {
+        let [x, y] = self.offset;
+        let drift = SPEED_ERROR * SPEED_ERROR * self.spin.abs() * time;
+        self.variances[3] += drift * (x * x + y * y);
+        let (sin, cos) = sin_cos(self.spin * time);
+        self.offset = product(self.offset, [cos, sin]);
+        let [po, vo, ao] = self.with_offset;
+        self.with_offset =
+            [later(po, vo, time), later(vo, ao, time), ao].map(|it| product(it, [cos, -sin]));
+    }
+
+    /// What circles faster than unbalance lets it is another motion.
+    fn limit_offset(&mut self) {
+        let [u, v] = self.circling(self.offset);
+        let most = UNBALANCED * BALANCE;
+        if u * u + v * v > most * most {
+            self.position = self.seen();
+            self.offset = [0.0; 2];
+            self.variances[3] = 0.0;
+            self.with_offset = [[0.0; 2]; 3];
         }
     }
 
@@ -156,29 +293,32 @@ impl Track {
 
     /// Standard deviation of a position (m) of this variance (m^2) from the foreseen one, on each axis.
     pub(crate) fn spread(&self, variance: f32) -> f32 {
-        sqrt(self.covariance[0] + variance)
+        let [pp, _, _, oo] = self.variances;
+        sqrt(pp + 2.0 * self.with_offset[0][0] + oo + variance)
     }
 
     /// Standard deviation of the velocity on each axis, m/s.
     pub(crate) fn speed_error(&self) -> f32 {
-        sqrt(self.covariance[3].max(0.0))
+        sqrt(self.variances[1].max(0.0))
     }
 
     /// Standard deviation of the acceleration on each axis, m/s^2.
     pub(crate) fn acceleration_error(&self) -> f32 {
-        sqrt(self.covariance[5].max(0.0))
+        sqrt(self.variances[2].max(0.0))
     }
 
     /// The variance of the acceleration grows by this, (m/s^2)^2.
     pub(crate) fn loosen(&mut self, variance: f32) {
-        self.covariance[5] += variance;
+        self.variances[2] += variance;
     }
 
     /// The acceleration is another one, m/s^2, known to this.
     pub(crate) fn accelerate(&mut self, (acceleration, error): ([f32; 2], f32)) {
         self.acceleration = acceleration;
-        let [pp, pv, _, vv, ..] = self.covariance;
-        self.covariance = [pp, pv, 0.0, vv, 0.0, error * error];
+        self.variances[2] = error * error;
+        let [pv, ..] = self.covariances;
+        self.covariances = [pv, [0.0; 2], [0.0; 2]];
+        self.with_offset[2] = [0.0; 2];
     }
 
     /// Takes a velocity jump in.
@@ -193,10 +333,84 @@ impl Track {
         let [u, v] = change;
         let misplaced = (u * u + v * v) * jump.timing * jump.timing;
         let [p, v, a] = effect;
-        let products = [p * p, p * v, p * a, v * v, v * a, a * a];
-        for (covariance, product) in self.covariance.iter_mut().zip(products) {
+        for (own, part) in self.variances.iter_mut().zip(effect) {
+            *own += part * part * variance;
+        }
+        for ([covariance, _], product) in self.covariances.iter_mut().zip([p * v, p * a, v * a]) {
             *covariance += product * variance;
         }
-        self.covariance[0] += misplaced;
+        self.variances[0] += misplaced;
+    }
+}
+
+/// `a`, which changes by `b` in a second, `time` seconds later.
+fn later(a: [f32; 2], b: [f32; 2], time: f32) -> [f32; 2] {
+    [a[0] + b[0] * time, a[1] + b[1] * time]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::noise::white;
+
+    const RATE: f32 = 20_000.0;
+    const SPIN: f32 = 900.0;
+    const NOISE: f32 = 0.7e-6;
+    const VELOCITY: [f32; 2] = [0.02, -0.01];
+
+    /// A rotor whose shaft circles around its centre of mass with this offset (m) at first, in a straight flight of `samples`
+    /// without gravity: the track, and the offset at its end.
+    fn flight(offset: [f32; 2], samples: u16, seed: &mut u64) -> (Track, [f32; 2]) {
+        let ballistic = Ballistic::new(RATE, 0.1);
+        let noise = NOISE * NOISE;
+        let mut track = Track::default();
+        let mut now = offset;
+        for k in 0..samples {
+            let time = f32::from(k) / RATE;
+            let (sin, cos) = libm::sincosf(SPIN * time);
+            now = product(offset, [cos, sin]);
+            let seen =
+                [0, 1].map(|axis| 1e-4 + VELOCITY[axis] * time + now[axis] + NOISE * white(seed));
+            if k == 0 {
+                track = Track::new(seen, noise, ([0.0; 2], 0.1), ([0.0; 2], 5.0), SPIN);
+            } else {
+                ballistic.predict(&mut track, Some(SPIN));
+                ballistic.correct(&mut track, seen, noise);
+            }
+        }
+        (track, now)
+    }
+
+    /// Errors are no larger than the filter takes them for; from two thirds of a turn (140 samples) on they are small.
+    #[test]
+    fn unbalance_is_found() {
+        let mut seed = 1;
+        for samples in [50, 100, 200, 400] {
+            let (mut of_offset, mut of_velocity, mut largest) = (0.0, 0.0, 0.0_f32);
+            for k in 0..200_u16 {
+                let (sin, cos) = libm::sincosf(f32::from(k));
+                let (track, truth) = flight([5e-6 * cos, 5e-6 * sin], samples, &mut seed);
+                let [x, y] = less(track.offset, truth);
+                let [u, v] = less(track.velocity, VELOCITY);
+                let [_, velocity, _, offset] = track.variances;
+                of_offset += (x * x + y * y) / (400.0 * offset);
+                of_velocity += (u * u + v * v) / (400.0 * velocity);
+                largest = largest.max(x * x + y * y);
+            }
+            assert!((0.05..1.2).contains(&of_offset), "{samples}: {of_offset}");
+            assert!(
+                (0.05..1.2).contains(&of_velocity),
+                "{samples}: {of_velocity}"
+            );
+            let most = if samples < 100 { 8e-6 } else { 1.5e-6 };
+            assert!(largest < most * most, "{samples}: {largest}");
+        }
+    }
+
+    /// A magnet that holds moves it farther.
+    #[test]
+    fn a_wider_circle_is_no_unbalance() {
+        let (track, _) = flight([40e-6, 0.0], 400, &mut 1);
+        assert_eq!(track.offset, [0.0; 2]);
     }
 }

@@ -8,7 +8,7 @@
 //! The trend takes its part of a wave before the residual shows it: at omega it leaves ((z-1)/(z-rho))^2 of it, with
 //! z = exp(i omega) and the trend's pole rho. Angle and amplitudes follow the residual divided by that.
 
-use crate::vector::sum;
+use crate::vector::{product, sum};
 use touchdown_rotor::real::sin_cos;
 
 /// Highest multiple of the frequency.
@@ -306,11 +306,6 @@ impl Fit {
         .map(|term| term / keep);
         p.map(|p| p * scale)
     }
-}
-
-/// Of two complex numbers.
-fn product([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
-    [a * c - b * d, a * d + b * c]
 }
 
 /// Back to length 1, from nearly that.
