@@ -13,8 +13,6 @@ pub struct Forces<'t> {
     pub normal: Vec<Term<'t>>,
     /// Friction of each link without slip, N.
     pub grip: Vec<Term<'t>>,
-    /// What the links' forces are made of, without their signs, N.
-    pub size: f64,
 }
 
 /// An unknown force and the condition that it keeps.
@@ -85,7 +83,7 @@ impl<'t> Forces<'t> {
                 }
             }
         }
-        let (mut matrix, mut right, mut size) = (Vec::new(), Vec::new(), 0.0);
+        let (mut matrix, mut right) = (Vec::new(), Vec::new());
         for Unknown {
             link, row, target, ..
         } in &unknowns
@@ -105,18 +103,12 @@ impl<'t> Forces<'t> {
             let free = link_at.lateral(&acceleration);
             let turning = link_at.turning(&acceleration) * row.1;
             right.push(*target - dot(&row.0, &free) - turning);
-            let diagonal = system.lateral(*link, *link) + system.turning(*link, *link) * row.1;
-            let parts: f64 = (0..system.first_spin())
-                .map(|i| (link_at.shares[i / 2] * acceleration[i].value()).abs())
-                .sum();
-            size += (target.value().abs() + parts + turning.value().abs()) / diagonal;
             matrix.push(line);
         }
         let mut result = Self {
             acceleration,
             normal: vec![none; modes.len()],
             grip: vec![none; modes.len()],
-            size,
         };
         let mut parts: Vec<Vec<(Term<'t>, f64)>> = Vec::new();
         parts.extend(result.acceleration.iter().map(|free| vec![(*free, 1.0)]));

@@ -125,10 +125,7 @@ impl Sizes {
             sizes.fold(0.0, f64::max)
         };
         Self {
-            normal: largest(&|link| {
-                let [x, y] = link.lateral(speed);
-                f64::hypot(x, y)
-            }),
+            normal: largest(&|link| link.lateral_size(speed)),
             slip: largest(&|link| link.slip_size(speed)),
         }
     }

@@ -4,7 +4,7 @@ use super::fall::first_fall;
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
 pub use super::mode::Mode;
-use super::system::{Hold, Law, System};
+use super::system::{Hold, Law, Link, System};
 use super::tape::{Tape, Term};
 use crate::reference::roots::Fall;
 
@@ -26,6 +26,20 @@ pub enum Ending {
     SlipEnds(usize),
     /// Grip does; slip of this sign begins.
     GripLost(usize, f64),
+}
+
+/// What a link's displacement, slip and forces are made of, without signs: their rounding counts against it.
+struct Sizes {
+    /// Of the displacements of all links, as one moves what the others have: m, m/s, m/s^2.
+    lateral: [f64; 3],
+    /// m/s.
+    slip: f64,
+    /// m/s^2.
+    slip_push: f64,
+    /// N.
+    normal: f64,
+    /// N.
+    grip: f64,
 }
 
 /// Motion from one moment on, series in parts of `span`.
@@ -78,14 +92,14 @@ impl Step {
             }
         });
         let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
-        let (place, speed) = (jets(&places), jets(&speeds));
+        let series = jets(&places);
         let reach = |(jet, size): (&Jet, &f64)| {
             [ORDER - 1, ORDER]
                 .map(|k| (accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
                 .into_iter()
                 .fold(f64::INFINITY, f64::min)
         };
-        let span = place
+        let span = series
             .iter()
             .zip(&system.size)
             .map(reach)
@@ -96,13 +110,22 @@ impl Step {
             end: 1.0,
             ending: Ending::Step,
             cost: tape.cost(),
-            place: scaled(&place),
-            speed: scaled(&speed),
+            place: scaled(&series),
+            speed: scaled(&jets(&speeds)),
             normal: scaled(&jets(&forces.normal)),
         };
         let grip: Vec<Jet> = scaled(&jets(&forces.grip));
+        let pushes: Vec<f64> = forces.acceleration.iter().map(Term::size).collect();
+        let lateral = [place, speed, &pushes].map(|of| system.lateral_size(of));
         for (link, mode) in modes.iter().enumerate() {
-            step.locate(system, link, *mode, &grip[link], forces.size);
+            let sizes = Sizes {
+                lateral,
+                slip: system.links[link].slip_size(speed),
+                slip_push: system.links[link].slip_size(&pushes),
+                normal: forces.normal[link].size(),
+                grip: forces.grip[link].size(),
+            };
+            step.locate(&system.links[link], link, *mode, &grip[link], &sizes);
         }
         step
     }
@@ -122,39 +145,33 @@ impl Step {
         self.normal[link].at(part)
     }
 
-    fn locate(&mut self, system: &System, index: usize, mode: Mode, grip: &Jet, size: f64) {
-        let link = &system.links[index];
-        let start = self.speed(0.0);
-        let push = size * self.span * (system.lateral(index, index) + system.turning(index, index));
-        let slip_rounding = ROUNDING * (link.slip_size(&start) + push);
+    fn locate(&mut self, link: &Link, index: usize, mode: Mode, grip: &Jet, sizes: &Sizes) {
+        let slip_rounding = ROUNDING * (sizes.slip + sizes.slip_push * self.span);
         match (mode, link.hold) {
             (Mode::Flight, Hold::Wall { clearance, .. }) => {
                 let unit = 1.0 / clearance;
                 let q = link.lateral(&self.place).map(|q| q * unit);
                 let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
-                let [x, y] = link.lateral(&start);
-                let way = unit * f64::hypot(x, y) * self.span;
-                let sizes = [1.0, way, way * way + unit * push * self.span];
-                let tolerances = sizes.map(|size| GAP_ROUNDING * size);
+                let [place, speed, push] = sizes.lateral.map(|size| size * unit);
+                let way = speed * self.span;
+                let pushed = push * self.span * self.span;
+                let tolerances = [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size);
                 self.earlier(&gap, tolerances, Ending::Touch(index));
             }
             (Mode::Flight, Hold::Brake(_)) => {}
             (_, Hold::Wall { friction, .. }) => {
                 let normal = self.normal[index];
-                self.earlier(&normal, [ROUNDING * size; 3], Ending::LiftOff(index));
+                let rounding = ROUNDING * sizes.normal;
+                self.earlier(&normal, [rounding; 3], Ending::LiftOff(index));
                 if mode == Mode::Stick {
-                    let most = normal * friction;
-                    self.hold(index, &most, grip, ROUNDING * size * (1.0 + friction));
+                    let rounding = rounding * friction + ROUNDING * sizes.grip;
+                    self.hold(index, &(normal * friction), grip, rounding);
                 }
             }
             (_, Hold::Brake(limit)) => {
                 if mode == Mode::Stick {
-                    self.hold(
-                        index,
-                        &Jet::constant(limit),
-                        grip,
-                        ROUNDING * (size + limit),
-                    );
+                    let rounding = ROUNDING * (sizes.grip + limit);
+                    self.hold(index, &Jet::constant(limit), grip, rounding);
                 }
             }
         }

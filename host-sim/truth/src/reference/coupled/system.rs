@@ -46,11 +46,18 @@ impl Link {
         weighted(&self.arms, |k| of[2 * self.shares.len() + k])
     }
 
-    /// Speeds that slip is made of, without their signs.
-    pub fn slip_size(&self, speed: &[f64]) -> f64 {
-        let [x, y] = self.lateral(speed);
-        let turning = self.arms.iter().zip(&speed[2 * self.shares.len()..]);
-        turning.fold(x.abs() + y.abs(), |sum, (arm, spin)| {
+    /// What displacement is made of, without signs.
+    pub fn lateral_size(&self, of: &[f64]) -> f64 {
+        let parts = self.shares.iter().zip(of.chunks_exact(2));
+        parts.fold(0.0, |sum, (share, of)| {
+            sum + share.abs() * (of[0].abs() + of[1].abs())
+        })
+    }
+
+    /// What slip is made of, without signs.
+    pub fn slip_size(&self, of: &[f64]) -> f64 {
+        let turning = self.arms.iter().zip(&of[2 * self.shares.len()..]);
+        turning.fold(self.lateral_size(of), |sum, (arm, spin)| {
             sum + (arm * spin).abs()
         })
     }
@@ -87,6 +94,12 @@ impl System {
     /// Number of the first spin among the coordinates.
     pub fn first_spin(&self) -> usize {
         2 * self.links[0].shares.len()
+    }
+
+    /// What the displacements of all links are made of, without signs; the largest.
+    pub fn lateral_size(&self, of: &[f64]) -> f64 {
+        let sizes = self.links.iter().map(|link| link.lateral_size(of));
+        sizes.fold(0.0, f64::max)
     }
 
     /// Change of one link's displacement rate by an impulse at another, along the same direction.

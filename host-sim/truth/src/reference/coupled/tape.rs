@@ -125,6 +125,8 @@ fn backward(first: f64) -> SeriesTerms {
 #[derive(Debug, Default)]
 struct Record {
     rules: Vec<Rule>,
+    /// What the first terms are made of, without their signs: their rounding counts against it.
+    sizes: Vec<f64>,
     /// Of each order: the terms of all series.
     rows: Vec<Vec<f64>>,
     weighted: Vec<(usize, f64)>,
@@ -183,14 +185,15 @@ impl Tape {
 
     /// Series of which the first terms are known.
     pub fn start(&self, values: &[f64]) -> Vec<Term<'_>> {
-        let given = values.iter().map(|value| self.record(Rule::Given, *value));
-        given.collect()
+        let given = |value: &f64| self.record(Rule::Given, *value, value.abs());
+        values.iter().map(given).collect()
     }
 
-    fn record(&self, rule: Rule, value: f64) -> Term<'_> {
+    fn record(&self, rule: Rule, value: f64, size: f64) -> Term<'_> {
         let mut record = self.0.borrow_mut();
         let index = record.rules.len();
         record.rules.push(rule);
+        record.sizes.push(size);
         record.rows[0].push(value);
         Term { tape: self, index }
     }
@@ -218,13 +221,15 @@ impl Tape {
     /// A sum with weights.
     pub fn weighted<'t>(&'t self, parts: &[(Term<'t>, f64)]) -> Term<'t> {
         let value = parts.iter().map(|(of, weight)| of.value() * weight).sum();
+        let part = |(of, weight): &(Term, f64)| of.size() * weight.abs();
+        let size = parts.iter().map(part).sum();
         let mut record = self.0.borrow_mut();
         let from = record.weighted.len();
         let parts = parts.iter().map(|(of, weight)| (of.index, *weight));
         record.weighted.extend(parts);
         let to = record.weighted.len();
         drop(record);
-        self.record(Rule::Weighted(from, to), value)
+        self.record(Rule::Weighted(from, to), value, size)
     }
 
     /// Solves a linear system; an unknown that the others already determine at the start is 0.
@@ -233,6 +238,9 @@ impl Tape {
         let indices = |of: &[Term<'t>]| of.iter().map(|it| it.index).collect::<Vec<usize>>();
         let inverse = inverse(matrix.iter().map(|line| values(line)).collect());
         let first = times(&inverse, &values(right));
+        let sizes: Vec<f64> = right.iter().map(Term::size).collect();
+        let line = |line: &Vec<f64>| line.iter().zip(&sizes).map(|(a, b)| a.abs() * b).sum();
+        let sizes: Vec<f64> = inverse.iter().map(line).collect();
         let size = right.len();
         let mut rule = Rule::Unknowns(self.0.borrow().systems.len());
         self.0.borrow_mut().systems.push(LinearSystem {
@@ -242,8 +250,10 @@ impl Tape {
             later: vec![vec![[0.0; ORDER + 4]; size]; size],
             unknowns: first.iter().map(|value| backward(*value)).collect(),
         });
-        let unknown = |value: f64| self.record(std::mem::replace(&mut rule, Rule::Made), value);
-        first.into_iter().map(unknown).collect()
+        let unknown = |(value, size): (f64, f64)| {
+            self.record(std::mem::replace(&mut rule, Rule::Made), value, size)
+        };
+        first.into_iter().zip(sizes).map(unknown).collect()
     }
 }
 
@@ -251,6 +261,11 @@ impl<'t> Term<'t> {
     /// At the start.
     pub fn value(&self) -> f64 {
         self.tape.0.borrow().rows[0][self.index]
+    }
+
+    /// What that is made of, without signs.
+    pub fn size(&self) -> f64 {
+        self.tape.0.borrow().sizes[self.index]
     }
 
     /// Its number on the tape.
@@ -266,7 +281,7 @@ impl<'t> Term<'t> {
 
     /// A value that stays, on the same tape.
     pub fn constant(&self, value: f64) -> Self {
-        self.tape.record(Rule::Given, value)
+        self.tape.record(Rule::Given, value, value.abs())
     }
 
     /// Sine and cosine.
@@ -279,8 +294,8 @@ impl<'t> Term<'t> {
             sine: backward(sine),
             cosine: backward(cosine),
         });
-        let sine = self.tape.record(Rule::Sine(number), sine);
-        (sine, self.tape.record(Rule::Made, cosine))
+        let sine = self.tape.record(Rule::Sine(number), sine, 1.0);
+        (sine, self.tape.record(Rule::Made, cosine, 1.0))
     }
 }
 
@@ -294,7 +309,11 @@ impl Add for Term<'_> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let rule = Rule::Sum(self.index, other.index);
-        self.tape.record(rule, self.value() + other.value())
+        self.tape.record(
+            rule,
+            self.value() + other.value(),
+            self.size() + other.size(),
+        )
     }
 }
 
@@ -302,7 +321,11 @@ impl Sub for Term<'_> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         let rule = Rule::Difference(self.index, other.index);
-        self.tape.record(rule, self.value() - other.value())
+        self.tape.record(
+            rule,
+            self.value() - other.value(),
+            self.size() + other.size(),
+        )
     }
 }
 
@@ -332,6 +355,7 @@ impl Mul for Term<'_> {
             first,
             second: backward(b),
         });
-        self.tape.record(Rule::Product(number), a * b)
+        self.tape
+            .record(Rule::Product(number), a * b, self.size() * other.size())
     }
 }

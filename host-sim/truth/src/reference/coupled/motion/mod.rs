@@ -14,9 +14,9 @@ use touchdown_base::history::ModelEvent;
 const ON_WALL: f64 = 64.0 * f64::EPSILON;
 /// Size of the last terms of a series, in parts of the coordinates' sizes.
 const ACCURACY: f64 = 1e-18;
-/// What a run may cost, in products of series; about 4 s of processor time. What chatters without bound
+/// What a run may cost, in products of series; about 3 s of processor time. What whirls too fast
 /// would never end.
-const MOST_COST: usize = 8_000_000;
+const MOST_COST: usize = 12_000_000;
 
 /// A system that moves.
 #[derive(Clone, Debug)]
