@@ -11,7 +11,7 @@ use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Failing, Faults, Motion, SensorFault, Sensors, SensorsState};
 use touchdown_truth::{Moving, Truth};
 
-/// Time in which it is lifted, or rolls to the bottom after the scene's drop, s.
+/// Time in which it is lifted, or rolls to the bottom after the scene's drop or where that is given up, s.
 const LIFT: f64 = 0.2;
 
 type Places = [[f64; 2]; PLANES];
@@ -44,6 +44,7 @@ pub struct Machine<'a> {
     floating: Places,
     lying: Places,
     place: Places,
+    given_up: Option<f64>,
 }
 
 impl<'a> Machine<'a> {
@@ -61,8 +62,14 @@ impl<'a> Machine<'a> {
             floating: Truth::new(scene).advance(-1.0).sensed,
             lying,
             place: lying,
+            given_up: None,
             scene,
         })
+    }
+
+    /// When its last drop was given up, s since the release: it would have taken too long. Told once.
+    pub fn given_up(&mut self) -> Option<f64> {
+        self.given_up.take()
     }
 
     /// Lifts it from wherever it is.
@@ -130,7 +137,8 @@ impl<'a> Machine<'a> {
                 let time = samples as f64 / rate;
                 let state = truth.advance(time);
                 self.place = state.sensed;
-                if time < self.scene.run.duration {
+                self.given_up = truth.given_up();
+                if time < self.scene.run.duration && self.given_up.is_none() {
                     self.stage = Stage::Falls(truth, samples + 1);
                 } else {
                     self.go(false);
@@ -160,5 +168,29 @@ impl Iterator for Machine<'_> {
         }
         self.faults.inject(&mut sample, time);
         Some(sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_lab::limits;
+
+    /// A random machine whose rotor whirls too fast.
+    #[test]
+    fn a_drop_that_is_given_up_is_told_once_and_the_rotor_rolls_to_the_bottom() {
+        let mut scene = Scene::parse("machine", &limits::machine(1)).expect("valid");
+        scene.run.duration = 1.0;
+        let rate = scene.run.sample_rate;
+        let mut machine = Machine::try_new(&scene).expect("valid");
+        machine.let_go();
+        let at = (0..(0.5 * rate) as usize).find_map(|_| {
+            machine.next();
+            machine.given_up()
+        });
+        assert!(at.is_some_and(|it| it > 0.0 && it < 0.5), "{at:?}");
+        assert_ne!(machine.place, machine.lying);
+        machine.by_ref().nth((LIFT * rate) as usize);
+        assert_eq!((machine.place, machine.given_up()), (machine.lying, None));
     }
 }

@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 use touchdown_firmware::board::BLOCK_SAMPLES;
 use touchdown_protocol::wire;
 
+use crate::gate::print;
 use touchdown_base::failure::Failure;
 use touchdown_run::emulator::{Emulator, EmulatorError, RESTART, Session};
 use touchdown_scene::Scene;
@@ -205,6 +206,12 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
             let samples = machine.by_ref().take(BLOCK_SAMPLES);
             let bytes = samples.map(|it| wire::encode_sample(&it));
             pipe.put(bytes.flat_map(|it| if service { wire::with_service(it) } else { it }));
+            if let Some(at) = machine.given_up() {
+                print(&format!(
+                    "truth given up at {:.4} ms: it would take too long. The rotor rolls to the bottom from there\n",
+                    1e3 * at
+                ))?;
+            }
         }
         let is_through = pipe.push();
         if !is_through {
