@@ -186,6 +186,8 @@ impl Scene {
                 ));
             }
         }
+        let tilt = self.two_plane.as_ref().and_then(TwoPlane::tilt_warning);
+        warnings.extend(tilt.map(|it| format!("{}: {it}", self.name)));
         warnings.extend(self.step_warning());
         warnings
     }

@@ -30,6 +30,8 @@ pub const GRAVITY_M_S2: RangeInclusive<f64> = 0.0..=1e3;
 pub const LEAST_GRAVITY_M_S2: f64 = 1e-6;
 /// Length of a step, us.
 pub const STEP_US: RangeInclusive<f64> = 1.0..=1000.0;
+/// Tilt up to which the axis' displacements are small, rad: its sine is off by 1/600 there.
+pub const SMALL_TILT: f64 = 0.1;
 /// What the fastest motion may turn in a step of fidelity `coupled` that nobody gave, rad: the midpoint rule is
 /// late by its square over 12. Beyond five times that much a given step is warned of.
 pub const ANGLE_OF_STEP: f64 = 0.1;

@@ -88,6 +88,32 @@ impl TwoPlane {
         modes.chain(mounts).chain(base).fold(spin.abs(), f64::max)
     }
 
+    /// What lets the axis tilt beyond small angles, if anything does.
+    pub(super) fn tilt_warning(&self) -> Option<String> {
+        if let ([ring], []) = (&*self.rings, &*self.magnets) {
+            let far = ring.place.abs() > ring.retainer.clearance / limits::SMALL_TILT;
+            return far.then(|| {
+                format!(
+                    "one ring, {} mm from the centre of mass, does not hold the tilt: it is taken as small",
+                    Number(ring.place / MILLI)
+                )
+            });
+        }
+        let pairs = self.rings.iter().enumerate();
+        let pairs = pairs.flat_map(|(k, a)| self.rings[..k].iter().map(move |b| (a, b)));
+        let held = pairs.map(|(a, b)| {
+            (a.retainer.clearance + b.retainer.clearance) / (a.place - b.place).abs()
+        });
+        let held = held.fold(f64::INFINITY, f64::min);
+        (self.rings.len() > 1 && held > limits::SMALL_TILT).then(|| {
+            format!(
+                "the rings hold the tilt to {:.0} mrad: it is taken as small, {:.0} mrad at most",
+                held / MILLI,
+                limits::SMALL_TILT / MILLI
+            )
+        })
+    }
+
     /// The start must be within every ring.
     pub(super) fn check_start(&self, start: &Start) -> Result<(), Diagnostic> {
         let Start::Free { position, .. } = *start else {

@@ -22,6 +22,24 @@ fn the_combination_chooses_the_rung() {
 }
 
 #[test]
+fn a_tilt_that_is_not_small_is_warned_of() {
+    let warned = |rings: &str| {
+        let text = Scene::text("rig").expect("built in").into_owned();
+        let text = format!("{text}\n[two_plane]\nrotor_length_mm = 300\n{rings}");
+        Scene::parse("t.toml", &text).expect("valid").warnings()
+    };
+    let ring = |place: f64| format!("[[ring]]\nz_mm = {place}\n");
+    let pair = |a: f64, b: f64| warned(&(ring(a) + &ring(b)));
+    // 0.3 mm of gap at either end.
+    assert!(pair(100.0, 106.1).is_empty() && pair(-120.0, 120.0).is_empty());
+    assert!(pair(100.0, 105.9)[0].contains("hold the tilt to 102 mrad"), "{:?}", pair(100.0, 105.9));
+    assert!(warned(&ring(2.9)).is_empty());
+    assert!(warned(&ring(120.0))[0].contains("one ring, 120 mm from"), "{:?}", warned(&ring(120.0)));
+    let held = "[[magnet]]\nz_mm = -100\nstiffness_n_m = -1e5\n";
+    assert!(warned(&(ring(120.0) + held)).is_empty());
+}
+
+#[test]
 fn a_row_overrides_what_holds_for_all_rings() {
     let own = "z_mm = 190.0\nsupport = { mass_kg = 0.3, stiffness_n_m = 1e6 }\n";
     let scene = york(|text| text.replace("z_mm = 190.0", own)).expect("valid");
