@@ -41,28 +41,29 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
         between(TABLE, key, value, limits::MODULUS_GPA).map(|value| GIGA * value)
     };
     let poisson = |key, value| between(TABLE, key, value, limits::POISSON);
-    let names = ["point", "line"];
+    let names = ["point", "line", "line-power"];
     let contact = match table.contact.as_deref() {
         None => names[0],
         Some(name) => named(TABLE, "contact", name, &names, |name| name)?,
     };
     let contact = match (contact, table.length_mm) {
-        ("line", Some(length)) => {
-            let length = above_zero(TABLE, "length_mm", length)?;
-            let length = between(TABLE, "length_mm", length, limits::LENGTH_MM)?;
-            Contact::Line {
-                length: MILLI * length,
-            }
-        }
-        ("line", None) => {
-            let rule = "contact = \"line\" needs length_mm";
-            return Err(Diagnostic::new(TABLE, "contact", rule));
-        }
-        (_, Some(_)) => {
+        ("point", None) => Contact::Point,
+        ("point", Some(_)) => {
             let rule = "length_mm is that of contact = \"line\"";
             return Err(Diagnostic::new(TABLE, "length_mm", rule));
         }
-        (_, None) => Contact::Point,
+        (name, Some(length)) => {
+            let length = above_zero(TABLE, "length_mm", length)?;
+            let length = MILLI * between(TABLE, "length_mm", length, limits::LENGTH_MM)?;
+            match name {
+                "line" => Contact::Line { length },
+                _ => Contact::LinePower { length },
+            }
+        }
+        (name, None) => {
+            let rule = format!("contact = \"{name}\" needs length_mm");
+            return Err(Diagnostic::new(TABLE, "contact", rule));
+        }
     };
     Ok(Materials {
         elastic: Elastic {

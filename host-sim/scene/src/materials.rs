@@ -4,12 +4,17 @@ use touchdown_models::Materials as Elastic;
 
 /// How rotor and retainer touch.
 #[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
-#[strum(serialize_all = "lowercase")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Contact {
     /// Sphere in sphere.
     Point,
-    /// Cylinder in ring.
+    /// Cylinder in ring, by the logarithm.
     Line {
+        /// Axial, m.
+        length: f64,
+    },
+    /// The same as a spring.
+    LinePower {
         /// Axial, m.
         length: f64,
     },

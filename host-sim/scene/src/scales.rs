@@ -1,7 +1,7 @@
 //! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
 
 use touchdown_base::machine::Start;
-use touchdown_models::{Compliance, HertzConfig, Line, Point};
+use touchdown_models::{Compliance, HertzConfig, Line, LinePower, Point};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
@@ -13,6 +13,7 @@ pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
     match scene.materials.contact {
         Contact::Point => compliant(scene, Point).compliance(),
         Contact::Line { length } => compliant(scene, Line { length }).compliance(),
+        Contact::LinePower { length } => compliant(scene, LinePower { length }).compliance(),
     }
 }
 
@@ -30,6 +31,9 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
         Contact::Point => Validity::try_new(&compliant(scene, Point), zeta, mode).ok(),
         Contact::Line { length } => {
             Validity::try_new(&compliant(scene, Line { length }), zeta, mode).ok()
+        }
+        Contact::LinePower { length } => {
+            Validity::try_new(&compliant(scene, LinePower { length }), zeta, mode).ok()
         }
     });
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))

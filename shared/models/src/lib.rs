@@ -17,7 +17,7 @@ pub use coupled::{
     SeatConfig, UnbalanceConfig, Whole,
 };
 pub use hertz::{
-    Compliance, Euler, Hertz, HertzConfig, HertzState, Line, Materials, Pairing, Point, Scheme,
-    Shape, Verlet,
+    Compliance, Euler, Hertz, HertzConfig, HertzState, Line, LinePower, Materials, Pairing, Point,
+    Scheme, Shape, Verlet,
 };
 pub use moreau::{Moreau, MoreauState};

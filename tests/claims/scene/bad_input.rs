@@ -239,7 +239,7 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[materials]\ncontact = \"plane\"",
-            "scene.toml:12: contact must be \"point\" or \"line\", is \"plane\"",
+            "scene.toml:12: contact must be \"point\" or \"line\" or \"line-power\", is \"plane\"",
         ),
         (
             "[materials]\nrotor_modulus_gpa = 0",

@@ -76,6 +76,7 @@ fn the_edges_of_every_range_are_valid() {
         "[model]\nrung = \"moreau\"\nstep_us = 1000",
         "[model]\nrung = \"hertz\"\nscheme = \"verlet\"\nstep_us = 128",
         "[model]\nrung = \"hertz\"\n[materials]\ncontact = \"line\"\nlength_mm = 20",
+        "[model]\nrung = \"hertz\"\n[materials]\ncontact = \"line-power\"\nlength_mm = 20",
         "[materials]\nrotor_modulus_gpa = 70\nrotor_poisson = 0\nretainer_poisson = 0.5",
         "[sensors]\nbits = 16\nnoise_um = 0\nplanes = 1",
         "[start]\nx_mm = 0.18\ny_mm = -0.24",

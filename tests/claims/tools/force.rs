@@ -16,7 +16,7 @@ use touchdown_force::rehearsal::{Blow, half_sine};
 use touchdown_force::spectrum::Transform;
 use touchdown_force::{Measurement, measure, write};
 use touchdown_tests::binary::touchdown;
-use touchdown_truth::reference::pulse::Meeting;
+use touchdown_truth::reference::pulse::{Meeting, Press};
 
 /// Of the issue: impulse and contact time at the paper's 50 kHz.
 const IMPULSE: f64 = 0.02;
@@ -34,8 +34,10 @@ fn meeting(mass: f64, speed: f64, restitution: f64) -> Meeting {
         mass,
         speed,
         restitution,
-        stiffness: 4.0 / (3.0 * std::f64::consts::PI) * 3.625e11 * curvature.sqrt(),
-        exponent: 1.5,
+        press: Press::Power {
+            stiffness: 4.0 / (3.0 * std::f64::consts::PI) * 3.625e11 * curvature.sqrt(),
+            exponent: 1.5,
+        },
         gravity: 0.0,
     }
 }
@@ -228,8 +230,7 @@ fn contacts_with_much_loss_come_back() {
         for speed in [0.02, 0.0767, 0.2, 0.5] {
             let point = meeting(1.71, speed, restitution);
             let line = Meeting {
-                stiffness: line,
-                exponent: 1.0,
+                press: Press::Power { stiffness: line, exponent: 1.0 },
                 ..point
             };
             for meeting in [point, line] {

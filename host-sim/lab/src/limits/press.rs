@@ -1,6 +1,6 @@
 //! Rung `hertz` watched step by step: the energy that it has, and how deep it is in the wall.
 
-use touchdown_models::Compliance;
+use touchdown_models::{Compliance, Line, Shape};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Kinematics, Precision, Stepper, Touch};
 
@@ -77,11 +77,18 @@ impl Use for Press<'_> {
         ) = (self.scene, subject);
         let n = match scene.materials.contact {
             Contact::Point => 1.5,
-            Contact::Line { .. } => 1.0,
+            Contact::Line { .. } | Contact::LinePower { .. } => 1.0,
         };
+        let by_logarithm = matches!(scene.materials.contact, Contact::Line { .. });
         let weight = scene.rotor.mass * scales.speed * scales.speed;
         let stiffness = self.stiff.stiffness * scales.length.powf(n + 1.0) / weight;
-        let stored = |depth: f64| stiffness * depth.max(0.0).powf(n + 1.0) / (n + 1.0);
+        let stored = |depth: f64| {
+            if by_logarithm {
+                let power = Line::power(depth, 1.0);
+                return 0.5 * stiffness * power * (depth.max(0.0) - 0.5 * power);
+            }
+            stiffness * depth.max(0.0).powf(n + 1.0) / (n + 1.0)
+        };
         let gravity = if scene.run.gravity > 0.0 { 1.0 } else { 0.0 };
         let step = scene.model.step / scales.time;
         let epsilon = R::EPSILON.to_f64();

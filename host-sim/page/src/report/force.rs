@@ -7,10 +7,10 @@ use maud::{Markup, html};
 use touchdown_base::history::{History, Impact};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_chart::text::{ms, si};
-use touchdown_run::fidelity::force::{self, Press};
+use touchdown_run::fidelity::force;
 use touchdown_run::outcome::Outcome;
 use touchdown_scene::{Fidelity, Scene};
-use touchdown_truth::reference::pulse::Meeting;
+use touchdown_truth::reference::pulse::{Meeting, Press};
 
 const HEIGHT: f64 = 150.0;
 /// Where the reference finds no damping below, no force is drawn.
@@ -91,8 +91,7 @@ fn meeting(impact: &Impact, restitution: f64, press: Press) -> Option<Meeting> {
         mass,
         speed: impact.normal_speed,
         restitution,
-        stiffness: press.stiffness,
-        exponent: press.exponent,
+        press,
         gravity: 0.0,
     })
 }

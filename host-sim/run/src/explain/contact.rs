@@ -5,9 +5,10 @@ use touchdown_scene::scales::compliance;
 use touchdown_scene::{Contact, Scene};
 
 pub(super) fn contact(scene: &Scene) -> Vec<Row> {
-    let exponent = match scene.materials.contact {
-        Contact::Point => "1.5",
-        Contact::Line { .. } => "1",
+    let (law, exponent) = match scene.materials.contact {
+        Contact::Point => ("K, force is K d^n", "1.5"),
+        Contact::LinePower { .. } => ("K, force is K d^n", "1"),
+        Contact::Line { .. } => ("K, force F is K d/(ln(4 K c/F) - 1)", "1"),
     };
     let Ok(compliance) = compliance(scene) else {
         return Vec::new();
@@ -15,10 +16,7 @@ pub(super) fn contact(scene: &Scene) -> Vec<Row> {
     let micros = |seconds: f64| format!("{:.4} us", seconds * 1e6);
     vec![
         ("shape", scene.materials.contact.to_string()),
-        (
-            "K, force is K d^n",
-            format!("{:.6e} N/m^{exponent}", compliance.stiffness),
-        ),
+        (law, format!("{:.6e} N/m^{exponent}", compliance.stiffness)),
         (
             "fastest impact: force, depth",
             format!(

@@ -15,7 +15,9 @@ pub use plane::follow;
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 pub use simulate::{run, simulate, simulate_to_verdict};
 
-use touchdown_models::{Euler, Hertz, Line, Moreau, Point, Scheme as ContactScheme, Shape, Verlet};
+use touchdown_models::{
+    Euler, Hertz, Line, LinePower, Moreau, Point, Scheme as ContactScheme, Shape, Verlet,
+};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::{Micro32, Poly32, Poly64};
 use touchdown_rotor::scales::Scales;
@@ -109,6 +111,20 @@ fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, Co
             }
             (Contact::Line { length }, _) => {
                 hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
+            }
+            (Contact::LinePower { length }, Scheme::Verlet) => {
+                hertz::<R, LinePower<f64>, LinePower<R>, Verlet, U>(
+                    scene,
+                    LinePower { length },
+                    what,
+                )
+            }
+            (Contact::LinePower { length }, _) => {
+                hertz::<R, LinePower<f64>, LinePower<R>, Euler, U>(
+                    scene,
+                    LinePower { length },
+                    what,
+                )
             }
         },
         Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {

@@ -13,7 +13,7 @@ pub struct HertzConfig<R, C> {
     pub rigid: RigidConfig<R>,
     /// What rotor and retainer are made of.
     pub materials: Materials<R>,
-    /// [`super::Point`] or [`super::Line`].
+    /// [`super::Point`], [`super::Line`] or [`super::LinePower`].
     pub shape: C,
     /// Speed of the fastest impact expected, m/s: it sets the longest step.
     pub fastest: R,
@@ -22,7 +22,7 @@ pub struct HertzConfig<R, C> {
 /// How stiff the contact is, SI; without damping and without gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance<R> {
-    /// K in force = K d^n, N/m^n.
+    /// K in force = K d^n, N/m^n; in force = K d/(ln(4 K c/force) - 1), N/m, of [`super::Line`].
     pub stiffness: R,
     /// Compression of the fastest impact, m.
     pub deepest: R,
@@ -54,23 +54,23 @@ impl<R: Real, C: Shape<R>> HertzConfig<R, C> {
         positive("fastest", speed)?;
         positive("radius", self.rigid.radius)?;
         positive("clearance", self.rigid.clearance)?;
-        let stiffness = self.shape.stiffness(&Pairing {
+        let pairing = Pairing {
             modulus: self.materials.contact_modulus()?,
             radius: self.rigid.radius,
             clearance: self.rigid.clearance,
             mass,
             speed,
-        })?;
-        // K d^(n+1)/(n+1) = m V^2/2.
-        let n = C::exponent();
-        let deepest = C::deepest(R::HALF * (n + R::ONE) * mass / stiffness * speed * speed);
-        let force = stiffness * C::power(deepest);
+        };
+        let stiffness = self.shape.stiffness(&pairing)?;
+        let deepest = C::deepest(&pairing, stiffness);
+        let power = C::power(deepest, pairing.clearance);
+        let force = stiffness * power;
         let compliance = Compliance {
             stiffness,
             deepest,
             peak_force: force,
-            rate: (n * force / (deepest * mass)).sqrt(),
-            contact_time: R::lit(C::DURATION) * deepest / speed,
+            rate: (C::slope(deepest, power) * force / (deepest * mass)).sqrt(),
+            contact_time: C::duration(deepest, power) * deepest / speed,
         };
         positive("fastest", compliance.contact_time)?;
         positive("fastest", compliance.rate)?;

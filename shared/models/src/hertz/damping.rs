@@ -1,7 +1,7 @@
 //! The damping constant that gives the restitution asked for.
 //!
 //! The wall pushes with K d^n (1 + a d'/V), V the contact's own entry speed (Hunt and Crossley's form).
-//! With v = d'/V, m v dv = -K d^n (1 + a v) dd/V^2 holds for any n, and d returns to 0 where the
+//! With v = d'/V, m v dv = -K d^n (1 + a v) dd/V^2 holds for any n, and any other function of d; d returns to 0 where the
 //! integral of v dv/(1 + a v) from 1 to -e is 0:
 //!
 //! (1 + e) a = ln((1 + a)/(1 - e a)).

@@ -37,7 +37,8 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
                 tangential,
             } => {
                 let normal_acceleration = tangential * tangential + self.law.gravity * cos;
-                let out = R::ONE + C::depth(normal_acceleration.most(R::ZERO) / self.stiffness);
+                let held = normal_acceleration.most(R::ZERO) / self.stiffness;
+                let out = R::ONE + C::depth(held, R::ONE);
                 state.position = [out * sin, -(out * cos)].map(Sum::new);
                 state.velocity = [tangential * cos, tangential * sin].map(Sum::new);
                 let wall = WallState {

@@ -1,7 +1,7 @@
 //! Rung `hertz`: a compliant contact, which has a force and takes time.
 //!
-//! The wall pushes with K d^n (1 + a d'/V) at depth d, n = 3/2 for a point contact (Hertz) and 1 for a
-//! line contact; friction is Coulomb's, and what would stop the slip within the step limits it, so
+//! The wall pushes with K d^n (1 + a d'/V) at depth d, n = 3/2 for a point contact (Hertz), and with a
+//! logarithm in place of the power for a line contact (Johnson); friction is Coulomb's, and what would stop the slip within the step limits it, so
 //! sticking is exact and needs no constant. Between contacts the path is the rigid rung's parabola.
 
 mod config;
@@ -14,7 +14,7 @@ mod state;
 
 pub use config::{Compliance, HertzConfig};
 pub use scheme::{Euler, Scheme, Verlet};
-pub use shape::{Line, Materials, Pairing, Point, Shape};
+pub use shape::{Line, LinePower, Materials, Pairing, Point, Shape};
 pub use state::HertzState;
 
 use core::marker::PhantomData;
@@ -60,10 +60,11 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         }
         let deepest = compliance.deepest / scales.length;
         let fastest = config.fastest / scales.speed;
-        let n = C::exponent();
-        let stiffness = R::HALF * (n + R::ONE) * fastest * fastest / (C::power(deepest) * deepest);
+        let power = C::power(deepest, R::ONE);
+        let parts = C::parts(deepest, power);
+        let stiffness = R::HALF * parts * fastest * fastest / (power * deepest);
         // A fall through the static compression: slower, gravity and not the impact decides.
-        let settled = C::depth(law.gravity / stiffness);
+        let settled = C::depth(law.gravity / stiffness, R::ONE);
         let slowest = (R::TWO * law.gravity * settled).sqrt();
         Ok(Self {
             damping: damping::damping(law.restitution),

@@ -29,17 +29,20 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         let inverse = R::ONE / distance;
         let (sin, cos) = (x * inverse, -y * inverse);
         let depth = (distance - R::ONE).most(R::ZERO);
-        let force = self.stiffness * C::power(depth);
+        let power = C::power(depth, R::ONE);
+        let force = self.stiffness * power;
 
         let fall = law.gravity * time;
         let (normal, along) = (u * sin - v * cos, u * cos + v * sin);
         let starts = !touching.stays && {
             // Motion and compression together do not suffice to leave against what presses.
-            let stored = force * depth / (C::exponent() + R::ONE);
+            let stored = force * depth / C::parts(depth, power);
             let normal_acceleration = along * along + law.gravity * cos;
             R::HALF * normal * normal + stored < normal_acceleration * depth
         };
-        let impulse = self.impulse(state, &touching, [depth, force], normal + fall * cos, time);
+        let steepness = C::slope(depth, power) * force;
+        let inward = normal + fall * cos;
+        let impulse = self.impulse(state, &touching, [depth, force, steepness], inward, time);
         let tangential = along - fall * sin;
         let (after, stuck) = law.rub(impulse, tangential, &mut state.spin);
         let rubbed = after - tangential;
@@ -74,19 +77,20 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         }
     }
 
-    /// Normal impulse per mass of the wall in `time`, on a rotor that goes into it at `normal`. The
+    /// Normal impulse per mass of the wall in `time`, on a rotor that goes into it at `normal`; the slope of
+    /// its force is `steepness` over the depth. The
     /// damping is taken at the mean of the speeds before and after, so that no step can turn it into a
     /// pull.
     fn impulse(
         &self,
         state: &mut HertzState<R>,
         touching: &Touching<R>,
-        [depth, force]: [R; 2],
+        [depth, force, steepness]: [R; 3],
         normal: R,
         time: R,
     ) -> R {
         // h omega > 2 at this depth: faster than the fastest impact expected.
-        if C::exponent() * force * self.step * self.step > R::TWO * R::TWO * depth {
+        if steepness * self.step * self.step > R::TWO * R::TWO * depth {
             state.exceeded = state.exceeded.saturating_add(1);
             return (R::ONE + self.law.restitution) * normal.most(R::ZERO);
         }

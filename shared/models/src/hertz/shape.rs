@@ -4,8 +4,10 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::positive;
 
-/// Iterations of the search for a line contact's secant; each gains a digit or more.
+/// Iterations of the search for a line contact's peak; each gains a digit or more.
 const ITERATIONS: usize = 60;
+/// Of Newton's method for its force: the third is exact to rounding.
+const POLISHINGS: usize = 3;
 
 /// Elastic constants of rotor and retainer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,9 +73,11 @@ mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Point {}
     impl<R> Sealed for super::Line<R> {}
+    impl<R> Sealed for super::LinePower<R> {}
 }
 
-/// A shape of contact: force over depth is K d^n.
+/// A shape of contact: force over depth is K times a function of the depth, d^n where nothing else is said. `gap` is the
+/// clearance in the unit of the depth.
 pub trait Shape<R: Real>: sealed::Sealed + Copy {
     /// 2 n: twice the exponent of the force.
     const TWICE_EXPONENT: i32;
@@ -83,24 +87,37 @@ pub trait Shape<R: Real>: sealed::Sealed + Copy {
     /// K, N/m^n.
     fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError>;
 
-    /// d^n.
-    fn power(depth: R) -> R;
+    /// Force over K.
+    fn power(depth: R, gap: R) -> R;
 
-    /// n.
-    fn exponent() -> R {
+    /// Slope of the force, in parts of force over depth.
+    fn slope(_depth: R, _power: R) -> R {
         R::HALF * R::from_i32(Self::TWICE_EXPONENT)
     }
 
-    /// The depth whose d^n is `power`; not for the step.
-    fn depth(power: R) -> R {
+    /// Force times depth over the energy that is stored.
+    fn parts(_depth: R, _power: R) -> R {
+        R::HALF * R::from_i32(Self::TWICE_EXPONENT) + R::ONE
+    }
+
+    /// The depth at this force over K; not for the step.
+    fn depth(power: R, _gap: R) -> R {
         let root = root(power, Self::TWICE_EXPONENT);
         root * root
     }
 
-    /// The depth whose d^(n+1) is `power`; not for the step.
-    fn deepest(power: R) -> R {
-        let root = root(power, Self::TWICE_EXPONENT + 2);
+    /// The depth at which the pairing's impact has come to rest; not for the step.
+    fn deepest(pairing: &Pairing<R>, stiffness: R) -> R {
+        let &Pairing { mass, speed, .. } = pairing;
+        let parts = Self::parts(R::ZERO, R::ZERO);
+        let energy = R::HALF * parts * mass / stiffness * speed * speed;
+        let root = root(energy, Self::TWICE_EXPONENT + 2);
         root * root
+    }
+
+    /// [`Self::DURATION`] of an impact that comes to rest there.
+    fn duration(_deepest: R, _power: R) -> R {
+        R::lit(Self::DURATION)
     }
 }
 
@@ -108,9 +125,18 @@ pub trait Shape<R: Real>: sealed::Sealed + Copy {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point;
 
-/// A cylinder in a cylindrical ring.
+/// A cylinder in a cylindrical ring: d = F/K (l(F) - 1) with l = ln(4 K c/F), c the clearance and K = pi E* L (Johnson,
+/// Contact Mechanics, 1985, chapter 5; as quoted by Pereira, Ramalho, Ambrosio, Nonlinear Dynamics 63, 2011). It holds as
+/// long as the approach grows with the force: up to l = 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<R> {
+    /// Axial length of the contact, m.
+    pub length: R,
+}
+
+/// The same as a spring: its secant at the peak force of the fastest impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePower<R> {
     /// Axial length of the contact, m.
     pub length: R,
 }
@@ -127,38 +153,133 @@ impl<R: Real> Shape<R> for Point {
         Ok(R::lit(4.0 / 3.0) * pairing.modulus * curvature.sqrt())
     }
 
-    fn power(depth: R) -> R {
+    fn power(depth: R, _gap: R) -> R {
         depth * depth.sqrt()
     }
 }
 
-impl<R: Real> Shape<R> for Line<R> {
+impl<R: Real> Shape<R> for LinePower<R> {
     const TWICE_EXPONENT: i32 = 2;
     const DURATION: f64 = core::f64::consts::PI;
 
-    /// The secant, at the peak force F of the fastest impact, of Johnson's approach of a cylinder in a
-    /// cylindrical hole, d = F/(pi E* L) (ln(4 pi E* L c/F) - 1), with c the clearance (Contact
-    /// Mechanics, 1985, chapter 5; as quoted by Pereira, Ramalho, Ambrosio, Nonlinear Dynamics 63,
-    /// 2011). It holds as long as the approach grows with the force: up to a logarithm of 2.
     fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-        positive("length", self.length)?;
-        let plane = R::lit(core::f64::consts::PI) * pairing.modulus * self.length;
-        let largest = R::lit(4.0) * plane * pairing.clearance;
-        let peak = |stiffness: R| pairing.speed * (stiffness * pairing.mass).sqrt();
-        let mut stiffness = plane;
+        let plane = plane(self.length, pairing)?;
+        let mut secant = R::ONE;
         for _ in 0..ITERATIONS {
-            let logarithm = (largest / peak(stiffness)).ln();
-            if logarithm <= R::TWO || !logarithm.is_finite() {
-                let rule = "long enough for the force of the fastest impact in this clearance";
-                return Err(ConfigError::OutOfRange("length", rule));
-            }
-            stiffness = plane / (logarithm - R::ONE);
+            let peak = pairing.speed * (pairing.mass / (plane * secant)).sqrt();
+            secant = logarithm(peak, pairing.clearance)? - R::ONE;
         }
-        Ok(stiffness)
+        Ok(plane / secant)
     }
 
-    fn power(depth: R) -> R {
+    fn power(depth: R, _gap: R) -> R {
         depth
+    }
+}
+
+impl<R: Real> Shape<R> for Line<R> {
+    /// Where l does not change.
+    const TWICE_EXPONENT: i32 = 2;
+    const DURATION: f64 = core::f64::consts::PI;
+
+    fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
+        let plane = plane(self.length, pairing)?;
+        logarithm(peak(pairing, plane)?, pairing.clearance)?;
+        Ok(plane)
+    }
+
+    /// d/(l - 1), where l - 1 = x follows from x - ln x = b, b = ln(4 c/d) - 1, by Newton's method from a lower bound by Lambert's
+    /// function, 1 + sqrt(2 u) + 2 u/3 with u = b - 1 (Chatzigeorgiou, IEEE Communications Letters 17, 2013). Deeper than the
+    /// law goes it is d.
+    fn power(depth: R, gap: R) -> R {
+        if depth <= R::ZERO {
+            return R::ZERO;
+        }
+        let bound = (R::lit(4.0) * gap / depth).ln() - R::ONE;
+        let beyond = bound - R::ONE;
+        if beyond <= R::ZERO {
+            return depth;
+        }
+        let least = R::ONE + (R::TWO * beyond).sqrt() + R::lit(2.0 / 3.0) * beyond;
+        let mut x = least;
+        for _ in 0..POLISHINGS {
+            // A coarse logarithm must not lead below.
+            x = (x * (beyond + x.ln()) / (x - R::ONE)).most(least);
+        }
+        depth / x
+    }
+
+    fn slope(depth: R, power: R) -> R {
+        R::ONE / (R::ONE - share(depth, power))
+    }
+
+    fn parts(depth: R, power: R) -> R {
+        R::lit(4.0) / (R::TWO - share(depth, power))
+    }
+
+    fn depth(power: R, gap: R) -> R {
+        if power <= R::ZERO {
+            return R::ZERO;
+        }
+        power * ((R::lit(4.0) * gap / power).ln().most(R::TWO) - R::ONE)
+    }
+
+    fn deepest(pairing: &Pairing<R>, stiffness: R) -> R {
+        // `stiffness` has refused what has no peak.
+        let peak = peak(pairing, stiffness).unwrap_or(R::ZERO);
+        Self::depth(peak, pairing.clearance)
+    }
+
+    /// 2 times the integral of dd/v over the deepest, with F = F0 sin t and t = pi/2 s^2: smooth at both ends.
+    fn duration(deepest: R, power: R) -> R {
+        const POINTS: i32 = 256;
+        let most = deepest / power;
+        let mut sum = R::ZERO;
+        for k in 0..POINTS {
+            let s = (R::from_i32(k) + R::HALF) / R::from_i32(POINTS);
+            let quarter = R::lit(core::f64::consts::FRAC_PI_2);
+            let (sine, cosine) = (quarter * s * s).sin_cos();
+            let x = most - sine.ln();
+            let left = R::ONE - sine * sine * (x - R::HALF) / (most - R::HALF);
+            sum += s * (x - R::ONE) * cosine / left.sqrt();
+        }
+        R::lit(2.0 * core::f64::consts::PI) * sum / (R::from_i32(POINTS) * most)
+    }
+}
+
+/// pi E* L, N/m.
+fn plane<R: Real>(length: R, pairing: &Pairing<R>) -> Result<R, ConfigError> {
+    positive("length", length)?;
+    Ok(R::lit(core::f64::consts::PI) * pairing.modulus * length)
+}
+
+/// l at this force over pi E* L.
+fn logarithm<R: Real>(power: R, gap: R) -> Result<R, ConfigError> {
+    let logarithm = (R::lit(4.0) * gap / power).ln();
+    if logarithm <= R::TWO || !logarithm.is_finite() {
+        let rule = "long enough for the force of the fastest impact in this clearance";
+        return Err(ConfigError::OutOfRange("length", rule));
+    }
+    Ok(logarithm)
+}
+
+/// Peak force over pi E* L, m: the energy F^2/(2 K) (l - 3/2) is m V^2/2.
+fn peak<R: Real>(pairing: &Pairing<R>, plane: R) -> Result<R, ConfigError> {
+    let spring = pairing.speed * (pairing.mass / plane).sqrt();
+    let mut peak = spring;
+    for _ in 0..ITERATIONS {
+        let parts = logarithm(peak, pairing.clearance)? - R::lit(1.5);
+        peak = spring / parts.sqrt();
+    }
+    Ok(peak)
+}
+
+/// 1/(l - 1).
+fn share<R: Real>(depth: R, power: R) -> R {
+    if depth > R::ZERO {
+        power / depth
+    } else {
+        R::ZERO
     }
 }
 
