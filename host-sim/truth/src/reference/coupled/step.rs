@@ -29,7 +29,7 @@ pub enum Ending {
 }
 
 /// What a link's displacement, slip and forces are made of, without signs: their rounding counts against it.
-struct Sizes {
+struct Magnitudes {
     /// Of the displacements of all links, as one moves what the others have: m, m/s, m/s^2.
     lateral: [f64; 3],
     /// m/s.
@@ -118,7 +118,7 @@ impl Step {
         let pushes: Vec<f64> = forces.acceleration.iter().map(Term::size).collect();
         let lateral = [place, speed, &pushes].map(|of| system.lateral_size(of));
         for (link, mode) in modes.iter().enumerate() {
-            let sizes = Sizes {
+            let sizes = Magnitudes {
                 lateral,
                 slip: system.links[link].slip_size(speed),
                 slip_push: system.links[link].slip_size(&pushes),
@@ -145,7 +145,7 @@ impl Step {
         self.normal[link].at(part)
     }
 
-    fn locate(&mut self, link: &Link, index: usize, mode: Mode, grip: &Jet, sizes: &Sizes) {
+    fn locate(&mut self, link: &Link, index: usize, mode: Mode, grip: &Jet, sizes: &Magnitudes) {
         let slip_rounding = ROUNDING * (sizes.slip + sizes.slip_push * self.span);
         match (mode, link.hold) {
             (Mode::Flight, Hold::Wall { clearance, .. }) => {
