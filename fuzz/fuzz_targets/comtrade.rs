@@ -19,7 +19,7 @@ fuzz_target!(|bytes: &[u8]| {
             mapping: None,
             resample,
         };
-        match Recording::of_cff("fuzz", Cursor::new(bytes.to_vec()), &reading, &RIG) {
+        match Recording::of_bytes("fuzz.cff", Cursor::new(bytes.to_vec()), 0, &reading, &RIG) {
             Ok(mut rows) => {
                 let seen = rows.by_ref().take(MOST);
                 assert!(seen.filter(|row| row.is_err()).count() <= 1);

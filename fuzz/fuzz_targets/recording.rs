@@ -33,7 +33,7 @@ fuzz_target!(|bytes: &[u8]| {
             resample,
         };
         let bytes = Cursor::new(text.to_vec());
-        match Recording::of_text("fuzz", bytes, text.len() as u64, &reading, &RIG) {
+        match Recording::of_bytes("fuzz", bytes, text.len() as u64, &reading, &RIG) {
             Ok(mut rows) => {
                 let seen = rows.by_ref().take(MOST);
                 assert!(seen.filter(|row| row.is_err()).count() <= 1);

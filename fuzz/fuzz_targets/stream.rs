@@ -3,12 +3,13 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_files::stream::StreamReader;
+use touchdown_files::stream::{Even, Meter, Records};
 
 fuzz_target!(|bytes: &[u8]| {
-    match StreamReader::new("fuzz", bytes) {
+    let records = Records::new("fuzz", bytes, &Meter::default());
+    match records.and_then(|it| Even::of_rows("fuzz", it, 1)) {
         Ok(rows) => {
-            let rate = rows.rate();
+            let rate = rows.rate;
             assert!((99.0..=201e3).contains(&rate), "{rate}");
             let flaws = rows.filter(|row| row.is_err()).count();
             assert!(flaws <= 1);

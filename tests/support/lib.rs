@@ -9,6 +9,7 @@ pub mod controller;
 pub mod counting;
 pub mod drops;
 pub mod episode;
+pub mod even_rows;
 pub mod fall_runs;
 pub mod family;
 #[cfg(unix)]

@@ -100,13 +100,10 @@ impl InputError {
     /// All bytes of a file, at most `most`; what is not a file may have no end.
     pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Self> {
         let file = path.display().to_string();
-        if path.is_dir() {
-            return Err(Self::of_file(&file, "is a folder, not a file"));
-        }
         let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
-        let there = File::open(path).map_err(unread)?;
+        let (there, size) = Self::open(path)?;
         let mut bytes = Vec::new();
-        if there.metadata().map_err(unread)?.len() <= most {
+        if size <= most {
             there
                 .take(most + 1)
                 .read_to_end(&mut bytes)
@@ -117,6 +114,18 @@ impl InputError {
         }
         let rule = format!("is larger than {} MiB, the most that is read", most >> 20);
         Err(Self::of_file(&file, rule))
+    }
+
+    /// Opens a file; also how many bytes it has.
+    pub fn open(path: &Path) -> Result<(File, u64), Self> {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            return Err(Self::of_file(&file, "is a folder, not a file"));
+        }
+        let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
+        let there = File::open(path).map_err(unread)?;
+        let size = there.metadata().map_err(unread)?.len();
+        Ok((there, size))
     }
 
     /// The rule that is broken; may quote the file as it is.

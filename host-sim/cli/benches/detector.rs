@@ -4,7 +4,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::sample::Sample;
-use touchdown_files::stream::{StreamReader, to_sample};
+use touchdown_files::stream::{Meter, Records, to_sample};
 use touchdown_run::drop;
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
@@ -13,11 +13,11 @@ fn samples(scene: &Scene) -> Vec<Sample> {
     let (_, stream) =
         drop::by_reference(scene, &Target::Host, Some(Vec::new())).expect("valid scene");
     let bytes = stream.expect("memory").expect("a stream");
-    StreamReader::new("drop", &bytes[..])
+    Records::new("drop", &bytes[..], &Meter::default())
         .expect("own stream")
         .map(|row| {
             to_sample(
-                &row.expect("own row"),
+                &row.expect("own row").row,
                 &scene.sensors,
                 scene.run.sample_rate,
             )

@@ -8,13 +8,14 @@ use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::tachometer::{Speed, Tachometers as Core, TachometersConfig};
 use touchdown_protocol::wire;
-use touchdown_files::stream::{Columns, StreamReader, StreamWriter, to_row, to_sample};
+use touchdown_files::stream::{Columns, StreamWriter, to_row, to_sample};
 use touchdown_rotor::error::ConfigError;
 use touchdown_run::monitor_run;
 use touchdown_run::replay;
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors, Tachometers};
+use touchdown_tests::even_rows::even_rows;
 
 const RATE: f64 = 20_000.0;
 const CAGE_RATIO: f64 = 0.4;
@@ -504,9 +505,9 @@ fn pulses_come_through_stream_and_wire_unchanged() {
         writer.write(&row).expect("memory");
     }
     let bytes = writer.finish().expect("memory");
-    let reader = StreamReader::new("own", &bytes[..]).expect("own stream");
-    assert_eq!(reader.columns(), columns);
-    let rate = reader.rate();
+    let (reader, read) = even_rows("own", &bytes).expect("own stream");
+    assert_eq!(read, columns);
+    let rate = reader.rate;
     let back: Vec<_> = reader
         .map(|row| to_sample(&row.expect("own row"), &sensors, rate).edges)
         .collect();
@@ -562,7 +563,7 @@ fn damaged_pulse_columns_are_refused() {
     let header = "time_s,ax_um,ay_um,cage_edges,cage_edge_age_us\n";
     let read = |row: &str| {
         let text = format!("{header}0,0,0,{row}\n1e-4,0,0,1,2\n2e-4,0,0,1,2\n");
-        StreamReader::new("s.csv", text.as_bytes())
+        even_rows("s.csv", text.as_bytes())
             .map(|_| ())
             .map_err(|e| e.to_string())
     };
@@ -578,5 +579,5 @@ fn damaged_pulse_columns_are_refused() {
         assert!(error.contains(rule), "{row}: {error}");
     }
     let text = "time_s,ax_um,ay_um,cage_edges\n0,0,0,1\n1e-4,0,0,1\n";
-    assert!(StreamReader::new("s.csv", text.as_bytes()).is_err());
+    assert!(even_rows("s.csv", text.as_bytes()).is_err());
 }

@@ -11,13 +11,14 @@ use touchdown_core::monitor::Monitor;
 use touchdown_core::sensing::{Calibration, PlaneCalibration, Sensing};
 use touchdown_files::drop_log::{Dump, Episode, comtrade, stream};
 use touchdown_files::recording::{Reading, Recording};
-use touchdown_files::stream::{StreamReader, of_field, to_field, to_sample, without_record};
+use touchdown_files::stream::{of_field, to_field, to_sample, without_record};
 use touchdown_run::drop;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::replay;
 use touchdown_run::target::Target;
 use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
+use touchdown_tests::even_rows::even_rows;
 
 /// What adding times of different zeros may cost, s.
 const ROUNDING: f64 = 1e-9;
@@ -113,7 +114,7 @@ fn an_episode_shows_what_the_monitor_read_with_its_record() {
     let mut out = Vec::new();
     assert!(stream(episode, &mut out).expect("is written"));
     let sensing = Sensing::try_new(&scene.sensors.sensing()).expect("valid");
-    let rows = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let (rows, _) = even_rows("e.csv", &out).expect("a stream");
     let mut seen = 0;
     for (row, counts) in rows.zip(&episode.samples) {
         let shown = row.expect("a row").positions;
@@ -187,7 +188,7 @@ fn pulses_are_handed_on_where_they_are_known() {
     let mut out = Vec::new();
     assert!(stream(&episode, &mut out).expect("is written"));
     let rate = f64::from(header.sample_rate);
-    let mut reader = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let (mut reader, _) = even_rows("e.csv", &out).expect("a stream");
     for (row, shown) in reader.by_ref().zip(&episode.pulses) {
         let sample = to_sample(&row.expect("a row"), &scene.sensors, rate);
         assert_eq!(Some(sample.edges), *shown);
@@ -196,7 +197,7 @@ fn pulses_are_handed_on_where_they_are_known() {
     episode.pulses.truncate(100);
     let mut out = Vec::new();
     assert!(stream(&episode, &mut out).expect("is written"));
-    let rows = StreamReader::new("e.csv", &out[..]).expect("a stream");
+    let (rows, _) = even_rows("e.csv", &out).expect("a stream");
     let rows = rows.map(|row| row.expect("a row").edges != [None; 2]);
     assert_eq!(rows.filter(|it| *it).count(), 100);
     // As it was before there were pulses.

@@ -127,7 +127,7 @@ fn names_of_columns() {
             resample: None,
         };
         let bytes = Cursor::new(text.as_bytes().to_vec());
-        let recording = Recording::of_text("r.csv", bytes, text.len() as u64, &reading, &rig);
+        let recording = Recording::of_bytes("r.csv", bytes, text.len() as u64, &reading, &rig);
         let rows: Result<Vec<_>, _> = recording.and_then(Iterator::collect);
         rows.map(|_| ()).unwrap_err().to_string()
     };

@@ -1,5 +1,6 @@
 //! An episode as COMTRADE (IEEE C37.111-1999): a configuration and an ASCII data file.
 
+use chrono::DateTime;
 use touchdown_core::sample::CHANNELS;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
@@ -61,26 +62,10 @@ pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
 
 /// `dd/mm/yyyy,hh:mm:ss.ssssss`, so many seconds after 1970 began.
 fn date(seconds: f64) -> String {
-    let whole = seconds.floor();
-    let days = (whole / 86_400.0) as i64;
-    // Howard Hinnant's days to civil date.
-    let z = days + 719_468;
-    let era = z.div_euclid(146_097);
-    let of_era = z.rem_euclid(146_097);
-    let year_of_era = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * shifted + 2) / 5 + 1;
-    let month = if shifted < 10 {
-        shifted + 3
-    } else {
-        shifted - 9
-    };
-    let year = year_of_era + era * 400 + i64::from(month <= 2);
-    let within = seconds - 86_400.0 * days as f64;
-    let (hours, minutes) = ((within / 3600.0) as u32, (within / 60.0) as u32 % 60);
-    let rest = within - f64::from(60 * (60 * hours + minutes));
-    format!("{day:02}/{month:02}/{year:04},{hours:02}:{minutes:02}:{rest:09.6}")
+    let date = DateTime::from_timestamp_micros((1e6 * seconds).round() as i64);
+    date.unwrap_or_default()
+        .format("%d/%m/%Y,%H:%M:%S%.6f")
+        .to_string()
 }
 
 #[cfg(test)]

@@ -14,10 +14,10 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-pub use comtrade::{Cfg, DEVICE, STATION, combined};
+pub use comtrade::{Cfg, DEVICE, STATION};
 pub use mapping::Mapping;
 
-use comtrade::{ComtradeRows, is_comtrade};
+use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
 use doubt::Doubt;
 use layout::Layout;
 use remarks::Remarks;
@@ -26,8 +26,8 @@ use text::{Head, TextRows};
 
 use touchdown_core::learnt::Learnt;
 
-use crate::stream::{Before, Columns, Even, Meter, Records, Row, Stamped, is_rate, of_own_axes};
-use touchdown_base::input_error::{InputError, UTF_16, reason};
+use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate, of_own_axes};
+use touchdown_base::input_error::{InputError, UTF_16};
 use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
 
@@ -41,7 +41,6 @@ pub struct Reading {
 }
 
 type Rows = Box<dyn Iterator<Item = Result<Row, InputError>>>;
-type StampedRows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
 
 /// A recording being read, in constant memory.
 pub struct Recording {
@@ -65,155 +64,41 @@ pub struct Recording {
     doubt: Doubt,
 }
 
-/// What is known before the rate.
-struct Opened {
-    columns: Columns,
-    rows: StampedRows,
-    meter: Meter,
-    /// Where no stamp can tell another.
-    rate: Option<f64>,
-    /// Line of the header.
-    header: u64,
-    format: Option<String>,
-    learnt: Before,
-    is_episode: bool,
-    size: u64,
-}
-
 impl Recording {
     /// Opens the recording at `path`; `scene` has the sensors and what can be expected.
     pub fn open(path: &Path, reading: &Reading, scene: &Scene) -> Result<Self, InputError> {
         let file = path.display().to_string();
-        if is_comtrade(path) {
-            let remarks = Remarks::default();
-            let (dat, size) = comtrade::open(path)?;
-            let opened = of_comtrade(dat, size, reading, scene, &remarks)?;
-            return Self::paced(&file, opened, reading, scene, remarks);
+        if !is_pair(path) {
+            let (bytes, size) = opened(path)?;
+            return Self::of_bytes(&file, bytes, size, reading, scene);
         }
-        let (bytes, size) = opened(path)?;
-        Self::of_text(&file, bytes, size, reading, scene)
+        let mut source = Source::new(&file, 0, reading, scene);
+        let (dat, size) = comtrade::open(path, &source.meter)?;
+        source.size = size;
+        source.comtrade(dat)
     }
 
-    /// Reads the text `bytes`, `size` of them; errors name it `file`.
-    pub fn of_text(
+    /// Reads the `size` bytes of the file `file`: a text, or by its name both parts of COMTRADE in one.
+    pub fn of_bytes(
         file: &str,
         bytes: impl Read + 'static,
         size: u64,
         reading: &Reading,
         scene: &Scene,
     ) -> Result<Self, InputError> {
-        let remarks = Remarks::default();
+        let source = Source::new(file, size, reading, scene);
+        if is_combined(Path::new(file)) {
+            let dat = combined(file, Box::new(BufReader::new(bytes)), &source.meter)?;
+            return source.comtrade(dat);
+        }
         let head = Head::read(file, bytes)?;
         if head.is_utf_16() {
             return Err(InputError::at_line(file, 1, UTF_16));
         }
-        let opened = match &reading.mapping {
-            Some(mapping) => {
-                let rows = TextRows::new(file, head, mapping, &scene.sensors, &remarks)?;
-                let layout = rows.layout();
-                Opened {
-                    columns: rows.pick().columns(),
-                    meter: rows.meter(),
-                    rate: rows.rate(),
-                    header: layout.before.1.max(1),
-                    format: Some(format_of(layout)),
-                    learnt: Before::default(),
-                    is_episode: false,
-                    size,
-                    rows: Box::new(rows),
-                }
-            }
-            None => {
-                let found = head.layout(&Default::default());
-                let records = Records::new(file, head.whole(0));
-                let records = records.map_err(|error| match &found {
-                    Ok(layout) => error.and(format!(
-                        "; --columns FILE.toml says which column is what; {}",
-                        pick::list(&layout.columns)
-                    )),
-                    Err(_) => error,
-                })?;
-                Opened {
-                    columns: records.columns(),
-                    meter: records.meter(),
-                    rate: None,
-                    header: 1,
-                    format: None,
-                    learnt: records.learnt(),
-                    is_episode: false,
-                    size,
-                    rows: Box::new(records),
-                }
-            }
-        };
-        Self::paced(file, opened, reading, scene, remarks)
-    }
-
-    /// Reads the COMTRADE recording `bytes`, a .cff file; errors name it `file`.
-    pub fn of_cff(
-        file: &str,
-        bytes: impl Read + 'static,
-        reading: &Reading,
-        scene: &Scene,
-    ) -> Result<Self, InputError> {
-        let remarks = Remarks::default();
-        let dat = combined(file, Box::new(BufReader::new(bytes)))?;
-        let opened = of_comtrade(dat, 0, reading, scene, &remarks)?;
-        Self::paced(file, opened, reading, scene, remarks)
-    }
-
-    fn paced(
-        file: &str,
-        opened: Opened,
-        reading: &Reading,
-        scene: &Scene,
-        remarks: Remarks,
-    ) -> Result<Self, InputError> {
-        let (rows, rate, start): (Rows, f64, f64);
-        if let Some(wanted) = reading.resample {
-            if opened.columns.edges != [false; 2] {
-                let rule = "counted edges cannot be resampled";
-                return Err(InputError::of_file(file, rule));
-            }
-            let resampled = Resampled::new(file, opened.rows, wanted, &remarks)?;
-            (rate, start) = (wanted, resampled.start());
-            rows = Box::new(resampled);
-        } else if let Some(given) = opened.rate {
-            if !is_rate(given) {
-                let rule = format!(
-                    "the sample rate must be 100 to 200000 Hz, is {} Hz; --resample RATE makes another \
-                     of it and says so",
-                    Number(given)
-                );
-                return Err(InputError::of_file(file, rule));
-            }
-            let mut stamped = opened.rows.peekable();
-            start = match stamped.peek() {
-                Some(Ok(first)) => first.stamp.time,
-                _ => 0.0,
-            };
-            rate = given;
-            rows = Box::new(stamped.map(|it| it.map(|it| it.row)));
-        } else {
-            let even = Even::of_rows(file, opened.rows, opened.header)?;
-            (rate, start) = (even.rate(), even.start());
-            rows = Box::new(even);
+        match &reading.mapping {
+            Some(mapping) => source.mapped(head, mapping),
+            None => source.stream(head),
         }
-        // Another rate would make something else of it.
-        let learnt = (opened.learnt.take()).filter(|_| reading.resample.is_none());
-        Ok(Self {
-            columns: opened.columns,
-            rate,
-            start,
-            format: opened.format,
-            is_episode: opened.is_episode || learnt.is_some(),
-            learnt,
-            size: opened.size,
-            rows,
-            meter: opened.meter,
-            remarks,
-            doubt: Doubt::new(file, scene),
-        })
     }
 
     /// Bytes read so far.
@@ -234,8 +119,10 @@ impl Iterator for Recording {
 
     fn next(&mut self) -> Option<Self::Item> {
         let row = self.rows.next()?;
-        if let Ok(row) = &row {
-            self.doubt.take(row);
+        match &row {
+            Ok(row) => self.doubt.take(row),
+            // Nothing comes after what is wrong.
+            Err(_) => self.rows = Box::new(std::iter::empty()),
         }
         Some(row)
     }
@@ -243,58 +130,158 @@ impl Iterator for Recording {
 
 /// Opens a file; also how many bytes it has.
 fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
-    let name = path.display().to_string();
-    let fail = |error: std::io::Error| InputError::of_file(&name, reason(&error));
-    if path.is_dir() {
-        return Err(InputError::of_file(&name, "is a folder, not a file"));
-    }
-    let file = File::open(path).map_err(fail)?;
-    let size = file.metadata().map_err(fail)?.len();
+    let (file, size) = InputError::open(path)?;
     Ok((BufReader::with_capacity(1 << 16, file), size))
 }
 
-fn of_comtrade<R: Read + 'static>(
-    dat: comtrade::Dat<R>,
+/// What a recording of any kind is read with.
+struct Source<'a> {
+    file: &'a str,
     size: u64,
-    reading: &Reading,
-    scene: &Scene,
-    remarks: &Remarks,
-) -> Result<Opened, InputError> {
-    let meter = dat.meter();
-    let rows = ComtradeRows::new(dat, reading.mapping.as_ref(), &scene.sensors, remarks)?;
-    let cfg = rows.dat().cfg();
-    if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), reading.resample) {
-        let rates: Vec<_> = cfg
-            .rates
-            .iter()
-            .map(|(rate, last)| format!("{rate} Hz up to sample {last}"))
-            .collect();
-        let rule = format!(
-            "the sample rate changes: {}; --resample RATE makes one of them and says so",
-            rates.join(", ")
-        );
-        return Err(InputError::of_file(rows.dat().file(), rule));
+    reading: &'a Reading,
+    scene: &'a Scene,
+    meter: Meter,
+    remarks: Remarks,
+}
+
+impl<'a> Source<'a> {
+    fn new(file: &'a str, size: u64, reading: &'a Reading, scene: &'a Scene) -> Self {
+        Self {
+            file,
+            size,
+            reading,
+            scene,
+            meter: Meter::default(),
+            remarks: Remarks::default(),
+        }
     }
-    let is_episode = cfg.is_episode && reading.mapping.is_none();
-    let sensors = scene.sensors;
-    Ok(Opened {
-        columns: rows.pick().columns(),
-        meter,
-        rate: cfg.rate(),
-        header: 1,
-        format: Some(format!("COMTRADE {}, {} data", cfg.year, cfg.data)),
-        learnt: Before::default(),
-        is_episode,
-        size,
-        rows: Box::new(rows.map(move |it| {
+
+    fn mapped(
+        self,
+        head: Head<impl Read + 'static>,
+        mapping: &Mapping,
+    ) -> Result<Recording, InputError> {
+        let (sensors, remarks) = (&self.scene.sensors, &self.remarks);
+        let rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
+        let (header, format) = (rows.layout.before.1.max(1), format_of(&rows.layout));
+        let (columns, rate) = (rows.pick.columns(), rows.rate);
+        Ok(Recording {
+            format: Some(format),
+            ..self.paced(columns, rows, rate, header)?
+        })
+    }
+
+    fn stream(self, head: Head<impl Read + 'static>) -> Result<Recording, InputError> {
+        let found = head.layout(&Default::default());
+        let records = Records::new(self.file, head.whole(0), &self.meter);
+        let records = records.map_err(|error| match &found {
+            Ok(layout) => error.and(format!(
+                "; --columns FILE.toml says which column is what; {}",
+                pick::list(&layout.columns)
+            )),
+            Err(_) => error,
+        })?;
+        let (columns, learnt) = (records.columns, records.learnt.clone());
+        let is_resampled = self.reading.resample.is_some();
+        let recording = self.paced(columns, records, None, 1)?;
+        // Another rate would make something else of it.
+        let learnt = learnt.take().filter(|_| !is_resampled);
+        Ok(Recording {
+            is_episode: learnt.is_some(),
+            learnt,
+            ..recording
+        })
+    }
+
+    fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
+        let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
+        let rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
+        let cfg = &rows.dat.cfg;
+        if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
+            let rates: Vec<_> = cfg
+                .rates
+                .iter()
+                .map(|(rate, last)| format!("{rate} Hz up to sample {last}"))
+                .collect();
+            let rule = format!(
+                "the sample rate changes: {}; --resample RATE makes one of them and says so",
+                rates.join(", ")
+            );
+            return Err(InputError::of_file(&rows.dat.file, rule));
+        }
+        let is_episode = cfg.is_episode && mapping.is_none();
+        let format = format!("COMTRADE {}, {} data", cfg.year, cfg.data);
+        let (columns, rate) = (rows.pick.columns(), cfg.rate());
+        let rows = rows.map(move |it| {
             let mut stamped = it?;
             if is_episode {
                 let positions = &mut stamped.row.positions;
                 *positions = of_own_axes(positions, &sensors);
             }
             Ok(stamped)
-        })),
-    })
+        });
+        Ok(Recording {
+            format: Some(format),
+            is_episode,
+            ..self.paced(columns, rows, rate, 1)?
+        })
+    }
+
+    /// `rate` where no stamp can tell another; `header` is its line.
+    fn paced(
+        self,
+        columns: Columns,
+        stamped: impl Iterator<Item = Result<Stamped, InputError>> + 'static,
+        rate: Option<f64>,
+        header: u64,
+    ) -> Result<Recording, InputError> {
+        let file = self.file;
+        let (rows, rate, start): (Rows, f64, f64) = if let Some(wanted) = self.reading.resample {
+            if columns.edges != [false; 2] {
+                let rule = "counted edges cannot be resampled";
+                return Err(InputError::of_file(file, rule));
+            }
+            let resampled = Resampled::new(file, stamped, wanted, &self.remarks)?;
+            let start = resampled.start;
+            (Box::new(resampled), wanted, start)
+        } else if let Some(given) = rate {
+            if !is_rate(given) {
+                let rule = format!(
+                    "the sample rate must be 100 to 200000 Hz, is {} Hz; --resample RATE makes another \
+                     of it and says so",
+                    Number(given)
+                );
+                return Err(InputError::of_file(file, rule));
+            }
+            let mut stamped = stamped.peekable();
+            let start = match stamped.peek() {
+                Some(Ok(first)) => first.stamp.time,
+                _ => 0.0,
+            };
+            (
+                Box::new(stamped.map(|it| it.map(|it| it.row))),
+                given,
+                start,
+            )
+        } else {
+            let even = Even::of_rows(file, stamped, header)?;
+            let (rate, start) = (even.rate, even.start());
+            (Box::new(even), rate, start)
+        };
+        Ok(Recording {
+            columns,
+            rate,
+            start,
+            format: None,
+            is_episode: false,
+            learnt: None,
+            size: self.size,
+            rows,
+            meter: self.meter,
+            remarks: self.remarks,
+            doubt: Doubt::new(file, self.scene),
+        })
+    }
 }
 
 fn format_of(layout: &Layout) -> String {

@@ -26,7 +26,8 @@ pub struct Resampled<I> {
     /// The rows about the next time.
     from: Stamped,
     to: Option<Stamped>,
-    start: f64,
+    /// Time of the first row, s.
+    pub start: f64,
     rate: f64,
     /// Usual interval of the rows, s.
     usual: f64,
@@ -35,7 +36,6 @@ pub struct Resampled<I> {
     gaps: u64,
     empty: u64,
     remarks: Remarks,
-    finished: bool,
 }
 
 impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
@@ -59,7 +59,6 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
             gaps: 0,
             empty: 0,
             remarks: remarks.clone(),
-            finished: false,
         };
         let times = resampled.ahead.iter().map(|it| it.stamp.time);
         resampled.usual = median_interval(resampled.start, times);
@@ -76,11 +75,6 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
             return Err(InputError::of_file(file, rule));
         }
         Ok(resampled)
-    }
-
-    /// Time of the first row, s.
-    pub fn start(&self) -> f64 {
-        self.start
     }
 
     fn read(&mut self) -> Result<Option<Stamped>, InputError> {
@@ -191,14 +185,10 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Iterator for Resampled<I> 
     type Item = Result<Row, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.finished {
-            return None;
-        }
-        let row = self.make();
-        if !matches!(row, Ok(Some(_))) {
-            self.finished = true;
+        let row = self.make().transpose();
+        if !matches!(row, Some(Ok(_))) {
             self.tell();
         }
-        row.transpose()
+        row
     }
 }

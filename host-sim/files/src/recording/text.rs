@@ -51,10 +51,13 @@ impl<R: Read> Head<R> {
 /// Rows of a text, its columns as a mapping has them.
 pub struct TextRows<R> {
     file: String,
-    layout: Layout,
-    pick: Pick,
+    /// How it is written.
+    pub layout: Layout,
+    /// What is taken of it.
+    pub pick: Pick,
     used: Vec<usize>,
-    rate: Option<f64>,
+    /// The rate that the mapping gives, Hz.
+    pub rate: Option<f64>,
     records: csv::Reader<Bounded<Chain<Cursor<Vec<u8>>, R>>>,
     meter: Meter,
     record: ByteRecord,
@@ -75,6 +78,7 @@ impl<R: Read> TextRows<R> {
         mapping: &Mapping,
         sensors: &SensorsConfig,
         remarks: &Remarks,
+        meter: &Meter,
     ) -> Result<Self, InputError> {
         let layout = head
             .layout(&mapping.text)
@@ -90,8 +94,7 @@ impl<R: Read> TextRows<R> {
             );
             return Err(fail(rule));
         }
-        let bytes = Bounded::new(head.whole(layout.before.0));
-        let meter = bytes.meter();
+        let bytes = Bounded::new(head.whole(layout.before.0), meter);
         let records = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -107,7 +110,7 @@ impl<R: Read> TextRows<R> {
             pick,
             rate,
             records,
-            meter,
+            meter: meter.clone(),
             record: ByteRecord::new(),
             rows: 0,
             ready: None,
@@ -116,26 +119,6 @@ impl<R: Read> TextRows<R> {
         };
         rows.ready = rows.read().transpose();
         Ok(rows)
-    }
-
-    /// How it is written.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// What is taken of it.
-    pub fn pick(&self) -> &Pick {
-        &self.pick
-    }
-
-    /// The rate that the mapping gives, Hz.
-    pub fn rate(&self) -> Option<f64> {
-        self.rate
-    }
-
-    /// How far it is read.
-    pub fn meter(&self) -> Meter {
-        self.meter.clone()
     }
 
     fn line(&self) -> u64 {

@@ -61,20 +61,15 @@ impl Meter {
 }
 
 impl<R> Bounded<R> {
-    /// Before the first byte.
-    pub fn new(bytes: R) -> Self {
+    /// Before the first byte; `meter` counts what passes.
+    pub fn new(bytes: R, meter: &Meter) -> Self {
         Self {
             bytes,
             quoted: false,
             before: b'\n',
             row: 0,
-            meter: Meter::default(),
+            meter: meter.clone(),
         }
-    }
-
-    /// What has passed, from now on.
-    pub fn meter(&self) -> Meter {
-        self.meter.clone()
     }
 
     fn follow(&mut self, bytes: &[u8]) -> bool {

@@ -23,7 +23,8 @@ pub struct Even<I> {
     clock: Clock,
     survey: Survey,
     ahead: VecDeque<Row>,
-    rate: f64,
+    /// Samples per second, Hz.
+    pub rate: f64,
     finished: bool,
 }
 
@@ -80,16 +81,6 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         }
         even.rate = rate;
         Ok(even)
-    }
-
-    /// Where they come from.
-    pub fn rows(&self) -> &I {
-        &self.rows
-    }
-
-    /// Samples per second, Hz.
-    pub fn rate(&self) -> f64 {
-        self.rate
     }
 
     /// Time of the first row, s.

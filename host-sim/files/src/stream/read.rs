@@ -11,7 +11,6 @@ use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 use super::Columns;
 use super::bounded::{Bounded, Meter};
 use super::clock::Stamp;
-use super::even::Even;
 use super::learnt::{LEARNT, of_field};
 use super::row::{Pulses, Row, Stamped};
 use touchdown_base::input_error::{InputError, reason};
@@ -21,50 +20,34 @@ const MICRO: f64 = 1e-6;
 /// Whole numbers up to here are exact.
 const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
 
-/// A stream being read. The rate is that of the first [`super::LOOK_AHEAD`] rows; all later rows are held
-/// to it.
-pub type StreamReader<R> = Even<Records<R>>;
-
-impl<R: Read> StreamReader<R> {
-    /// Reads the header and the first rows of `bytes`; errors name the stream `file`.
-    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
-        Self::of_rows(file, Records::new(file, bytes)?, 1)
-    }
-
-    /// The columns.
-    pub fn columns(&self) -> Columns {
-        self.rows().columns()
-    }
-}
-
 /// The rows of a stream as they stand there, whatever their times.
 pub struct Records<R> {
     file: String,
     records: csv::Reader<Bounded<R>>,
     meter: Meter,
-    columns: Columns,
+    /// The columns.
+    pub columns: Columns,
     header: Vec<&'static str>,
-    learnt: Before,
+    /// What had been learnt before the first row, once that is read.
+    pub learnt: Before,
     record: StringRecord,
     begun: bool,
-    finished: bool,
 }
 
 /// What had been learnt before the first row; none before that is read, or without that column.
 pub type Before = Rc<RefCell<Option<Box<Learnt>>>>;
 
 impl<R: Read> Records<R> {
-    /// Reads the header of `bytes`.
-    pub fn new(file: &str, bytes: R) -> Result<Self, InputError> {
-        let bytes = Bounded::new(bytes);
-        let meter = bytes.meter();
+    /// Reads the header of `bytes`, which `meter` counts.
+    pub fn new(file: &str, bytes: R, meter: &Meter) -> Result<Self, InputError> {
+        let bytes = Bounded::new(bytes, meter);
         let mut records = csv::ReaderBuilder::new()
             .flexible(true)
             .trim(csv::Trim::All)
             .from_reader(bytes);
         let header = records
             .headers()
-            .map_err(|error| csv_error(file, &error, &meter))?;
+            .map_err(|error| csv_error(file, &error, meter))?;
         let names: Vec<_> = header.iter().collect();
         let known = names.strip_suffix(&[LEARNT]).unwrap_or(&names);
         let Some(columns) = Columns::of_header(known) else {
@@ -80,29 +63,13 @@ impl<R: Read> Records<R> {
         Ok(Self {
             file: file.to_owned(),
             records,
-            meter,
+            meter: meter.clone(),
             columns,
             header,
             learnt: Before::default(),
             record: StringRecord::new(),
             begun: false,
-            finished: false,
         })
-    }
-
-    /// The columns.
-    pub fn columns(&self) -> Columns {
-        self.columns
-    }
-
-    /// What had been learnt before the first row, once that is read.
-    pub fn learnt(&self) -> Before {
-        self.learnt.clone()
-    }
-
-    /// How far it is read.
-    pub fn meter(&self) -> Meter {
-        self.meter.clone()
     }
 
     fn read(&mut self) -> Result<Option<Stamped>, InputError> {
@@ -151,12 +118,7 @@ impl<R: Read> Iterator for Records<R> {
     type Item = Result<Stamped, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.finished {
-            return None;
-        }
-        let row = self.read();
-        self.finished = !matches!(row, Ok(Some(_)));
-        row.transpose()
+        self.read().transpose()
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use chrono::NaiveDate;
+
 /// Most channels of a kind that are believed.
 const MOST_CHANNELS: usize = 10_000;
 /// Most rates that are believed.
@@ -305,25 +307,18 @@ fn of_day(text: &str) -> Option<f64> {
     Some(3600.0 * part()? + 60.0 * part()? + part()?)
 }
 
-/// Days since 1970 began, by Howard Hinnant's civil date to days.
+/// Days since 1970 began.
 fn days(text: &str, standard: u16) -> Option<i64> {
-    let mut parts = text.split('/').map(|it| it.trim().parse::<i64>().ok());
-    let mut part = || parts.next().flatten().filter(|it| (0..10_000).contains(it));
-    let (one, other, year) = (part()?, part()?, part()?);
+    let mut parts = text.split('/').map(|it| it.trim().parse::<u16>().ok());
+    let (one, other, year) = (parts.next()??, parts.next()??, parts.next()??);
     let (day, month) = if standard > 1991 {
         (one, other)
     } else {
         (other, one)
     };
     let year = if year < 100 { year + 1900 } else { year };
-    if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
-        return None;
-    }
-    let year = if month <= 2 { year - 1 } else { year };
-    let of_era = year.rem_euclid(400);
-    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    let of_era = 365 * of_era + of_era / 4 - of_era / 100 + of_year;
-    Some(146_097 * year.div_euclid(400) + of_era - 719_468)
+    let date = NaiveDate::from_ymd_opt(year.into(), month.into(), day.into())?;
+    Some(date.to_epoch_days().into())
 }
 
 #[cfg(test)]

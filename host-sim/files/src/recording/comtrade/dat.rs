@@ -26,8 +26,10 @@ pub struct Sample {
 
 /// Reads samples.
 pub struct Dat<R> {
-    file: String,
-    cfg: Cfg,
+    /// The file.
+    pub file: String,
+    /// The configuration.
+    pub cfg: Cfg,
     source: Source<R>,
     meter: Meter,
     /// Of the sample that was read last: analog in their units, then digital 0 or 1; NaN where there is none.
@@ -42,44 +44,28 @@ enum Source<R> {
 }
 
 impl<R: Read> Dat<R> {
-    /// Reads `bytes`, of the file `file`, as `cfg` says.
-    pub fn new(file: &str, cfg: Cfg, bytes: R) -> Self {
-        let (source, meter) = if cfg.data == Data::Ascii {
-            let bytes = Bounded::new(bytes);
-            let meter = bytes.meter();
+    /// Reads `bytes`, of the file `file`, as `cfg` says; `meter` counts them.
+    pub fn new(file: &str, cfg: Cfg, bytes: R, meter: &Meter) -> Self {
+        let source = if cfg.data == Data::Ascii {
+            let bytes = Bounded::new(bytes, meter);
             let mut reader = csv::ReaderBuilder::new();
             let reader = reader
                 .has_headers(false)
                 .flexible(true)
                 .trim(csv::Trim::All);
             let reader = Box::new(reader.from_reader(bytes));
-            (Source::Text(reader, ByteRecord::new()), meter)
+            Source::Text(reader, ByteRecord::new())
         } else {
-            (Source::Binary(bytes, Vec::new()), Meter::default())
+            Source::Binary(bytes, Vec::new())
         };
         Self {
             file: file.to_owned(),
             values: vec![f64::NAN; cfg.analog.len() + cfg.digital.len()],
             cfg,
             source,
-            meter,
+            meter: meter.clone(),
             records: 0,
         }
-    }
-
-    /// What is read of it.
-    pub fn meter(&self) -> Meter {
-        self.meter.clone()
-    }
-
-    /// The configuration.
-    pub fn cfg(&self) -> &Cfg {
-        &self.cfg
-    }
-
-    /// The file.
-    pub fn file(&self) -> &str {
-        &self.file
     }
 
     /// A flaw of the record that was read last.

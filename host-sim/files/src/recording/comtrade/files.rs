@@ -7,14 +7,20 @@ use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
 use crate::recording::opened;
+use crate::stream::Meter;
 use touchdown_base::input_error::{InputError, reason};
 
 /// Larger than any configuration, bytes.
 const LARGEST_CFG: u64 = 16 << 20;
 
-/// Whether the name of `path` is that of a COMTRADE recording.
-pub fn is_comtrade(path: &Path) -> bool {
-    ["cfg", "dat", "cff"].iter().any(|it| ends(path, it))
+/// Whether the name of `path` is that of a file of a COMTRADE recording in two.
+pub fn is_pair(path: &Path) -> bool {
+    ends(path, "cfg") || ends(path, "dat")
+}
+
+/// Whether it is that of a COMTRADE recording in one file.
+pub fn is_combined(path: &Path) -> bool {
+    ends(path, "cff")
 }
 
 fn ends(path: &Path, ending: &str) -> bool {
@@ -22,21 +28,16 @@ fn ends(path: &Path, ending: &str) -> bool {
         .is_some_and(|it| it.eq_ignore_ascii_case(ending))
 }
 
-/// Opens the recording that `path` is a file of; also the bytes of its data.
-pub fn open(path: &Path) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
-    if ends(path, "cff") {
-        let name = path.display().to_string();
-        let (file, size) = opened(path)?;
-        return Ok((combined(&name, Box::new(file))?, size));
-    }
+/// Opens the recording that `path` is one of two files of; also the bytes of its data.
+pub fn open(path: &Path, meter: &Meter) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
     let cfg_path = beside(path, "cfg")?;
-    let cfg_name = cfg_path.display().to_string();
-    let (mut file, size) = opened(&cfg_path)?;
-    let cfg = configuration(&cfg_name, &mut file, size)?;
+    let text = text_of(&InputError::read_bytes(&cfg_path, LARGEST_CFG)?);
+    let cfg = Cfg::parse(&text)
+        .map_err(|(line, rule)| InputError::at_line(&cfg_path.display().to_string(), line, rule))?;
     let dat_path = beside(path, "dat")?;
     let (file, size) = opened(&dat_path)?;
-    let dat_name = dat_path.display().to_string();
-    Ok((Dat::new(&dat_name, cfg, Box::new(file)), size))
+    let name = dat_path.display().to_string();
+    Ok((Dat::new(&name, cfg, Box::new(file), meter), size))
 }
 
 /// The file of this ending beside `path`, in whichever case it is written.
@@ -54,22 +55,12 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
     })
 }
 
-fn configuration(name: &str, bytes: &mut impl Read, size: u64) -> Result<Cfg, InputError> {
-    if size > LARGEST_CFG {
-        let rule = format!(
-            "is larger than {} MiB, more than any configuration",
-            LARGEST_CFG >> 20
-        );
-        return Err(InputError::of_file(name, rule));
-    }
-    let mut text = Vec::new();
-    let read = bytes.take(LARGEST_CFG).read_to_end(&mut text);
-    read.map_err(|error| InputError::of_file(name, reason(&error)))?;
-    Cfg::parse(&text_of(&text)).map_err(|(line, rule)| InputError::at_line(name, line, rule))
-}
-
 /// A recording in one file: sections begin with lines as `--- file type: CFG ---`.
-pub fn combined(name: &str, bytes: Box<dyn BufRead>) -> Result<Dat<Box<dyn Read>>, InputError> {
+pub fn combined(
+    name: &str,
+    bytes: Box<dyn BufRead>,
+    meter: &Meter,
+) -> Result<Dat<Box<dyn Read>>, InputError> {
     let mut lines = Sections {
         name,
         bytes,
@@ -96,7 +87,7 @@ pub fn combined(name: &str, bytes: Box<dyn BufRead>) -> Result<Dat<Box<dyn Read>
                     format!("the section's data are {told:?}, those of the configuration are not");
                 return Err(InputError::at_line(name, lines.line, rule));
             }
-            return Ok(Dat::new(name, cfg, Box::new(lines.bytes)));
+            return Ok(Dat::new(name, cfg, Box::new(lines.bytes), meter));
         } else {
             section = lines.skip_to_section()?;
         }

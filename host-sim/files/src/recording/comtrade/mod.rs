@@ -10,7 +10,7 @@ use std::io::Read;
 
 pub use cfg::{Cfg, DEVICE, STATION};
 pub use dat::Dat;
-pub use files::{combined, is_comtrade, open};
+pub use files::{combined, is_combined, is_pair, open};
 
 use super::mapping::Mapping;
 use super::pick::{Heading, Pick, by_name};
@@ -28,13 +28,14 @@ const WRAP: f64 = 4_294_967_296.0;
 
 /// Samples of a recording, its channels as a mapping has them.
 pub struct ComtradeRows<R> {
-    dat: Dat<R>,
-    pick: Pick,
+    /// The data.
+    pub dat: Dat<R>,
+    /// What is taken of it.
+    pub pick: Pick,
     /// By the rates, where it has them.
     by_rate: bool,
     /// First stamp, ticks.
     first: Option<f64>,
-    finished: bool,
 }
 
 impl<R: Read> ComtradeRows<R> {
@@ -45,8 +46,8 @@ impl<R: Read> ComtradeRows<R> {
         sensors: &SensorsConfig,
         remarks: &Remarks,
     ) -> Result<Self, InputError> {
-        let cfg = dat.cfg();
-        let fail = |rule: String| InputError::of_file(dat.file(), rule);
+        let cfg = &dat.cfg;
+        let fail = |rule: String| InputError::of_file(&dat.file, rule);
         let found = headings(cfg);
         let named;
         let mapping = match mapping {
@@ -71,7 +72,7 @@ impl<R: Read> ComtradeRows<R> {
             if channel.skew != 0.0 {
                 remarks.warn(format!(
                     "{}: channel {} is sampled {} us late, which is not undone",
-                    dat.file(),
+                    dat.file,
                     channel.name,
                     Number(channel.skew)
                 ));
@@ -80,7 +81,7 @@ impl<R: Read> ComtradeRows<R> {
         if cfg.start.is_none() {
             remarks.warn(format!(
                 "{}: the dates of first sample and trigger cannot be read; time 0 is the first sample",
-                dat.file()
+                dat.file
             ));
         }
         Ok(Self {
@@ -88,30 +89,19 @@ impl<R: Read> ComtradeRows<R> {
             dat,
             pick,
             first: None,
-            finished: false,
         })
-    }
-
-    /// What is taken of it.
-    pub fn pick(&self) -> &Pick {
-        &self.pick
-    }
-
-    /// The data.
-    pub fn dat(&self) -> &Dat<R> {
-        &self.dat
     }
 
     fn read(&mut self) -> Result<Option<Stamped>, InputError> {
         let Some(sample) = self.dat.next()? else {
-            let (there, told) = (self.dat.records, self.dat.cfg().samples);
+            let (there, told) = (self.dat.records, self.dat.cfg.samples);
             if there < told {
                 let rule = format!("the data end at sample {there} of {told}: the file is cut off");
                 return Err(self.dat.flaw(rule));
             }
             return Ok(None);
         };
-        let cfg = self.dat.cfg();
+        let cfg = &self.dat.cfg;
         let line = self.dat.records;
         if line > cfg.samples {
             let rule = format!(
@@ -174,12 +164,7 @@ impl<R: Read> Iterator for ComtradeRows<R> {
     type Item = Result<Stamped, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.finished {
-            return None;
-        }
-        let row = self.read();
-        self.finished = !matches!(row, Ok(Some(_)));
-        row.transpose()
+        self.read().transpose()
     }
 }
 
