@@ -84,7 +84,7 @@ impl Calibration {
             let rule = "at no frequency do the hits stand clear of the acceleration's noise";
             return Err(InputError::at_line(&hits.file, hits.hits[0].line, rule));
         };
-        let resolution = hits.rate / transform.length() as f64;
+        let resolution = hits.rate / transform.length as f64;
         calibration.band = low as f64 * resolution..=high as f64 * resolution;
         if calibration.hits.len() > 1 {
             let part = &response.coherence[low..=high];
@@ -145,7 +145,7 @@ impl Calibration {
     }
 
     fn highest(&self, transform: &Transform) -> usize {
-        (HIGHEST * transform.length() as f64) as usize
+        (HIGHEST * transform.length as f64) as usize
     }
 }
 

@@ -63,10 +63,10 @@ pub fn deconvolve(
     let mut search = Search {
         transform: &transform,
         inverses: &inverses,
-        force: vec![vec![0.0; transform.length()]; inverses.len()],
+        force: vec![vec![0.0; transform.length]; inverses.len()],
         contacts: Vec::new(),
         samples,
-        skirt: (SKIRT * recording.rate / resolution.highest()).ceil() as usize,
+        skirt: (SKIRT * recording.rate / resolution.highest).ceil() as usize,
     };
     let noise = search.noise(quiet[0].samples);
     search.run(noise);
@@ -106,7 +106,7 @@ impl Search<'_> {
 
     fn run(&mut self, noise: f64) {
         let end = self.end();
-        let wrap = self.transform.length().saturating_sub(self.skirt);
+        let wrap = self.transform.length.saturating_sub(self.skirt);
         self.contacts.push(end..wrap.max(self.samples + 1));
         let mut rest = self.unexplained();
         let mut floor = CLEAR * noise;
@@ -161,7 +161,7 @@ impl Search<'_> {
     fn restore(&mut self) {
         for axis in 0..self.inverses.len() {
             let lost = &self.inverses[axis].lost;
-            let mut force = vec![0.0; self.transform.length()];
+            let mut force = vec![0.0; self.transform.length];
             let mut rest = self.cut(&self.inverses[axis].estimate);
             let mut way = rest.clone();
             let begin = product(&rest, &rest);

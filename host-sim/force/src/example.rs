@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::instrument::{Instrument, InstrumentConfig};
+use super::instrument::Instrument;
 use super::pulse::Pulse;
 use super::recording::{Axis, Hits, Recording};
 use super::rehearsal::{self, Blow};
@@ -37,12 +37,7 @@ pub struct Truth {
 
 /// A drop of `scene`, by the reference, with half its rotor on this bearing and a contact that is
 /// short against the flights.
-pub fn example(
-    scene: &Scene,
-    config: &InstrumentConfig,
-) -> Result<Example, touchdown_base::failure::Failure> {
-    let instrument = Instrument::try_new(config)
-        .map_err(|error| touchdown_base::failure::Failure::Usage(error.to_string()))?;
+pub fn example(scene: &Scene, instrument: &Instrument) -> Example {
     let mut blows = Vec::new();
     let mut pulses = Vec::new();
     let history = touchdown_truth::simulate(scene);
@@ -59,11 +54,11 @@ pub fn example(
         blows.push(blow);
         pulses.push(pulse);
     }
-    Ok(Example {
-        calibration: rehearsal::hits(&instrument, Axis::X, CALIBRATION_SEED),
-        recording: rehearsal::recording(&instrument, &blows, DURATION, RECORDING_SEED),
+    Example {
+        calibration: rehearsal::hits(instrument, Axis::X, CALIBRATION_SEED),
+        recording: rehearsal::recording(instrument, &blows, DURATION, RECORDING_SEED),
         truth: Truth { pulses },
-    })
+    }
 }
 
 /// The force on the retainer: outwards, and along the wall by friction with the surface that slides

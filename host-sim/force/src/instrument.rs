@@ -10,7 +10,6 @@ use std::f64::consts::TAU;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rustfft::num_complex::Complex64;
-use touchdown_rotor::error::ConfigError;
 
 use super::filter::LowPass;
 
@@ -25,16 +24,16 @@ pub struct Mode {
     pub damping: f64,
 }
 
-/// The device and its recorder.
+/// One axis of the device, and its recorder.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InstrumentConfig {
+pub struct Instrument {
     /// On the mount, and elastic.
     pub modes: [Mode; 2],
     /// Of the record, Hz.
     pub sample_rate: f64,
     /// Steps of the simulation a sample.
     pub steps: u32,
-    /// Corner of the anti-alias filter of both channels, Hz.
+    /// Corner of the anti-alias filter of both channels, Hz; below half the simulation's rate.
     pub corner: f64,
     /// Of the acceleration, white, standard deviation a sample, m/s^2.
     pub noise: f64,
@@ -44,7 +43,7 @@ pub struct InstrumentConfig {
     pub resolution: f64,
 }
 
-impl Default for InstrumentConfig {
+impl Default for Instrument {
     /// 500 Hz, 8.4 kHz and 50 kHz are the paper's. The masses and the damping are not in print: a
     /// steel holder of 3 kg, bolted (0.05) and elastic (0.01), of whose elastic mode a tenth is seen
     /// where the force acts. Noise and 16 bit over 500 g are those of a piezoelectric accelerometer
@@ -73,62 +72,15 @@ impl Default for InstrumentConfig {
     }
 }
 
-/// One axis of the device, ready to run.
-#[derive(Clone, Debug)]
-pub struct Instrument {
-    config: InstrumentConfig,
-    /// s.
-    step: f64,
-    filter: LowPass,
-}
-
 impl Instrument {
-    /// Checks `config`.
-    pub fn try_new(config: &InstrumentConfig) -> Result<Self, ConfigError> {
-        for mode in &config.modes {
-            positive("frequency", mode.frequency)?;
-            positive("mass", mode.mass)?;
-            if !(0.0..1.0).contains(&mode.damping) {
-                return Err(ConfigError::OutOfRange("damping", "0 to below 1"));
-            }
-        }
-        positive("sample_rate", config.sample_rate)?;
-        if !(1..=1000).contains(&config.steps) {
-            return Err(ConfigError::OutOfRange("steps", "1 to 1000"));
-        }
-        positive("corner", config.corner)?;
-        let rate = config.sample_rate * f64::from(config.steps);
-        if config.corner >= 0.5 * rate {
-            let rule = "must be below half the rate of the simulation";
-            return Err(ConfigError::Inconsistent("corner", rule));
-        }
-        for (name, value) in [
-            ("noise", config.noise),
-            ("hammer_noise", config.hammer_noise),
-            ("resolution", config.resolution),
-        ] {
-            if !value.is_finite() {
-                return Err(ConfigError::NotFinite(name));
-            }
-            if value < 0.0 {
-                return Err(ConfigError::Negative(name));
-            }
-        }
-        Ok(Self {
-            config: *config,
-            step: 1.0 / rate,
-            filter: LowPass::new(config.corner, rate),
-        })
-    }
-
-    /// Of the record, Hz.
-    pub fn sample_rate(&self) -> f64 {
-        self.config.sample_rate
+    /// Of the simulation, Hz.
+    fn rate(&self) -> f64 {
+        self.sample_rate * f64::from(self.steps)
     }
 
     /// Step of the simulation, s.
     pub fn step(&self) -> f64 {
-        self.step
+        1.0 / self.rate()
     }
 
     /// Acceleration over force, 1/kg, at a frequency (Hz), before the filter.
@@ -138,21 +90,21 @@ impl Instrument {
             let w = TAU * mode.frequency;
             s * s / (mode.mass * (s * s + 2.0 * mode.damping * w * s + w * w))
         };
-        self.config.modes.iter().map(of).sum()
+        self.modes.iter().map(of).sum()
     }
 
     /// What the accelerometer's channel records of a force (N) given at each step and straight in between.
     pub fn acceleration(&self, force: &[f64], noise: &mut ChaCha8Rng) -> Vec<f64> {
         let mut sum = vec![0.0; force.len()];
-        for mode in &self.config.modes {
-            mode.respond(force, self.step, &mut sum);
+        for mode in &self.modes {
+            mode.respond(force, self.step(), &mut sum);
         }
-        self.record(&sum, self.config.noise, self.config.resolution, noise)
+        self.record(&sum, self.noise, self.resolution, noise)
     }
 
     /// What the channel of an instrumented hammer records of its force, through the same filter.
     pub fn hammer(&self, force: &[f64], noise: &mut ChaCha8Rng) -> Vec<f64> {
-        self.record(force, self.config.hammer_noise, 0.0, noise)
+        self.record(force, self.hammer_noise, 0.0, noise)
     }
 
     fn record(
@@ -162,8 +114,8 @@ impl Instrument {
         resolution: f64,
         noise: &mut ChaCha8Rng,
     ) -> Vec<f64> {
-        let filtered = self.filter.run(signal);
-        let samples = filtered.iter().step_by(self.config.steps as usize);
+        let filtered = LowPass::new(self.corner, self.rate()).run(signal);
+        let samples = filtered.iter().step_by(self.steps as usize);
         samples
             .map(|value| {
                 let random: f64 = StandardNormal.sample(noise);
@@ -201,16 +153,6 @@ impl Mode {
             before = now;
         }
     }
-}
-
-fn positive(name: &'static str, value: f64) -> Result<(), ConfigError> {
-    if !value.is_finite() {
-        return Err(ConfigError::NotFinite(name));
-    }
-    if value <= 0.0 {
-        return Err(ConfigError::NotPositive(name));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ impl Inverse {
         let from_zero: Vec<f64> = signal.iter().map(|it| it - quiet.mean).collect();
         let motion = transform.spectrum(&from_zero);
         let response = calibration.response(transform);
-        let frequency = |k: usize| k as f64 * calibration.rate / transform.length() as f64;
+        let frequency = |k: usize| k as f64 * calibration.rate / transform.length as f64;
         let band = |k: &usize| calibration.band.contains(&frequency(*k));
         let power: Vec<f64> = response.h.iter().map(Complex64::norm_sqr).collect();
         let sum =

@@ -132,7 +132,7 @@ fn device(measurement: &Measurement) -> Markup {
         .iter()
         .map(|calibration| {
             let transform = Transform::holding(calibration.longest());
-            let step = calibration.rate / transform.length() as f64;
+            let step = calibration.rate / transform.length as f64;
             let response = calibration.response(&transform);
             let sizes = response.h.iter().enumerate();
             let points = sizes.map(|(k, h)| (k as f64 * step, h.norm()));

@@ -56,7 +56,7 @@ pub fn hits(instrument: &Instrument, axis: Axis, seed: u64) -> Hits {
     Hits {
         file: "rehearsal".to_owned(),
         axis,
-        rate: instrument.sample_rate(),
+        rate: instrument.sample_rate,
         hits: hits.collect(),
     }
 }
@@ -67,7 +67,7 @@ pub fn recording(instrument: &Instrument, blows: &[Blow], duration: f64, seed: u
     let forces = forces(blows, duration, instrument.step());
     Recording {
         file: "rehearsal".to_owned(),
-        rate: instrument.sample_rate(),
+        rate: instrument.sample_rate,
         start: 0.0,
         acceleration: forces
             .iter()

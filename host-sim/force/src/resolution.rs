@@ -9,18 +9,14 @@ const FADE: f64 = 0.8;
 /// A low-pass with a raised cosine's edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    highest: f64,
+    /// Hz.
+    pub highest: f64,
 }
 
 impl Resolution {
     /// Passes nothing from `highest` (Hz) on.
     pub fn new(highest: f64) -> Self {
         Self { highest }
-    }
-
-    /// Hz.
-    pub fn highest(&self) -> f64 {
-        self.highest
     }
 
     /// Part of a frequency (Hz) that passes.

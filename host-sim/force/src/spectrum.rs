@@ -7,7 +7,8 @@ use rustfft::{Fft, FftPlanner};
 
 /// Transforms of one length.
 pub struct Transform {
-    length: usize,
+    /// In samples: a power of two.
+    pub length: usize,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
 }
@@ -22,11 +23,6 @@ impl Transform {
             forward: planner.plan_fft_forward(length),
             inverse: planner.plan_fft_inverse(length),
         }
-    }
-
-    /// Samples of a signal with its padding.
-    pub fn length(&self) -> usize {
-        self.length
     }
 
     /// Frequencies from 0 to half the rate: that many.
@@ -63,7 +59,7 @@ mod tests {
         let transform = Transform::holding(5);
         let signal = [1.0, -2.0, 0.5, 3.0, 0.25];
         let spectrum = transform.spectrum(&signal);
-        assert_eq!((transform.length(), spectrum.len()), (8, 5));
+        assert_eq!((transform.length, spectrum.len()), (8, 5));
         assert!((spectrum[0].re - 2.75).abs() < 1e-14);
         let back = transform.signal(&spectrum);
         for (k, value) in back.iter().enumerate() {

@@ -8,7 +8,7 @@ use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
 use touchdown_force::calibration::Calibration;
-use touchdown_force::instrument::{Instrument, InstrumentConfig};
+use touchdown_force::instrument::Instrument;
 use touchdown_force::pulse::Pulse;
 use touchdown_force::recording::{Axis, Hits, Recording};
 use touchdown_force::rehearsal;
@@ -43,11 +43,10 @@ fn meeting(mass: f64, speed: f64, restitution: f64) -> Meeting {
 }
 
 fn device(noise: f64) -> Instrument {
-    let config = InstrumentConfig {
+    Instrument {
         noise,
-        ..InstrumentConfig::default()
-    };
-    Instrument::try_new(&config).expect("valid")
+        ..Instrument::default()
+    }
 }
 
 fn hits(device: &Instrument) -> Hits {
@@ -103,7 +102,7 @@ fn calibration_finds_the_transfer_function() {
         let response = calibration.response(&transform);
         let (mut flat, mut squares, mut stated, mut count) = (0.0_f64, 0.0, 0.0, 0.0);
         for (k, h) in response.h.iter().enumerate() {
-            let frequency = k as f64 * calibration.rate / transform.length() as f64;
+            let frequency = k as f64 * calibration.rate / transform.length as f64;
             if !calibration.band.contains(&frequency) {
                 continue;
             }
@@ -179,15 +178,14 @@ fn contacts_on_other_devices_come_back() {
     let spread = |k: u32, step: f64| (f64::from(k) * step).fract();
     let mut worst = [0.0; 4];
     for k in 1..=30 {
-        let mut config = InstrumentConfig::default();
-        let [mount, elastic] = &mut config.modes;
+        let mut device = Instrument::default();
+        let [mount, elastic] = &mut device.modes;
         mount.frequency = 350.0 + 300.0 * spread(k, 0.618_034);
         mount.mass = 2.0 + 3.0 * spread(k, 0.414_214);
         mount.damping = 0.02 + 0.08 * spread(k, 0.732_051);
         elastic.frequency = 7000.0 + 3000.0 * spread(k, 0.236_068);
         elastic.mass = mount.mass * (6.0 + 8.0 * spread(k, 0.645_751));
         elastic.damping = 0.005 + 0.02 * spread(k, 0.316_625);
-        let device = Instrument::try_new(&config).expect("valid");
         let hits = [rehearsal::hits(&device, Axis::X, u64::from(100 + k))];
         let speed = 0.02 * 25_f64.powf(spread(k, 0.605_551));
         let restitution = 0.75 + 0.25 * spread(k, 0.123_106);

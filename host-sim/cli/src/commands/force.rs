@@ -5,7 +5,7 @@ use std::path::Path;
 use super::args::ForceArgs;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
-use touchdown_force::instrument::InstrumentConfig;
+use touchdown_force::instrument::Instrument;
 use touchdown_force::{example, read, write};
 use touchdown_page::json;
 use touchdown_scene::Scene;
@@ -48,7 +48,7 @@ fn write_example(folder: &str) -> Result<(), Failure> {
         .writes("truth", [&truth])
         .open()?;
     let scene = Scene::load(EXAMPLE)?;
-    let example = example::example(&scene, &InstrumentConfig::default())?;
+    let example = example::example(&scene, &Instrument::default());
     out.put("calibration", || write::calibration(&example.calibration))?;
     out.put("recording", || write::recording(&example.recording))?;
     out.json("truth", || json::text(&example.truth))?;
