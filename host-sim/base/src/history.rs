@@ -2,6 +2,7 @@
 //! test and by the reference.
 
 use serde::Serialize;
+use strum::{EnumString, IntoStaticStr, VariantArray};
 
 /// The rotor at one moment, SI; time since release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,9 +70,10 @@ pub enum ModelEvent {
     LiftOff(f64),
 }
 
-/// Kind of a phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// Kind of a phase; pages mark it by its name with hyphens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum PhaseKind {
     /// Held by the magnetic bearings.
     Levitated,
@@ -97,8 +99,9 @@ pub struct Phase {
 }
 
 /// How the run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, EnumString, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Regime {
     /// In contact and still.
     Rest,

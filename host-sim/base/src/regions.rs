@@ -9,19 +9,6 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
-/// What becomes of a rotor on the wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Region {
-    /// Contact is kept for ever, round and round.
-    A,
-    /// Contact is kept for ever, as a swing about the bottom.
-    B,
-    /// The wall cannot hold the rotor here.
-    C,
-    /// Contact now, lost later.
-    Lost,
-}
-
 /// A phase plane: theta' against phi on a wall whose friction drives towards +phi.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
@@ -37,7 +24,8 @@ pub struct Plane {
 #[derive(Clone, Copy, Debug)]
 pub struct Orbit {
     plane: Plane,
-    c: f64,
+    /// Of these motions alone.
+    pub c: f64,
 }
 
 impl Plane {
@@ -96,31 +84,6 @@ impl Plane {
     /// theta' below which the wall cannot hold the rotor at `phi`, rad/s.
     pub fn limit(&self, phi: f64) -> f64 {
         (-self.k * phi.cos()).max(0.0).sqrt()
-    }
-
-    /// The region of a point, `phi` within -pi to pi, `rate` = theta' in rad/s.
-    pub fn region(&self, phi: f64, rate: f64) -> Region {
-        let u = rate * rate;
-        if u + self.k * phi.cos() < 0.0 {
-            return Region::C;
-        }
-        let mut c = self.orbit(phi, u).c;
-        let (whirl, swing) = (self.slowest_whirl().c, self.widest_swing().c);
-        if rate < 0.0 && c >= swing {
-            // Against the friction: over the top while the force lasts there, with phi set back a turn.
-            let over_the_top = (self.k + self.a) * (2.0 * PI * self.mu).exp();
-            while c >= over_the_top {
-                c *= (-4.0 * PI * self.mu).exp();
-            }
-            if c >= self.widest_against().c {
-                return Region::Lost;
-            }
-        }
-        match c {
-            c if c >= whirl => Region::A,
-            c if c <= swing => Region::B,
-            _ => Region::Lost,
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::draw::Drawn;
 use super::parameter::text;
 use super::plan::Plan;
-use super::record::{REGIMES, Record, number};
+use super::record::Record;
 
 /// Names of the columns.
 pub(super) fn columns(plan: &Plan) -> Vec<String> {
@@ -36,7 +36,7 @@ pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> 
     if let Some(([x, y], [u, v])) = drawn.start {
         cells.extend([x, y, u, v].map(|it| it.to_string()));
     }
-    cells.push(REGIMES[number(record.regime)].1.to_owned());
+    cells.push(<&str>::from(record.regime).to_owned());
     cells.push(record.impacts.to_string());
     let number = |value: f64| (!value.is_nan()).then(|| value.to_string());
     cells.extend(record.values().map(|it| number(it).unwrap_or_default()));

@@ -14,7 +14,6 @@ use touchdown_chart::table::table;
 /// Points in the page's table; all are in `points.csv`.
 const SHOWN: usize = 1_000;
 
-/// Writes the page.
 pub(super) fn page(plan: &Plan, points: &[Point], found: Option<&Found>) -> String {
     let tenth = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1}"));
     let thousand = |value: Option<f64>| tenth(value.map(|it| 1e3 * it));

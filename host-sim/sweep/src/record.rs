@@ -27,22 +27,6 @@ pub(super) struct Record {
     pub whirl_frequency: f64,
 }
 
-/// Every regime, and its name in a table.
-pub(super) const REGIMES: [(Regime, &str); 6] = [
-    (Regime::Rest, "rest"),
-    (Regime::Pendulum, "pendulum"),
-    (Regime::ForwardWhirl, "forward_whirl"),
-    (Regime::BackwardWhirl, "backward_whirl"),
-    (Regime::Intermittent, "intermittent"),
-    (Regime::Bouncing, "bouncing"),
-];
-
-/// Place of a regime in [`REGIMES`].
-pub(super) fn number(regime: Regime) -> usize {
-    let found = REGIMES.iter().position(|(it, _)| *it == regime);
-    found.unwrap_or_default()
-}
-
 impl Record {
     /// What `history` came to.
     pub fn of(index: u64, scene: &Scene, history: &History) -> Self {
@@ -102,7 +86,7 @@ impl Record {
         };
         Some(Self {
             index: row.get(0)?.parse().ok()?,
-            regime: REGIMES.iter().find(|(_, name)| *name == regime)?.0,
+            regime: regime.parse().ok()?,
             impacts,
             contact_start: next()?,
             whirl_start: next()?,

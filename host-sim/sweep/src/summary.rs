@@ -1,8 +1,9 @@
 //! What the drops of a point of the grid came to, together.
 
 use serde::Serialize;
+use strum::VariantArray;
 
-use super::record::{REGIMES, Record, number};
+use super::record::Record;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::median;
 use touchdown_base::wilson;
@@ -44,7 +45,7 @@ pub(super) fn total(points: &[Point]) -> u64 {
 /// Gathers the drops of a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
-    counts: [u64; REGIMES.len()],
+    counts: [u64; Regime::VARIANTS.len()],
     whirl_starts: Vec<f64>,
     /// Impact speed, impulse, load.
     greatest: [Option<f64>; 3],
@@ -53,7 +54,7 @@ pub(super) struct Gathered {
 impl Gathered {
     /// Drops that whirled at the end, and all.
     pub fn whirls(&self) -> [u64; 2] {
-        let of = |regime| self.counts[number(regime)];
+        let of = |regime: Regime| self.counts[regime as usize];
         [
             of(Regime::ForwardWhirl) + of(Regime::BackwardWhirl),
             self.counts.iter().sum(),
@@ -61,7 +62,7 @@ impl Gathered {
     }
 
     pub fn take(&mut self, record: &Record) {
-        self.counts[number(record.regime)] += 1;
+        self.counts[record.regime as usize] += 1;
         if record.whirl_start.is_finite() {
             self.whirl_starts.push(record.whirl_start);
         }
@@ -75,9 +76,11 @@ impl Gathered {
 
     pub fn finish(self, point: u64, values: serde_json::Map<String, serde_json::Value>) -> Point {
         let [whirls, drops] = self.whirls();
-        let backward = self.counts[number(Regime::BackwardWhirl)];
+        let backward = self.counts[Regime::BackwardWhirl as usize];
         let (whirl_low, whirl_high) = wilson::interval(whirls, drops);
-        let names = REGIMES.iter().map(|(_, name)| (*name).to_owned());
+        let names = Regime::VARIANTS
+            .iter()
+            .map(|it| <&str>::from(it).to_owned());
         let [impact_speed_max_m_s, impulse_max_n_s, end_load_max_n] = self.greatest;
         Point {
             point,

@@ -1,6 +1,6 @@
 //! The source paper's numbers: what `touchdown paper` writes, and that it is right.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 
 use serde_json::Value;
@@ -9,7 +9,7 @@ use touchdown_base::failure::Failure;
 use touchdown_base::history::History;
 use touchdown_base::machine::Start;
 use touchdown_base::paint::Paint;
-use touchdown_base::regions::{Plane, Region};
+use touchdown_base::regions::Plane;
 use touchdown_lab::paper;
 use touchdown_lab::paper::Paper;
 use touchdown_scene::{BUILT_IN, Scene};
@@ -236,6 +236,44 @@ fn from_wall(friction: f64, angle: f64, rate: f64) -> History {
     touchdown_truth::simulate(&scene)
 }
 
+/// What becomes of a rotor on the wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Region {
+    /// Contact is kept for ever, round and round.
+    A,
+    /// Contact is kept for ever, as a swing about the bottom.
+    B,
+    /// The wall cannot hold the rotor here.
+    C,
+    /// Contact now, lost later.
+    Lost,
+}
+
+/// The region of a point, `phi` within -pi to pi, `rate` = theta' in rad/s.
+fn region(plane: &Plane, friction: f64, phi: f64, rate: f64) -> Region {
+    if rate.abs() < plane.limit(phi) {
+        return Region::C;
+    }
+    let mut c = plane.orbit(phi, rate * rate).c;
+    let (whirl, swing) = (plane.slowest_whirl().c, plane.widest_swing().c);
+    if rate < 0.0 && c >= swing {
+        // Against the friction: over the top while the force lasts there, with phi set back a turn.
+        let fastest_at_the_top = plane.limit(-PI).powi(2);
+        let over_the_top = plane.orbit(-PI, fastest_at_the_top).c;
+        while c >= over_the_top {
+            c *= (-4.0 * PI * friction).exp();
+        }
+        if c >= plane.orbit(-FRAC_PI_2, 0.0).c {
+            return Region::Lost;
+        }
+    }
+    match c {
+        c if c >= whirl => Region::A,
+        c if c <= swing => Region::B,
+        _ => Region::Lost,
+    }
+}
+
 /// The reference keeps contact exactly where the closed form of the regions says so.
 #[test]
 fn regions_are_those_of_the_reference() {
@@ -246,7 +284,7 @@ fn regions_are_those_of_the_reference() {
             let angle = 0.99 * PI * (2.0 * (f64::from(step) * 0.618).fract() - 1.0);
             let rate = f64::from(step - 200) * 2.5;
             let history = from_wall(friction, angle, rate);
-            let region = plane.region(angle, rate);
+            let region = region(&plane, friction, angle, rate);
             seen[region as usize] += 1;
             let turns = history.end.turns_in_contact;
             let first = history.lift_offs.first().copied();

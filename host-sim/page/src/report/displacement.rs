@@ -3,7 +3,6 @@
 use super::stretch::far;
 use super::timeline::{percent, strokes, visible};
 use super::window::Window;
-use crate::report::phase::phase_class;
 use maud::{Markup, html};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_core::event::EventKind;
@@ -90,7 +89,7 @@ fn shown(trace: &[TracePoint], window: Window) -> &[TracePoint] {
 fn bands(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
     html! {
         @for (phase, from, to) in visible(&outcome.truth.phases, x, factor) {
-            rect class={ "band " (phase_class(phase)) } x=(percent(from)) width=(percent(to - from))
+            rect class={ "band " (<&str>::from(phase)) } x=(percent(from)) width=(percent(to - from))
                 y="0" height=(HEIGHT) {}
         }
     }

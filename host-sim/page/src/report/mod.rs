@@ -11,7 +11,6 @@ mod health;
 mod moving;
 pub mod orbit;
 mod parameters;
-mod phase;
 mod phase_plane;
 pub mod regions;
 mod severity;

@@ -1,7 +1,6 @@
 //! The path of the rotor's centre inside the clearance circle.
 
 use super::stretch::{far, runs};
-use crate::report::phase::phase_class;
 use maud::{Markup, html};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
@@ -67,7 +66,7 @@ pub fn draw(orbit: &Orbit) -> Markup {
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
             @for run in runs(orbit.trace) {
-                path class={ "curve " (phase_class(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
+                path class={ "curve " (<&str>::from(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
             @for (x, y) in hits(&orbit.hits, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}

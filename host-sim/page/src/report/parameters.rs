@@ -110,7 +110,6 @@ pub fn limits(scene: &Scene, forces: bool) -> Markup {
     }
 }
 
-/// The program's version.
 pub fn versions() -> Markup {
     html! { dl.versions { div { dt { "touchdown" } dd { (env!("CARGO_PKG_VERSION")) } } } }
 }

@@ -2,7 +2,6 @@
 
 use super::regions::{View, areas};
 use super::stretch::{far, runs};
-use crate::report::phase::phase_class;
 use maud::{Markup, html};
 use touchdown_base::history::RotorState;
 use touchdown_base::regions::Plane;
@@ -136,7 +135,7 @@ fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Ma
         }
         last = Some((angle, rate, point));
     }
-    pen.finish(phase_class(run[run.len() - 1].phase))
+    pen.finish(<&str>::from(run[run.len() - 1].phase))
 }
 
 /// Where the wall's force vanishes: `theta-dot^2 = -(g/clearance) cos theta`.

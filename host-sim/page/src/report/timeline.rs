@@ -2,8 +2,8 @@
 
 use super::rings;
 use super::window::Window;
-use crate::report::phase::{PHASES, phase_class};
 use maud::{Markup, html};
+use strum::VariantArray;
 use touchdown_base::history::{History, Phase, PhaseKind};
 use touchdown_chart::plot::{Axis, columns};
 use touchdown_core::event::EventKind;
@@ -81,10 +81,10 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
 pub fn legend() -> Markup {
     html! {
         ul.legend {
-            @for phase in PHASES {
+            @for phase in PhaseKind::VARIANTS.iter().copied() {
                 li {
                     svg width="34" height="12" aria-hidden="true" {
-                        path class={ "curve " (phase_class(phase)) } d="M1 6H33" {}
+                        path class={ "curve " (<&str>::from(phase)) } d="M1 6H33" {}
                     }
                     (phase_name(phase))
                 }
@@ -97,10 +97,10 @@ fn bar(phases: &[Phase], hits: &[f64], x: &Axis, factor: f64, top: f64) -> Marku
     html! {
         rect.void x="0" y=(top) width="100%" height=(BAR) {}
         @for (phase, from, to) in visible(phases, x, factor) {
-            rect class={ "bar " (phase_class(phase)) }
+            rect class={ "bar " (<&str>::from(phase)) }
                 x=(percent(from)) width=(percent(to - from)) y=(top) height=(BAR) {}
             @if (to - from) * NARROW > phase_name(phase).len() as f64 * LETTER + 4.0 {
-                text class={ "name " (phase_class(phase)) } x=(percent((from + to) / 2.0))
+                text class={ "name " (<&str>::from(phase)) } x=(percent((from + to) / 2.0))
                     y=(top + BAR - 7.5) text-anchor="middle" { (phase_name(phase)) }
             }
         }
