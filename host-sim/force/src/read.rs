@@ -31,7 +31,7 @@ pub fn recording(path: &Path) -> Result<Recording, InputError> {
     let axes = 1..table.names.len();
     Ok(Recording {
         rate: table.rate(&clock)?,
-        start: clock.start(),
+        start: clock.first,
         acceleration: axes.map(|column| columns(&rows, column)).collect(),
         file: table.file,
     })

@@ -191,7 +191,7 @@ fn from_power_on_to_an_erased_log_over_the_link() {
         talk.order(Act::Unlock(last)).is_err()
     });
     assert_eq!(because(talk.order(Act::Erase(last))), Busy::Service.into());
-    assert_eq!(talk.damaged(), 0);
+    assert_eq!(talk.damaged, 0);
     rig.stop().expect("no failure");
 }
 
@@ -217,9 +217,9 @@ fn with_a_key_the_image_obeys_its_holder_alone_and_tells_every_order() {
     };
     until("the first sample", || talk.state().is_ok_and(|it| it.sample != u64::MAX));
     assert!(no_right(talk.order(Act::Clear)));
-    talk.set_key(Some(Key([1; 16])));
+    talk.key = Some(Key([1; 16]));
     assert!(no_right(talk.order(Act::Clear)));
-    talk.set_key(Some(key));
+    talk.key = Some(key);
     until("it is cleared", || talk.order(Act::Clear).is_ok());
     talk.state().expect("answers");
     let told = std::iter::from_fn(|| talk.listen(Duration::ZERO).expect("a line"));
@@ -338,7 +338,7 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
         let state = talk.state().expect("answers in the end");
         assert_eq!((state.mode, state.outputs), (quiet.mode, quiet.outputs));
     }
-    assert!(talk.damaged() > 0 && talk.repeated() > 0);
+    assert!(talk.damaged > 0 && talk.repeated > 0);
     // An episode, a byte in two thousand spoilt.
     rig.order(Order::Noise(5e-4));
     rig.order(Order::Drop);

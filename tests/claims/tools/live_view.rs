@@ -152,7 +152,7 @@ fn a_controller_that_began_again_is_not_mixed_with_what_it_was() {
         }),
     ));
     let watched = watched(&updates);
-    assert_eq!(watched.restarts(), 1);
+    assert_eq!(watched.restarts, 1);
     assert_eq!(watched.events().count(), 0);
     let text = picture(&View::default(), &watched, 5.7, [100, 30]);
     assert!(text.contains("restarts 1"), "{text}");

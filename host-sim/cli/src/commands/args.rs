@@ -273,7 +273,6 @@ fn number(
     }
 }
 
-/// Reads a tolerance.
 fn tolerance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
     number(|it| it.is_finite() && it >= 0.0, "a number, 0 or more")
 }

@@ -42,7 +42,7 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     let port = Port::of(&args.port);
     let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
     let mut client = Client::new(port.open().map_err(silent)?);
-    client.set_key(key);
+    client.key = key;
     let before = in_force(&mut client).map_err(silent)?;
     let (config, changed, shown) = match wanted {
         None => {

@@ -59,11 +59,11 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
     if session.heard || session.watcher.now() < session.end {
         return Ok(());
     }
-    let why = match session.watched.link() {
+    let why = match &session.watched.link {
         Link::Down(_, why) => why,
         Link::New | Link::Up(_) => "no answer in that time",
     };
-    let port = session.watched.port();
+    let port = &session.watched.port;
     Err(Failure::Target(format!("{port}: {why}")))
 }
 
@@ -89,10 +89,10 @@ struct Session<'a> {
 impl Session<'_> {
     /// Takes an update in and records it; the line, unless it says nothing new.
     fn take(&mut self, update: &Update) -> Result<Option<String>, Failure> {
-        let known = self.watched.link().clone();
+        let known = self.watched.link.clone();
         self.watched.take(update);
         self.heard |= matches!(update.said, Said::Connected(_));
-        if *self.watched.link() == known && matches!(update.said, Said::Lost(_)) {
+        if self.watched.link == known && matches!(update.said, Said::Lost(_)) {
             return Ok(None);
         }
         let line = line(update, &self.watched) + "\n";

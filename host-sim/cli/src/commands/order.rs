@@ -29,7 +29,7 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
     let port = Port::of(&args.port);
     let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
     let mut client = Client::new(port.open().map_err(silent)?);
-    client.set_key(key);
+    client.key = key;
     let why = match client.order(act) {
         Ok(()) => None,
         Err(LinkError::Refused(refusal)) => Some(why(&refusal)),

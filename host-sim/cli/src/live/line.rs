@@ -19,13 +19,13 @@ pub fn line(update: &Update, watched: &Watched) -> String {
         Said::Connected(greeting) => (
             "connected",
             json!({
-                "port": watched.port(),
+                "port": watched.port,
                 "firmware": greeting.firmware,
                 "sample_rate_hz": greeting.sample_rate,
                 "clearance_m": greeting.settings.monitor.detector.machine.clearance,
             }),
         ),
-        Said::Lost(why) => ("lost", json!({ "port": watched.port(), "why": why })),
+        Said::Lost(why) => ("lost", json!({ "port": watched.port, "why": why })),
         Said::State(it) => ("state", state(it, watched)),
         Said::Notice(it) => notice(it, watched),
         Said::Recent(recent) => {

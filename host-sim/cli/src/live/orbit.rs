@@ -24,7 +24,8 @@ pub(super) fn orbit(
 ) {
     let name = ["a", "b"].get(plane).unwrap_or(&"?");
     let clearance = watched
-        .greeting()
+        .greeting
+        .as_ref()
         .map(|it| f64::from(it.settings.monitor.detector.machine.clearance))
         .filter(|it| *it > 0.0);
     let title = clearance.map_or_else(

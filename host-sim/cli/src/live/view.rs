@@ -97,8 +97,8 @@ impl Pen {
 }
 
 fn headline(watched: &Watched, now: f64, pen: Pen) -> Line<'static> {
-    let mut spans = vec![Pen::bold(format!(" touchdown live {}  ", watched.port()))];
-    spans.push(match watched.link() {
+    let mut spans = vec![Pen::bold(format!(" touchdown live {}  ", watched.port))];
+    spans.push(match &watched.link {
         Link::New => Span::raw("connecting"),
         Link::Up(since) => pen.of(Color::Green, format!("connected for {:.0} s", now - since)),
         Link::Down(since, why) => pen.of(
@@ -132,7 +132,7 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     let rate = watched
         .sample_rate()
         .map_or("-".to_owned(), |it| format!("{it:.0}"));
-    let nominal = watched.greeting().map_or(0.0, |it| it.sample_rate);
+    let nominal = watched.greeting.as_ref().map_or(0.0, |it| it.sample_rate);
     lines.push(Line::raw(format!(
         "rates     {rate} of {nominal:.0} samples/s, {:.0} frames/s",
         watched.frame_rate(now)
@@ -154,14 +154,13 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
         "unusable  {} values",
         counters.unusable_values
     )));
-    let restarts = match watched.restarts() {
+    let restarts = match watched.restarts {
         0 => String::new(),
         count => format!("; restarts {count}"),
     };
     lines.push(Line::raw(format!(
         "damaged   {} frames there, {} here{restarts}",
-        counters.damaged_frames,
-        watched.damaged()
+        counters.damaged_frames, watched.damaged
     )));
     lines.extend(lifetime(watched));
     lines
@@ -169,7 +168,7 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
 
 /// In two lines: of an inspection, the landings are what counts.
 fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
-    let Some(it) = watched.lifetime() else {
+    let Some(it) = &watched.lifetime else {
         return vec![Line::raw("lifetime  no log")];
     };
     let cut = match it.unweighed {

@@ -44,9 +44,12 @@ struct Numbered {
 /// All that is known of a controller.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
-    port: String,
-    link: Link,
-    greeting: Option<Greeting>,
+    /// The port's name.
+    pub port: String,
+    /// The line.
+    pub link: Link,
+    /// Who answered last.
+    pub greeting: Option<Greeting>,
     sensing: Option<Sensing>,
     /// With the time at which it was heard.
     state: Option<(f64, State)>,
@@ -57,9 +60,12 @@ pub struct Watched {
     newest: usize,
     events: VecDeque<Numbered>,
     episodes: BTreeMap<u32, Option<Header>>,
-    lifetime: Option<Counters>,
-    damaged: u32,
-    restarts: u32,
+    /// What was counted over the monitor's life.
+    pub lifetime: Option<Counters>,
+    /// Frames that came damaged.
+    pub damaged: u32,
+    /// How often the controller began again.
+    pub restarts: u32,
 }
 
 impl Watched {
@@ -175,7 +181,7 @@ impl Watched {
                 levitated: None,
                 edges: [None; TACHOMETERS],
             };
-            let planes = sensing.convert(&sample, fitted).planes;
+            let planes = sensing.planes(&sample);
             planes.map(|place| place.map(|it| it.map(f64::from)))
         };
         recent.counts().map(position).collect()
@@ -184,21 +190,6 @@ impl Watched {
     /// Forgets where the rotor has been.
     pub fn forget_trail(&mut self) {
         self.trails.iter_mut().for_each(VecDeque::clear);
-    }
-
-    /// The port's name.
-    pub fn port(&self) -> &str {
-        &self.port
-    }
-
-    /// The line.
-    pub fn link(&self) -> &Link {
-        &self.link
-    }
-
-    /// Who answered last.
-    pub fn greeting(&self) -> Option<&Greeting> {
-        self.greeting.as_ref()
     }
 
     /// What goes on, as it was told last.
@@ -240,21 +231,6 @@ impl Watched {
     /// Episodes that were seen in the log, newest first.
     pub fn episodes(&self) -> impl Iterator<Item = (u32, Option<&Header>)> {
         self.episodes.iter().rev().map(|it| (*it.0, it.1.as_ref()))
-    }
-
-    /// What was counted over the monitor's life.
-    pub fn lifetime(&self) -> Option<&Counters> {
-        self.lifetime.as_ref()
-    }
-
-    /// Frames that came damaged.
-    pub fn damaged(&self) -> u32 {
-        self.damaged
-    }
-
-    /// How often the controller began again.
-    pub fn restarts(&self) -> u32 {
-        self.restarts
     }
 
     /// Samples to seconds since the controller's start.

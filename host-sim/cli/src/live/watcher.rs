@@ -134,8 +134,8 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
             client.hello()?;
             heard = Instant::now();
         }
-        if client.damaged() != damaged {
-            damaged = client.damaged();
+        if client.damaged != damaged {
+            damaged = client.damaged;
             teller.tell(Said::Damaged(damaged))?;
         }
     }

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
 
-/// The writing end.
 pub struct Pipe {
     path: PathBuf,
     /// Once the image reads.

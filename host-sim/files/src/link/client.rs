@@ -57,9 +57,12 @@ pub struct Client {
     bytes: VecDeque<u8>,
     told: VecDeque<Told>,
     sequence: u8,
-    damaged: u32,
-    repeated: u32,
-    key: Option<Key>,
+    /// Frames that came damaged.
+    pub damaged: u32,
+    /// Requests that were sent again.
+    pub repeated: u32,
+    /// By whose right it orders, where the controller has one.
+    pub key: Option<Key>,
 }
 
 impl Client {
@@ -78,27 +81,12 @@ impl Client {
         }
     }
 
-    /// Orders by the right of `key`, where the controller has one.
-    pub fn set_key(&mut self, key: Option<Key>) {
-        self.key = key;
-    }
-
     /// The same, and waits for 35 s before it gives up: for an emulator, or a line with noise.
     pub fn patient(line: Box<dyn Line>) -> Self {
         Self {
             patience: &LONG_PATIENCE,
             ..Self::new(line)
         }
-    }
-
-    /// Frames that came damaged.
-    pub fn damaged(&self) -> u32 {
-        self.damaged
-    }
-
-    /// Requests that were sent again.
-    pub fn repeated(&self) -> u32 {
-        self.repeated
     }
 
     /// Sends `request`, again where no answer comes; the answer, unless it is a refusal.

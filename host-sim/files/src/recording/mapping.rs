@@ -81,10 +81,8 @@ pub enum Delimiter {
 }
 
 impl Delimiter {
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Semicolon, Self::Tab, Self::Comma];
 
-    /// Its byte.
     pub fn byte(self) -> u8 {
         match self {
             Self::Comma => b',',
@@ -117,7 +115,6 @@ pub enum Comment {
 }
 
 impl Comment {
-    /// Its byte.
     pub fn byte(self) -> u8 {
         match self {
             Self::Hash => b'#',
@@ -142,7 +139,6 @@ pub enum Column {
 pub struct TimeColumn {
     /// Time of a row.
     pub column: Option<Column>,
-    /// Its unit.
     pub unit: Option<Time>,
     /// Samples per second, where there is no column.
     pub rate_hz: Option<f64>,
@@ -152,9 +148,7 @@ pub struct TimeColumn {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PositionColumn {
-    /// Which.
     pub column: Column,
-    /// Its unit.
     pub unit: Option<Displacement>,
     /// For volts.
     pub sensitivity: Option<Sensitivity>,
@@ -170,9 +164,7 @@ pub struct PositionColumn {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedColumn {
-    /// Which.
     pub column: Column,
-    /// Its unit.
     pub unit: Option<Speed>,
     /// Whether it counts clockwise.
     #[serde(default)]
@@ -183,7 +175,6 @@ pub struct SpeedColumn {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevitatedColumn {
-    /// Which.
     pub column: Column,
     /// They are on where the value is above this.
     #[serde(default = "half")]

@@ -8,7 +8,6 @@ use std::rc::Rc;
 pub struct Remarks(Rc<RefCell<Vec<String>>>);
 
 impl Remarks {
-    /// Adds one.
     pub fn warn(&self, text: String) {
         self.0.borrow_mut().push(text);
     }

@@ -25,7 +25,8 @@ const MOST_DIGITS: i32 = 17;
 /// Follows the stamps of a stream.
 #[derive(Debug)]
 pub struct Clock {
-    first: f64,
+    /// Time of the first stamp, s.
+    pub first: f64,
     last: f64,
     intervals: u64,
     /// Periods that explain every stamp so far, s.
@@ -159,11 +160,6 @@ impl Clock {
         self.last = time;
         self.intervals += 1;
         Ok(())
-    }
-
-    /// Time of the first stamp, s.
-    pub fn start(&self) -> f64 {
-        self.first
     }
 
     /// Samples per second: of all rates that the rounding of the first and the last stamp allows,

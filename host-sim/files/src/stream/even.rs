@@ -85,7 +85,7 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
 
     /// Time of the first row, s.
     pub fn start(&self) -> f64 {
-        self.clock.start()
+        self.clock.first
     }
 
     fn hold(&mut self, stamp: Stamp, line: u64) -> Result<(), String> {

@@ -39,7 +39,6 @@ pub struct Cfg {
 /// An analog channel: value = scale count + shift.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analog {
-    /// Its name.
     pub name: String,
     /// As it is written.
     pub unit: String,

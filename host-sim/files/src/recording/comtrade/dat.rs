@@ -26,9 +26,7 @@ pub struct Sample {
 
 /// Reads samples.
 pub struct Dat<R> {
-    /// The file.
     pub file: String,
-    /// The configuration.
     pub cfg: Cfg,
     source: Source<R>,
     meter: Meter,

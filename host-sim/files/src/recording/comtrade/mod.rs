@@ -28,7 +28,6 @@ const WRAP: f64 = 4_294_967_296.0;
 
 /// Samples of a recording, its channels as a mapping has them.
 pub struct ComtradeRows<R> {
-    /// The data.
     pub dat: Dat<R>,
     /// What is taken of it.
     pub pick: Pick,
