@@ -83,12 +83,7 @@ impl FaultTable {
                 let rule = format!("kind = \"{kind}\" has no size");
                 return Err(Diagnostic::new("fault", "size", rule));
             }
-            "open" => Failing::Open,
-            "short" => Failing::Short,
-            "dropped" => Failing::Dropped,
-            "stuck" => Failing::Stuck,
-            "reversed" => Failing::Reversed,
-            _ => Failing::Swapped,
+            _ => (kind.parse()).map_err(|_| Diagnostic::new("fault", "kind", "kind is unknown"))?,
         };
         Ok(failing)
     }

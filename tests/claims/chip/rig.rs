@@ -44,7 +44,7 @@ fn started(scene: &str, folder: &Path, noise: f64) -> Rig {
 }
 
 fn talk(rig: &Rig) -> Client {
-    patient(TcpStream::connect(rig.address()).expect("the rig listens"))
+    patient(TcpStream::connect(rig.address).expect("the rig listens"))
 }
 
 fn patient(line: TcpStream) -> Client {
@@ -350,7 +350,7 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
     assert_eq!(episode.verdict, Verdict::Whole);
     // Nothing but noise.
     rig.order(Order::Noise(1.0));
-    let mut line = TcpStream::connect(rig.address()).expect("the rig listens");
+    let mut line = TcpStream::connect(rig.address).expect("the rig listens");
     line.write_all(&[0x55; 200]).expect("is read");
     rig.order(Order::Noise(0.0));
     let mut talk = patient(line);

@@ -59,7 +59,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// Waits for a mode, with a line of its own: the rig has one desktop at a time.
 fn until_mode(rig: &Rig, mode: Mode) {
-    let line = std::net::TcpStream::connect(rig.address()).expect("the rig listens");
+    let line = std::net::TcpStream::connect(rig.address).expect("the rig listens");
     line.set_nodelay(true).expect("a socket");
     let mut talk = Client::patient(Box::new(line));
     until(&format!("{mode:?}"), || {
@@ -79,7 +79,7 @@ fn a_configuration_is_saved_edited_sent_back_and_kept_and_refused_in_a_drop() {
     };
     let emulator = Emulator::find(None).unwrap_or_else(|error| panic!("{error}"));
     let rig = Rig::start(whirling(), emulator, options).expect("starts");
-    let port = format!("tcp:{}", rig.address());
+    let port = format!("tcp:{}", rig.address);
 
     let (saved, before) = shown(at, &port);
     assert!(saved.contains("clearance_mm = 0.3\n"), "{saved}");

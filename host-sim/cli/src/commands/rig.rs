@@ -14,7 +14,6 @@ use touchdown_base::failure::Failure;
 use touchdown_base::interrupt::TemporaryFolder;
 use touchdown_run::emulator::Emulator;
 use touchdown_scene::names::channel_name;
-use touchdown_scene::sensors::Failing;
 
 const CHANNELS: u8 = 4;
 const LOOK: Duration = Duration::from_millis(50);
@@ -52,7 +51,7 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
     print(&format!(
         "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n\
          lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off, quit\n",
-        rig.address(),
+        rig.address,
         log.display()
     ))?;
     obey(&rig, &lines())?;
@@ -111,7 +110,9 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
         ["fault", channel, kind] => {
             let channel = (0..CHANNELS).find(|it| channel_name(*it) == channel);
             let channel = channel.ok_or("the channels are ax, ay, bx, by")?;
-            Order::Spoil(channel.into(), failing(kind)?)
+            let failing = kind.parse();
+            let kinds = "the kinds are open, short, dropped, stuck, reversed, swapped";
+            Order::Spoil(channel.into(), failing.map_err(|_| kinds)?)
         }
         _ => {
             let rule =
@@ -121,20 +122,10 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
     }))
 }
 
-fn failing(kind: &str) -> Result<Failing, &'static str> {
-    Ok(match kind {
-        "open" => Failing::Open,
-        "short" => Failing::Short,
-        "dropped" => Failing::Dropped,
-        "stuck" => Failing::Stuck,
-        "reversed" => Failing::Reversed,
-        "swapped" => Failing::Swapped,
-        _ => return Err("the kinds are open, short, dropped, stuck, reversed, swapped"),
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use touchdown_scene::sensors::Failing;
+
     use super::*;
 
     #[test]

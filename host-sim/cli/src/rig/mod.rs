@@ -68,7 +68,8 @@ pub enum Order {
 /// A rig at work; it stops when this is dropped.
 #[derive(Debug)]
 pub struct Rig {
-    address: SocketAddr,
+    /// Socket of the link.
+    pub address: SocketAddr,
     orders: Option<Sender<Order>>,
     starts: Arc<AtomicU32>,
     worker: Option<JoinHandle<Result<(), Failure>>>,
@@ -99,11 +100,6 @@ impl Rig {
             starts,
             worker: Some(worker),
         })
-    }
-
-    /// Socket of the link.
-    pub fn address(&self) -> SocketAddr {
-        self.address
     }
 
     /// Times that the controller was switched on.

@@ -1,11 +1,13 @@
 //! Sensors that fail: what the converter delivers, spoilt from a given time on.
 
+use strum::EnumString;
 use touchdown_core::sample::{CHANNELS, Sample};
 
 use super::SensorsConfig;
 
-/// How a channel fails.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How a channel fails. Ways without a size are known by name.
+#[derive(Clone, Copy, Debug, PartialEq, EnumString)]
+#[strum(serialize_all = "lowercase")]
 pub enum Failing {
     /// Full scale.
     Open,
@@ -16,10 +18,13 @@ pub enum Failing {
     /// The count at which it fails.
     Stuck,
     /// Off by this way, m.
+    #[strum(disabled)]
     Off(f64),
     /// Wanders off at this speed, m/s.
+    #[strum(disabled)]
     Drift(f64),
     /// Slope off by this part.
+    #[strum(disabled)]
     Gain(f64),
     /// Sign changed.
     Reversed,
