@@ -99,7 +99,6 @@ pub fn build_planted() -> anyhow::Result<()> {
 /// What an image is built with besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extra {
-    /// Nothing.
     None,
     /// A section that tells each function's stack.
     StackSizes,

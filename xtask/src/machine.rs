@@ -22,7 +22,6 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Looks round.
     pub fn look() -> Self {
         let target_installed = has_target();
         let toolchain = Toolchain::choose(target_installed, rustup_may_download());

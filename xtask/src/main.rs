@@ -11,8 +11,6 @@ mod image_check;
 mod instructions;
 mod machine;
 mod setup;
-mod tally;
-mod test;
 mod toolchain;
 
 use std::path::{Path, PathBuf};
@@ -100,12 +98,6 @@ enum Task {
         /// Those alone whose area and name, as printed, contain this
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        /// Every N-th of them, from the K-th on
-        #[arg(long, value_name = "K/N")]
-        slice: Option<faults::Slice>,
-        /// Write the outcomes to this file
-        #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
     },
     /// Set up what is missing, build the images, run every test, and try some planted faults
     Test {
@@ -125,6 +117,13 @@ fn images_and_tests() -> anyhow::Result<()> {
         let images = firmware::build_planted().and_then(|()| firmware::build(None));
         images.and(tests.join().expect("it does not panic"))
     })
+}
+
+/// Runs every test on the desktop, those that need the emulator included.
+fn tests() -> anyhow::Result<()> {
+    let mut cargo = toolchain::default_cargo();
+    cargo.args(["test", "--workspace", "--no-fail-fast"]);
+    toolchain::run(&mut cargo, "cargo test failed")
 }
 
 fn main() -> ExitCode {
@@ -149,13 +148,11 @@ fn main() -> ExitCode {
             dry_run,
         } => flash::run(image, &chip, dry_run),
         Task::Golden { streams } => golden::run(streams),
-        Task::Faults { only, slice, json } => {
-            faults::run(&faults::Choice { only, slice }, json.as_deref())
-        }
+        Task::Faults { only } => faults::run(only.as_deref()),
         Task::Test { yes } => setup::run(yes)
             .and_then(|()| images_and_tests())
-            .and_then(|()| test::run())
-            .and_then(|()| faults::run(&faults::sample(), None)),
+            .and_then(|()| tests())
+            .and_then(|()| faults::sample()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -14,7 +14,6 @@ pub struct Region {
     pub is_code: bool,
 }
 
-/// A function.
 #[derive(Clone, Debug)]
 pub struct Function {
     pub name: String,

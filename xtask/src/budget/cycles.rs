@@ -179,7 +179,6 @@ impl fmt::Display for WorstTick {
 }
 
 impl Player {
-    /// Builds the plugin.
     pub fn new(image: &Path) -> anyhow::Result<Self> {
         let code = ticks::folder(image, "run")?.join("code.bin");
         fs::write(&code, firmware::flash_content(image)?)
@@ -384,7 +383,6 @@ fn at_rate(streams: &[Vec<u64>], rate: u64, places: usize) -> AtRate {
     }
 }
 
-/// For the eye.
 pub fn table(it: &Modelled) -> String {
     let mut text = format!(
         "  cycles, modelled and not measured, {} streams, {} ticks; period {}\n    {:24} {:>7} {:>8} {:>7}\n",

@@ -100,7 +100,6 @@ pub fn breaches(budget: &Budget, limits: &Limits) -> Vec<String> {
     breaches
 }
 
-/// For the eye.
 pub fn table(budget: &Budget, limits: &Limits) -> String {
     let mut text = String::new();
     for (name, measured, limit) in rows(budget, limits) {

@@ -118,7 +118,6 @@ impl Stream {
     }
 }
 
-/// The file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Corpus {

@@ -88,58 +88,6 @@ impl Fault {
     }
 }
 
-/// Which part of the list is tried.
-#[derive(Clone, Debug, Default)]
-pub struct Choice {
-    /// Words of area and name.
-    pub only: Option<String>,
-    /// Every N-th from the K-th on.
-    pub slice: Option<Slice>,
-}
-
-/// `K/N`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Slice {
-    first: usize,
-    every: usize,
-}
-
-impl std::str::FromStr for Slice {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        const RULE: &str = "must be K/N with K from 1 to N";
-        let (first, every) = text.split_once('/').ok_or(RULE)?;
-        let (first, every) = (
-            first.parse().map_err(|_| RULE)?,
-            every.parse().map_err(|_| RULE)?,
-        );
-        if (1..=every).contains(&first) {
-            Ok(Self { first, every })
-        } else {
-            Err(RULE)
-        }
-    }
-}
-
-impl Choice {
-    /// Those of `faults` that it takes.
-    pub fn of(&self, faults: Vec<Fault>) -> Vec<Fault> {
-        let named = |fault: &Fault| {
-            self.only
-                .as_ref()
-                .is_none_or(|only| fault.title().contains(only))
-        };
-        let Slice { first, every } = self.slice.unwrap_or(Slice { first: 1, every: 1 });
-        faults
-            .into_iter()
-            .filter(named)
-            .skip(first - 1)
-            .step_by(every)
-            .collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,26 +112,6 @@ mod tests {
             assert!(error.contains("stale"), "{error}");
         }
         assert!(fault("", "x").planted("x").is_err());
-    }
-
-    #[test]
-    fn slices_share_the_list() {
-        let all: Vec<_> = ["a", "b", "c", "d", "e"].map(|name| fault(name, "")).into();
-        let names = |slice: &str| {
-            let choice = Choice {
-                only: None,
-                slice: Some(slice.parse().unwrap()),
-            };
-            let chosen = choice.of(all.clone());
-            chosen.into_iter().map(|it| it.name).collect::<String>()
-        };
-        assert_eq!(
-            [names("1/2"), names("2/2"), names("5/5")],
-            ["ace", "bd", "e"]
-        );
-        for wrong in ["0/2", "3/2", "1", "1/0"] {
-            assert!(wrong.parse::<Slice>().is_err(), "{wrong}");
-        }
     }
 
     /// The list is that of the sources as they are.

@@ -6,13 +6,12 @@ mod test;
 mod tree;
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 
-pub use self::list::{Choice, Fault, Slice};
-use self::report::{Report, Trial};
+pub use self::list::Fault;
+use self::report::{Found, Trial};
 use self::test::Test;
 pub use self::tree::Tree;
 use crate::workspace;
@@ -22,34 +21,33 @@ const OF_CORE: &str = "touchdown-core --test golden";
 /// The same streams through the controller.
 const OF_FIRMWARE: &str = "touchdown-firmware --test golden";
 
-/// Those that `cargo xtask test` tries: some of the detector, that the core's golden streams find.
-pub fn sample() -> Choice {
-    Choice {
-        only: Some("detector: ".into()),
-        slice: "4/5".parse().ok(),
-    }
+/// Tries some of those in the detector, which the core's golden streams find.
+pub fn sample() -> anyhow::Result<()> {
+    let of_detector = faults()?.into_iter().filter(|it| it.area == "detector");
+    try_all(&of_detector.skip(3).step_by(5).collect::<Vec<_>>())
+}
+
+/// Tries those alone whose title contains `only`.
+pub fn run(only: Option<&str>) -> anyhow::Result<()> {
+    let mut faults = faults()?;
+    faults.retain(|it| only.is_none_or(|only| it.title().contains(only)));
+    try_all(&faults)
 }
 
 /// Plants the chosen faults one after the other and runs what should find them. Fails if one stays unseen without a
-/// reason. The report also goes to `json`.
-pub fn run(choice: &Choice, json: Option<&Path>) -> anyhow::Result<()> {
-    let faults = faults()?;
-    let faults = choice.of(faults);
+/// reason.
+fn try_all(faults: &[Fault]) -> anyhow::Result<()> {
     ensure!(!faults.is_empty(), "no fault of the list is chosen");
     println!("Planted faults: {}", faults.len());
     let mut bench = Bench::new()?;
-    let mut report = Report::default();
-    for fault in &faults {
+    let mut trials = Vec::new();
+    for fault in faults {
         let trial = bench.trial(fault)?;
         println!("  {}", trial.line());
-        report.trials.push(trial);
+        trials.push(trial);
     }
-    print!("{}", report.table());
-    if let Some(file) = json {
-        let text = serde_json::to_string_pretty(&report)? + "\n";
-        fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
-    }
-    let wrong = report.wrong();
+    print!("{}", report::table(&trials));
+    let wrong = report::wrong(&trials);
     ensure!(wrong.is_empty(), "{}", wrong.join("\n  "));
     Ok(())
 }
@@ -81,23 +79,25 @@ impl Bench {
         })
     }
 
-    fn trial(&mut self, fault: &Fault) -> anyhow::Result<Trial> {
-        let mut golden = vec![Test::parse(OF_FIRMWARE)?];
+    fn trial<'a>(&mut self, fault: &'a Fault) -> anyhow::Result<Trial<'a>> {
+        let mut tests = vec![(Test::parse(OF_FIRMWARE)?, true)];
         if fault.file.starts_with("shared/") {
-            golden.insert(0, Test::parse(OF_CORE)?);
+            tests.insert(0, (Test::parse(OF_CORE)?, true));
         }
-        for test in &golden {
-            if let Some(seconds) = self.finds(test, fault)? {
-                return Ok(Trial::found(fault, test, seconds, true));
+        if let Some(named) = &fault.test {
+            tests.push((Test::parse(named)?, false));
+        }
+        for (test, golden) in tests {
+            if let Some(seconds) = self.finds(&test, fault)? {
+                let found = Some(Found {
+                    by: test.text(),
+                    golden,
+                    seconds,
+                });
+                return Ok(Trial { fault, found });
             }
         }
-        let named = fault.test.as_deref().map(Test::parse).transpose()?;
-        if let Some(test) = &named
-            && let Some(seconds) = self.finds(test, fault)?
-        {
-            return Ok(Trial::found(fault, test, seconds, false));
-        }
-        Ok(Trial::unseen(fault))
+        Ok(Trial { fault, found: None })
     }
 
     /// Whether `test`, which passes without the fault, fails with it; then the time that it runs, s.
@@ -116,7 +116,7 @@ impl Bench {
     }
 
     fn run(&self, test: &Test) -> anyhow::Result<(bool, f64)> {
-        let (passes, time) = test.build(self.tree.folder(), &self.target)?.run()?;
+        let (passes, time) = test.build(&self.tree.folder, &self.target)?.run()?;
         Ok((passes, time.as_secs_f64()))
     }
 }

@@ -13,7 +13,7 @@ const LEFT_OUT: [&str; 2] = ["target", ".git"];
 
 /// The copy.
 pub struct Tree {
-    folder: PathBuf,
+    pub folder: PathBuf,
 }
 
 impl Tree {
@@ -25,11 +25,6 @@ impl Tree {
         Ok(Self {
             folder: folder.to_owned(),
         })
-    }
-
-    /// Where it is.
-    pub fn folder(&self) -> &Path {
-        &self.folder
     }
 
     /// With `fault` in it, until what is returned is dropped.

@@ -18,7 +18,6 @@ pub struct Document {
     pub blocks: Vec<Block>,
 }
 
-/// A table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
     pub name: String,

@@ -30,11 +30,11 @@ pub fn time() -> anyhow::Result<Duration> {
     let tree = Tree::copy(workspace(), &workspace().join("target/rebuild"))?;
     println!("Rebuild: building the program, then once more with another line in the detector");
     let members = members()?;
-    build(tree.folder(), &members)?;
+    build(&tree.folder, &members)?;
     let faults = faults()?;
     let line = faults.iter().find(|it| it.file.starts_with(DETECTOR));
     let changed = tree.plant(line.context("no planted fault is in the detector")?)?;
-    let time = build(tree.folder(), &members)?;
+    let time = build(&tree.folder, &members)?;
     drop(changed);
     Ok(time)
 }
