@@ -1,7 +1,6 @@
 //! Progress of a long run, on the terminal.
 
-use std::io::IsTerminal;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -12,48 +11,41 @@ const LOOK: u64 = 16_384;
 
 /// Shows how far a run is; nothing where standard error is no terminal.
 pub struct Progress {
-    what: &'static str,
-    /// Samples or jobs in all; 0 if not known.
-    total: u64,
+    bar: ProgressBar,
     done: u64,
-    /// Of these between two looks at the clock.
+    /// Samples or jobs between two looks at the clock.
     look: u64,
-    start: Instant,
-    bar: Option<ProgressBar>,
-    terminal: bool,
-    style: &'static str,
 }
 
 const JOBS: &str = "{msg} {wide_bar} {percent} %, {eta} left";
 const BYTES: &str = "{msg} {wide_bar} {bytes} of {total_bytes}, {eta} left";
 
 impl Progress {
-    /// Starts the clock.
+    /// Starts the clock; `total` samples, 0 if not known.
     pub fn new(what: &'static str, total: u64) -> Self {
         Self {
-            what,
-            total,
+            bar: bar(what, total),
             done: 0,
             look: LOOK,
-            start: Instant::now(),
-            bar: None,
-            terminal: std::io::stderr().is_terminal(),
-            style: JOBS,
         }
     }
 
     /// Of a file of `total` bytes; what is counted is its rows.
     pub fn of_bytes(what: &'static str, total: u64) -> Self {
-        let mut progress = Self::new(what, total);
-        progress.style = BYTES;
-        progress
+        Self {
+            bar: styled(what, total, BYTES),
+            done: 0,
+            look: LOOK,
+        }
     }
 
     /// Of jobs that each take long enough for a look at the clock.
     pub fn of_jobs(what: &'static str, total: u64) -> Self {
-        let mut progress = Self::new(what, total);
-        progress.look = 1;
-        progress
+        Self {
+            bar: bar(what, total),
+            done: 0,
+            look: 1,
+        }
     }
 
     /// One more is through.
@@ -68,15 +60,9 @@ impl Progress {
     }
 
     /// So many rows are through; `place` is where in the total that is.
-    pub fn passed(&mut self, rows: u64, place: impl FnOnce() -> u64) {
-        if !self.terminal || !rows.is_multiple_of(self.look) {
-            return;
-        }
-        if self.bar.is_none() && self.start.elapsed() > QUIET {
-            self.bar = Some(styled(self.what, self.total, self.style));
-        }
-        if let Some(bar) = &self.bar {
-            bar.set_position(place());
+    pub fn passed(&self, rows: u64, place: impl FnOnce() -> u64) {
+        if rows.is_multiple_of(self.look) && self.bar.elapsed() > QUIET {
+            self.bar.set_position(place());
         }
     }
 }
@@ -97,8 +83,6 @@ fn styled(what: &'static str, total: u64, style: &str) -> ProgressBar {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.bar.finish_and_clear();
     }
 }
