@@ -11,6 +11,8 @@ mod image_check;
 mod instructions;
 mod machine;
 mod setup;
+mod tally;
+mod test;
 mod toolchain;
 
 use std::path::{Path, PathBuf};
@@ -119,13 +121,6 @@ fn images_and_tests() -> anyhow::Result<()> {
     })
 }
 
-/// Runs every test on the desktop, those that need the emulator included.
-fn tests() -> anyhow::Result<()> {
-    let mut cargo = toolchain::default_cargo();
-    cargo.args(["test", "--workspace", "--no-fail-fast"]);
-    toolchain::run(&mut cargo, "cargo test failed")
-}
-
 fn main() -> ExitCode {
     let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
@@ -151,7 +146,7 @@ fn main() -> ExitCode {
         Task::Faults { only } => faults::run(only.as_deref()),
         Task::Test { yes } => setup::run(yes)
             .and_then(|()| images_and_tests())
-            .and_then(|()| tests())
+            .and_then(|()| test::run())
             .and_then(|()| faults::sample()),
     };
     match done {
