@@ -1,13 +1,14 @@
-//! `fidelity = "auto"`: what it takes gives what is asked, and is the cheapest of the table that does.
+//! `fidelity = "auto"`: what it takes gives what is asked, and is the cheapest that does.
 
 use std::fs;
 
 use predicates::str::contains;
 use rayon::prelude::*;
+use serde_json::Value;
 use tempfile::TempDir;
 use touchdown_base::history::History;
 use touchdown_run::ensemble::varied;
-use touchdown_run::fidelity::choose;
+use touchdown_run::fidelity::{Candidate, choose};
 use touchdown_run::model::simulate;
 use touchdown_scene::{BUILT_IN, Fidelity, Model, Precision, Scene};
 use touchdown_tests::binary::touchdown;
@@ -122,6 +123,43 @@ fn keys_of_the_model_are_kept() {
     for candidate in &choice.candidates {
         assert_eq!(candidate.model.precision, Precision::F64);
         assert_eq!(candidate.model.step, 37e-6);
+    }
+}
+
+/// What `trade` prints of a combination is what the choice weighs.
+#[test]
+fn costs_are_those_of_the_table_of_trade() {
+    for name in ["rig", "soft-support", "two-plane"] {
+        let text = text(name, "", "regime = true").replace("duration_s = 0.3", "duration_s = 0.012");
+        let scene = Scene::parse(name, &text).expect("a valid scene");
+        assert_eq!(scene.run.duration, 0.012);
+        let choice = choose(&scene, scene.auto.as_ref().expect("open")).expect("some");
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("s.toml"), &text).unwrap();
+        touchdown(folder.path())
+            .args(["trade", "s.toml", "--drops", "0", "--json", "a.json"])
+            .assert()
+            .success();
+        let json = fs::read_to_string(folder.path().join("a.json")).unwrap();
+        let json: Value = serde_json::from_str(&json).unwrap();
+        let rows = json["rows"].as_array().expect("rows");
+        let mut counted = 0;
+        for Candidate { model, cost, .. } in &choice.candidates {
+            let is_it = |row: &&Value| {
+                row["rung"] == model.rung.to_string()
+                    && row["scheme"] == model.scheme.to_string()
+                    && row["precision"] == model.precision.to_string()
+                    && row["math"] == model.math.to_string()
+                    && (row["step_s"].as_f64().expect("a step") - model.step).abs() < 1e-12
+            };
+            let row = rows.iter().find(is_it).expect("a row of each");
+            let each = row["mcu_instructions_per_step"].as_f64();
+            let deviation = cost.zip(each).map(|(cost, each)| cost * model.step / each - 1.0);
+            assert_eq!(cost.is_some(), each.is_some(), "{model:?}");
+            assert!(deviation.is_none_or(|it| it.abs() < 1e-12), "{model:?}: {deviation:?}");
+            counted += usize::from(cost.is_some());
+        }
+        assert!(counted > 50, "{counted}");
     }
 }
 

@@ -22,8 +22,8 @@ use touchdown_rotor::error::ConfigError;
 use accuracy::Accuracy;
 use parts::Worth;
 use touchdown_base::progress;
-use touchdown_run::fidelity::combination;
-use touchdown_run::fidelity::cost::LONGEST;
+use touchdown_run::fidelity::combination::{self, with};
+use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
 use touchdown_scene::{Model, Scene};
 
@@ -41,8 +41,7 @@ pub struct Trade {
 
 /// Measures every part, by so many drops, and every combination over the first second of `scene`.
 pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
-    let mut scene = scene.clone();
-    scene.run.duration = scene.run.duration.min(LONGEST);
+    let scene = first_second(scene);
     let models: Vec<Model> = combination::all()
         .into_iter()
         .filter(|&model| is_possible(&scene, model))
@@ -96,11 +95,4 @@ fn is_possible(scene: &Scene, model: Model) -> bool {
         }
     }
     model::with_model(&with(scene, model), Built).is_ok()
-}
-
-fn with(scene: &Scene, model: Model) -> Scene {
-    Scene {
-        model,
-        ..scene.clone()
-    }
 }

@@ -1,6 +1,6 @@
 //! What is compared.
 
-use touchdown_scene::{Fidelity, Model, Precision};
+use touchdown_scene::{Fidelity, Model, Precision, Scene};
 
 /// Steps that are compared, us.
 pub const STEPS_US: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -25,4 +25,12 @@ pub fn all() -> Vec<Model> {
         }
     }
     all
+}
+
+/// The scene by another combination.
+pub fn with(scene: &Scene, model: Model) -> Scene {
+    Scene {
+        model,
+        ..scene.clone()
+    }
 }

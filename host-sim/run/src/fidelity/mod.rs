@@ -12,22 +12,23 @@ pub use explain::explain;
 
 use rayon::prelude::*;
 
-use self::cost::{LONGEST, target_cost};
+use self::combination::with;
+use self::cost::{first_second, per_second};
 use crate::ensemble::varied;
 use crate::model;
 use touchdown_base::history::History;
 use touchdown_base::progress;
 use touchdown_scene::{Auto, Model, Request, Scene};
+use touchdown_truth::Truth;
 
 /// Drops of the ensemble. A combination that keeps the tolerances in all of them does so in at least 95 % of drops,
 /// with 95 % confidence: 0.95^59 = 0.0485.
-pub const DROPS: u64 = 59;
+pub const DROPS: usize = 59;
 
-/// Steps of all drops that are tried for a choice, and of those of the nearest: some 10 s of processor time of the levels
-/// with most parts.
+/// Drops that are tried at once: most combinations fail in one of the first.
+const FEW: usize = 8;
+/// Steps of all drops that are tried for a choice: some 10 s of processor time of the levels with most parts.
 const WORK: f64 = 1e7;
-/// Drops of the nearest at least.
-const FEWEST: usize = 8;
 
 /// A combination, with what it costs and how wrong it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,9 +47,9 @@ pub struct Candidate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tried {
     /// Drops.
-    pub drops: u64,
+    pub drops: usize,
     /// Of them, those that keep every tolerance.
-    pub kept: u64,
+    pub kept: usize,
     /// Greatest error of each output over the drops.
     pub worst: Vec<f64>,
 }
@@ -59,10 +60,9 @@ impl Candidate {
         within(&self.errors, asked)
     }
 
-    fn holds(&self) -> bool {
-        self.tried
-            .as_ref()
-            .is_some_and(|it| it.kept == it.drops && it.drops == DROPS)
+    fn holds(&self, asked: &[Request]) -> bool {
+        let around = self.tried.as_ref().is_some_and(|it| it.kept == DROPS);
+        around && self.suffices(asked)
     }
 
     /// Of the errors, the greatest part of its tolerance; outputs that are not given first.
@@ -82,10 +82,8 @@ impl Candidate {
 }
 
 fn within(errors: &[f64], asked: &[Request]) -> bool {
-    errors
-        .iter()
-        .zip(asked)
-        .all(|(&error, request)| error <= request.tolerance)
+    let mut pairs = errors.iter().zip(asked);
+    pairs.all(|(error, request)| *error <= request.tolerance)
 }
 
 /// What was looked at, by rising cost.
@@ -108,47 +106,38 @@ impl Choice {
 
     /// Whether it keeps them.
     pub fn suffices(&self) -> bool {
-        self.taken().holds()
+        self.taken().holds(&self.asked)
     }
 }
 
 /// Measures every combination that the scene leaves open over the first second of its own drop, and of those that suffice
 /// there the cheapest ones over an ensemble, until one holds. None where no combination fits what the scene fixes.
 pub fn choose(scene: &Scene, auto: &Auto) -> Option<Choice> {
-    let mut scene = scene.clone();
-    scene.run.duration = scene.run.duration.min(LONGEST);
-    let mut candidates = on_its_path(&scene, auto);
-    candidates.sort_by(|a, b| order(a).total_cmp(&order(b)));
+    let scene = &first_second(scene);
     let asked = &auto.asked;
-    let sufficient = candidates.iter().any(|it| it.suffices(asked));
-    let drops = sufficient.then(|| ensemble(&scene));
-    let (mut taken, mut work) = (None, 0.0);
-    let steps = |model: &Model| scene.run.duration / model.step;
-    for (index, candidate) in candidates.iter_mut().enumerate() {
-        if let Some(drops) = drops.as_ref().filter(|_| candidate.suffices(asked)) {
-            if work > WORK {
-                break;
-            }
-            let tried = over(drops, candidate.model, asked, true);
-            work += tried.drops as f64 * steps(&candidate.model);
-            candidate.tried = Some(tried);
-            if candidate.holds() {
-                taken = Some(index);
-                break;
-            }
+    let mut candidates = on_its_path(scene, auto);
+    candidates.sort_by(|a, b| order(a).total_cmp(&order(b)));
+    let mut around = Around {
+        scene,
+        drops: Vec::new(),
+    };
+    let mut work = 0.0;
+    for candidate in candidates.iter_mut().filter(|it| it.suffices(asked)) {
+        if work > WORK {
+            break;
+        }
+        let tried = around.race(candidate.model, asked);
+        work += tried.drops as f64 * scene.run.duration / candidate.model.step;
+        candidate.tried = Some(tried);
+        if candidate.holds(asked) {
+            break;
         }
     }
-    let taken = match taken {
-        Some(taken) => taken,
-        None => {
-            let nearest = nearest(&candidates, asked)?;
-            let drops = drops.unwrap_or_else(|| ensemble(&scene));
-            let model = candidates[nearest].model;
-            let affordable = ((WORK / steps(&model)) as usize).clamp(FEWEST, drops.len());
-            candidates[nearest].tried = Some(over(&drops[..affordable], model, asked, false));
-            nearest
-        }
-    };
+    let taken = nearest(&candidates, asked)?;
+    let nearest = &mut candidates[taken];
+    if nearest.tried.is_none() {
+        nearest.tried = Some(around.race(nearest.model, asked));
+    }
     Some(Choice {
         asked: asked.clone(),
         measured: scene.run.duration,
@@ -162,7 +151,7 @@ fn order(candidate: &Candidate) -> f64 {
     candidate.cost.unwrap_or(1e18 / candidate.model.step)
 }
 
-/// The dearest of those that held longest over the ensemble, else of those that miss least in the scene's own drop.
+/// What held longest over the ensemble, else what misses least in the scene's own drop; the dearest of such.
 fn nearest(candidates: &[Candidate], asked: &[Request]) -> Option<usize> {
     let kept = |it: &Candidate| it.tried.as_ref().map_or(0, |it| it.kept);
     let better = |a: &Candidate, b: &Candidate| {
@@ -175,59 +164,53 @@ fn nearest(candidates: &[Candidate], asked: &[Request]) -> Option<usize> {
         .map(|(index, _)| index)
 }
 
-/// Drops alike, each with its true history.
-fn ensemble(scene: &Scene) -> Vec<(Scene, History)> {
-    let bar = progress::bar("ensemble", DROPS);
-    let drops = (0..DROPS).into_par_iter().map(|number| {
-        let scene = varied(scene, number);
-        let truth = touchdown_truth::simulate(&scene);
-        bar.inc(1);
-        (scene, truth)
-    });
-    let drops = drops.collect();
-    bar.finish_and_clear();
-    drops
+/// The drops around the scene's, each with its true history, none where the reference was given up: as many as were needed.
+struct Around<'a> {
+    scene: &'a Scene,
+    drops: Vec<(Scene, Option<History>)>,
 }
 
-/// A combination over the ensemble; `hasty`: only until it fails.
-fn over(drops: &[(Scene, History)], model: Model, asked: &[Request], hasty: bool) -> Tried {
-    let mut tried = Tried {
-        drops: 0,
-        kept: 0,
-        worst: vec![0.0; asked.len()],
-    };
-    // Few at first: most fail at once.
-    for some in drops.chunks(8) {
-        let errors: Vec<Vec<f64>> = some
-            .par_iter()
-            .map(|(scene, truth)| {
-                let scene = with(scene, model);
-                let history = model::simulate(&scene).ok();
-                let of = |it: &Request| {
-                    let error = |history| error(it.output, history, truth, &scene);
-                    history.as_ref().map_or(f64::INFINITY, error)
-                };
-                asked.iter().map(of).collect()
-            })
-            .collect();
-        for errors in errors {
-            tried.drops += 1;
-            tried.kept += u64::from(within(&errors, asked));
-            for (worst, error) in tried.worst.iter_mut().zip(errors) {
-                *worst = f64::max(*worst, error);
+impl Around<'_> {
+    /// A combination over them, a few at a time, until it fails.
+    fn race(&mut self, model: Model, asked: &[Request]) -> Tried {
+        let mut tried = Tried {
+            drops: 0,
+            kept: 0,
+            worst: vec![0.0; asked.len()],
+        };
+        let bar = progress::bar("ensemble", DROPS as u64);
+        while tried.kept == tried.drops && tried.drops < DROPS {
+            let end = (tried.drops + FEW).min(DROPS);
+            self.extend(end);
+            let some = self.drops[tried.drops..end].par_iter();
+            let errors: Vec<_> = some
+                .map(|(scene, truth)| errors(&with(scene, model), truth.as_ref()?, asked))
+                .collect();
+            for errors in errors {
+                let errors = errors.unwrap_or(vec![f64::INFINITY; asked.len()]);
+                bar.inc(1);
+                tried.drops += 1;
+                tried.kept += usize::from(within(&errors, asked));
+                for (worst, error) in tried.worst.iter_mut().zip(errors) {
+                    *worst = f64::max(*worst, error);
+                }
             }
         }
-        if hasty && tried.kept < tried.drops {
-            break;
-        }
+        bar.finish_and_clear();
+        tried
     }
-    tried
-}
 
-fn with(scene: &Scene, model: Model) -> Scene {
-    Scene {
-        model,
-        ..scene.clone()
+    fn extend(&mut self, to: usize) {
+        let more = (self.drops.len()..to).into_par_iter().map(|number| {
+            let scene = varied(self.scene, number as u64);
+            let mut truth = Truth::new(&scene);
+            truth.advance(scene.run.duration);
+            let whole = truth.given_up().is_none();
+            let history = whole.then(|| truth.finish().whole);
+            (scene, history)
+        });
+        let more: Vec<_> = more.collect();
+        self.drops.extend(more);
     }
 }
 
@@ -244,18 +227,26 @@ fn on_its_path(scene: &Scene, auto: &Auto) -> Vec<Candidate> {
     let bar = progress::bar("fidelity", models.len() as u64);
     let candidates = models.into_par_iter().filter_map(|model| {
         let scene = with(scene, model);
-        let history = model::simulate(&scene).ok();
+        let errors = errors(&scene, &truth, &auto.asked);
         bar.inc(1);
-        let history = history?;
-        let error = |it: &Request| error(it.output, &history, &truth, &scene);
         Some(Candidate {
             model,
-            cost: target_cost(&scene),
-            errors: auto.asked.iter().map(error).collect(),
+            errors: errors?,
+            cost: per_second(&scene),
             tried: None,
         })
     });
     let candidates = candidates.collect();
     bar.finish_and_clear();
     candidates
+}
+
+/// Of each output that is asked for, infinite where the model is given up; none where it refuses the scene.
+fn errors(scene: &Scene, truth: &History, asked: &[Request]) -> Option<Vec<f64>> {
+    let run = model::run(scene).ok()?;
+    let of = |it: &Request| match run.given_up {
+        None => error(it.output, &run.histories.whole, truth, scene),
+        Some(_) => f64::INFINITY,
+    };
+    Some(asked.iter().map(of).collect())
 }

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use touchdown_base::progress;
 use touchdown_run::ensemble::varied;
-use touchdown_run::fidelity::cost::LONGEST;
+use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
 use touchdown_scene::Scene;
 use touchdown_scene::leave_out::{removable, without};
@@ -58,9 +58,7 @@ struct Drop {
 
 /// Drops the machine of `scene` so often, and that without each of its parts, for a second at most.
 pub fn run(scene: &Scene, drops: Option<usize>) -> Worth {
-    let mut scene = scene.clone();
-    scene.run.duration = scene.run.duration.min(LONGEST);
-    let scene = &scene;
+    let scene = &first_second(scene);
     let parts = removable(scene);
     let machines = 1 + parts.len();
     let steps = scene.run.duration / scene.model.step * machines as f64;
