@@ -10,15 +10,13 @@ use touchdown_run::fidelity::cost;
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::Scene;
 
-/// Least number of runs of a scene.
-const RUNS: u32 = 3;
 /// Short runs are repeated for this long.
-const ENOUGH: Duration = Duration::from_millis(4);
+const ENOUGH: Duration = Duration::from_millis(10);
 
 /// Cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
-    /// Of the quickest of several runs, each step with the rotor's place after it, ns.
+    /// Of the quickest of the runs, each step with the rotor's place after it, ns.
     pub ns_per_step: f64,
     /// Mean of the instructions of a step on the target.
     pub target: Option<f64>,
@@ -41,10 +39,11 @@ impl Use for Measure<'_> {
         let steps = (self.0.run.duration / self.0.model.step).round().max(1.0) as u64;
         let begin = Instant::now();
         let mut best = Duration::MAX;
-        let mut runs = 0;
-        while runs < RUNS || begin.elapsed() < ENOUGH {
+        loop {
             best = best.min(timed(subject, steps)?);
-            runs += 1;
+            if begin.elapsed() > ENOUGH {
+                break;
+            }
         }
         Ok(Pace {
             ns_per_step: best.as_secs_f64() * 1e9 / steps as f64,

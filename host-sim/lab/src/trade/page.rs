@@ -25,8 +25,8 @@ pub fn page(trade: &Trade) -> String {
             p.note {
                 "Measured over the first " (si(trade.measured, "s")) ". Errors against the independent \
                  reference: the greatest of time in T, position in clearances and velocity in V just \
-                 after an impact. Cost: the quickest of several runs on the machine that wrote this page, \
-                 with the rotor's place after each step. Instructions: counted in the emulator, mean of \
+                 after an impact. Cost: the quickest of the runs that 10 ms were enough for, one at least, on the \
+                 machine that wrote this page, with the rotor's place after each step. Instructions: counted in the emulator, mean of \
                  the run."
             }
         }
