@@ -1,7 +1,7 @@
 //! The guard over many machines that are told wrong: `cargo run --release -p touchdown-tests --example guard -- --runs 10000`.
 
 use clap::Parser;
-use touchdown_tests::family::{Campaign, Family, Place};
+use touchdown_tests::family::{self, Campaign, Place};
 use touchdown_tests::guard_runs;
 
 /// Runs the whole controller over machines that are told wrong, and counts where its guard fails: --runs power-on cycles, a
@@ -22,30 +22,8 @@ fn main() {
         table: "guard-runs",
         example: "guard",
     };
-    campaign.tell(&families, &table(&families), &failures, place);
+    campaign.tell(&families, &family::table(&families), &failures, place);
     if families.iter().any(|it| it.failed > 0) {
         std::process::exit(1);
     }
-}
-
-fn table(families: &[Family]) -> String {
-    let mut table =
-        "| family | runs | failed | rate below, 95 % |\n|---|---:|---:|---:|\n".to_owned();
-    for it in families {
-        let Family {
-            name,
-            runs,
-            failed,
-            rate_below,
-            ..
-        } = it;
-        table += &format!("| {name} | {runs} | {failed} | {rate_below:.2e} |\n");
-        if it.undecided > 0 {
-            table += &format!(
-                "| undecided: {} | {} | | |\n",
-                it.undecided_why, it.undecided
-            );
-        }
-    }
-    table
 }

@@ -49,7 +49,9 @@ pub struct Kind {
 }
 
 type Make = fn(u64) -> Scene;
-const KINDS: [(&str, Make); 2] = [("plane, rigid", plane), ("two ends, all parts", two_ends)];
+/// Random scenes, and their name.
+pub(crate) const KINDS: [(&str, Make); 2] =
+    [("plane, rigid", plane), ("two ends, all parts", two_ends)];
 
 /// So many drops of each kind.
 pub fn run(drops: u64, first_seed: u64) -> Vec<Kind> {

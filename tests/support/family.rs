@@ -145,6 +145,29 @@ impl Family {
     }
 }
 
+/// A row of each family, in Markdown.
+pub fn table(families: &[Family]) -> String {
+    let mut table =
+        "| family | runs | failed | rate below, 95 % |\n|---|---:|---:|---:|\n".to_owned();
+    for it in families {
+        let Family {
+            name,
+            runs,
+            failed,
+            rate_below,
+            ..
+        } = it;
+        table += &format!("| {name} | {runs} | {failed} | {rate_below:.2e} |\n");
+        if it.undecided > 0 {
+            table += &format!(
+                "| undecided: {} | {} | | |\n",
+                it.undecided_why, it.undecided
+            );
+        }
+    }
+    table
+}
+
 /// What becomes of each seed; nothing where a run cannot be judged.
 pub fn seeds<T: Send>(
     runs: u64,

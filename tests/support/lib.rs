@@ -3,6 +3,7 @@
 pub mod accuracy_runs;
 pub mod binary;
 pub mod cases;
+pub mod choice_runs;
 pub mod close;
 #[cfg(unix)]
 pub mod controller;
