@@ -193,7 +193,7 @@ fn each_end_of_a_tilted_drop_has_its_own_impacts() {
 fn one_end_lies_while_the_other_flies() {
     let mut errors = Vec::new();
     for low_end in [0, 1] {
-        for seed in 0..20 {
+        for seed in 0..100 {
             let watched = tilted_drop(seed, low_end);
             // The low end has lain for 10 ms, the high one bounces for another 21 ms.
             let phases = watched.at(BEFORE + LOW.end() + 10e-3);
@@ -210,13 +210,9 @@ fn one_end_lies_while_the_other_flies() {
         }
     }
     errors.sort_by(f64::total_cmp);
-    let [median, worst] = [errors[errors.len() / 2], errors[errors.len() - 1]];
-    println!(
-        "contact: median {:.2} ms, worst {:.2} ms",
-        median * 1e3,
-        worst * 1e3
-    );
-    assert!(median <= 1.5e-3 && worst <= 3e-3, "{median} {worst}");
+    let [median, late] = [0.5, 0.95].map(|part| errors[(part * errors.len() as f64) as usize]);
+    println!("contact: median {:.2} ms, 95 % {:.2} ms", median * 1e3, late * 1e3);
+    assert!(median <= 1e-3 && late <= 2.5e-3, "{median} {late}");
 }
 
 #[test]

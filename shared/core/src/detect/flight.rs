@@ -10,6 +10,7 @@ use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Jump, Track};
 use crate::event::Moment;
 use crate::vector::{direction, less, square, sum};
+use core::f32::consts::TAU;
 use touchdown_rotor::real::{root, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
@@ -75,6 +76,8 @@ pub(crate) struct FlightTest {
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
     listen_samples: f32,
+    /// Spin of one turn in a fall through the clearance, rad/s.
+    turn_in_fall: f32,
 }
 
 /// A flight under way.
@@ -236,6 +239,7 @@ impl FlightTest {
             per_horizon: 1.0 / tuning.impact_horizon,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
+            turn_in_fall: TAU * sqrt(0.5 * machine.gravity / machine.clearance),
         }
     }
 
@@ -254,7 +258,7 @@ impl FlightTest {
             measurement.variance,
             ([0.0; 2], UNKNOWN_SPEED),
             self.pull(flight),
-            turning(measurement, threshold_scale),
+            self.turning(measurement, threshold_scale),
         );
         flight.series = Series::default();
         flight.is_rigid &= wall.is_some();
@@ -262,6 +266,16 @@ impl FlightTest {
         // What it has been from the release on, it is after a lift-off.
         let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale());
         flight.restart(threshold_scale.max(heard));
+    }
+
+    /// Spin whose unbalance a flight shows, rad/s; 0 where a fall is less than a turn, in which that looks like any path. Where
+    /// the sensors are loud while the rotor floats, unbalance is in the loudness.
+    fn turning(&self, measurement: &Measurement, threshold_scale: f32) -> f32 {
+        if measurement.spin.abs() < self.turn_in_fall || threshold_scale > 1.0 {
+            0.0
+        } else {
+            measurement.spin
+        }
     }
 
     /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
@@ -309,7 +323,7 @@ impl FlightTest {
             measurement.variance,
             (both.track.velocity, UNKNOWN_SPEED),
             self.pull(both),
-            turning(measurement, threshold_scale),
+            self.turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
         (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale()));
@@ -380,7 +394,7 @@ impl FlightTest {
         let is_clear = self.told.excludes(flight.track.seen());
         let approach = Approach {
             inward: outward.map(|n| -n),
-            speed: along(flight.track.velocity_seen(), outward),
+            speed: along(flight.track.velocity, outward),
             pull: along(flight.track.acceleration, outward),
             restitution: flight.series.restitution(&self.machine),
             is_sudden: !flight.gives && !is_clear,
@@ -643,7 +657,7 @@ impl FlightTest {
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
         let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
         let ([x, y], _) = self.outward(flight, track.seen());
-        let [u, v] = track.velocity_seen();
+        let [u, v] = track.velocity;
         let along = v * x - u * y;
         let normal_acceleration =
             along * along / self.machine.clearance + self::along(track.acceleration, [x, y]);
@@ -711,15 +725,6 @@ fn is_of_a_wall(jump: &Jump, [x, y]: [f32; 2]) -> bool {
     let [u, v] = jump.change;
     let across = (v * x - u * y).abs();
     across < FASTER * sqrt(jump.variance) - (u * x + v * y)
-}
-
-/// Spin whose unbalance a flight shows, rad/s. Where the sensors are loud while the rotor floats, that is in the loudness.
-fn turning(measurement: &Measurement, threshold_scale: f32) -> f32 {
-    if threshold_scale > 1.0 {
-        0.0
-    } else {
-        measurement.spin
-    }
 }
 
 /// Part of `vector` along a unit vector.

@@ -17,13 +17,13 @@ const CORRELATION_TIME: f32 = 1e-3;
 /// Change of the acceleration along a flight: its variance grows by the square of this in a second, m/s^2.
 const DRIFT: f32 = 1.0;
 
-/// Velocity of the shaft's centre around that of the mass, m/s, one standard deviation on each axis: balance quality G 6.3
+/// Velocity of the shaft's centre around that of the mass, m/s, one standard deviation on each axis: balance quality G 2.5
 /// (ISO 21940-11).
-const BALANCE: f32 = 6.3e-3;
+const BALANCE: f32 = 2.5e-3;
 /// Times that from which on it is no unbalance that moves the rotor.
-const UNBALANCED: f32 = 3.0;
-/// Slowest shaft whose offset is followed, rad/s: a flight is less than a turn of it.
-const SLOWEST: f32 = 50.0;
+const UNBALANCED: f32 = 5.0;
+/// Standard deviations of a sample beyond which something else moves the rotor: the offset learns no more from it.
+const CLEAR: f32 = 3.0;
 /// Error of the speed, a part of it: the offset is unknown by so much of itself after a radian.
 const SPEED_ERROR: f32 = 0.05;
 
@@ -130,18 +130,20 @@ impl Ballistic {
         let total = shared[0][0] + shared[3][0] + variance;
         let scale = 1.0 / total;
         let residual = less(seen, track.seen());
-        let gain = shared.map(|it| it.map(|it| it * scale));
-        let Track {
-            position,
-            velocity,
-            acceleration,
-            offset,
-            ..
-        } = track;
-        for (state, gain) in [position, velocity, acceleration, offset]
-            .into_iter()
-            .zip(gain)
-        {
+        let mut gain = shared.map(|it| it.map(|it| it * scale));
+        let [x, y] = residual;
+        let excess = (x * x + y * y) * scale;
+        if excess > CLEAR * CLEAR {
+            let part = CLEAR / sqrt(excess);
+            gain[3] = gain[3].map(|it| it * part);
+        }
+        let states = [
+            &mut track.position,
+            &mut track.velocity,
+            &mut track.acceleration,
+            &mut track.offset,
+        ];
+        for (state, gain) in states.into_iter().zip(gain) {
             *state = sum(*state, product(gain, residual));
         }
         let [p, v, a, o] = shared;
@@ -175,8 +177,8 @@ impl Ballistic {
 }
 
 impl Track {
-    /// The shaft's centre is at `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to these. The offset is
-    /// that of unbalance at this spin, rad/s; of none at a spin of 0.
+    /// The shaft's centre is at `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to
+    /// these. The offset is that of unbalance at this spin, rad/s; of none at a spin of 0.
     pub(crate) fn new(
         position: [f32; 2],
         variance: f32,
@@ -185,11 +187,7 @@ impl Track {
         spin: f32,
     ) -> Self {
         let ((velocity, spread), (acceleration, error)) = (velocity, acceleration);
-        let offset = if spin.abs() > SLOWEST {
-            BALANCE / spin
-        } else {
-            0.0
-        };
+        let offset = if spin == 0.0 { 0.0 } else { BALANCE / spin };
         let mut track = Self {
             velocity,
             acceleration,
@@ -225,11 +223,6 @@ impl Track {
     /// The shaft's centre, m.
     pub(crate) fn seen(&self) -> [f32; 2] {
         sum(self.position, self.offset)
-    }
-
-    /// Velocity of the shaft's centre, m/s.
-    pub(crate) fn velocity_seen(&self) -> [f32; 2] {
-        sum(self.velocity, self.circling(self.offset))
     }
 
     /// Offset `time` seconds ago, m.
@@ -389,7 +382,7 @@ mod tests {
             let (mut of_offset, mut of_velocity, mut largest) = (0.0, 0.0, 0.0_f32);
             for k in 0..200_u16 {
                 let (sin, cos) = libm::sincosf(f32::from(k));
-                let (track, truth) = flight([5e-6 * cos, 5e-6 * sin], samples, &mut seed);
+                let (track, truth) = flight([4e-6 * cos, 4e-6 * sin], samples, &mut seed);
                 let [x, y] = less(track.offset, truth);
                 let [u, v] = less(track.velocity, VELOCITY);
                 let [_, velocity, _, offset] = track.variances;
