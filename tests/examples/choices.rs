@@ -3,7 +3,7 @@
 
 use clap::Parser;
 use touchdown_tests::choice_runs;
-use touchdown_tests::family::{self, Campaign, Place};
+use touchdown_tests::family::{Campaign, Place};
 
 /// Has models chosen for random machines, and counts the wrong choices: --runs answers in the plane, half of it of each other family
 #[derive(Parser)]
@@ -16,11 +16,10 @@ fn main() {
     let Arguments { campaign } = Arguments::parse();
     let asked = &campaign.asked;
     let families = choice_runs::run(&asked.only, asked.runs, asked.first_seed);
-    let failures: Vec<_> = families.iter().flat_map(|it| it.failures.clone()).collect();
     let place = Place {
         document: "docs/know/accuracy.md",
         table: "accuracy-choices",
         example: "choices",
     };
-    campaign.tell(&families, &family::table(&families), &failures, place);
+    campaign.conclude(&families, place);
 }

@@ -1,7 +1,7 @@
 //! The guard over many machines that are told wrong: `cargo run --release -p touchdown-tests --example guard -- --runs 10000`.
 
 use clap::Parser;
-use touchdown_tests::family::{self, Campaign, Place};
+use touchdown_tests::family::{Campaign, Place};
 use touchdown_tests::guard_runs;
 
 /// Runs the whole controller over machines that are told wrong, and counts where its guard fails: --runs power-on cycles, a
@@ -16,14 +16,10 @@ fn main() {
     let Arguments { campaign } = Arguments::parse();
     let asked = &campaign.asked;
     let families = guard_runs::run(&asked.only, asked.runs, asked.first_seed);
-    let failures: Vec<_> = families.iter().flat_map(|it| it.failures.clone()).collect();
     let place = Place {
         document: "docs/know/guard.md",
         table: "guard-runs",
         example: "guard",
     };
-    campaign.tell(&families, &family::table(&families), &failures, place);
-    if families.iter().any(|it| it.failed > 0) {
-        std::process::exit(1);
-    }
+    campaign.conclude(&families, place);
 }

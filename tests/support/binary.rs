@@ -17,6 +17,20 @@ pub fn touchdown(folder: &Path) -> assert_cmd::Command {
     command
 }
 
+/// What `trade` writes of this scene, without an ensemble.
+///
+/// # Panics
+/// If it refuses the scene.
+pub fn trade(scene: &str) -> serde_json::Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("s.toml"), scene).expect("is written");
+    let mut command = touchdown(folder.path());
+    command.args(["trade", "s.toml", "--drops", "0", "--json", "a.json"]);
+    command.assert().success();
+    let json = std::fs::read_to_string(folder.path().join("a.json")).expect("is written");
+    serde_json::from_str(&json).expect("JSON")
+}
+
 /// Cargo gives a test only the programs of its own package, so the test builds the other one, beside
 /// itself: `target/<profile>/deps/<test>`. As `cargo test --workspace` does, which has built it then.
 fn build() -> PathBuf {

@@ -46,6 +46,15 @@ pub struct Place {
 }
 
 impl Campaign {
+    /// The same of `families`, which ends the program with status 1 where one failed.
+    pub fn conclude(&self, families: &[Family], place: Place) {
+        let failures: Vec<_> = families.iter().flat_map(|it| it.failures.clone()).collect();
+        self.tell(&families, &table(families), &failures, place);
+        if families.iter().any(|it| it.failed > 0) {
+            std::process::exit(1);
+        }
+    }
+
     /// Prints `results` as JSON, or their `table` and to stderr what failed; writes the table into its `place` if that is
     /// asked for.
     ///

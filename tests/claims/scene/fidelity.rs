@@ -11,7 +11,7 @@ use touchdown_run::ensemble::varied;
 use touchdown_run::fidelity::{Candidate, choose};
 use touchdown_run::model::simulate;
 use touchdown_scene::{BUILT_IN, Fidelity, Model, Precision, Scene};
-use touchdown_tests::binary::touchdown;
+use touchdown_tests::binary::{touchdown, trade};
 
 fn text(name: &str, model: &str, outputs: &str) -> String {
     let built_in = BUILT_IN.iter().find(|scene| scene.name == name);
@@ -134,14 +134,7 @@ fn costs_are_those_of_the_table_of_trade() {
         let scene = Scene::parse(name, &text).expect("a valid scene");
         assert_eq!(scene.run.duration, 0.012);
         let choice = choose(&scene, scene.auto.as_ref().expect("open")).expect("some");
-        let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("s.toml"), &text).unwrap();
-        touchdown(folder.path())
-            .args(["trade", "s.toml", "--drops", "0", "--json", "a.json"])
-            .assert()
-            .success();
-        let json = fs::read_to_string(folder.path().join("a.json")).unwrap();
-        let json: Value = serde_json::from_str(&json).unwrap();
+        let json = trade(&text);
         let rows = json["rows"].as_array().expect("rows");
         let mut counted = 0;
         for Candidate { model, cost, .. } in &choice.candidates {

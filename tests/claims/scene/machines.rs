@@ -5,7 +5,7 @@ use std::fs;
 use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
-use touchdown_tests::binary::touchdown;
+use touchdown_tests::binary::{touchdown, trade};
 
 fn drop_json(scene: &str) -> (Value, String) {
     let folder = TempDir::new().unwrap();
@@ -125,22 +125,11 @@ fn what_a_rung_leaves_out_of_a_scene_is_said() {
 #[test]
 fn the_trade_has_the_new_rungs() {
     for (scene, rung) in [("soft-support", "support"), ("two-plane", "two-plane")] {
-        let folder = TempDir::new().unwrap();
         let text = match scene {
             "two-plane" => include_str!("../../../host-sim/scenes/two-plane.toml"),
             _ => include_str!("../../../host-sim/scenes/soft-support.toml"),
         };
-        fs::write(
-            folder.path().join("s.toml"),
-            text.replace("duration_s = 0.3", "duration_s = 0.012"),
-        )
-        .unwrap();
-        touchdown(folder.path())
-            .args(["trade", "s.toml", "--drops", "0", "--json", "a.json"])
-            .assert()
-            .success();
-        let json = fs::read_to_string(folder.path().join("a.json")).unwrap();
-        let json: Value = serde_json::from_str(&json).unwrap();
+        let json = trade(&text.replace("duration_s = 0.3", "duration_s = 0.012"));
         let rows = json["rows"].as_array().unwrap();
         let best = |rung: &str| {
             let of_rung = rows.iter().filter(|row| row["rung"] == rung);

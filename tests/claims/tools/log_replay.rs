@@ -57,9 +57,7 @@ fn assert_same(name: &str, told: &[DetectedEvent], again: &[DetectedEvent]) {
     assert_eq!(kinds(again), kinds(told), "{name}");
     for (was, is) in told.iter().zip(again) {
         assert_eq!(was.sample, is.sample, "{name}: {was:?}");
-        // Unbalance turns with the rotor's speed, which the log rounds.
-        let [speed, other] = [was, is].map(|it| it.normal_speed_m_s.unwrap_or_default());
-        assert!((speed - other).abs() <= 1e-5 * speed, "{name}: {was:?} {is:?}");
+        assert_eq!(was.normal_speed_m_s, is.normal_speed_m_s, "{name}: {was:?}");
         let [latency, again] = [was, is].map(|it| it.declared_s - it.onset_s);
         assert!((latency - again).abs() < ROUNDING, "{name}: {was:?} {is:?}");
     }

@@ -64,6 +64,8 @@ pub struct Detector {
 pub struct DetectorState {
     sample: u64,
     next_number: u16,
+    /// As measured while the rotor last floated, rad/s.
+    spin: Option<f32>,
     possible: Possible,
     noise: Noise,
     levitation: Levitation,
@@ -139,8 +141,11 @@ impl Detector {
             state.shift(reading.moved);
         }
         self.orbiting.advance(&mut state.orbit, signals.spin);
+        if state.rotor.phase <= Phase::Levitated {
+            state.spin = signals.spin;
+        }
         let planes = self.possible(state, &reading.planes);
-        let measurement = self.measurement(state, &planes, signals.spin);
+        let measurement = self.measurement(state, &planes);
         match planes {
             [Some(a), Some(b)] if state.noise.is_known() => {
                 let floats = state.rotor.phase == Phase::Levitated;
@@ -156,7 +161,7 @@ impl Detector {
         } else {
             self.together(state, measurement.as_ref(), signals, &mut writer);
             if state.ends.have_parted() {
-                self.part(state, &planes, signals.spin, &mut writer);
+                self.part(state, &planes, &mut writer);
             }
         }
         state.next_number = next_number;
@@ -178,7 +183,6 @@ impl Detector {
         &self,
         state: &mut DetectorState,
         planes: &PlanePositions,
-        spin: Option<f32>,
     ) -> Option<Measurement> {
         let Some((position, planes)) = mean(planes) else {
             state.noise.skip();
@@ -189,7 +193,7 @@ impl Detector {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(planes, self.resolution),
-            spin: spin.unwrap_or(self.config.machine.spin),
+            spin: state.spin.unwrap_or(self.config.machine.spin),
         })
     }
 
@@ -216,13 +220,12 @@ impl Detector {
         &self,
         state: &DetectorState,
         planes: &PlanePositions,
-        spin: Option<f32>,
     ) -> [Option<Measurement>; PLANES] {
         let measurement = |position| Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(1, self.resolution),
-            spin: spin.unwrap_or(self.config.machine.spin),
+            spin: state.spin.unwrap_or(self.config.machine.spin),
         };
         planes.map(|position| position.map(measurement))
     }
@@ -490,14 +493,8 @@ impl Detector {
     }
 
     /// Gives each end a ladder of its own where they have moved apart.
-    fn part(
-        &self,
-        state: &mut DetectorState,
-        planes: &PlanePositions,
-        spin: Option<f32>,
-        writer: &mut EventWriter,
-    ) {
-        let [Some(a), Some(b)] = self.fixes(state, planes, spin) else {
+    fn part(&self, state: &mut DetectorState, planes: &PlanePositions, writer: &mut EventWriter) {
+        let [Some(a), Some(b)] = self.fixes(state, planes) else {
             return;
         };
         let ends = [&a, &b];
@@ -543,7 +540,7 @@ impl Detector {
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        let fixes = &self.fixes(state, planes, signals.spin);
+        let fixes = &self.fixes(state, planes);
         let (ends, pending) = (&mut state.ends, &mut state.pending);
         let floating = (&state.levitation, state.listener.threshold_scale());
         self.ends

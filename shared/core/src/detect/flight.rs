@@ -268,13 +268,14 @@ impl FlightTest {
         flight.restart(threshold_scale.max(heard));
     }
 
-    /// Spin whose unbalance a flight shows, rad/s; 0 where a fall is less than a turn, in which that looks like any path. Where
-    /// the sensors are loud while the rotor floats, unbalance is in the loudness.
-    fn turning(&self, measurement: &Measurement, threshold_scale: f32) -> f32 {
-        if measurement.spin.abs() < self.turn_in_fall || threshold_scale > 1.0 {
-            0.0
+    /// Spin whose unbalance a flight shows, rad/s, and its angle in a sample, rad; 0 where a fall is less than a turn, in
+    /// which that looks like any path. Where the sensors are loud while the rotor floats, unbalance is in the loudness.
+    fn turning(&self, measurement: &Measurement, threshold_scale: f32) -> [f32; 2] {
+        let spin = measurement.spin;
+        if spin.abs() < self.turn_in_fall || threshold_scale > 1.0 {
+            [0.0; 2]
         } else {
-            measurement.spin
+            [spin, spin * self.period]
         }
     }
 
@@ -346,11 +347,11 @@ impl FlightTest {
                 variance,
                 ([0.0; 2], UNKNOWN_SPEED),
                 ([0.0; 2], 0.0),
-                0.0,
+                [0.0; 2],
             );
             flight.bank.begin(0.0);
         }
-        self.ballistic.predict(&mut flight.track, None);
+        self.ballistic.predict(&mut flight.track);
         let innovation = (self.ballistic).correct(&mut flight.track, position, variance);
         self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
@@ -360,7 +361,7 @@ impl FlightTest {
 
     /// To the next sample without a usable position.
     pub(crate) fn skip(&self, flight: &mut Airborne) {
-        self.ballistic.predict(&mut flight.track, None);
+        self.ballistic.predict(&mut flight.track);
         self.jumps.skip(&mut flight.bank);
     }
 
@@ -375,7 +376,7 @@ impl FlightTest {
             flight.wall.take(place, variance, &self.told);
             self.lie_at(flight, place);
         }
-        (self.ballistic).predict(&mut flight.track, Some(measurement.spin));
+        self.ballistic.predict(&mut flight.track);
         if flight.touch.as_ref().is_some_and(OpenTouch::gives) {
             return self.pushed(flight, measurement);
         }

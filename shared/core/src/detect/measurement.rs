@@ -11,6 +11,6 @@ pub(crate) struct Measurement {
     pub(crate) position: [f32; 2],
     /// Of one axis, m^2.
     pub(crate) variance: f32,
-    /// Of the rotor, counter-clockwise positive, as measured or else as told, rad/s.
+    /// Of the rotor while it last floated, counter-clockwise positive, as measured or else as told, rad/s.
     pub(crate) spin: f32,
 }

@@ -377,3 +377,34 @@ impl PhaseMachine {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Tuning;
+    use crate::detect::series::tests::MACHINE;
+
+    /// Half of gravity's way is a fall, less is none.
+    #[test]
+    fn what_goes_half_as_far_as_gravity_takes_it_fell() {
+        let config = DetectorConfig {
+            sample_rate: 20_000.0,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        let machine = PhaseMachine::new(&config, 25.3);
+        let pending = Pending {
+            number: 0,
+            since: Moment::of_sample(1_000),
+            declared: Moment::of_sample(1_010),
+            paths: Default::default(),
+            back: 0,
+        };
+        let way = 0.5 * MACHINE.gravity * 0.005 * 0.005;
+        let fell = |part: f32| {
+            let now = Moment::of_sample(1_100);
+            machine.fell(&pending, now, [0.0, -part * way], [0.0; 2])
+        };
+        assert!(fell(0.6) && !fell(0.4));
+    }
+}

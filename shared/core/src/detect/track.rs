@@ -20,8 +20,6 @@ const DRIFT: f32 = 1.0;
 /// Velocity of the shaft's centre around that of the mass, m/s, one standard deviation on each axis: balance quality G 2.5
 /// (ISO 21940-11).
 const BALANCE: f32 = 2.5e-3;
-/// Times that from which on it is no unbalance that moves the rotor.
-const UNBALANCED: f32 = 5.0;
 /// Standard deviations of a sample beyond which something else moves the rotor: the offset learns no more from it.
 const CLEAR: f32 = 3.0;
 /// Error of the speed, a part of it: the offset is unknown by so much of itself after a radian.
@@ -30,7 +28,7 @@ const SPEED_ERROR: f32 = 0.05;
 /// The estimate and its covariance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Track {
-    /// m.
+    /// Of the centre of mass, m.
     pub(crate) position: [f32; 2],
     /// m/s.
     pub(crate) velocity: [f32; 2],
@@ -38,8 +36,9 @@ pub(crate) struct Track {
     pub(crate) acceleration: [f32; 2],
     /// From there to the shaft's centre, which the sensors see, m.
     pub(crate) offset: [f32; 2],
-    /// The offset turns with it, rad/s.
+    /// With which the offset turns, rad/s, and cosine and sine of what it turns by in a sample.
     spin: f32,
+    turn: [f32; 2],
     /// Of position, velocity, acceleration and offset, each on one axis.
     variances: [f32; 4],
     /// Of position with velocity, position with acceleration, velocity with acceleration.
@@ -87,8 +86,8 @@ impl Ballistic {
         }
     }
 
-    /// To the next sample, with this spin (rad/s), or that of the last one.
-    pub(crate) fn predict(&self, track: &mut Track, spin: Option<f32>) {
+    /// To the next sample.
+    pub(crate) fn predict(&self, track: &mut Track) {
         let dt = self.period;
         let axes = track.position.iter_mut().zip(&mut track.velocity);
         for ((position, velocity), acceleration) in axes.zip(track.acceleration) {
@@ -109,7 +108,6 @@ impl Ballistic {
             aa + self.process_noise[1],
             oo,
         ];
-        track.spin = spin.unwrap_or(track.spin);
         if oo > 0.0 {
             track.turn(dt);
         }
@@ -122,10 +120,10 @@ impl Ballistic {
         let [po, vo, ao] = track.with_offset;
         // Covariance of each state with what is seen.
         let shared = [
-            sum(po, [pp, 0.0]),
+            [po[0] + pp, po[1]],
             sum(conjugate(pv), vo),
             sum(conjugate(pa), ao),
-            sum(conjugate(po), [oo, 0.0]),
+            [po[0] + oo, -po[1]],
         ];
         let total = shared[0][0] + shared[3][0] + variance;
         let scale = 1.0 / total;
@@ -167,7 +165,6 @@ impl Ballistic {
                 less(ao, product(of_a, conjugate(o))),
             ];
         }
-        track.limit_offset();
         Innovation {
             residual,
             variance: total,
@@ -178,20 +175,23 @@ impl Ballistic {
 
 impl Track {
     /// The shaft's centre is at `position` (m), known to `variance` (m^2); velocity (m/s) and acceleration (m/s^2) known to
-    /// these. The offset is that of unbalance at this spin, rad/s; of none at a spin of 0.
+    /// these. The offset is that of unbalance at this spin (rad/s), which turns by `angle` (rad) in a sample; there is none at
+    /// a spin of 0.
     pub(crate) fn new(
         position: [f32; 2],
         variance: f32,
         velocity: ([f32; 2], f32),
         acceleration: ([f32; 2], f32),
-        spin: f32,
+        [spin, angle]: [f32; 2],
     ) -> Self {
         let ((velocity, spread), (acceleration, error)) = (velocity, acceleration);
         let offset = if spin == 0.0 { 0.0 } else { BALANCE / spin };
+        let (sin, cos) = sin_cos(angle);
         let mut track = Self {
             velocity,
             acceleration,
             spin,
+            turn: [cos, sin],
             variances: [0.0, 0.0, 0.0, offset * offset],
             ..Self::default()
         };
@@ -236,28 +236,16 @@ impl Track {
         [-self.spin * y, self.spin * x]
     }
 
-    /// The offset turns for `time` seconds.
+    /// The offset turns for a sample, `time` seconds.
     fn turn(&mut self, time: f32) {
         let [x, y] = self.offset;
         let drift = SPEED_ERROR * SPEED_ERROR * self.spin.abs() * time;
         self.variances[3] += drift * (x * x + y * y);
-        let (sin, cos) = sin_cos(self.spin * time);
+        let [cos, sin] = self.turn;
         self.offset = product(self.offset, [cos, sin]);
         let [po, vo, ao] = self.with_offset;
         self.with_offset =
             [later(po, vo, time), later(vo, ao, time), ao].map(|it| product(it, [cos, -sin]));
-    }
-
-    /// What circles faster than unbalance lets it is another motion.
-    fn limit_offset(&mut self) {
-        let [u, v] = self.circling(self.offset);
-        let most = UNBALANCED * BALANCE;
-        if u * u + v * v > most * most {
-            self.position = self.seen();
-            self.offset = [0.0; 2];
-            self.variances[3] = 0.0;
-            self.with_offset = [[0.0; 2]; 3];
-        }
     }
 
     /// Velocity `time` seconds ago, m/s.
@@ -365,9 +353,15 @@ mod tests {
             let seen =
                 [0, 1].map(|axis| 1e-4 + VELOCITY[axis] * time + now[axis] + NOISE * white(seed));
             if k == 0 {
-                track = Track::new(seen, noise, ([0.0; 2], 0.1), ([0.0; 2], 5.0), SPIN);
+                track = Track::new(
+                    seen,
+                    noise,
+                    ([0.0; 2], 0.1),
+                    ([0.0; 2], 5.0),
+                    [SPIN, SPIN / RATE],
+                );
             } else {
-                ballistic.predict(&mut track, Some(SPIN));
+                ballistic.predict(&mut track);
                 ballistic.correct(&mut track, seen, noise);
             }
         }
@@ -398,12 +392,5 @@ mod tests {
             let most = if samples < 100 { 8e-6 } else { 1.5e-6 };
             assert!(largest < most * most, "{samples}: {largest}");
         }
-    }
-
-    /// A magnet that holds moves it farther.
-    #[test]
-    fn a_wider_circle_is_no_unbalance() {
-        let (track, _) = flight([40e-6, 0.0], 400, &mut 1);
-        assert_eq!(track.offset, [0.0; 2]);
     }
 }
