@@ -10,6 +10,7 @@ use crate::detect::retainer_wall::RetainerWall;
 use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Kind, Slip, Verdict};
 use crate::detect::still::Still;
+use crate::detect::track::Pull;
 use crate::detect::wall::{Cusum, WallAngle, WallFilter, WallTrack};
 use crate::vector::direction;
 use touchdown_rotor::real::sqrt;
@@ -161,7 +162,7 @@ impl ContactTest {
         &self,
         state: &mut Touching,
         wall: &mut RetainerWall,
-        pull: (([f32; 2], f32), bool),
+        pull: (Pull, bool),
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -202,6 +203,7 @@ impl ContactTest {
         let lift = &mut state.lift;
         let (beside, variance) = (wall.beside(measurement.position), measurement.variance);
         let found = lift.take(
+            measurement.position,
             beside.radius,
             beside.gap,
             variance + beside.variance,
@@ -292,20 +294,20 @@ impl ContactTest {
     /// Whether it is bound to go round: it has the energy to pass the highest place against the pull with the wall still
     /// pressing. Friction that drives it only adds to that, and rolling takes less, so no more need be known than the way of
     /// the slip.
-    fn goes_round(&self, state: &Touching, (pull, error): ([f32; 2], f32), slip: f32) -> bool {
+    fn goes_round(&self, state: &Touching, pull: Pull, slip: f32) -> bool {
         let swing = state.swing();
         let rate = swing.rate.abs() - SURE * state.track.rate_spread();
-        let ([x, y], strength) = direction(pull);
+        let ([x, y], strength) = direction(pull.acceleration);
         let [u, v] = state.outward();
         let down = strength * (x * u + y * v);
-        let over_the_top = (3.0 * (strength + error) + 2.0 * down) / self.machine.clearance;
+        let over_the_top = (3.0 * (strength + pull.error) + 2.0 * down) / self.machine.clearance;
         rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
     }
 
     fn regime(
         &self,
         state: &mut Touching,
-        (pull, is_whole): (([f32; 2], f32), bool),
+        (pull, is_whole): (Pull, bool),
         measurement: &Measurement,
         [surface, slip]: [f32; 2],
     ) -> Option<Finding> {
@@ -480,7 +482,12 @@ mod tests {
         wall.begin_contact(&told);
         let speed = [TAU * 100.0 * turns(1).signum() * MACHINE.clearance, 0.0];
         let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
-        let pull = ([0.0, -MACHINE.gravity], 0.0);
+        let pull = Pull {
+            acceleration: [0.0, -MACHINE.gravity],
+            error: 0.0,
+            stiffness: 0.0,
+            stiffness_variance: 0.0,
+        };
         let signals = Signals::default();
         let whirl = (1..2_000).find(|&k| {
             let now = measurement(k);

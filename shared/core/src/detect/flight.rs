@@ -7,7 +7,7 @@ use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
 use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
-use crate::detect::track::{Ballistic, Jump, Track};
+use crate::detect::track::{Ballistic, Jump, Pull, Track};
 use crate::event::Moment;
 use crate::vector::{direction, less, square, sum};
 use core::f32::consts::TAU;
@@ -30,6 +30,8 @@ const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
+/// Standard deviation of the stiffness of magnets over the mass, 1/s^2.
+const STIFFNESS: f32 = 1e5;
 /// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
 const STEADY: f32 = 0.2;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
@@ -88,8 +90,8 @@ pub(crate) struct Airborne {
     bank: JumpBank,
     /// The impacts so far.
     pub(crate) series: Series,
-    /// Acceleration of flights as the last one that an impact ended has shown it, and its standard deviation, m/s^2.
-    pull: Option<([f32; 2], f32)>,
+    /// What acts in flights, as the last one that an impact ended has shown it.
+    pull: Option<Pull>,
     /// The wall, as impacts and contacts have shown it.
     pub(crate) wall: RetainerWall,
     /// Where the last impact showed it (m), and the variance of that (m^2): taken in with the next sample.
@@ -257,7 +259,7 @@ impl FlightTest {
             measurement.position,
             measurement.variance,
             ([0.0; 2], UNKNOWN_SPEED),
-            self.pull(flight),
+            self.pull(flight).as_far_as(threshold_scale),
             self.turning(measurement, threshold_scale),
         );
         flight.series = Series::default();
@@ -279,10 +281,14 @@ impl FlightTest {
         }
     }
 
-    /// Acceleration of a flight and its standard deviation, m/s^2, as far as it is known before it.
-    pub(crate) fn pull(&self, flight: &Airborne) -> ([f32; 2], f32) {
-        let told = ([0.0, -self.machine.gravity], PULL_ERROR);
-        flight.pull.unwrap_or(told)
+    /// What acts in a flight, as far as it is known before it.
+    pub(crate) fn pull(&self, flight: &Airborne) -> Pull {
+        flight.pull.unwrap_or(Pull {
+            acceleration: [0.0, -self.machine.gravity],
+            error: PULL_ERROR,
+            stiffness: 0.0,
+            stiffness_variance: STIFFNESS * STIFFNESS,
+        })
     }
 
     /// A contact begins.
@@ -323,7 +329,7 @@ impl FlightTest {
             measurement.position,
             measurement.variance,
             (both.track.velocity, UNKNOWN_SPEED),
-            self.pull(both),
+            self.pull(both).as_far_as(threshold_scale),
             self.turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
@@ -346,7 +352,12 @@ impl FlightTest {
                 position,
                 variance,
                 ([0.0; 2], UNKNOWN_SPEED),
-                ([0.0; 2], 0.0),
+                Pull {
+                    acceleration: [0.0; 2],
+                    error: 0.0,
+                    stiffness: 0.0,
+                    stiffness_variance: 0.0,
+                },
                 [0.0; 2],
             );
             flight.bank.begin(0.0);
@@ -503,7 +514,7 @@ impl FlightTest {
             flight.shown = hit.shown.map(|variance| (hit.place, variance));
             self.lie_at(flight, hit.place);
             flight.near_wall = 0;
-            flight.pull = Some((flight.track.acceleration, flight.track.acceleration_error()));
+            flight.pull = Some(flight.track.pull());
         }
         // Of a wall that gives way the date has been stretched, of another one it would be.
         let part = (GROWS - 1.0) / if flight.gives { GROWS } else { 1.0 };

@@ -1,5 +1,6 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
+use crate::vector::square;
 use touchdown_rotor::real::{root, sqrt};
 
 /// Samples that the wall's place is learnt from before it is trusted.
@@ -33,6 +34,9 @@ pub(crate) struct LiftOff {
     give: f32,
     sum: f32,
     age: u16,
+    /// Where the rotor was last at the wall, and its distance from it, inward, m.
+    left: [f32; 2],
+    left_gap: f32,
 }
 
 impl LiftOff {
@@ -68,11 +72,13 @@ impl LiftOff {
         }
     }
 
-    /// Takes the distance from the centre, and that from the wall's shape, inward (m), known to `variance` (m^2). Where the
-    /// rotor has left both the shape and where the wall has lately been: samples since. A shape that has just been learnt may
-    /// go on wrongly.
+    /// Takes the place and its distances from the centre and from the wall's shape, inward (m), known to `variance` (m^2). Where
+    /// the rotor has left both the shape and where the wall has lately been: samples since. A shape that has just been learnt
+    /// may go on wrongly. A free rotor leaves a whirl on a straight line at most, which is farther inside in its middle: a way c
+    /// is a chord, c^2/(8 R) from the wall. One that was nearer is on a wall, which is there.
     pub(crate) fn take(
         &mut self,
+        place: [f32; 2],
         radius: f32,
         gap: f32,
         variance: f32,
@@ -82,11 +88,17 @@ impl LiftOff {
         self.gap = gap.min(self.lately - radius);
         let inward = self.gap / sigma;
         self.sum = (self.sum + SHIFT * (inward.min(MAX_INWARD_SIGMA) - 0.5 * SHIFT)).max(0.0);
-        if self.count < WARM_UP {
+        let is_curved = (self.gap - self.left_gap) * 8.0 * radius < square(place, self.left);
+        if is_curved && self.age > 0 {
+            self.lately = radius;
+        }
+        if is_curved || self.count < WARM_UP {
             self.sum = 0.0;
         }
         if self.sum <= 0.0 {
             self.age = 0;
+            self.left = place;
+            self.left_gap = self.gap;
             self.count = self.count.saturating_add(1);
             let gain = 1.0 / f32::from(self.count).min(MEMORY);
             self.lately += gain * (radius - self.lately);
@@ -118,17 +130,23 @@ mod tests {
         let mut test = LiftOff::default();
         for k in 0..1_000 {
             let noise = if k % 2 == 0 { 1e-6 } else { -1e-6 };
-            assert_eq!(test.take(300e-6 + noise, -noise, 1e-12, 25.0), None);
+            assert_eq!(
+                test.take([0.0, -300e-6], 300e-6 + noise, -noise, 1e-12, 25.0),
+                None
+            );
         }
         // A spike, and a pair of them.
         for k in 0..200 {
             let gap = if k % 50 < 2 { 40e-6 } else { 0.0 };
-            assert_eq!(test.take(300e-6 - gap, gap, 1e-12, 25.0), None);
+            assert_eq!(
+                test.take([0.0, -300e-6], 300e-6 - gap, gap, 1e-12, 25.0),
+                None
+            );
         }
         // 20 um after 40 samples, growing with the cube.
         let found = (1..200).find_map(|k| {
             let gap = 20e-6 * (k as f32 / 40.0).powi(3);
-            test.take(300e-6 - gap, gap, 1e-12, 25.0)
+            test.take([0.0, -300e-6], 300e-6 - gap, gap, 1e-12, 25.0)
                 .map(|age| (k as f32, age))
         });
         let (now, age) = found.expect("found");

@@ -45,6 +45,38 @@ pub(crate) struct Track {
     covariances: [[f32; 2]; 3],
     /// Of position, velocity and acceleration with the offset.
     with_offset: [[f32; 2]; 3],
+    /// Change of the acceleration with the place, 1/s^2, and its variance, 1/s^4.
+    stiffness: f32,
+    stiffness_variance: f32,
+    /// What position, velocity, acceleration and offset change by with it.
+    by_stiffness: [[f32; 2]; 4],
+}
+
+/// What acts on the rotor in flight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull {
+    /// m/s^2.
+    pub(crate) acceleration: [f32; 2],
+    /// Its standard deviation on each axis, m/s^2.
+    pub(crate) error: f32,
+    /// Its change with the place, 1/s^2: negative stiffness of magnets over the mass; and the variance of that, 1/s^4.
+    pub(crate) stiffness: f32,
+    pub(crate) stiffness_variance: f32,
+}
+
+impl Pull {
+    /// Where the sensors are loud while the rotor floats, a flight does not show the stiffness.
+    pub(crate) fn as_far_as(self, threshold_scale: f32) -> Self {
+        let is_loud = threshold_scale > 1.0;
+        Self {
+            stiffness_variance: if is_loud {
+                0.0
+            } else {
+                self.stiffness_variance
+            },
+            ..self
+        }
+    }
 }
 
 /// What a sample told the filter.
@@ -89,23 +121,41 @@ impl Ballistic {
     /// To the next sample.
     pub(crate) fn predict(&self, track: &mut Track) {
         let dt = self.period;
+        let stiffness = track.stiffness * dt;
+        let [p, v, a, o] = track.by_stiffness;
+        let [x, y] = track.velocity;
+        let way = if x * x + y * y > CLEAR * CLEAR * track.variances[1] {
+            dt
+        } else {
+            0.0
+        };
+        track.by_stiffness = [
+            later(p, v, dt),
+            later(v, a, dt),
+            later(later(a, track.velocity, way), v, stiffness),
+            o,
+        ];
         let axes = track.position.iter_mut().zip(&mut track.velocity);
-        for ((position, velocity), acceleration) in axes.zip(track.acceleration) {
-            *position += (*velocity + 0.5 * acceleration * dt) * dt;
-            *velocity += acceleration * dt;
+        for ((position, velocity), acceleration) in axes.zip(&mut track.acceleration) {
+            let middle = *velocity + 0.5 * *acceleration * dt;
+            *position += middle * dt;
+            *velocity += *acceleration * dt;
+            *acceleration += stiffness * middle;
         }
         let [pp, vv, aa, oo] = track.variances;
         let [pv, pa, va] = track.covariances;
         let pa_next = later(pa, va, dt);
+        let pv_next = later(pv, [vv + pa_next[0], pa_next[1]], dt);
+        let va_next = later(va, [aa, 0.0], dt);
         track.covariances = [
-            later(pv, [vv + pa_next[0], pa_next[1]], dt),
-            pa_next,
-            later(va, [aa, 0.0], dt),
+            pv_next,
+            later(pa_next, later(pv, [vv, 0.0], dt), stiffness),
+            later(va_next, later([vv, 0.0], va, dt), stiffness),
         ];
         track.variances = [
             pp + (2.0 * pv[0] + vv * dt) * dt,
             vv + (2.0 * va[0] + aa * dt) * dt + self.process_noise[0],
-            aa + self.process_noise[1],
+            aa + (2.0 * va[0] + vv * stiffness) * stiffness + self.process_noise[1],
             oo,
         ];
         if oo > 0.0 {
@@ -135,14 +185,27 @@ impl Ballistic {
             let part = CLEAR / sqrt(excess);
             gain[3] = gain[3].map(|it| it * part);
         }
+        let seen_by = sum(track.by_stiffness[0], track.by_stiffness[3]);
+        let [u, v] = seen_by;
+        let mut more = 0.0;
+        let wider = 1.0 + track.stiffness_variance * scale * (u * u + v * v);
+        if excess < CLEAR * CLEAR * wider {
+            track.stiffness_variance /= wider;
+            more = track.stiffness_variance * scale * (u * x + v * y);
+            // Magnets without control push outward, never back.
+            more = more.max(-track.stiffness);
+            track.stiffness += more;
+        }
         let states = [
             &mut track.position,
             &mut track.velocity,
             &mut track.acceleration,
             &mut track.offset,
         ];
-        for (state, gain) in states.into_iter().zip(gain) {
+        for ((state, by), gain) in states.into_iter().zip(&mut track.by_stiffness).zip(gain) {
+            *by = less(*by, product(gain, seen_by));
             *state = sum(*state, product(gain, residual));
+            *state = later(*state, *by, more);
         }
         let [p, v, a, o] = shared;
         let [of_p, of_v, of_a, of_o] = gain;
@@ -181,10 +244,17 @@ impl Track {
         position: [f32; 2],
         variance: f32,
         velocity: ([f32; 2], f32),
-        acceleration: ([f32; 2], f32),
+        pull: Pull,
         [spin, angle]: [f32; 2],
     ) -> Self {
-        let ((velocity, spread), (acceleration, error)) = (velocity, acceleration);
+        let (
+            (velocity, spread),
+            Pull {
+                acceleration,
+                error,
+                ..
+            },
+        ) = (velocity, pull);
         let offset = if spin == 0.0 { 0.0 } else { BALANCE / spin };
         let (sin, cos) = sin_cos(angle);
         let mut track = Self {
@@ -193,6 +263,8 @@ impl Track {
             spin,
             turn: [cos, sin],
             variances: [0.0, 0.0, 0.0, offset * offset],
+            stiffness: pull.stiffness,
+            stiffness_variance: pull.stiffness_variance,
             ..Self::default()
         };
         track.go_on_at(position, variance, spread, error);
@@ -218,6 +290,17 @@ impl Track {
         ];
         self.covariances = [[0.0; 2]; 3];
         self.with_offset = [[-offset, 0.0], [0.0; 2], [0.0; 2]];
+        self.by_stiffness = [[0.0; 2]; 4];
+    }
+
+    /// What acts besides the wall, as it is known.
+    pub(crate) fn pull(&self) -> Pull {
+        Pull {
+            acceleration: self.acceleration,
+            error: self.acceleration_error(),
+            stiffness: self.stiffness,
+            stiffness_variance: self.stiffness_variance,
+        }
     }
 
     /// The shaft's centre, m.
@@ -243,9 +326,11 @@ impl Track {
         self.variances[3] += drift * (x * x + y * y);
         let [cos, sin] = self.turn;
         self.offset = product(self.offset, [cos, sin]);
+        self.by_stiffness[3] = product(self.by_stiffness[3], [cos, sin]);
         let [po, vo, ao] = self.with_offset;
+        let ao_next = later(ao, vo, self.stiffness * time);
         self.with_offset =
-            [later(po, vo, time), later(vo, ao, time), ao].map(|it| product(it, [cos, -sin]));
+            [later(po, vo, time), later(vo, ao, time), ao_next].map(|it| product(it, [cos, -sin]));
     }
 
     /// Velocity `time` seconds ago, m/s.
@@ -291,10 +376,16 @@ impl Track {
     /// The variance of the acceleration grows by this, (m/s^2)^2.
     pub(crate) fn loosen(&mut self, variance: f32) {
         self.variances[2] += variance;
+        self.by_stiffness = [[0.0; 2]; 4];
     }
 
-    /// The acceleration is another one, m/s^2, known to this.
-    pub(crate) fn accelerate(&mut self, (acceleration, error): ([f32; 2], f32)) {
+    /// The acceleration is another one.
+    pub(crate) fn accelerate(&mut self, pull: Pull) {
+        let Pull {
+            acceleration,
+            error,
+            ..
+        } = pull;
         self.acceleration = acceleration;
         self.variances[2] = error * error;
         let [pv, ..] = self.covariances;
@@ -321,6 +412,7 @@ impl Track {
             *covariance += product * variance;
         }
         self.variances[0] += misplaced;
+        self.by_stiffness = [[0.0; 2]; 4];
     }
 }
 
@@ -339,27 +431,41 @@ mod tests {
     const NOISE: f32 = 0.7e-6;
     const VELOCITY: [f32; 2] = [0.02, -0.01];
 
-    /// A rotor whose shaft circles around its centre of mass with this offset (m) at first, in a straight flight of `samples`
-    /// without gravity: the track, and the offset at its end.
-    fn flight(offset: [f32; 2], samples: u16, seed: &mut u64) -> (Track, [f32; 2]) {
+    /// A rotor whose shaft circles around its centre of mass with this offset (m) at first, in a flight of `samples` without
+    /// gravity, by magnets of this stiffness over the mass (1/s^2): the track, and offset and velocity at its end.
+    fn flight(
+        offset: [f32; 2],
+        (stiffness, spread): (f32, f32),
+        samples: u16,
+        seed: &mut u64,
+    ) -> (Track, [[f32; 2]; 2]) {
         let ballistic = Ballistic::new(RATE, 0.1);
         let noise = NOISE * NOISE;
+        let root = sqrt(stiffness);
         let mut track = Track::default();
-        let mut now = offset;
+        let mut now = [offset, VELOCITY];
         for k in 0..samples {
             let time = f32::from(k) / RATE;
             let (sin, cos) = libm::sincosf(SPIN * time);
-            now = product(offset, [cos, sin]);
-            let seen =
-                [0, 1].map(|axis| 1e-4 + VELOCITY[axis] * time + now[axis] + NOISE * white(seed));
+            now = [
+                product(offset, [cos, sin]),
+                VELOCITY.map(|it| it * libm::coshf(root * time)),
+            ];
+            let stretched = if stiffness > 0.0 {
+                libm::sinhf(root * time) / root
+            } else {
+                time
+            };
+            let seen = [0, 1]
+                .map(|axis| 1e-4 + VELOCITY[axis] * stretched + now[0][axis] + NOISE * white(seed));
             if k == 0 {
-                track = Track::new(
-                    seen,
-                    noise,
-                    ([0.0; 2], 0.1),
-                    ([0.0; 2], 5.0),
-                    [SPIN, SPIN / RATE],
-                );
+                let pull = Pull {
+                    acceleration: [0.0; 2],
+                    error: 5.0,
+                    stiffness: 0.0,
+                    stiffness_variance: spread * spread,
+                };
+                track = Track::new(seen, noise, ([0.0; 2], 0.1), pull, [SPIN, SPIN / RATE]);
             } else {
                 ballistic.predict(&mut track);
                 ballistic.correct(&mut track, seen, noise);
@@ -376,9 +482,10 @@ mod tests {
             let (mut of_offset, mut of_velocity, mut largest) = (0.0, 0.0, 0.0_f32);
             for k in 0..200_u16 {
                 let (sin, cos) = libm::sincosf(f32::from(k));
-                let (track, truth) = flight([4e-6 * cos, 4e-6 * sin], samples, &mut seed);
+                let (track, [truth, moves]) =
+                    flight([4e-6 * cos, 4e-6 * sin], (0.0, 0.0), samples, &mut seed);
                 let [x, y] = less(track.offset, truth);
-                let [u, v] = less(track.velocity, VELOCITY);
+                let [u, v] = less(track.velocity, moves);
                 let [_, velocity, _, offset] = track.variances;
                 of_offset += (x * x + y * y) / (400.0 * offset);
                 of_velocity += (u * u + v * v) / (400.0 * velocity);
@@ -391,6 +498,30 @@ mod tests {
             );
             let most = if samples < 100 { 8e-6 } else { 1.5e-6 };
             assert!(largest < most * most, "{samples}: {largest}");
+        }
+    }
+
+    /// Likewise the stiffness of magnets, known to a quarter of gravity over 0.3 mm within 8 ms.
+    #[test]
+    fn magnets_are_found() {
+        let mut seed = 1;
+        for stiffness in [0.0, 1e4, 3e4, 6e4] {
+            for unbalance in [0.0, 3e-6] {
+                let mut error = 0.0;
+                for k in 0..200_u16 {
+                    let (sin, cos) = libm::sincosf(f32::from(k));
+                    let offset = [unbalance * cos, unbalance * sin];
+                    let (track, _) = flight(offset, (stiffness, 1e5), 160, &mut seed);
+                    let off = track.stiffness - stiffness;
+                    error += off * off / (200.0 * track.stiffness_variance);
+                    assert!(track.variances.iter().all(|&it| it > 0.0));
+                    assert!(track.stiffness_variance < 8.2e3 * 8.2e3);
+                }
+                assert!(
+                    (0.05..1.5).contains(&error),
+                    "{stiffness} {unbalance}: {error}"
+                );
+            }
         }
     }
 }
