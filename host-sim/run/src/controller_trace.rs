@@ -4,7 +4,7 @@ use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Alarm, Level, Notice};
 use touchdown_protocol::controller::{Fault, Mode};
-use touchdown_protocol::link::{Hello, State};
+use touchdown_protocol::link::{Counters, Hello, State};
 use touchdown_protocol::wire::{Cleared, Switching};
 
 use crate::timebase::Timebase;
@@ -76,10 +76,8 @@ struct Link {
     sample_rate_hz: f32,
     mode: Mode,
     faults: Vec<Fault>,
-    lost_samples: u32,
-    unusable_values: u64,
-    lost_notices: u32,
-    damaged_frames: u32,
+    #[serde(flatten)]
+    counters: Counters,
 }
 
 impl ControllerTrace {
@@ -109,7 +107,7 @@ impl ControllerTrace {
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();
-        let (state, counters) = (&self.state, self.state.counters);
+        let state = &self.state;
         Controller {
             outputs: switchings
                 .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
@@ -127,10 +125,7 @@ impl ControllerTrace {
                 sample_rate_hz: self.hello.sample_rate,
                 mode: state.mode,
                 faults: state.faults.iter().collect(),
-                lost_samples: counters.lost_samples,
-                unusable_values: counters.unusable_values,
-                lost_notices: counters.lost_notices,
-                damaged_frames: counters.damaged_frames,
+                counters: state.counters,
             },
         }
     }
@@ -205,9 +200,9 @@ impl Link {
             "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
             self.firmware,
             self.sample_rate_hz,
-            self.lost_samples,
-            self.lost_notices,
-            self.damaged_frames
+            self.counters.lost_samples,
+            self.counters.lost_notices,
+            self.counters.damaged_frames
         )
     }
 }
