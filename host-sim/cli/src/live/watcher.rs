@@ -37,7 +37,7 @@ impl Watcher {
         let start = Instant::now();
         let mut teller = Teller { to, start };
         thread::spawn(move || {
-            while let Err(Ended::Line(error)) = session(&port, &mut teller) {
+            while let Err(Some(error)) = session(&port, &mut teller) {
                 if teller.tell(Said::Lost(error.to_string())).is_err() {
                     break;
                 }
@@ -63,18 +63,8 @@ impl Watcher {
     }
 }
 
-/// Why a session is over.
-enum Ended {
-    Line(LinkError),
-    /// Nobody listens.
-    Unheard,
-}
-
-impl From<LinkError> for Ended {
-    fn from(error: LinkError) -> Self {
-        Self::Line(error)
-    }
-}
+/// Why a session is over: what is wrong with the line, or nobody listens.
+type Ended = Option<LinkError>;
 
 struct Teller {
     to: Sender<Update>,
@@ -84,9 +74,7 @@ struct Teller {
 impl Teller {
     fn tell(&mut self, said: Said) -> Result<(), Ended> {
         let at = self.start.elapsed().as_secs_f64();
-        self.to
-            .send(Update { at, said })
-            .map_err(|_| Ended::Unheard)
+        self.to.send(Update { at, said }).map_err(|_| None)
     }
 }
 
