@@ -1,5 +1,7 @@
 //! What the controller did over a run, besides what the monitor said: outputs, log and link.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Alarm, Level, Notice};
@@ -39,7 +41,7 @@ pub struct Controller {
     touches: u32,
     alarms: Vec<AlarmAt>,
     orders: Vec<OrderAt>,
-    zones: Zones,
+    zones: BTreeMap<&'static str, f64>,
     log: Log,
     link: Link,
 }
@@ -50,15 +52,6 @@ struct OrderAt {
     order: &'static str,
     done: bool,
     why: Option<&'static str>,
-}
-
-/// Part of the samples in each zone.
-#[derive(Debug, Serialize)]
-struct Zones {
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -104,6 +97,12 @@ impl ControllerTrace {
         }
     }
 
+    /// Part of the samples in each zone.
+    pub fn zone_parts(&self) -> [f64; 4] {
+        let all = self.zones.iter().sum::<u64>().max(1) as f64;
+        self.zones.map(|it| it as f64 / all)
+    }
+
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();
@@ -115,7 +114,10 @@ impl ControllerTrace {
             touches: state.touches,
             alarms: self.alarms.iter().map(|it| alarm(it, timebase)).collect(),
             orders: self.orders.iter().map(|it| order(it, timebase)).collect(),
-            zones: zones(self.zones),
+            zones: ["a", "b", "c", "d"]
+                .into_iter()
+                .zip(self.zone_parts())
+                .collect(),
             log: Log {
                 checksum: CRC.checksum(&self.flash),
                 dump: Dump::of(&self.flash),
@@ -143,12 +145,6 @@ fn order(order: &Cleared, timebase: Timebase) -> OrderAt {
         done: order.refused.is_none(),
         why: order.refused.map(busy_name),
     }
-}
-
-fn zones(samples: [u64; 4]) -> Zones {
-    let all = samples.iter().sum::<u64>().max(1) as f64;
-    let [a, b, c, d] = samples.map(|it| it as f64 / all);
-    Zones { a, b, c, d }
 }
 
 impl Controller {

@@ -63,23 +63,20 @@ impl Watcher {
     }
 }
 
-/// Why a session is over: what is wrong with the line, or nobody listens.
-type Ended = Option<LinkError>;
-
 struct Teller {
     to: Sender<Update>,
     start: Instant,
 }
 
 impl Teller {
-    fn tell(&mut self, said: Said) -> Result<(), Ended> {
+    fn tell(&mut self, said: Said) -> Result<(), Option<LinkError>> {
         let at = self.start.elapsed().as_secs_f64();
         self.to.send(Update { at, said }).map_err(|_| None)
     }
 }
 
-/// From the opening of the line to its end.
-fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
+/// From the opening of the line to its end; no error where nobody listens any more.
+fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
     let mut client = Client::new(port.open()?);
     let hello = client.hello()?;
     let settings = client.settings()?;
@@ -134,7 +131,7 @@ fn look(
     client: &mut Client,
     known: Option<u32>,
     teller: &mut Teller,
-) -> Result<Option<u32>, Ended> {
+) -> Result<Option<u32>, Option<LinkError>> {
     let Some((first, last)) = client.episodes()? else {
         return Ok(None);
     };
