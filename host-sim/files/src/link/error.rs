@@ -1,11 +1,11 @@
 //! Why the controller does not answer.
 
+use std::fmt::Display;
 use std::io::{self, ErrorKind};
 
 use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::link::{Refusal, VERSION};
 
-use super::port::Port;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::reason;
 use touchdown_base::plain::shown;
@@ -39,7 +39,7 @@ pub enum LinkError {
 
 impl LinkError {
     /// Of a command that talked over `port`. A refusal is the controller's answer; all else is none.
-    pub fn at(&self, port: &Port) -> Failure {
+    pub fn at(&self, port: &impl Display) -> Failure {
         let text = format!("{port}: {self}");
         match self {
             Self::Refused(_) => Failure::Check(text),
