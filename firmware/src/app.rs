@@ -95,18 +95,8 @@ impl App {
     }
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
-    /// outputs, and last of all the watchdog is fed. The notices are left for the recorder.
-    pub fn tick(
-        &mut self,
-        board: &mut impl Board,
-        sample: &Sample,
-        lost: u32,
-        notices: &mut Notices,
-    ) {
-        self.take(board, sample, false, lost, notices);
-    }
-
-    /// Likewise; one that was `missed` was never taken, and the next one that was does what follows.
+    /// outputs, and last of all the watchdog is fed. The notices are left for the recorder. A sample that was `missed` was
+    /// never taken, and the next one that was does what follows.
     #[inline]
     pub fn take(
         &mut self,
@@ -302,11 +292,6 @@ impl App {
             mode,
             cause: self.safety.cause(),
         }
-    }
-
-    /// Samples lost since power-on.
-    pub fn lost(&self) -> u32 {
-        self.lost
     }
 }
 

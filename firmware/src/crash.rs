@@ -58,19 +58,14 @@ impl Crash {
 
     /// Record to words: magic, cause, place, detail, CFSR, HFSR, address, CRC-32 of these.
     pub fn encode(&self) -> [u32; WORDS] {
-        let FaultStatus {
-            configurable,
-            hard,
-            address,
-        } = self.status;
         let mut words = [
             MAGIC,
             self.cause as u32,
             self.place,
             self.detail,
-            configurable,
-            hard,
-            address,
+            self.status.configurable,
+            self.status.hard,
+            self.status.address,
             0,
         ];
         words[WORDS - 1] = checksum(&words);

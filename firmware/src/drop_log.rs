@@ -7,7 +7,7 @@ use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::counters::Counters;
 
 use crate::recorder::Counted;
-use crate::store::{EPISODE_BYTES, LockError, MountError, Store};
+use crate::store::{EPISODE_BYTES, Store};
 
 /// A store of `SLOTS` episodes in its flash.
 pub struct DropLog<F, const SLOTS: usize> {
@@ -17,7 +17,7 @@ pub struct DropLog<F, const SLOTS: usize> {
 
 impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
     /// Finds what is in `flash`, which has nothing but the log.
-    pub fn mount(mut flash: F) -> Result<Self, MountError<F::Error>> {
+    pub fn mount(mut flash: F) -> Result<Self, F::Error> {
         let store = Store::mount(&mut flash, 0)?;
         Ok(Self { store, flash })
     }
@@ -65,14 +65,10 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
         if !self.store.written().any(|it| it == episode) {
             return Err(Refusal::NoEpisode);
         }
-        let mut bytes = [0; CHUNK_BYTES];
-        let read = self
-            .store
-            .read(&mut self.flash, episode, offset, &mut bytes);
-        let length = read.map_err(|_| Refusal::StoreFailed)?;
-        chunk.clear();
         // A chunk has that room.
-        let _ = chunk.extend_from_slice(bytes.get(..length).unwrap_or_default());
+        let _ = chunk.resize_default(CHUNK_BYTES);
+        let read = self.store.read(&mut self.flash, episode, offset, chunk);
+        chunk.truncate(read.map_err(|_| Refusal::StoreFailed)?);
         Ok(EPISODE_BYTES as u32)
     }
 
@@ -80,20 +76,11 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
         if self.store.episodes().any(|it| it == (episode, true)) {
             return Err(Busy::Locked.into());
         }
-        match self.store.erase_episode(&mut self.flash, episode) {
-            Ok(true) => Ok(()),
-            Ok(false) => Err(Refusal::NoEpisode),
-            Err(_) => Err(Refusal::StoreFailed),
-        }
+        self.store.erase_episode(&mut self.flash, episode)
     }
 
     fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
-        let done = self.store.set_locked(&mut self.flash, episode, locked);
-        done.map_err(|error| match error {
-            LockError::Unknown => Refusal::NoEpisode,
-            LockError::NoRoom => Refusal::NoRoom,
-            LockError::WornOut | LockError::Flash(_) => Refusal::StoreFailed,
-        })
+        self.store.set_locked(&mut self.flash, episode, locked)
     }
 
     fn lifetime(&mut self) -> Option<Counters> {

@@ -198,7 +198,7 @@ impl<P: Platform> Device for Remote<'_, P> {
         self.platform.hold(|tick| tick.recorder.recent(step))
     }
 
-    fn log(&mut self) -> &mut impl Log {
-        self.platform.log()
+    fn log(&mut self) -> Option<&mut impl Log> {
+        self.platform.log().as_mut()
     }
 }

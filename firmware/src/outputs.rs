@@ -18,32 +18,25 @@ pub struct Condition {
 }
 
 /// The outputs in a condition. A fault that trips rules, whatever the mode says.
-pub const fn outputs(condition: &Condition) -> Outputs {
-    let Condition {
-        mode,
-        faults,
-        lies_still,
-        whirls,
-        armed,
-    } = *condition;
-    if faults.trip() {
+pub const fn outputs(it: &Condition) -> Outputs {
+    if it.faults.trip() {
         return Outputs::SAFE;
     }
-    match mode {
+    match it.mode {
         Mode::SelfTest | Mode::Faulted => Outputs::SAFE,
         Mode::Arming => Outputs {
-            no_brake: !whirls,
-            permit: lies_still,
+            no_brake: !it.whirls,
+            permit: it.lies_still,
             ..Outputs::SAFE
         },
         Mode::Watching => Outputs {
             run: true,
             no_brake: true,
             permit: false,
-            ready: armed && faults.is_empty(),
+            ready: it.armed && it.faults.is_empty(),
         },
         Mode::Dropped => Outputs {
-            permit: lies_still,
+            permit: it.lies_still,
             ..Outputs::SAFE
         },
     }

@@ -98,14 +98,15 @@ impl<'m, B: Board> TickTask<'m, B> {
         if self.desk.waiting.gate.is_overruled(taken.number) {
             self.app.trip(Cause::Danger);
         }
-        let Self {
-            app,
-            recorder,
+        let (desk, notices) = (&mut self.desk, &mut self.notices);
+        tick(
+            self.app,
+            self.recorder,
             desk,
+            &arrival.sample,
+            lost,
             notices,
-            ..
-        } = self;
-        tick(app, recorder, desk, &arrival.sample, lost, notices);
+        );
         true
     }
 

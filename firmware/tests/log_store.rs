@@ -3,10 +3,13 @@
 
 mod common;
 
+use embedded_storage::nor_flash::NorFlashErrorKind;
+
 use common::chip::{Bus, Chip, NoDelay, flash, random};
 use common::rig::{Rig, read};
-use touchdown_firmware::store::{EPISODE_BYTES, LockError, MountError, Store, bytes_of};
-use touchdown_firmware::w25q::W25q;
+use touchdown_firmware::store::{EPISODE_BYTES, Store, bytes_of};
+use touchdown_firmware::w25q::{Error, W25q};
+use touchdown_protocol::link::Refusal;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::log::waveform::Counts;
 
@@ -69,16 +72,19 @@ fn locks_leave_room_for_new_episodes() {
     });
     assert_eq!(log.set_locked(&mut flash, 1, true), Ok(()));
     assert_eq!(log.set_locked(&mut flash, 2, true), Ok(()));
-    assert_eq!(log.set_locked(&mut flash, 3, true), Err(LockError::NoRoom));
-    assert_eq!(log.set_locked(&mut flash, 9, true), Err(LockError::Unknown));
+    assert_eq!(log.set_locked(&mut flash, 3, true), Err(Refusal::NoRoom));
+    assert_eq!(log.set_locked(&mut flash, 9, true), Err(Refusal::NoEpisode));
     for _ in 0..11 {
         log.set_locked(&mut flash, 2, false).unwrap();
         log.set_locked(&mut flash, 2, true).unwrap();
     }
     log.set_locked(&mut flash, 2, false).unwrap();
-    assert_eq!(log.set_locked(&mut flash, 2, true), Err(LockError::WornOut));
+    assert_eq!(
+        log.set_locked(&mut flash, 2, true),
+        Err(Refusal::StoreFailed)
+    );
     for episode in [2, 3, 4] {
-        assert_eq!(log.erase_episode(&mut flash, episode), Ok(true));
+        assert_eq!(log.erase_episode(&mut flash, episode), Ok(()));
     }
     one_drop(&mut log, &mut flash, 5);
     assert_eq!(sequences(&log), [1, 5]);
@@ -108,18 +114,9 @@ fn a_flash_that_is_too_small_is_refused() {
     let (mut flash, _) = flash(Chip::new(CAPACITY));
     assert_eq!(bytes_of(SLOTS), 248 * 1024);
     assert!(Store::<21>::mount(&mut flash, 0).is_ok());
-    assert_eq!(
-        Store::<22>::mount(&mut flash, 0).err(),
-        Some(MountError::Size)
-    );
-    assert_eq!(
-        Store::<21>::mount(&mut flash, 8 * 4096).err(),
-        Some(MountError::Size)
-    );
-    assert_eq!(
-        Store::<2>::mount(&mut flash, 0).err(),
-        Some(MountError::Size)
-    );
+    let beyond = Some(Error::Range(NorFlashErrorKind::OutOfBounds));
+    assert_eq!(Store::<22>::mount(&mut flash, 0).err(), beyond);
+    assert_eq!(Store::<21>::mount(&mut flash, 8 * 4096).err(), beyond);
 }
 
 #[test]

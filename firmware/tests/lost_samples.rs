@@ -63,7 +63,7 @@ fn drop(lost: impl Fn(usize) -> bool) -> Outcome {
     Outcome {
         onsets: told.map(|it| it.onset.0 as f64 / 256.0).take(4).collect(),
         samples: app.state().samples(),
-        lost: app.lost(),
+        lost: app.report(0, 0).counters.lost_samples,
         faults: app.faults(),
         sensor_faults: events
             .iter()

@@ -44,7 +44,11 @@ fn nothing_is_lost_until_the_ring_is_full() {
         let (mut machine, mut main_loop) = started(falling(), burst);
         run_to(&mut machine, &mut main_loop, DURATION);
         let app = &machine.tick.app;
-        assert_eq!(u64::from(app.lost()), lost, "{periods} periods");
+        assert_eq!(
+            u64::from(app.report(0, 0).counters.lost_samples),
+            lost,
+            "{periods} periods"
+        );
         assert_eq!(app.faults().contains(Fault::Overrun), lost > 0);
         assert_eq!(machine.given - machine.taken, lost);
         assert_eq!(app.state().samples(), machine.given, "time goes on");
@@ -80,7 +84,7 @@ proptest! {
         machine.cost = Box::new(|_| 1);
         run_to(&mut machine, &mut main_loop, 0.301);
         let missing = machine.given - machine.taken;
-        prop_assert_eq!(u64::from(machine.tick.app.lost()), missing);
+        prop_assert_eq!(u64::from(machine.tick.app.report(0, 0).counters.lost_samples), missing);
     }
 }
 
@@ -110,7 +114,13 @@ fn the_guard_on_top_trips_while_a_tick_takes_long() {
         assert!(machine.pins.borrow().outputs.run, "it floats");
         run_to(&mut machine, &mut main_loop, RELEASE + 0.03);
         let shown = machine.tick.app.shown();
-        assert_eq!((shown.mode, machine.tick.app.lost()), (Mode::Dropped, 0));
+        assert_eq!(
+            (
+                shown.mode,
+                machine.tick.app.report(0, 0).counters.lost_samples
+            ),
+            (Mode::Dropped, 0)
+        );
         println!("{shown:?}");
         let pins = machine.pins.borrow();
         let (time, _) = *pins

@@ -129,7 +129,7 @@ impl Controller {
         let mut notices = Notices::new();
         for _ in 0..samples {
             self.app
-                .tick(&mut self.board, &sample(height), 0, &mut notices);
+                .take(&mut self.board, &sample(height), false, 0, &mut notices);
             self.recorder.take(&sample(height), &notices);
         }
     }
@@ -244,8 +244,8 @@ impl Device for Controller {
         self.recorder.recent(step)
     }
 
-    fn log(&mut self) -> &mut impl Log {
-        &mut self.log
+    fn log(&mut self) -> Option<&mut impl Log> {
+        Some(&mut self.log)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The commissioning check over many machines: `cargo run --release -p touchdown-tests --example calibrate -- --runs 1000`.
 
 use clap::Parser;
+use touchdown_base::wilson;
 use touchdown_tests::led_rounds::{self, Row, Summary};
 use touchdown_tests::record::record;
 
@@ -57,7 +58,8 @@ fn main() {
 
 fn table(summary: &Summary) -> String {
     let mut table =
-        "| quantity | found | within | of them, % | largest | in the 95 % error, % |\n".to_owned();
+        "| quantity | found | within | within it, % | largest | in the 95 % error, % |\n"
+            .to_owned();
     table += "|---|---:|---:|---:|---:|---:|\n";
     for it in &summary.rows {
         let Row {
@@ -68,9 +70,14 @@ fn table(summary: &Summary) -> String {
             largest,
             covered,
         } = it;
-        let (within, covered) = (100.0 * within, 100.0 * covered);
+        let rate = |share: &f64| {
+            let (low, high) = wilson::of_share(*share, *count as f64);
+            let [share, low, high] = [*share, low, high].map(|it| 100.0 * it);
+            format!("{share:.1} ({low:.1} to {high:.1})")
+        };
+        let (within, covered) = (rate(within), rate(covered));
         table += &format!(
-            "| {name} | {count} | {tolerance:.0e} | {within:.1} | {largest:.1e} | {covered:.1} |\n"
+            "| {name} | {count} | {tolerance:.0e} | {within} | {largest:.1e} | {covered} |\n"
         );
     }
     table + &format!("| refused | {} | | | | |\n", summary.refused.len())

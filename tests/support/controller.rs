@@ -16,7 +16,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Block, Key, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Busy, Cause, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Chunk, Device, Log, Recent, Refusal, Server, State};
 use touchdown_protocol::log::counters::Counters;
 
@@ -75,7 +75,8 @@ pub fn state() -> State {
             ready: true,
         },
         faults: Faults::NONE,
-        ..State::NONE
+        cause: Some(Cause::NoProof),
+        ..State::default()
     }
 }
 
@@ -164,8 +165,8 @@ impl Device for Machine {
         circle(self.state.sample, step)
     }
 
-    fn log(&mut self) -> &mut impl Log {
-        self
+    fn log(&mut self) -> Option<&mut impl Log> {
+        Some(self)
     }
 }
 

@@ -11,6 +11,7 @@ mod slots;
 use embedded_storage::nor_flash::{MultiwriteNorFlash, NorFlash, ReadNorFlash};
 use touchdown_core::event::EventKind;
 use touchdown_protocol::controller::Cause;
+use touchdown_protocol::link::Refusal;
 use touchdown_protocol::log::block::{BLOCK_BYTES, Block, Kind};
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::ending::Ending;
@@ -23,28 +24,6 @@ use self::slots::Slots;
 
 /// Slots that must stay unlocked: one to write to, one to erase meanwhile, one to keep.
 const LEAST_UNLOCKED: usize = 3;
-
-/// Why the log cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MountError<E> {
-    /// The flash is smaller than the slots, or there are fewer slots than it takes.
-    Size,
-    /// Of the flash.
-    Flash(E),
-}
-
-/// Why an episode cannot be locked or unlocked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LockError<E> {
-    /// There is no such episode.
-    Unknown,
-    /// Too few slots would be left for new episodes.
-    NoRoom,
-    /// It has been locked and unlocked too often.
-    WornOut,
-    /// Of the flash.
-    Flash(E),
-}
 
 /// The lifetime counters of the log in `flash`, as [`Store::mount`] finds them, before it counts anything itself.
 pub fn counters<F: ReadNorFlash>(flash: &mut F, base: u32) -> Result<Counters, F::Error> {
@@ -84,22 +63,21 @@ pub struct Store<const SLOTS: usize> {
 
 impl<const SLOTS: usize> Store<SLOTS> {
     /// Finds what is in `flash` from `base` on, a multiple of 4096. Only reads; takes as long as
-    /// reading 8 KiB and 800 bytes a slot, and two episodes more after a cut of power.
-    pub fn mount<F: NorFlash>(flash: &mut F, base: u32) -> Result<Self, MountError<F::Error>> {
-        let layout = Layout { base };
-        let size = base as usize + bytes_of(SLOTS);
-        if SLOTS < LEAST_UNLOCKED || flash.capacity() < size {
-            return Err(MountError::Size);
+    /// reading 8 KiB and 800 bytes a slot, and two episodes more after a cut of power. A flash that is smaller than the
+    /// slots refuses to be read.
+    pub fn mount<F: NorFlash>(flash: &mut F, base: u32) -> Result<Self, F::Error> {
+        const {
+            assert!(SLOTS >= LEAST_UNLOCKED);
         }
-        let mut ledger = Ledger::mount(flash, layout).map_err(MountError::Flash)?;
-        let slots = Slots::mount(flash, layout).map_err(MountError::Flash)?;
+        let layout = Layout { base };
+        let mut ledger = Ledger::mount(flash, layout)?;
+        let slots = Slots::mount(flash, layout)?;
         let counted = ledger.counters().episodes;
         for (slot, sequence) in slots.after(counted) {
-            let ending = slots::ending(flash, layout, slot, sequence).map_err(MountError::Flash)?;
+            let ending = slots::ending(flash, layout, slot, sequence)?;
             // Power went before it was counted, maybe before the trip was noted.
-            let falls = slots::trigger(flash, layout, slot, sequence).map_err(MountError::Flash)?
-                == Some(EventKind::FreeFall);
-            let latched = falls.then_some(Cause::Fall);
+            let trigger = slots::trigger(flash, layout, slot, sequence)?;
+            let latched = (trigger == Some(EventKind::FreeFall)).then_some(Cause::Fall);
             ledger.update(|counters| counters.count(sequence, ending.as_ref(), latched));
         }
         ledger.update(|counters| counters.boots = counters.boots.saturating_add(1));
@@ -186,24 +164,23 @@ impl<const SLOTS: usize> Store<SLOTS> {
     /// Number of each episode that is not being written, in no order.
     pub fn written(&self) -> impl Iterator<Item = u32> + '_ {
         let open = match self.state {
-            State::Writing { slot, .. } => self.slots.sequence(slot),
+            State::Writing { slot, .. } => self.slots.get(slot).sequence,
             _ => 0,
         };
         let numbers = self.episodes().map(|(number, _)| number);
         numbers.filter(move |&number| number != open)
     }
 
-    /// Gives an episode up, locked or not; `false` if there is none or it is being written. One operation.
+    /// Gives an episode up, locked or not. One operation.
     pub fn erase_episode<F: NorFlash>(
         &mut self,
         flash: &mut F,
         sequence: u32,
-    ) -> Result<bool, F::Error> {
+    ) -> Result<(), Refusal> {
         let is_written = self.written().any(|number| number == sequence);
-        match self.slots.find(sequence).filter(|_| is_written) {
-            Some(slot) => self.release(flash, slot).map(|()| true),
-            None => Ok(false),
-        }
+        let slot = self.slots.find(sequence).filter(|_| is_written);
+        let released = self.release(flash, slot.ok_or(Refusal::NoEpisode)?);
+        released.map_err(|_| Refusal::StoreFailed)
     }
 
     /// Reads bytes of an episode from `offset` on; how many, 0 past its end or if there is no such
@@ -226,25 +203,27 @@ impl<const SLOTS: usize> Store<SLOTS> {
         }
     }
 
-    /// Keeps an episode, or gives it free to be overwritten. One operation.
+    /// Keeps an episode, or gives it free to be overwritten; one that was locked and unlocked too often fails. One
+    /// operation.
     pub fn set_locked<F: MultiwriteNorFlash>(
         &mut self,
         flash: &mut F,
         sequence: u32,
         locked: bool,
-    ) -> Result<(), LockError<F::Error>> {
-        let slot = self.slots.find(sequence).ok_or(LockError::Unknown)?;
-        if self.slots.is_locked(slot) == locked {
+    ) -> Result<(), Refusal> {
+        let slot = self.slots.find(sequence).ok_or(Refusal::NoEpisode)?;
+        if self.slots.get(slot).locked == locked {
             return Ok(());
         }
         if locked && self.slots.unlocked() <= LEAST_UNLOCKED {
-            return Err(LockError::NoRoom);
+            return Err(Refusal::NoRoom);
         }
-        let marks = slots::marks(flash, self.layout, slot).map_err(LockError::Flash)?;
-        let toggle = marks.toggle.ok_or(LockError::WornOut)?;
-        let address = self.layout.marks(slot) + u32::from(toggle);
-        flash.write(address, &[0]).map_err(LockError::Flash)?;
-        self.slots.set_locked(slot, locked);
+        let marks = slots::marks(flash, self.layout, slot).map_err(|_| Refusal::StoreFailed)?;
+        let address =
+            self.layout.marks(slot) + u32::from(marks.toggle.ok_or(Refusal::StoreFailed)?);
+        let made = flash.write(address, &[0]);
+        made.map_err(|_| Refusal::StoreFailed)?;
+        self.slots.set(slot, sequence, locked);
         Ok(())
     }
 
@@ -253,7 +232,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
         let Some(slot) = self.slots.oldest() else {
             return Ok(false);
         };
-        if self.slots.is_used(slot) {
+        if self.slots.get(slot).sequence != 0 {
             self.release(flash, slot)?;
         }
         self.state = State::Erasing { slot, sector: 0 };
@@ -262,7 +241,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
 
     fn release<F: NorFlash>(&mut self, flash: &mut F, slot: usize) -> Result<(), F::Error> {
         flash.write(self.layout.marks(slot), &layout::RELEASED)?;
-        self.slots.give_up(slot);
+        self.slots.set(slot, 0, false);
         Ok(())
     }
 
@@ -295,7 +274,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
             return Ok(());
         }
         let newest = self.slots.newest().max(self.counters().episodes);
-        self.slots.take(slot, newest.saturating_add(1));
+        self.slots.set(slot, newest.saturating_add(1), false);
         self.write(flash, slot, 0, first)
     }
 
@@ -306,7 +285,7 @@ impl<const SLOTS: usize> Store<SLOTS> {
         block: u32,
         next: &Block,
     ) -> Result<(), F::Error> {
-        let sequence = self.slots.sequence(slot);
+        let sequence = self.slots.get(slot).sequence;
         let ending = Ending::decode(next.payload()).filter(|_| next.kind() == Kind::Ending);
         let complete = ending.is_some_and(|it| u32::from(it.blocks) == block + 1);
         if complete || block + 1 == BLOCKS_PER_SLOT {

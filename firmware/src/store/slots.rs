@@ -2,7 +2,7 @@
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use touchdown_core::event::EventKind;
-use touchdown_protocol::log::block::{BLOCK_BYTES, Kind, Page};
+use touchdown_protocol::log::block::{BLOCK_BYTES, Kind, Page, Sealed};
 use touchdown_protocol::log::ending::Ending;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::marks::{MARKS_BYTES, Marks};
@@ -69,31 +69,11 @@ impl<const SLOTS: usize> Slots<SLOTS> {
             .map(|(number, _)| number)
     }
 
-    pub(super) fn sequence(&self, slot: usize) -> u32 {
-        self.0.get(slot).map_or(0, |it| it.sequence)
+    pub(super) fn get(&self, slot: usize) -> Slot {
+        self.0.get(slot).copied().unwrap_or_default()
     }
 
-    pub(super) fn is_used(&self, slot: usize) -> bool {
-        self.sequence(slot) != 0
-    }
-
-    pub(super) fn is_locked(&self, slot: usize) -> bool {
-        self.0.get(slot).is_some_and(|it| it.locked)
-    }
-
-    pub(super) fn take(&mut self, slot: usize, sequence: u32) {
-        self.set(slot, sequence, false);
-    }
-
-    pub(super) fn give_up(&mut self, slot: usize) {
-        self.set(slot, 0, false);
-    }
-
-    pub(super) fn set_locked(&mut self, slot: usize, locked: bool) {
-        self.set(slot, self.sequence(slot), locked);
-    }
-
-    fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
+    pub(super) fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
         if let Some(slot) = self.0.get_mut(slot) {
             *slot = Slot {
                 sequence,
@@ -143,12 +123,9 @@ pub(super) fn ending<F: ReadNorFlash>(
 ) -> Result<Option<Ending>, F::Error> {
     let mut bytes = [0; BLOCK_BYTES];
     for block in (0..BLOCKS_PER_SLOT).rev() {
-        flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, &mut bytes)?;
-        if let Page::Sealed(sealed) = Page::open(&bytes)
-            && sealed.sequence == sequence
-            && sealed.kind == Some(Kind::Ending)
-            && let Some(ending) = Ending::decode(sealed.payload)
-        {
+        let sealed = sealed(flash, layout, slot, block, &mut bytes)?;
+        let own = sealed.filter(|it| it.sequence == sequence && it.kind == Some(Kind::Ending));
+        if let Some(ending) = own.and_then(|it| Ending::decode(it.payload)) {
             return Ok(Some(ending));
         }
     }
@@ -163,11 +140,8 @@ pub(super) fn trigger<F: ReadNorFlash>(
     sequence: u32,
 ) -> Result<Option<EventKind>, F::Error> {
     let mut bytes = [0; BLOCK_BYTES];
-    flash.read(layout.slot(slot), &mut bytes)?;
-    let Page::Sealed(sealed) = Page::open(&bytes) else {
-        return Ok(None);
-    };
-    let header = Header::decode(sealed.payload).filter(|_| sealed.sequence == sequence);
+    let own = sealed(flash, layout, slot, 0, &mut bytes)?.filter(|it| it.sequence == sequence);
+    let header = own.and_then(|it| Header::decode(it.payload));
     Ok(header.map(|it| it.trigger_kind))
 }
 
@@ -175,10 +149,24 @@ pub(super) fn trigger<F: ReadNorFlash>(
 fn owner<F: ReadNorFlash>(flash: &mut F, layout: Layout, slot: usize) -> Result<u32, F::Error> {
     let mut bytes = [0; BLOCK_BYTES];
     for block in 0..FIRST_PAGES {
-        flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, &mut bytes)?;
-        if let Page::Sealed(sealed) = Page::open(&bytes) {
+        if let Some(sealed) = sealed(flash, layout, slot, block, &mut bytes)? {
             return Ok(sealed.sequence);
         }
     }
     Ok(0)
+}
+
+/// The block on a page of a slot, if one is whole there.
+fn sealed<'a, F: ReadNorFlash>(
+    flash: &mut F,
+    layout: Layout,
+    slot: usize,
+    block: u32,
+    bytes: &'a mut [u8; BLOCK_BYTES],
+) -> Result<Option<Sealed<'a>>, F::Error> {
+    flash.read(layout.slot(slot) + block * BLOCK_BYTES as u32, bytes)?;
+    Ok(match Page::open(bytes) {
+        Page::Sealed(sealed) => Some(sealed),
+        Page::Blank | Page::Broken => None,
+    })
 }

@@ -136,7 +136,7 @@ pub fn read(bytes: &[u8]) -> Read {
             Item::Learnt(_) | Item::Pulses(_) | Item::Severity(..) | Item::Ending(_) => {}
         }
     }
-    read.report = reader.finish();
+    read.report = reader.finish(|_| ());
     read
 }
 

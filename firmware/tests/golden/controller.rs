@@ -118,7 +118,7 @@ fn tell(log: &mut Episodes, text: &mut String) {
             }
             .expect("a string");
         }
-        writeln!(text, "{:?}", reader.finish()).expect("a string");
+        writeln!(text, "{:?}", reader.finish(|_| ())).expect("a string");
     }
 }
 

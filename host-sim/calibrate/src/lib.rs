@@ -36,39 +36,25 @@ pub enum Scale {
     Sensor,
 }
 
-/// Readings of a plane, thinned out where they are many.
-#[derive(Clone, Debug)]
+/// Readings of a plane, every second thinned out as often as they are many.
+#[derive(Clone, Debug, Default)]
 pub struct Readings {
     kept: Vec<[f64; 2]>,
-    every: usize,
+    thinned: u32,
     seen: usize,
-}
-
-impl Default for Readings {
-    fn default() -> Self {
-        Self {
-            kept: Vec::new(),
-            every: 1,
-            seen: 0,
-        }
-    }
 }
 
 impl Readings {
     /// Takes the next, m.
     pub fn push(&mut self, reading: [f64; 2]) {
-        if self.seen.is_multiple_of(self.every) {
+        if self.seen.is_multiple_of(1 << self.thinned) {
             self.kept.push(reading);
-            if self.kept.len() >= KEPT {
-                let mut number = 0;
-                self.kept.retain(|_| {
-                    number += 1;
-                    number % 2 == 1
-                });
-                self.every *= 2;
-            }
         }
         self.seen += 1;
+        if self.kept.len() == KEPT {
+            self.kept = self.kept.iter().copied().step_by(2).collect();
+            self.thinned += 1;
+        }
     }
 
     /// Those that are kept, m.
@@ -198,7 +184,9 @@ pub fn plane(readings: &[[f64; 2]], resolution: f64, scale: Scale) -> Result<Pla
 
 impl Plane {
     fn why_not(&self) -> Option<String> {
-        let amplitude = 0.5 * (self.ellipse.amplitude[0] + self.ellipse.amplitude[1]);
+        let [a, b] = self.ellipse.amplitude;
+        let amplitude = 0.5 * (a + b);
+        let (arc, residual) = (self.arc_deg, self.residual_m);
         let percent = |part: f64| 100.0 * part;
         let errors = [
             ("zero", self.zero_m[0].error / amplitude),
@@ -209,17 +197,16 @@ impl Plane {
             ("skew", self.skew_rad.error),
         ];
         let largest = errors.iter().find(|(_, error)| *error > MOST_ERROR);
-        if self.arc_deg < LEAST_ARC {
+        if arc < LEAST_ARC {
             return Some(format!(
-                "{:.0} degrees of the wall were touched, {LEAST_ARC} are the fewest: lead the rotor further round",
-                self.arc_deg
+                "{arc:.0} degrees of the wall were touched, {LEAST_ARC} are the fewest: lead the rotor further round"
             ));
         }
-        if self.residual_m > MOST_RESIDUAL * amplitude {
+        if residual > MOST_RESIDUAL * amplitude {
             return Some(format!(
                 "the residual is {:.2} um, {:.1} % of the radius, {} % is the most: the readings are no ellipse",
-                1e6 * self.residual_m,
-                percent(self.residual_m / amplitude),
+                1e6 * residual,
+                percent(residual / amplitude),
                 percent(MOST_RESIDUAL)
             ));
         }

@@ -14,16 +14,17 @@ const POINTS: usize = 1_000;
 type Row = [String; 4];
 
 fn rows(plane: &Plane) -> Vec<Row> {
+    let plain = |name: &str, value: f64, digits: usize, unit: &str| {
+        let value = format!("{value:.digits$}");
+        [name.to_owned(), value, String::new(), unit.to_owned()]
+    };
     let row = |name: &str, it: Value, scale: f64, digits: usize, unit: &str| {
-        let error = match it.error {
+        let mut row = plain(name, scale * it.value, digits, unit);
+        row[2] = match it.error {
             0.0 => "given".to_owned(),
             error => format!("{:.digits$}", scale * error),
         };
-        let value = format!("{:.digits$}", scale * it.value);
-        [name.to_owned(), value, error, unit.to_owned()]
-    };
-    let plain = |name: &str, value: String, unit: &str| {
-        [name.to_owned(), value, String::new(), unit.to_owned()]
+        row
     };
     let degrees = 180.0 / std::f64::consts::PI;
     let [first, second] = plane.zero_m;
@@ -36,14 +37,10 @@ fn rows(plane: &Plane) -> Vec<Row> {
         row("gain, second over first", plane.gain_ratio, 1.0, 5, ""),
         row("skew", plane.skew_rad, degrees, 4, "deg"),
         row("radius", plane.radius_m, 1e6, 3, "um"),
-        plain(
-            "residual, rms",
-            format!("{:.3}", 1e6 * plane.residual_m),
-            "um",
-        ),
-        plain("correlation", format!("{:.2}", plane.correlation), ""),
-        plain("wall touched", format!("{:.0}", plane.arc_deg), "deg"),
-        plain("samples on the wall", plane.on_wall.to_string(), ""),
+        plain("residual, rms", 1e6 * plane.residual_m, 3, "um"),
+        plain("correlation", plane.correlation, 2, ""),
+        plain("wall touched", plane.arc_deg, 0, "deg"),
+        plain("samples on the wall", plane.on_wall as f64, 0, ""),
     ]
 }
 
@@ -103,10 +100,7 @@ fn orbit(plane: &Plane, readings: &[[f64; 2]]) -> maud::Markup {
         height: 420.0,
     };
     let mut dots = chart.pen();
-    for [u, v] in readings
-        .iter()
-        .step_by(readings.len().div_ceil(4 * POINTS).max(1))
-    {
+    for [u, v] in some(readings) {
         dots.dot(1e6 * u, 1e6 * v);
     }
     let turn = (0..=POINTS).map(|it| it as f64 / POINTS as f64 * std::f64::consts::TAU);
@@ -117,6 +111,11 @@ fn orbit(plane: &Plane, readings: &[[f64; 2]]) -> maud::Markup {
         ul.legend { (key("sensed", "readings")) (key("limit", "wall")) }
         (chart.plain(&html! { (dots.finish("sensed")) (chart.curve("limit", curve)) }))
     }
+}
+
+/// As many as are drawn.
+fn some(all: &[[f64; 2]]) -> impl Iterator<Item = &[f64; 2]> {
+    all.iter().step_by(all.len().div_ceil(4 * POINTS).max(1))
 }
 
 /// Over the angle.
@@ -132,11 +131,7 @@ fn residuals(plane: &Plane) -> maud::Markup {
         height: 220.0,
     };
     let mut dots = chart.pen();
-    for [angle, it] in plane
-        .residuals
-        .iter()
-        .step_by(plane.residuals.len().div_ceil(4 * POINTS).max(1))
-    {
+    for [angle, it] in some(&plane.residuals) {
         dots.dot(angle.to_degrees().rem_euclid(360.0), 1e6 * it);
     }
     chart.plain(&dots.finish("sensed"))

@@ -60,13 +60,9 @@ pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<(Vec<usize>, Fitte
 
 /// Median of five neighbours, by channel: no spikes.
 fn medians(readings: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let median = |five: &[[f64; 2]], k: usize| {
-        let mut values: Vec<f64> = five.iter().map(|it| it[k]).collect();
-        values.sort_by(f64::total_cmp);
-        values[2]
-    };
+    let of = |five: &[[f64; 2]], k: usize| median(five.iter().map(|it| it[k]).collect());
     let windows = readings.windows(5);
-    windows.map(|it| [median(it, 0), median(it, 1)]).collect()
+    windows.map(|it| [of(it, 0), of(it, 1)]).collect()
 }
 
 /// Of a channel, m, from second differences: slow motion leaves none.

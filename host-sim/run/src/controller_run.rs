@@ -12,9 +12,7 @@ use touchdown_firmware::store::bytes_of;
 use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
-use touchdown_protocol::link::{
-    Decoder, Device, Log, Recent, Refusal, Reply, Request, Server, State, encode,
-};
+use touchdown_protocol::link::Hello;
 use touchdown_protocol::wire::{Cleared, Switching};
 use touchdown_rotor::error::ConfigError;
 
@@ -33,7 +31,14 @@ pub fn run(
 ) -> Result<(MonitorOutput, ControllerTrace), ConfigError> {
     let mut log =
         RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
-    let mut desk = Desk::new(config);
+    let mut desk = Desk {
+        block: config_block::encode(&Settings {
+            monitor: *config,
+            wiring: Wiring::default(),
+            key: None,
+        }),
+        ..Desk::default()
+    };
     let mut memory = Box::new(Memory::EMPTY);
     let identity = Identity::new(&desk.block, log.boot());
     let mut recorder = Recorder::new(&mut memory, config, identity);
@@ -72,18 +77,12 @@ pub fn run(
         summary: fingerprint.summary(app.state()),
         log: Vec::new(),
     };
-    let mut remote = Remote {
-        app: &mut app,
-        recorder: &recorder,
-        block: &desk.block,
-        log: &mut log,
+    // As the link would answer.
+    let hello = Hello {
+        firmware: env!("CARGO_PKG_VERSION").try_into().unwrap_or_default(),
+        sample_rate: config.detector.sample_rate,
     };
-    let mut server = Server::new(env!("CARGO_PKG_VERSION"), config.detector.sample_rate, None);
-    let mut ask = |request| ask(&mut server, &mut remote, &request);
-    let (Reply::Hello(hello), Reply::State(state)) = (ask(Request::Hello), ask(Request::State))
-    else {
-        unreachable!("each request has its own answer");
-    };
+    let state = app.report(0, 0);
     let conduct = ControllerTrace {
         flash: log.flash().0.clone(),
         ..ControllerTrace::new(&answer.notices, desk.switchings, desk.cleared, hello, state)
@@ -91,18 +90,8 @@ pub fn run(
     Ok((answer, conduct))
 }
 
-/// A request over the line and back.
-fn ask(server: &mut Server, remote: &mut Remote<'_>, request: &Request) -> Reply {
-    let frame = encode(1, request).expect("a request fits a frame");
-    let answers = frame.iter().filter_map(|byte| server.take(*byte, remote));
-    let mut decoder = Decoder::default();
-    let bytes: Vec<u8> = answers.flatten().collect();
-    let mut replies = bytes.iter().filter_map(|byte| decoder.take::<Reply>(*byte));
-    let answered = replies.next().and_then(Result::ok);
-    answered.expect("a whole request is answered").message
-}
-
 /// The board: it remembers.
+#[derive(Default)]
 struct Desk {
     block: Block,
     notices: Vec<Notice>,
@@ -111,24 +100,6 @@ struct Desk {
     switchings: Vec<Switching>,
     cleared: Vec<Cleared>,
     ticks: u64,
-}
-
-impl Desk {
-    fn new(config: &MonitorConfig) -> Self {
-        Self {
-            block: config_block::encode(&Settings {
-                monitor: *config,
-                wiring: Wiring::default(),
-                key: None,
-            }),
-            notices: Vec::new(),
-            left_out: 0,
-            shown: None,
-            switchings: Vec::new(),
-            cleared: Vec::new(),
-            ticks: 0,
-        }
-    }
 }
 
 impl Board for Desk {
@@ -155,45 +126,4 @@ impl Board for Desk {
 
     // There is no watchdog on a desktop.
     fn feed(&mut self) {}
-}
-
-/// The controller, as the link sees it.
-struct Remote<'a> {
-    app: &'a mut App,
-    recorder: &'a Recorder<'a>,
-    block: &'a Block,
-    log: &'a mut RamLog,
-}
-
-impl Device for Remote<'_> {
-    fn state(&mut self) -> State {
-        self.app.report(0, 0)
-    }
-
-    fn config(&mut self) -> Block {
-        self.block.clone()
-    }
-
-    fn service(&mut self) -> bool {
-        false
-    }
-
-    // Nobody orders over this link.
-    fn ordered(&mut self, _: &Notice) {}
-
-    fn set_config(&mut self, _: &[u8], _: &Settings) -> Result<(), Refusal> {
-        Err(Refusal::NoStore)
-    }
-
-    fn clear(&mut self) -> Result<(), Refusal> {
-        Ok(self.app.clear()?)
-    }
-
-    fn recent(&mut self, step: u16) -> Recent {
-        self.recorder.recent(step)
-    }
-
-    fn log(&mut self) -> &mut impl Log {
-        self.log
-    }
 }

@@ -157,6 +157,16 @@ pub enum Act {
     Unlock(u32),
 }
 
+impl Act {
+    /// The episode that it is about.
+    pub const fn episode(self) -> Option<u32> {
+        match self {
+            Self::Clear | Self::Commit(_) => None,
+            Self::Erase(number) | Self::Lock(number) | Self::Unlock(number) => Some(number),
+        }
+    }
+}
+
 /// What came of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ordered {

@@ -126,17 +126,12 @@ impl Monitor {
     /// One tick: what it has to say. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
         let mut notices = Notices::new();
-        self.tick(state, sample, &mut notices);
+        self.take(state, sample, false, &mut notices);
         notices
     }
 
-    /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy.
-    #[inline]
-    pub fn tick(&self, state: &mut MonitorState, sample: &Sample, notices: &mut Notices) {
-        self.take(state, sample, false, notices);
-    }
-
-    /// Likewise; a sample that was `missed` was never taken: time goes on, and no sensor is blamed.
+    /// Likewise, with a place for what it has to say: they are half a kilobyte, which a tick has no time to copy. A sample
+    /// that was `missed` was never taken: time goes on, and no sensor is blamed.
     #[inline]
     pub fn take(
         &self,

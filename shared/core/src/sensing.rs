@@ -4,6 +4,7 @@ use crate::fault::Found;
 use crate::sample::{CHANNELS, Sample};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sin_cos;
+use touchdown_rotor::scales::positive;
 
 /// Sensor planes.
 pub const PLANES: usize = 2;
@@ -162,12 +163,7 @@ impl PlaneSensing {
 impl Sensing {
     /// Checks `config` and prepares the conversion.
     pub fn try_new(config: &SensingConfig) -> Result<Self, ConfigError> {
-        if !config.resolution.is_finite() {
-            return Err(ConfigError::NotFinite("resolution"));
-        }
-        if config.resolution <= 0.0 {
-            return Err(ConfigError::NotPositive("resolution"));
-        }
+        positive("resolution", config.resolution)?;
         if config.full_scale < 3 {
             return Err(ConfigError::OutOfRange("full_scale", "3 counts or more"));
         }

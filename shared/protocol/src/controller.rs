@@ -161,13 +161,6 @@ pub enum Fault {
     ImageDamaged = 10,
 }
 
-impl Fault {
-    /// Whether it trips; the others only put out the ready lamp.
-    pub const fn trips(self) -> bool {
-        !matches!(self, Self::Overrun)
-    }
-}
-
 /// A set of faults; bit i is the fault of code i.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Faults(pub u16);
@@ -176,6 +169,7 @@ impl Faults {
     /// None.
     pub const NONE: Self = Self(0);
 
+    /// The others only put out the ready lamp.
     const TRIPPING: u16 = !Self::NONE.with(Fault::Overrun).0;
     const LASTING: u16 = Self::NONE
         .with(Fault::ConfigDamaged)
@@ -260,7 +254,7 @@ mod tests {
         for (code, &fault) in Fault::VARIANTS.iter().enumerate() {
             assert_eq!(fault as usize, code);
             assert_eq!(Faults::NONE.with(fault).0, 1 << code);
-            assert_eq!(Faults::NONE.with(fault).trip(), fault.trips());
+            assert_eq!(Faults::NONE.with(fault).trip(), fault != Fault::Overrun);
         }
         let causes = (0..).map_while(Cause::from_repr);
         assert!(causes.map(|it| it as usize).eq(0..9));

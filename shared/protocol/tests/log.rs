@@ -114,7 +114,7 @@ fn pages() -> Vec<[u8; BLOCK_BYTES]> {
 }
 
 fn report(bytes: &[u8]) -> Report {
-    Reader::new(bytes).finish()
+    Reader::new(bytes).finish(|_| ())
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn account(bytes: &[u8]) -> Report {
             let _ = waveform.samples().count();
         }
     }
-    let report = reader.finish();
+    let report = reader.finish(|_| ());
     let pages = report.blocks + report.blank + report.broken + report.stray + report.unknown;
     assert_eq!(pages as usize, bytes.len() / BLOCK_BYTES);
     assert_eq!(report.rest as usize, bytes.len() % BLOCK_BYTES);

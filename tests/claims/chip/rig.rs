@@ -62,7 +62,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// The state once `holds`.
 fn state_when(talk: &mut Client, what: &str, holds: impl Fn(&State) -> bool) -> State {
-    let mut state = State::NONE;
+    let mut state = State::default();
     until(what, || {
         state = talk.state().expect("answers");
         holds(&state)
@@ -136,7 +136,7 @@ fn from_power_on_to_an_erased_log_over_the_link() {
     assert_eq!(why, Refusal::Busy(Busy::Service));
     assert_eq!(rig.starts(), 1);
     serve(&rig, &mut talk);
-    talk.set_settings(&settings).expect("is taken");
+    talk.set_block(&config_block::encode(&settings)).expect("is taken");
     until("a restart", || rig.starts() == 2);
     assert_eq!(settings_in_force(&mut talk), settings);
 
@@ -205,7 +205,7 @@ fn with_a_key_the_image_obeys_its_holder_alone_and_tells_every_order() {
     let mut settings = settings_in_force(&mut talk);
     settings.key = Some(key);
     serve(&rig, &mut talk);
-    talk.set_settings(&settings).expect("is taken");
+    talk.set_block(&config_block::encode(&settings)).expect("is taken");
     until("a restart", || rig.starts() == 2);
     // The key is in force, and not told.
     assert_eq!(settings_in_force(&mut talk).key, Some(Key::HELD));
@@ -235,7 +235,7 @@ fn with_a_key_the_image_obeys_its_holder_alone_and_tells_every_order() {
     // A file without a key keeps it.
     settings.key = Some(Key::HELD);
     settings.wiring.levitation = true;
-    talk.set_settings(&settings).expect("is taken");
+    talk.set_block(&config_block::encode(&settings)).expect("is taken");
     until("a restart", || rig.starts() == 3);
     settings.key = Some(key);
     let stored = fs::read(folder.path().join("settings")).expect("the block");
@@ -424,7 +424,7 @@ fn a_stored_configuration_that_is_damaged_never_gives_current_until_another_is_s
         Err(LinkError::Refused(Refusal::Busy(Busy::Configuration)))
     ));
     let settings = settings_in_force(&mut talk);
-    talk.set_settings(&settings).expect("is taken");
+    talk.set_block(&config_block::encode(&settings)).expect("is taken");
     until("a restart", || rig.starts() == 2);
     rig.order(Order::Drop);
     state_when(&mut talk, "permit", |it| it.outputs.permit);

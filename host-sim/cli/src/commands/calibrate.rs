@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use chrono::{Datelike, Utc};
+use chrono::Utc;
 use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
+use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
 use touchdown_protocol::config_block::{Settings, Wiring};
 
@@ -24,14 +25,6 @@ use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
 
 const NAMES: [&str; PLANES] = ["a", "b"];
 
-/// What the machine is told, and how its recordings are read.
-struct Machine {
-    settings: Settings,
-    scene: Scene,
-    /// For the record.
-    name: String,
-}
-
 /// Finds zero, gain and skew of each plane, says them, and writes them into a configuration.
 pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let mut out = Gate::new()
@@ -44,19 +37,20 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         .writes("--write", &args.write)
         .open()?;
     let date = args.date.unwrap_or_else(today);
-    let mut machine = machine(args)?;
+    let (mut settings, scene) = machine(args)?;
+    let name = scene.heading();
+    let told_clearance = &mut settings.monitor.detector.machine.clearance;
     if let Some(clearance) = args.clearance {
-        machine.settings.monitor.detector.machine.clearance = (1e-3 * clearance) as f32;
+        *told_clearance = (1e-3 * clearance) as f32;
     }
-    let clearance = f64::from(machine.settings.monitor.detector.machine.clearance);
     let scale = match args.scale {
-        ScaleArg::Clearance => Scale::Clearance(clearance),
+        ScaleArg::Clearance => Scale::Clearance(f64::from(*told_clearance)),
         ScaleArg::Sensor => Scale::Sensor,
     };
-    let planes = check(args, &machine, scale)?;
-    let title = format!("Commissioning check: {}", machine.name);
+    let planes = check(args, &settings.monitor, &scene, scale)?;
+    let title = format!("Commissioning check: {name}");
     out.json("--json", || {
-        json::text(&told(&machine.name, date, args.scale, &planes))
+        json::text(&told(name, date, args.scale, &planes))
     })?;
     out.put("--report", || page::page(&title, &planes))?;
     let mut text: String = planes.iter().map(page::text).collect();
@@ -67,68 +61,66 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         out.finish(&text)?;
         return Err(Failure::Check(rule));
     }
-    text += &record(&mut machine.settings, date, args.scale, &planes);
+    text += &record(&mut settings.monitor, date, args.scale, &planes);
     if let Some(file) = &args.write {
-        let valid = machine.settings.validate();
+        let valid = settings.validate();
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
     }
     out.put("--write", || {
-        configuration::record_text(&machine.settings, machine.name)
+        configuration::record_text(&settings, name.to_owned())
     })?;
     out.finish(&text)
 }
 
-/// From the scene or the configuration.
-fn machine(args: &CalibrateArgs) -> Result<Machine, Failure> {
-    if let Some(name) = &args.config {
-        let settings = super::config::load(name)?;
-        let mut scene = Scene::load("rig")?;
-        scene.name.clone_from(name);
-        scene.retainer.clearance = f64::from(settings.monitor.detector.machine.clearance);
-        scene.sensors = sensors(
-            &settings.monitor.sensing,
-            settings.monitor.fitted,
-            scene.sensors,
-        );
-        return Ok(Machine {
-            settings,
-            scene,
-            name: name.clone(),
-        });
-    }
-    let scene = load(args.scene.as_deref().unwrap_or_default())?;
-    Ok(Machine {
-        settings: Settings {
+/// What the machine is told, and how its recordings are read: from the scene or the configuration.
+fn machine(args: &CalibrateArgs) -> Result<(Settings, Scene), Failure> {
+    let Some(name) = &args.config else {
+        let scene = load(args.scene.as_deref().unwrap_or_default())?;
+        let settings = Settings {
             monitor: scene.monitor_config(),
             wiring: Wiring {
                 pulses_per_turn: None,
                 levitation: scene.sensors.levitation_signal,
             },
             key: None,
-        },
-        name: scene.heading().to_owned(),
-        scene,
-    })
-}
-
-/// Sensors of a scene, but with this converter.
-fn sensors(sensing: &SensingConfig, fitted: u8, others: SensorsConfig) -> SensorsConfig {
+        };
+        return Ok((settings, scene));
+    };
+    let settings = super::config::load(name)?;
+    let (sensing, machine) = (
+        &settings.monitor.sensing,
+        &settings.monitor.detector.machine,
+    );
     let counts = u32::from(sensing.full_scale) + 1;
     let bits = counts.next_power_of_two().trailing_zeros().max(4);
-    SensorsConfig {
-        planes: if fitted & 0b1100 == 0 { 1 } else { 2 },
+    let mut scene = Scene::load("rig")?;
+    (scene.name, scene.title) = (name.clone(), None);
+    scene.retainer.clearance = f64::from(machine.clearance);
+    scene.rotor.spin = f64::from(machine.spin);
+    scene.sensors = SensorsConfig {
+        planes: if settings.monitor.fitted & 0b1100 == 0 {
+            1
+        } else {
+            2
+        },
         bits,
         range: f64::from(sensing.resolution) * f64::from(1 << (bits - 1)),
         mounting_angle: sensing.mounting_angle.map(f64::from),
-        ..others
-    }
+        ..scene.sensors
+    };
+    Ok((settings, scene))
 }
 
 /// Reads the recording and looks at each plane that it has.
-fn check(args: &CalibrateArgs, machine: &Machine, scale: Scale) -> Result<Vec<Checked>, Failure> {
-    let sensing = &machine.settings.monitor.sensing;
+fn check(
+    args: &CalibrateArgs,
+    config: &MonitorConfig,
+    scene: &Scene,
+    scale: Scale,
+) -> Result<Vec<Checked>, Failure> {
+    let sensing = &config.sensing;
     let reading = args.reading.load()?;
-    let mut recording = Recording::open(Path::new(&args.recording), &reading, &machine.scene)?;
+    let mut recording = Recording::open(Path::new(&args.recording), &reading, scene)?;
     let mut readings: [Readings; PLANES] = Default::default();
     for row in recording.by_ref() {
         let row = row?;
@@ -143,7 +135,7 @@ fn check(args: &CalibrateArgs, machine: &Machine, scale: Scale) -> Result<Vec<Ch
     }
     warn(&recording.warnings());
     let resolution = f64::from(sensing.resolution);
-    let fitted = [0b0011, 0b1100].map(|it| machine.settings.monitor.fitted & it != 0);
+    let fitted = [0b0011, 0b1100].map(|it| config.fitted & it != 0);
     let there = NAMES.into_iter().zip(readings).zip(fitted);
     let planes: Vec<_> = there
         .filter(|((_, it), fitted)| *fitted && !it.kept().is_empty())
@@ -167,8 +159,7 @@ fn is_inside(sensing: &SensingConfig, reading: f64) -> bool {
 }
 
 /// Puts what was found on record; what is worth a warning.
-fn record(settings: &mut Settings, date: u32, scale: ScaleArg, planes: &[Checked]) -> String {
-    let monitor = &mut settings.monitor;
+fn record(monitor: &mut MonitorConfig, date: u32, scale: ScaleArg, planes: &[Checked]) -> String {
     // A plane that the recording lacks keeps what it had.
     let mut calibration = Calibration {
         date,
@@ -210,26 +201,24 @@ fn record(settings: &mut Settings, date: u32, scale: ScaleArg, planes: &[Checked
 
 /// As JSON.
 fn told(machine: &str, date: u32, scale: ScaleArg, planes: &[Checked]) -> impl Serialize {
-    let mut all = Map::new();
-    for it in planes {
+    let planes = planes.iter().map(|it| {
         let told = match &it.plane {
             Ok(plane) => json!(plane),
             Err(why) => json!({ "refused": why }),
         };
-        all.insert(it.name.to_owned(), told);
-    }
+        (it.name.to_owned(), told)
+    });
     json!({
         "date": text_of_day(date),
         "machine": machine,
         "scale": if scale == ScaleArg::Clearance { "clearance" } else { "sensor" },
-        "planes": Value::Object(all),
+        "planes": planes.collect::<Map<_, _>>(),
     })
 }
 
 /// In UTC, as [`day`] has it.
 fn today() -> u32 {
-    let today = Utc::now().date_naive();
-    10_000 * today.year().unsigned_abs() + 100 * today.month() + today.day()
+    day(&Utc::now().format("%Y-%m-%d").to_string()).unwrap_or_default()
 }
 
 /// A day on the command line.

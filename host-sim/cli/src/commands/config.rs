@@ -6,14 +6,13 @@ use serde::Serialize;
 use touchdown_protocol::config_block::Settings;
 
 use super::args::ConfigArgs;
-use super::order::key_of;
+use super::order::client;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
-use touchdown_files::configuration::{
-    ChangeError, Difference, Tables, differences, in_force, parse, put, text,
-};
-use touchdown_files::link::{Client, LinkError, Port};
+use touchdown_base::plain::shown;
+use touchdown_files::configuration::{Difference, Tables, differences, parse, put, text};
+use touchdown_files::link::{LinkError, Port};
 use touchdown_page::json;
 
 /// What the command tells.
@@ -38,49 +37,51 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
         .open()?;
     // What is wrong with the file is said whether or not there is a controller.
     let wanted = args.set.as_deref().map(load).transpose()?;
-    let key = key_of(args.key_file.as_deref())?;
     let port = Port::of(&args.port);
-    let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
-    let mut client = Client::new(port.open().map_err(silent)?);
-    client.key = key;
-    let before = in_force(&mut client).map_err(silent)?;
-    let (config, changed, shown) = match wanted {
+    let mut client = client(&port, args.key_file.as_deref())?;
+    let at = |it: LinkError| it.at(&port);
+    let hello = client.hello().map_err(at)?;
+    let firmware = shown(&hello.firmware).into_owned();
+    let before = client.settings().map_err(at)?;
+    // Or else it has the defaults, for want of a valid one.
+    let is_own = !client.state().map_err(at)?.faults.lasting();
+    let (config, changed, told) = match wanted {
         None => {
-            let state = if before.is_own {
+            let state = if is_own {
                 ""
             } else {
                 "\n# the defaults: not configured, no current"
             };
-            let head = format!("# {port}, firmware {}{state}\n\n", before.firmware);
-            (before.settings, Vec::new(), head + &text(&before.settings))
+            let head = format!("# {port}, firmware {firmware}{state}\n\n");
+            (before, Vec::new(), head + &text(&before))
         }
         Some(mut wanted) => {
             // The controller keeps its key, and the record of its commissioning check, where the file has none.
-            wanted.key = wanted.key.or(before.settings.key);
+            wanted.key = wanted.key.or(before.key);
             if wanted.monitor.sensing.calibration.is_none() {
-                let kept = &before.settings.monitor;
+                let kept = &before.monitor;
                 wanted.monitor.sensing.calibration = kept.sensing.calibration;
                 wanted.monitor.commissioned = kept.commissioned;
             }
-            let changed = differences(&before.settings, &wanted);
-            if wanted != before.settings || !before.is_own {
-                put(&port, client, &wanted).map_err(|error| refused(&port, &error))?;
+            let changed = differences(&before, &wanted);
+            if wanted != before || !is_own {
+                put(&port, client, &wanted).map_err(at)?;
             }
-            let shown = summary(&port, &changed);
-            (wanted, changed, shown)
+            let told = summary(&port, &changed);
+            (wanted, changed, told)
         }
     };
-    let told = Told {
+    let all = Told {
         port: port.to_string(),
-        firmware: before.firmware,
+        firmware,
         config: Tables::from(&config),
         key: config.key.is_some(),
         changed,
     };
-    out.json("--json", || json::text(&told))?;
+    out.json("--json", || json::text(&all))?;
     // What goes into a file of TOML stays TOML.
     let note = |line: &str| format!("# {line}\n");
-    out.finish_with(|files| shown + &files.lines().map(note).collect::<String>())
+    out.finish_with(|files| told + &files.lines().map(note).collect::<String>())
 }
 
 /// The settings of a file.
@@ -89,15 +90,6 @@ pub(super) fn load(name: &str) -> Result<Settings, Failure> {
         name,
         &InputError::read(Path::new(name), LARGEST_TOML)?,
     )?)
-}
-
-/// A refusal is the controller's answer; all else is none.
-fn refused(port: &Port, error: &ChangeError) -> Failure {
-    let text = format!("{port}: {error}");
-    match error {
-        ChangeError::Link(LinkError::Refused(_)) => Failure::Check(text),
-        _ => Failure::Target(text),
-    }
 }
 
 /// For people.

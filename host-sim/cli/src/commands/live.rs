@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 #[cfg(unix)]
 use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
@@ -146,45 +146,25 @@ impl Session<'_> {
             let Event::Key(key) = event::read().map_err(&fail)? else {
                 continue;
             };
-            match Press::of(&key) {
-                Press::Quit => return Ok(()),
-                Press::Hold => {
+            match key.code {
+                _ if key.kind != KeyEventKind::Press => {}
+                KeyCode::Char('q') | KeyCode::Esc => return Ok(()),
+                // The terminal passes it on as a key.
+                KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => {
+                    return Ok(());
+                }
+                KeyCode::Char(' ') => {
                     held = match held {
                         Some(_) => None,
                         None => Some((self.watched.clone(), now)),
                     };
                     view.held = held.is_some();
                 }
-                Press::Plane => view.plane = 1 - view.plane,
-                Press::Clear => self.watched.forget_trail(),
-                Press::Other => {}
+                KeyCode::Char('p') => view.plane = 1 - view.plane,
+                KeyCode::Char('x') => self.watched.forget_trail(),
+                _ => {}
             }
         }
         Ok(())
-    }
-}
-
-enum Press {
-    Quit,
-    Hold,
-    Plane,
-    Clear,
-    Other,
-}
-
-impl Press {
-    fn of(key: &KeyEvent) -> Self {
-        if key.kind != KeyEventKind::Press {
-            return Self::Other;
-        }
-        match key.code {
-            KeyCode::Char('q') | KeyCode::Esc => Self::Quit,
-            // The terminal passes it on as a key.
-            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Self::Quit,
-            KeyCode::Char(' ') => Self::Hold,
-            KeyCode::Char('p') => Self::Plane,
-            KeyCode::Char('x') => Self::Clear,
-            _ => Self::Other,
-        }
     }
 }

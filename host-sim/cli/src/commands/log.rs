@@ -70,7 +70,7 @@ fn source(name: &str, wanted: Wanted) -> Result<Dump, Failure> {
     let Some(port) = Port::if_no_file(name) else {
         return Ok(read(name)?);
     };
-    fetch(&port, wanted).map_err(|error| Failure::Target(format!("{port}: {error}")))
+    fetch(&port, wanted).map_err(|it| it.at(&port))
 }
 
 fn tell(

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 use touchdown_core::event::Act;
-use touchdown_protocol::config_block::Key;
 
 use super::args::OrderArgs;
 use crate::gate::{Gate, note};
@@ -25,46 +24,39 @@ struct Told {
 pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
     let gate = Gate::new().reads("--key-file", &args.key_file);
     let mut out = gate.writes("--json", &args.json).open()?;
-    let key = key_of(args.key_file.as_deref())?;
     let port = Port::of(&args.port);
-    let silent = |error: LinkError| Failure::Target(format!("{port}: {error}"));
-    let mut client = Client::new(port.open().map_err(silent)?);
-    client.key = key;
-    let why = match client.order(act) {
+    let ordered = client(&port, args.key_file.as_deref())?.order(act);
+    let why = match &ordered {
         Ok(()) => None,
-        Err(LinkError::Refused(refusal)) => Some(why(&refusal)),
-        Err(error) => return Err(silent(error)),
+        Err(LinkError::Refused(refusal)) => Some(why(refusal)),
+        Err(error) => return Err(error.at(&port)),
     };
-    let (episode, done) = match act {
-        Act::Clear | Act::Commit(_) => (None, "cleared".to_owned()),
-        Act::Erase(it) => (Some(it), format!("episode {it} is erased")),
-        Act::Lock(it) => (Some(it), format!("episode {it} is locked")),
-        Act::Unlock(it) => (Some(it), format!("episode {it} is no longer locked")),
+    let done = match act {
+        _ if why.is_some() => "nothing is done".to_owned(),
+        Act::Clear | Act::Commit(_) => "cleared".to_owned(),
+        Act::Erase(it) => format!("episode {it} is erased"),
+        Act::Lock(it) => format!("episode {it} is locked"),
+        Act::Unlock(it) => format!("episode {it} is no longer locked"),
     };
     let told = Told {
         port: port.to_string(),
         order: act_name(act),
-        episode,
+        episode: act.episode(),
         done: why.is_none(),
         why,
     };
     out.json("--json", || json::text(&told))?;
-    let Some(why) = told.why else {
-        return out.finish(&format!("{port}: {done}\n"));
-    };
-    out.finish(&format!("{port}: nothing is done\n"))?;
-    Err(Failure::Check(format!(
-        "{port}: the controller refuses: {why}"
-    )))
+    out.finish(&format!("{port}: {done}\n"))?;
+    ordered.map_err(|it| it.at(&port))
 }
 
-/// The key in a file, with a warning where others may read it.
-pub(super) fn key_of(file: Option<&str>) -> Result<Option<Key>, Failure> {
-    let Some((key, warning)) = file.map(load_key).transpose()? else {
-        return Ok(None);
-    };
-    if let Some(warning) = warning {
+/// Over the port, with the key in a file, and a warning where others may read that.
+pub(super) fn client(port: &Port, key_file: Option<&str>) -> Result<Client, Failure> {
+    let (key, warning) = key_file.map(load_key).transpose()?.unzip();
+    if let Some(warning) = warning.flatten() {
         note(&format!("warning: {warning}\n"));
     }
-    Ok(Some(key))
+    let mut client = Client::new(port.open().map_err(|it| it.at(port))?);
+    client.key = key;
+    Ok(client)
 }

@@ -1,7 +1,7 @@
 //! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
 
 use serde_json::{Map, Value, json};
-use touchdown_core::event::{Act, Notice, Ordered};
+use touchdown_core::event::{Notice, Ordered};
 use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
@@ -9,9 +9,7 @@ use super::watched::Watched;
 use touchdown_files::link::refused_why;
 use touchdown_run::controller_trace::alarm;
 use touchdown_run::detection::{declared, forecast, touch};
-use touchdown_scene::names::{
-    act_name, channel_name, event_name, fault_name, mode_name, told_phase_name,
-};
+use touchdown_scene::names::{act_name, event_name, fault_name, mode_name, told_phase_name};
 
 /// The line without its end; `watched` has taken in what came before.
 pub fn line(update: &Update, watched: &Watched) -> String {
@@ -121,10 +119,7 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
                 "plane": told.plane,
                 "motion": told.motion,
                 "normal_speed_m_s": told.normal_speed_m_s,
-                "fault": event.fault.map(|it| json!({
-                    "channel": channel_name(it.channel),
-                    "kind": it.kind,
-                })),
+                "fault": told.fault,
             });
             ("event", what)
         }
@@ -138,13 +133,9 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
 }
 
 fn order(ordered: &Ordered, watched: &Watched) -> Value {
-    let episode = match ordered.act {
-        Act::Clear | Act::Commit(_) => None,
-        Act::Erase(number) | Act::Lock(number) | Act::Unlock(number) => Some(number),
-    };
     json!({
         "order": act_name(ordered.act),
-        "episode": episode,
+        "episode": ordered.act.episode(),
         "done": ordered.refused == 0,
         "why": refused_why(ordered.refused),
         "sample": ordered.sample,

@@ -59,7 +59,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
         frame,
         events,
         " events: onset s, what, mm/s ",
-        event_lines(watched, pen),
+        watched.events().map(|it| event_line(it, pen)).collect(),
     );
     list(
         frame,
@@ -113,30 +113,12 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     let Some(state) = watched.state() else {
         return vec![Line::raw("nothing heard yet")];
     };
-    let it = state.outputs;
-    let mut lines = vec![
-        Line::from(vec![Span::raw("phase     "), phase(state, pen)]),
-        Line::from(vec![Span::raw("mode      "), mode(state, pen)]),
-        outputs(
-            "outputs   ",
-            [("run", it.run), ("no brake", it.no_brake)],
-            pen,
-        ),
-        outputs(
-            "          ",
-            [("permit", it.permit), ("ready", it.ready)],
-            pen,
-        ),
-        faults(state, pen),
-    ];
+    let (it, counters) = (state.outputs, &state.counters);
     let rate = watched
         .sample_rate()
         .map_or("-".to_owned(), |it| format!("{it:.0}"));
     let nominal = watched.greeting.as_ref().map_or(0.0, |it| it.sample_rate);
-    lines.push(Line::raw(format!(
-        "rates     {rate} of {nominal:.0} samples/s, {:.0} frames/s",
-        watched.frame_rate(now)
-    )));
+    let frames = watched.frame_rate(now);
     let age = watched.age(now).unwrap_or(f64::INFINITY);
     let text = format!("{age:.2} s");
     let age = if age > STALE {
@@ -144,47 +126,69 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     } else {
         Span::raw(text)
     };
-    lines.push(Line::from(vec![Span::raw("data age  "), age]));
-    let counters = &state.counters;
-    lines.push(Line::raw(format!(
-        "lost      {} samples, {} notices",
-        counters.lost_samples, counters.lost_notices
-    )));
-    lines.push(Line::raw(format!(
-        "unusable  {} values",
-        counters.unusable_values
-    )));
     let restarts = match watched.restarts {
         0 => String::new(),
         count => format!("; restarts {count}"),
     };
-    lines.push(Line::raw(format!(
-        "damaged   {} frames there, {} here{restarts}",
-        counters.damaged_frames, watched.damaged
-    )));
+    let (there, here) = (counters.damaged_frames, watched.damaged);
+    let (samples, notices) = (counters.lost_samples, counters.lost_notices);
+    let unusable = counters.unusable_values;
+    let pair = |pair: [(&str, bool); 2]| pair.map(|it| output(it, pen));
+    let mut lines = vec![
+        row("phase", [phase(state, pen)]),
+        row("mode", [mode(state, pen)]),
+        row(
+            "outputs",
+            pair([("run", it.run), ("no brake", it.no_brake)]),
+        ),
+        row("", pair([("permit", it.permit), ("ready", it.ready)])),
+        row("faults", [faults(state, pen)]),
+        row(
+            "rates",
+            [format!(
+                "{rate} of {nominal:.0} samples/s, {frames:.0} frames/s"
+            )],
+        ),
+        row("data age", [age]),
+        row("lost", [format!("{samples} samples, {notices} notices")]),
+        row("unusable", [format!("{unusable} values")]),
+        row(
+            "damaged",
+            [format!("{there} frames there, {here} here{restarts}")],
+        ),
+    ];
     lines.extend(lifetime(watched));
     lines
+}
+
+fn row<S: Into<Span<'static>>>(head: &str, what: impl IntoIterator<Item = S>) -> Line<'static> {
+    let head = Span::raw(format!("{head:<10}"));
+    let what = what.into_iter().map(Into::into);
+    Line::from_iter(std::iter::once(head).chain(what))
 }
 
 /// In two lines: of an inspection, the landings are what counts.
 fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
     let Some(it) = &watched.lifetime else {
-        return vec![Line::raw("lifetime  no log")];
+        return vec![row("lifetime", ["no log"])];
     };
     let cut = match it.unweighed {
         0 => String::new(),
         count => format!(", {count} cut off"),
     };
-    let weight = it.weight as f64 / 1e3;
+    let (landings, weight) = (it.landings, it.weight as f64 / 1e3);
+    let (touches, boots, lost) = (it.touches, it.boots, it.lost);
     vec![
-        Line::raw(format!(
-            "lifetime  {} landings, weight {weight:.3}{cut}",
-            it.landings
-        )),
-        Line::raw(format!(
-            "          {} touches, {} times on, {} drops lost",
-            it.touches, it.boots, it.lost
-        )),
+        row(
+            "lifetime",
+            [format!("{landings} landings, weight {weight:.3}{cut}")],
+        ),
+        row(
+            "",
+            [format!(
+                "{touches} touches, {boots} times on, {lost} drops lost"
+            )],
+        ),
     ]
 }
 
@@ -209,34 +213,21 @@ fn mode(state: &State, pen: Pen) -> Span<'static> {
     pen.of(colour, mode_name(state.mode).to_owned() + &cause)
 }
 
-fn outputs(head: &'static str, outputs: [(&str, bool); 2], pen: Pen) -> Line<'static> {
-    let mut spans = vec![Span::raw(head)];
-    for (name, on) in outputs {
-        let text = format!("{name} {}  ", if on { "ON" } else { "off" });
-        spans.push(if on {
-            pen.of(Color::Green, text)
-        } else {
-            Span::raw(text)
-        });
+fn output((name, on): (&str, bool), pen: Pen) -> Span<'static> {
+    if on {
+        pen.of(Color::Green, format!("{name} ON  "))
+    } else {
+        Span::raw(format!("{name} off  "))
     }
-    Line::from(spans)
 }
 
-fn faults(state: &State, pen: Pen) -> Line<'static> {
+fn faults(state: &State, pen: Pen) -> Span<'static> {
     let names: Vec<_> = state.faults.iter().map(fault_name).collect();
-    let text = if names.is_empty() {
+    if names.is_empty() {
         Span::raw("none")
     } else {
         pen.of(Color::Red, names.join(", "))
-    };
-    Line::from(vec![Span::raw("faults    "), text])
-}
-
-fn event_lines(watched: &Watched, pen: Pen) -> Vec<Line<'static>> {
-    watched
-        .events()
-        .map(|event| event_line(event, pen))
-        .collect()
+    }
 }
 
 fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {

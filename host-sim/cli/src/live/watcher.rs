@@ -37,7 +37,7 @@ impl Watcher {
         let start = Instant::now();
         let mut teller = Teller { to, start };
         thread::spawn(move || {
-            while let Err(Ended::Line(error)) = session(&port, &mut teller) {
+            while let Err(Some(error)) = session(&port, &mut teller) {
                 if teller.tell(Said::Lost(error.to_string())).is_err() {
                     break;
                 }
@@ -63,35 +63,20 @@ impl Watcher {
     }
 }
 
-/// Why a session is over.
-enum Ended {
-    Line(LinkError),
-    /// Nobody listens.
-    Unheard,
-}
-
-impl From<LinkError> for Ended {
-    fn from(error: LinkError) -> Self {
-        Self::Line(error)
-    }
-}
-
 struct Teller {
     to: Sender<Update>,
     start: Instant,
 }
 
 impl Teller {
-    fn tell(&mut self, said: Said) -> Result<(), Ended> {
+    fn tell(&mut self, said: Said) -> Result<(), Option<LinkError>> {
         let at = self.start.elapsed().as_secs_f64();
-        self.to
-            .send(Update { at, said })
-            .map_err(|_| Ended::Unheard)
+        self.to.send(Update { at, said }).map_err(|_| None)
     }
 }
 
-/// From the opening of the line to its end.
-fn session(port: &Port, teller: &mut Teller) -> Result<(), Ended> {
+/// From the opening of the line to its end; no error where nobody listens any more.
+fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
     let mut client = Client::new(port.open()?);
     let hello = client.hello()?;
     let settings = client.settings()?;
@@ -146,7 +131,7 @@ fn look(
     client: &mut Client,
     known: Option<u32>,
     teller: &mut Teller,
-) -> Result<Option<u32>, Ended> {
+) -> Result<Option<u32>, Option<LinkError>> {
     let Some((first, last)) = client.episodes()? else {
         return Ok(None);
     };

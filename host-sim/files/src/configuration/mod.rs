@@ -6,7 +6,7 @@
 //! | `decimal` | the shortest number that a setting reads back from |
 //! | `file` | text to settings that are valid, with file, line and rule where they are not |
 //! | `difference` | what two configurations differ in |
-//! | `change` | reading it, setting it, and waiting for it to be in force |
+//! | `change` | setting it, and waiting for it to be in force |
 
 mod change;
 mod decimal;
@@ -14,7 +14,7 @@ mod difference;
 mod file;
 mod table;
 
-pub use change::{ChangeError, InForce, in_force, put};
+pub use change::put;
 pub use difference::{Difference, differences};
 pub use file::{parse, record_text, text};
 pub use table::Tables;

@@ -1,5 +1,7 @@
 //! One episode, as far as it is there.
 
+use std::fmt::Display;
+
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::fault::FaultKind;
@@ -119,7 +121,7 @@ impl Episode {
             }
         }
         let mut damage = Vec::new();
-        let report = reader.finish_with(|it| damage.push(it));
+        let report = reader.finish(|it| damage.push(it));
         let mut episode = Self {
             sequence: report.sequence.unwrap_or(0),
             slot: None,
@@ -133,10 +135,10 @@ impl Episode {
             damaged: report.verdict() == Verdict::Damaged,
             damage,
             flaws: Vec::new(),
-            events: told(&header, &records, event),
-            outputs: told(&header, &records, outputs),
-            alarms: told(&header, &records, alarm),
-            orders: told(&header, &records, order),
+            events: Vec::new(),
+            outputs: Vec::new(),
+            alarms: Vec::new(),
+            orders: Vec::new(),
             learnt: learnt(&parts),
             ending,
             report,
@@ -148,10 +150,45 @@ impl Episode {
             samples,
             pulses,
         };
-        for flaw in episode.header.as_ref().map_or(Vec::new(), impossible) {
-            episode.flaw(flaw);
+        if let Some(header) = header {
+            impossible(&header)
+                .into_iter()
+                .for_each(|it| episode.flaw(it));
+            records.iter().for_each(|it| episode.tell(it, &header));
         }
         episode
+    }
+
+    /// Takes a record in; a tick's time is that since the trigger, s.
+    fn tell(&mut self, record: &Record, header: &Header) {
+        let rate = f64::from(header.sample_rate);
+        let since = |tick: f64| (tick - header.trigger as f64) / rate;
+        match record {
+            Record::Switching(it) => {
+                let time = since(it.sample as f64);
+                self.outputs.push(OutputsFrom::new(it, time));
+            }
+            Record::Notice(Notice::Alarm(it)) => {
+                self.alarms.push(AlarmAt::new(it, since(it.sample as f64)));
+            }
+            Record::Notice(Notice::Ordered(it)) => {
+                let (order, time) = (act_name(it.act), 1e3 * since(it.sample as f64));
+                let why = refused_why(it.refused);
+                let came = why.map_or("done".to_owned(), |why| format!("refused: {why}"));
+                self.orders.push(format!("{order} at {time:.4} ms: {came}"));
+            }
+            Record::Notice(Notice::Declared(event)) => self.events.push(Event {
+                event: event.kind,
+                onset_s: since(event.onset.samples()),
+                declared_s: since(event.declared as f64),
+                normal_speed_m_s: event.normal_speed,
+                fault: event.fault.map(|it| ChannelFault {
+                    channel: channel_name(it.channel),
+                    kind: it.kind,
+                }),
+            }),
+            _ => {}
+        }
     }
 
     /// Counts as damage whatever its pages say.
@@ -226,100 +263,24 @@ fn learnt(parts: &[&[u8]]) -> Option<String> {
 /// What a header of no recorder says.
 fn impossible(header: &Header) -> Vec<String> {
     let positive = |value: f32| value.is_finite() && value > 0.0;
-    let rules = [
-        (
-            positive(header.sample_rate),
-            "sample_rate",
-            header.sample_rate,
-        ),
-        (positive(header.resolution), "resolution", header.resolution),
-        (
-            header.zero_count.is_finite(),
-            "zero_count",
-            header.zero_count,
-        ),
-        (
-            header.decimation > 0,
-            "decimation",
-            f32::from(header.decimation),
-        ),
-        (
-            header.full_scale > 0,
-            "full_scale",
-            f32::from(header.full_scale),
-        ),
-        (
-            (1..16).contains(&header.fitted),
-            "fitted",
-            f32::from(header.fitted),
-        ),
-        (
-            header.pulsed < 1 << TACHOMETERS,
-            "pulsed",
-            f32::from(header.pulsed),
-        ),
-        (header.first <= header.trigger, "first", header.first as f32),
-        (
-            header.is_plain() || Sensing::try_new(&header.sensing()).is_ok(),
-            "calibration or mounting, of the day",
-            header.calibration.map_or(0.0, |it| it.date as f32),
-        ),
-    ];
-    let broken = rules.into_iter().filter(|(holds, ..)| !holds);
-    broken
-        .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
-        .collect()
-}
-
-/// What of the records `one` tells, given a tick's time since the trigger, s.
-fn told<T>(
-    header: &Option<Header>,
-    records: &[Record],
-    one: fn(&Record, &dyn Fn(f64) -> f64) -> Option<T>,
-) -> Vec<T> {
-    let Some(header) = header else {
-        return Vec::new();
+    let day = header.calibration.map_or(0, |it| it.date);
+    let is_sensed = header.is_plain() || Sensing::try_new(&header.sensing()).is_ok();
+    let mut flaws = Vec::new();
+    let mut rule = |holds: bool, name: &str, value: &dyn Display| {
+        if !holds {
+            let flaw = format!("the header's {name} is {value}, which no recorder writes");
+            flaws.push(flaw);
+        }
     };
-    let since = |tick: f64| (tick - header.trigger as f64) / f64::from(header.sample_rate);
-    records.iter().filter_map(|it| one(it, &since)).collect()
-}
-
-fn outputs(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<OutputsFrom> {
-    match record {
-        Record::Switching(it) => Some(OutputsFrom::new(it, since(it.sample as f64))),
-        _ => None,
-    }
-}
-
-fn alarm(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<AlarmAt> {
-    match record {
-        Record::Notice(Notice::Alarm(it)) => Some(AlarmAt::new(it, since(it.sample as f64))),
-        _ => None,
-    }
-}
-
-fn order(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<String> {
-    let Record::Notice(Notice::Ordered(it)) = record else {
-        return None;
-    };
-    let time = 1e3 * since(it.sample as f64);
-    let came =
-        refused_why(it.refused).map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
-    Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
-}
-
-fn event(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<Event> {
-    let Record::Notice(Notice::Declared(event)) = record else {
-        return None;
-    };
-    Some(Event {
-        event: event.kind,
-        onset_s: since(event.onset.samples()),
-        declared_s: since(event.declared as f64),
-        normal_speed_m_s: event.normal_speed,
-        fault: event.fault.map(|it| ChannelFault {
-            channel: channel_name(it.channel),
-            kind: it.kind,
-        }),
-    })
+    let it = header;
+    rule(positive(it.sample_rate), "sample_rate", &it.sample_rate);
+    rule(positive(it.resolution), "resolution", &it.resolution);
+    rule(it.zero_count.is_finite(), "zero_count", &it.zero_count);
+    rule(it.decimation > 0, "decimation", &it.decimation);
+    rule(it.full_scale > 0, "full_scale", &it.full_scale);
+    rule((1..16).contains(&it.fitted), "fitted", &it.fitted);
+    rule(it.pulsed < 1 << TACHOMETERS, "pulsed", &it.pulsed);
+    rule(it.first <= it.trigger, "first", &it.first);
+    rule(is_sensed, "calibration or mounting, of the day", &day);
+    flaws
 }

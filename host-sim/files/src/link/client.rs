@@ -154,12 +154,7 @@ impl Client {
         Ok(settings)
     }
 
-    /// Puts another configuration in force; the controller restarts with it.
-    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), LinkError> {
-        self.set_block(&config_block::encode(settings))
-    }
-
-    /// The same with a block: staged, read back, and only then put in force.
+    /// Puts another configuration in force: staged, read back, and only then. The controller restarts with it.
     pub fn set_block(&mut self, block: &Block) -> Result<(), LinkError> {
         let taken = self.ask(&Request::Stage(block.clone()))?;
         let (_, settings) = config_block::decode(block).map_err(LinkError::Config)?;

@@ -1,10 +1,12 @@
 //! Why the controller does not answer.
 
+use std::fmt::Display;
 use std::io::{self, ErrorKind};
 
 use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::link::{Refusal, VERSION};
 
+use touchdown_base::failure::Failure;
 use touchdown_base::input_error::reason;
 use touchdown_base::plain::shown;
 use touchdown_scene::names::busy_name;
@@ -30,6 +32,20 @@ pub enum LinkError {
     /// It answers something else than was asked.
     #[error("the controller's answer makes no sense")]
     Senseless,
+    /// It took another configuration, and has not been heard with it since.
+    #[error("the configuration was taken, but the controller has not come back with it: {0}")]
+    Away(String),
+}
+
+impl LinkError {
+    /// Of a command that talked over `port`. A refusal is the controller's answer; all else is none.
+    pub fn at(&self, port: &impl Display) -> Failure {
+        let text = format!("{port}: {self}");
+        match self {
+            Self::Refused(_) => Failure::Check(text),
+            _ => Failure::Target(text),
+        }
+    }
 }
 
 fn of_line(error: &io::Error) -> String {

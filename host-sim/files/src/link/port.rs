@@ -14,70 +14,59 @@ const BAUD: u32 = 115_200;
 /// Longest wait for a connection, and for bytes to go out.
 const LIMIT: Duration = Duration::from_secs(2);
 
-/// Where a controller is.
+const TCP: &str = "tcp:";
+const UNIX: &str = "unix:";
+
+/// Where a controller is: a serial device, `tcp:HOST:PORT` or `unix:PATH`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Port {
-    /// A serial device.
-    Serial(String),
-    /// `tcp:HOST:PORT`
-    Tcp(String),
-    /// `unix:PATH`
-    Unix(String),
-}
+pub struct Port(String);
 
 impl Port {
-    /// A serial device unless it begins with `tcp:` or `unix:`.
+    /// By its name.
     pub fn of(name: &str) -> Self {
-        if let Some(address) = name.strip_prefix("tcp:") {
-            Self::Tcp(address.to_owned())
-        } else if let Some(path) = name.strip_prefix("unix:") {
-            Self::Unix(path.to_owned())
-        } else {
-            Self::Serial(name.to_owned())
-        }
+        Self(name.to_owned())
     }
 
     /// Where a file may be meant as well: only what cannot be one.
     pub fn if_no_file(name: &str) -> Option<Self> {
-        let port = Self::of(name);
-        let is_port = match &port {
-            Self::Serial(name) => is_device(name),
-            Self::Tcp(_) | Self::Unix(_) => true,
-        };
-        is_port.then_some(port)
+        let is_port = name.starts_with(TCP) || name.starts_with(UNIX) || is_device(name);
+        is_port.then(|| Self::of(name))
     }
 
     /// Opens it.
     pub fn open(&self) -> Result<Box<dyn Line>, LinkError> {
-        match self {
-            Self::Serial(name) => {
-                let port = serialport::new(name, BAUD).timeout(LIMIT);
-                Ok(Box::new(port.open().map_err(io::Error::from)?))
-            }
-            Self::Tcp(address) => {
-                let mut failure = io::Error::other("no such host");
-                for address in address.to_socket_addrs()? {
-                    match TcpStream::connect_timeout(&address, LIMIT) {
-                        Ok(stream) => {
-                            stream.set_nodelay(true)?;
-                            stream.set_write_timeout(Some(LIMIT))?;
-                            return Ok(Box::new(stream));
-                        }
-                        Err(error) => failure = error,
+        if let Some(address) = self.0.strip_prefix(TCP) {
+            let mut failure = io::Error::other("no such host");
+            for address in address.to_socket_addrs()? {
+                match TcpStream::connect_timeout(&address, LIMIT) {
+                    Ok(stream) => {
+                        stream.set_nodelay(true)?;
+                        stream.set_write_timeout(Some(LIMIT))?;
+                        return Ok(Box::new(stream));
                     }
+                    Err(error) => failure = error,
                 }
-                Err(failure.into())
             }
-            #[cfg(unix)]
-            Self::Unix(path) => {
-                let stream = std::os::unix::net::UnixStream::connect(path)?;
-                stream.set_write_timeout(Some(LIMIT))?;
-                Ok(Box::new(stream))
-            }
-            #[cfg(not(unix))]
-            Self::Unix(_) => Err(io::Error::from(io::ErrorKind::Unsupported).into()),
+            return Err(failure.into());
         }
+        if let Some(path) = self.0.strip_prefix(UNIX) {
+            return unix(path);
+        }
+        let port = serialport::new(&self.0, BAUD).timeout(LIMIT);
+        Ok(Box::new(port.open().map_err(io::Error::from)?))
     }
+}
+
+#[cfg(unix)]
+fn unix(path: &str) -> Result<Box<dyn Line>, LinkError> {
+    let stream = std::os::unix::net::UnixStream::connect(path)?;
+    stream.set_write_timeout(Some(LIMIT))?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(not(unix))]
+fn unix(_: &str) -> Result<Box<dyn Line>, LinkError> {
+    Err(io::Error::from(io::ErrorKind::Unsupported).into())
 }
 
 /// Also one that is unplugged.
@@ -89,11 +78,7 @@ fn is_device(name: &str) -> bool {
 
 impl fmt::Display for Port {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Serial(name) => f.write_str(name),
-            Self::Tcp(address) => write!(f, "tcp:{address}"),
-            Self::Unix(path) => write!(f, "unix:{path}"),
-        }
+        f.write_str(&self.0)
     }
 }
 
@@ -103,10 +88,12 @@ mod tests {
 
     #[test]
     fn ports_are_told_from_files() {
-        let unix = Port::Unix("/tmp/rig".to_owned());
-        assert_eq!(Port::if_no_file("unix:/tmp/rig"), Some(unix.clone()));
-        assert_eq!(Port::of(&unix.to_string()), unix);
-        for device in ["/dev/ttyACM0", "COM3", "tcp:localhost:4000"] {
+        for device in [
+            "/dev/ttyACM0",
+            "COM3",
+            "tcp:localhost:4000",
+            "unix:/tmp/rig",
+        ] {
             assert!(Port::if_no_file(device).is_some(), "{device}");
         }
         for file in ["flash.bin", "COM", "COMPORT", "dev/tty", "./tcp:x"] {

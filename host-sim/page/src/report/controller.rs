@@ -22,9 +22,8 @@ pub fn controller(outcome: &Outcome) -> Markup {
             it.shown.cause.map_or("", cause_name).to_owned()
         });
     let dangers = conduct.alarms.iter().filter(|it| it.level == Level::Danger);
-    let all = conduct.zones.iter().sum::<u64>().max(1) as f64;
-    let part = |samples: u64| format!("{:.1}\u{a0}%", 100.0 * samples as f64 / all);
-    let [a, b, c, d] = conduct.zones.map(part);
+    let percent = |part: f64| format!("{:.1}\u{a0}%", 100.0 * part);
+    let [a, b, c, d] = conduct.zone_parts().map(percent);
     html! {
         (table.draw())
         p {

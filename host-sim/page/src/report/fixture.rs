@@ -106,7 +106,7 @@ pub fn conduct() -> ControllerTrace {
             firmware: Text::new(),
             sample_rate: RATE as f32,
         },
-        state: State::NONE,
+        state: State::default(),
     }
 }
 

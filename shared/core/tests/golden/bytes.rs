@@ -227,10 +227,8 @@ fn log(text: &mut String) {
     let ending = ENDING.encode();
     assert_eq!(Ending::decode(&ending), Some(ENDING));
     let severity = severity::encode(&SEVERITY);
-    assert_eq!(
-        severity::decode(severity[0], &severity[1..]),
-        Some(SEVERITY)
-    );
+    assert_eq!(severity[0], severity::VERSION);
+    assert_eq!(postcard::from_bytes(&severity[1..]), Ok(SEVERITY));
     let samples = [SAMPLE, SAMPLE].iter().map(waveform::counts);
     let (waveform, taken) = Waveform::block(30, samples);
     assert_eq!(taken, 2);
@@ -258,8 +256,13 @@ fn log(text: &mut String) {
 fn link(text: &mut String) {
     let long: Chunk = (0..=255).map(|it: u8| it.max(1)).collect();
     let recent = Recent::new(300, 7, [waveform::counts(&SAMPLE)].into_iter());
+    let state = State {
+        sample: u64::MAX,
+        cause: Some(Cause::NoProof),
+        ..State::default()
+    };
     for (name, reply) in [
-        ("state", Reply::State(State::NONE)),
+        ("state", Reply::State(state)),
         ("refused", Reply::Refused(Busy::Latched.into())),
         ("recent", Reply::Recent(recent)),
         ("lifetime", Reply::Lifetime(Some(COUNTERS))),

@@ -143,7 +143,7 @@ pub struct Hello {
 }
 
 /// What goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Number of the last sample, from 0; `u64::MAX` before the first.
     pub sample: u64,
@@ -163,26 +163,6 @@ pub struct State {
     pub faults: Faults,
     /// What was counted since power-on.
     pub counters: Counters,
-}
-
-impl State {
-    /// Before the first sample.
-    pub const NONE: Self = Self {
-        sample: u64::MAX,
-        age_us: 0,
-        phase: Phase::Starting,
-        mode: Mode::SelfTest,
-        cause: Some(Cause::NoProof),
-        touches: 0,
-        outputs: Outputs::SAFE,
-        faults: Faults::NONE,
-        counters: Counters {
-            lost_samples: 0,
-            unusable_values: 0,
-            lost_notices: 0,
-            damaged_frames: 0,
-        },
-    };
 }
 
 /// What was counted since power-on.
@@ -222,9 +202,7 @@ impl Refusal {
     pub fn parameter(name: &str) -> Self {
         Self::Parameter(shortened(name))
     }
-}
 
-impl Refusal {
     /// Code of the reason in a notice, from 1: as over the link, in one byte.
     pub fn code(&self) -> u8 {
         let mut bytes = [0; 2 + TEXT_BYTES];

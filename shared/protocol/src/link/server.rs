@@ -28,31 +28,6 @@ pub trait Log {
     fn lifetime(&mut self) -> Option<Lifetime>;
 }
 
-/// A controller whose log may be missing.
-impl<L: Log> Log for Option<L> {
-    fn episodes(&mut self) -> Option<(u32, u32)> {
-        self.as_mut()?.episodes()
-    }
-
-    fn fetch(&mut self, episode: u32, offset: u32, chunk: &mut Chunk) -> Result<u32, Refusal> {
-        let log = self.as_mut().ok_or(Refusal::NoEpisode)?;
-        log.fetch(episode, offset, chunk)
-    }
-
-    fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
-        self.as_mut().ok_or(Refusal::NoEpisode)?.erase(episode)
-    }
-
-    fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
-        let log = self.as_mut().ok_or(Refusal::NoEpisode)?;
-        log.set_locked(episode, locked)
-    }
-
-    fn lifetime(&mut self) -> Option<Lifetime> {
-        self.as_mut()?.lifetime()
-    }
-}
-
 /// The controller, as the link sees it.
 pub trait Device {
     /// What goes on now. The link fills in its own counter.
@@ -81,8 +56,8 @@ pub trait Device {
     /// The newest samples, every `step`-th of those that are recorded.
     fn recent(&mut self, step: u16) -> Recent;
 
-    /// The log.
-    fn log(&mut self) -> &mut impl Log;
+    /// The log, where there is one.
+    fn log(&mut self) -> Option<&mut impl Log>;
 }
 
 /// The controller's side of the link.
@@ -173,21 +148,21 @@ impl Server {
             }
             Request::Stage(bytes) => self.stage(&bytes).unwrap_or_else(Reply::Refused),
             Request::Challenge => {
-                let boot = device.log().lifetime().map_or(0, |it| it.boots);
+                let boot = lifetime(device).map_or(0, |it| it.boots);
                 let (now, unknown) = (device.state().sample, device.unknown());
                 let nonce = self.right.challenge(now, boot, unknown);
                 Reply::Challenge(nonce, self.right.key.is_some())
             }
             Request::Order { mac, act } => done(self.order(&mac, act, device)),
-            Request::Episodes => Reply::Episodes(device.log().episodes()),
+            Request::Episodes => Reply::Episodes(device.log().and_then(|it| it.episodes())),
             Request::Fetch { episode, offset } => {
                 let mut bytes = Chunk::new();
-                match device.log().fetch(episode, offset, &mut bytes) {
+                match log(device).and_then(|it| it.fetch(episode, offset, &mut bytes)) {
                     Ok(total) => Reply::Chunk { total, bytes },
                     Err(refusal) => Reply::Refused(refusal),
                 }
             }
-            Request::Lifetime => Reply::Lifetime(device.log().lifetime()),
+            Request::Lifetime => Reply::Lifetime(lifetime(device)),
             Request::Recent { step } => Reply::Recent(device.recent(step.max(1))),
         }
     }
@@ -228,12 +203,12 @@ impl Server {
             Act::Clear => device.clear(),
             Act::Commit(checksum) => self.commit(checksum, device),
             Act::Erase(_) if device.state().outputs.run => Err(Busy::Watching.into()),
-            Act::Erase(episode) => match device.log().episodes() {
+            Act::Erase(episode) => match log(device)?.episodes() {
                 Some((_, last)) if last == episode => Err(Busy::Last.into()),
-                _ => device.log().erase(episode),
+                _ => log(device)?.erase(episode),
             },
-            Act::Lock(episode) => device.log().set_locked(episode, true),
-            Act::Unlock(episode) => device.log().set_locked(episode, false),
+            Act::Lock(episode) => log(device)?.set_locked(episode, true),
+            Act::Unlock(episode) => log(device)?.set_locked(episode, false),
         }
     }
 
@@ -247,4 +222,12 @@ impl Server {
         }
         device.set_config(&config_block::encode(&settings), &settings)
     }
+}
+
+fn log(device: &mut impl Device) -> Result<&mut impl Log, Refusal> {
+    device.log().ok_or(Refusal::NoEpisode)
+}
+
+fn lifetime(device: &mut impl Device) -> Option<Lifetime> {
+    device.log()?.lifetime()
 }

@@ -1,6 +1,6 @@
 //! Blocks: one page of flash each.
 
-use super::checksum;
+use touchdown_core::checksum::CRC;
 
 /// Bytes of a block: a page of the usual serial NOR flash.
 pub const BLOCK_BYTES: usize = 256;
@@ -85,7 +85,7 @@ impl Block {
         bytes[2..4].copy_from_slice(&index.to_le_bytes());
         bytes[4..8].copy_from_slice(&sequence.to_le_bytes());
         bytes[HEAD_BYTES..BLOCK_BYTES - 4].copy_from_slice(&self.payload);
-        let checksum = checksum(&bytes[..BLOCK_BYTES - 4]);
+        let checksum = CRC.checksum(&bytes[..BLOCK_BYTES - 4]);
         bytes[BLOCK_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
         bytes
     }
@@ -122,7 +122,7 @@ impl<'a> Page<'a> {
             return Self::Blank;
         }
         let (body, end) = bytes.split_at(BLOCK_BYTES - 4);
-        if end != checksum(body).to_le_bytes() {
+        if end != CRC.checksum(body).to_le_bytes() {
             return Self::Broken;
         }
         let payload = HEAD_BYTES..HEAD_BYTES + usize::from(bytes[1]);

@@ -1,9 +1,9 @@
 //! What is counted over the monitor's life, apart from the episodes.
 
-use super::checksum;
 use super::ending::Ending;
 use super::fields::{Fields, Row};
 use crate::controller::Cause;
+use touchdown_core::checksum::CRC;
 
 /// Bytes of a record of the counters.
 pub const COUNTERS_BYTES: usize = 64;
@@ -72,7 +72,7 @@ impl Counters {
             .put(&self.touches.to_le_bytes())
             .put(&[Cause::byte_of(self.uncleared)])
             .bytes();
-        let checksum = checksum(&bytes[..COUNTERS_BYTES - 4]);
+        let checksum = CRC.checksum(&bytes[..COUNTERS_BYTES - 4]);
         bytes[COUNTERS_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
         bytes
     }
@@ -81,7 +81,7 @@ impl Counters {
     pub fn decode(bytes: &[u8; COUNTERS_BYTES]) -> Option<Self> {
         let (body, end) = bytes.split_at(COUNTERS_BYTES - 4);
         let mut fields = Fields(body);
-        if end != checksum(body).to_le_bytes() || fields.bytes()? != MAGIC {
+        if end != CRC.checksum(body).to_le_bytes() || fields.bytes()? != MAGIC {
             return None;
         }
         Some(Self {

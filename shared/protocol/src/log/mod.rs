@@ -16,8 +16,6 @@ pub mod reader;
 pub mod severity;
 pub mod waveform;
 
-use touchdown_core::checksum::CRC;
-
 /// Version of the format, in the header of an episode whose planes have an angle or a commissioning check. All earlier
 /// ones are read as well.
 pub const FORMAT: u16 = 4;
@@ -25,7 +23,3 @@ pub const FORMAT: u16 = 4;
 pub const FORMAT_WITH_PULSES: u16 = 3;
 /// Version in the header of an episode without pulses. Version 1 has no [`block::Kind::Learnt`].
 pub const FORMAT_WITHOUT_PULSES: u16 = 2;
-
-fn checksum(bytes: &[u8]) -> u32 {
-    CRC.checksum(bytes)
-}

@@ -153,13 +153,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads to the end; what all of it was.
-    pub fn finish(self) -> Report {
-        self.finish_with(|_| ())
-    }
-
-    /// The same, and each page that is damaged, in their order.
-    pub fn finish_with(mut self, mut tell: impl FnMut(Damage)) -> Report {
+    /// Reads to the end; what all of it was. Tells each page that is damaged, in their order.
+    pub fn finish(mut self, mut tell: impl FnMut(Damage)) -> Report {
         while self.next().is_some() {}
         let should = self.expected.unwrap_or(self.last).min(MOST_BLOCKS);
         let pages = self.seen.iter().zip(&self.wrong).enumerate();

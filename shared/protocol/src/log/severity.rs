@@ -20,12 +20,6 @@ pub fn encode(severity: &Severity) -> Vec<u8, SEVERITY_BYTES> {
     payload
 }
 
-/// What follows the version to severity; `None` for another version or too few bytes.
-pub fn decode(version: u8, bytes: &[u8]) -> Option<Severity> {
-    let severity = postcard::from_bytes(bytes).ok();
-    severity.filter(|_| version == VERSION)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,9 +38,7 @@ mod tests {
         };
         let bytes = encode(&severity);
         assert_eq!(bytes.len(), SEVERITY_BYTES);
-        let (version, rest) = bytes.split_first().unwrap();
-        assert_eq!(decode(*version, rest), Some(severity));
-        assert_eq!(decode(2, rest), None);
-        assert_eq!(decode(*version, &rest[..rest.len() - 1]), None);
+        assert_eq!(bytes[0], VERSION);
+        assert_eq!(postcard::from_bytes(&bytes[1..]), Ok(severity));
     }
 }
