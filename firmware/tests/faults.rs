@@ -122,7 +122,7 @@ impl Bench {
         self.board.driven.clear();
         self.board.fed = 0;
         self.app
-            .tick(&mut self.board, sample, lost, &mut Notices::new());
+            .take(&mut self.board, sample, false, lost, &mut Notices::new());
         self.tick += 1;
         assert_eq!(self.board.driven, [self.app.shown()], "driven once a tick");
         assert_eq!(self.board.fed, 1, "fed once a tick");
@@ -591,7 +591,7 @@ fn coefficients_that_change_before_the_first_tick_trip_within_two_passes() {
     let mut board = Desk(config_block::encode(&default_settings()));
     let sample = Bench::new(Faults::NONE).at([0.0; 2]);
     ticks_until(2 * pass, || {
-        app.tick(&mut board, &sample, 0, &mut Notices::new());
+        app.take(&mut board, &sample, false, 0, &mut Notices::new());
         app.faults().contains(Fault::MemoryChanged)
     });
 }

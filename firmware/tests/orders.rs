@@ -129,7 +129,7 @@ impl Controller {
         let mut notices = Notices::new();
         for _ in 0..samples {
             self.app
-                .tick(&mut self.board, &sample(height), 0, &mut notices);
+                .take(&mut self.board, &sample(height), false, 0, &mut notices);
             self.recorder.take(&sample(height), &notices);
         }
     }

@@ -331,7 +331,7 @@ proptest! {
                     levitated: it.levitated,
                     edges: [None; TACHOMETERS],
                 };
-                app.tick(&mut board, &sample, 0, &mut notices);
+                app.take(&mut board, &sample, false, 0, &mut notices);
                 let shown = app.shown();
                 // A count is 0.0016 of the gap.
                 let is_beyond = it.sees && place[0].hypot(place[1]) > 0.672;

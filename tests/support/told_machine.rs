@@ -156,7 +156,7 @@ impl Run {
             .map(|[x, y]| place(x).hypot(place(y)) / self.told_gap);
         self.reading = self.readings[0].max(self.readings[1]);
         self.app
-            .tick(&mut self.board, &sample, 0, &mut self.notices);
+            .take(&mut self.board, &sample, false, 0, &mut self.notices);
         Some((truth, self.app.shown()))
     }
 }
