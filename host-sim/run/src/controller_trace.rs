@@ -1,10 +1,12 @@
 //! What the controller did over a run, besides what the monitor said: outputs, log and link.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Alarm, Level, Notice};
 use touchdown_protocol::controller::{Fault, Mode};
-use touchdown_protocol::link::{Hello, State};
+use touchdown_protocol::link::{Counters, Hello, State};
 use touchdown_protocol::wire::{Cleared, Switching};
 
 use crate::timebase::Timebase;
@@ -39,7 +41,8 @@ pub struct Controller {
     touches: u32,
     alarms: Vec<AlarmAt>,
     orders: Vec<OrderAt>,
-    zones: Zones,
+    /// Part of the samples in each.
+    zones: BTreeMap<char, f64>,
     log: Log,
     link: Link,
 }
@@ -50,15 +53,6 @@ struct OrderAt {
     order: &'static str,
     done: bool,
     why: Option<&'static str>,
-}
-
-/// Part of the samples in each zone.
-#[derive(Debug, Serialize)]
-struct Zones {
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -76,10 +70,8 @@ struct Link {
     sample_rate_hz: f32,
     mode: Mode,
     faults: Vec<Fault>,
-    lost_samples: u32,
-    unusable_values: u64,
-    lost_notices: u32,
-    damaged_frames: u32,
+    #[serde(flatten)]
+    counters: Counters,
 }
 
 impl ControllerTrace {
@@ -109,7 +101,9 @@ impl ControllerTrace {
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let switchings = self.outputs.iter();
-        let (state, counters) = (&self.state, self.state.counters);
+        let state = &self.state;
+        let all = self.zones.iter().sum::<u64>().max(1) as f64;
+        let parts = self.zones.iter().map(|it| *it as f64 / all);
         Controller {
             outputs: switchings
                 .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
@@ -117,7 +111,7 @@ impl ControllerTrace {
             touches: state.touches,
             alarms: self.alarms.iter().map(|it| alarm(it, timebase)).collect(),
             orders: self.orders.iter().map(|it| order(it, timebase)).collect(),
-            zones: zones(self.zones),
+            zones: ('a'..).zip(parts).collect(),
             log: Log {
                 checksum: CRC.checksum(&self.flash),
                 dump: Dump::of(&self.flash),
@@ -127,10 +121,7 @@ impl ControllerTrace {
                 sample_rate_hz: self.hello.sample_rate,
                 mode: state.mode,
                 faults: state.faults.iter().collect(),
-                lost_samples: counters.lost_samples,
-                unusable_values: counters.unusable_values,
-                lost_notices: counters.lost_notices,
-                damaged_frames: counters.damaged_frames,
+                counters: state.counters,
             },
         }
     }
@@ -148,12 +139,6 @@ fn order(order: &Cleared, timebase: Timebase) -> OrderAt {
         done: order.refused.is_none(),
         why: order.refused.map(busy_name),
     }
-}
-
-fn zones(samples: [u64; 4]) -> Zones {
-    let all = samples.iter().sum::<u64>().max(1) as f64;
-    let [a, b, c, d] = samples.map(|it| it as f64 / all);
-    Zones { a, b, c, d }
 }
 
 impl Controller {
@@ -205,9 +190,9 @@ impl Link {
             "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
             self.firmware,
             self.sample_rate_hz,
-            self.lost_samples,
-            self.lost_notices,
-            self.damaged_frames
+            self.counters.lost_samples,
+            self.counters.lost_notices,
+            self.counters.damaged_frames
         )
     }
 }

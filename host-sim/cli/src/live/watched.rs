@@ -11,7 +11,7 @@ use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
 use super::update::{Greeting, Said, Update};
-use touchdown_run::detection::declared;
+use touchdown_run::detection;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::timebase::Timebase;
 
@@ -34,13 +34,6 @@ pub enum Link {
     Down(f64, String),
 }
 
-/// An event with its number, until it is known what became of it.
-#[derive(Clone, Debug)]
-struct Numbered {
-    number: u16,
-    event: DetectedEvent,
-}
-
 /// All that is known of a controller.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
@@ -58,7 +51,7 @@ pub struct Watched {
     frames: VecDeque<f64>,
     trails: [VecDeque<[f64; 2]>; PLANES],
     newest: usize,
-    events: VecDeque<Numbered>,
+    events: Vec<DetectedEvent>,
     episodes: BTreeMap<u32, Option<Header>>,
     /// What was counted over the monitor's life.
     pub lifetime: Option<Counters>,
@@ -123,31 +116,9 @@ impl Watched {
 
     fn note(&mut self, notice: &Notice) {
         let timebase = self.timebase();
-        let at = |sample: u64| Some(timebase.time(sample as f64));
-        let of = |number: u16| move |it: &&mut Numbered| it.number == number;
-        let mut backward = self.events.iter_mut().rev();
-        match notice {
-            Notice::Declared(event) => {
-                self.events.push_back(Numbered {
-                    number: event.number,
-                    event: declared(event, timebase),
-                });
-                while self.events.len() > EVENTS {
-                    self.events.pop_front();
-                }
-            }
-            Notice::Confirmed { number, sample } => {
-                if let Some(it) = backward.find(of(*number)) {
-                    it.event.confirmed_s = at(*sample);
-                }
-            }
-            Notice::Withdrawn { number, sample } => {
-                if let Some(it) = backward.find(of(*number)) {
-                    it.event.withdrawn_s = at(*sample);
-                }
-            }
-            Notice::Outlook(_) | Notice::Alarm(_) | Notice::Touch(_) | Notice::Ordered(_) => {}
-        }
+        detection::take(&mut self.events, notice, timebase);
+        let old = self.events.len().saturating_sub(EVENTS);
+        self.events.drain(..old);
     }
 
     fn follow(&mut self, recent: &Recent) {
@@ -225,7 +196,7 @@ impl Watched {
 
     /// What happened, newest first; times on the controller's clock.
     pub fn events(&self) -> impl Iterator<Item = &DetectedEvent> {
-        self.events.iter().rev().map(|it| &it.event)
+        self.events.iter().rev()
     }
 
     /// Episodes that were seen in the log, newest first.

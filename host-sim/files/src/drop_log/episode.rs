@@ -133,10 +133,10 @@ impl Episode {
             damaged: report.verdict() == Verdict::Damaged,
             damage,
             flaws: Vec::new(),
-            events: told(&header, &records, event),
-            outputs: told(&header, &records, outputs),
-            alarms: told(&header, &records, alarm),
-            orders: told(&header, &records, order),
+            events: Vec::new(),
+            outputs: Vec::new(),
+            alarms: Vec::new(),
+            orders: Vec::new(),
             learnt: learnt(&parts),
             ending,
             report,
@@ -148,10 +148,44 @@ impl Episode {
             samples,
             pulses,
         };
+        if let Some(header) = &header {
+            records.iter().for_each(|it| episode.tell(it, header));
+        }
         for flaw in episode.header.as_ref().map_or(Vec::new(), impossible) {
             episode.flaw(flaw);
         }
         episode
+    }
+
+    /// Takes what a record tells.
+    fn tell(&mut self, record: &Record, header: &Header) {
+        let since = |tick: f64| (tick - header.trigger as f64) / f64::from(header.sample_rate);
+        match record {
+            Record::Switching(it) => {
+                let from = OutputsFrom::new(it, since(it.sample as f64));
+                self.outputs.push(from);
+            }
+            Record::Notice(Notice::Alarm(it)) => {
+                self.alarms.push(AlarmAt::new(it, since(it.sample as f64)));
+            }
+            Record::Notice(Notice::Ordered(it)) => {
+                let (act, time) = (act_name(it.act), 1e3 * since(it.sample as f64));
+                let why = refused_why(it.refused).map(|why| format!("refused: {why}"));
+                let came = why.unwrap_or_else(|| "done".to_owned());
+                self.orders.push(format!("{act} at {time:.4} ms: {came}"));
+            }
+            Record::Notice(Notice::Declared(it)) => self.events.push(Event {
+                event: it.kind,
+                onset_s: since(it.onset.samples()),
+                declared_s: since(it.declared as f64),
+                normal_speed_m_s: it.normal_speed,
+                fault: it.fault.map(|it| ChannelFault {
+                    channel: channel_name(it.channel),
+                    kind: it.kind,
+                }),
+            }),
+            _ => {}
+        }
     }
 
     /// Counts as damage whatever its pages say.
@@ -269,57 +303,4 @@ fn impossible(header: &Header) -> Vec<String> {
     broken
         .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
         .collect()
-}
-
-/// What of the records `one` tells, given a tick's time since the trigger, s.
-fn told<T>(
-    header: &Option<Header>,
-    records: &[Record],
-    one: fn(&Record, &dyn Fn(f64) -> f64) -> Option<T>,
-) -> Vec<T> {
-    let Some(header) = header else {
-        return Vec::new();
-    };
-    let since = |tick: f64| (tick - header.trigger as f64) / f64::from(header.sample_rate);
-    records.iter().filter_map(|it| one(it, &since)).collect()
-}
-
-fn outputs(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<OutputsFrom> {
-    match record {
-        Record::Switching(it) => Some(OutputsFrom::new(it, since(it.sample as f64))),
-        _ => None,
-    }
-}
-
-fn alarm(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<AlarmAt> {
-    match record {
-        Record::Notice(Notice::Alarm(it)) => Some(AlarmAt::new(it, since(it.sample as f64))),
-        _ => None,
-    }
-}
-
-fn order(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<String> {
-    let Record::Notice(Notice::Ordered(it)) = record else {
-        return None;
-    };
-    let time = 1e3 * since(it.sample as f64);
-    let came =
-        refused_why(it.refused).map_or("done".to_owned(), |why| "refused: ".to_owned() + &why);
-    Some(format!("{} at {time:.4} ms: {came}", act_name(it.act)))
-}
-
-fn event(record: &Record, since: &dyn Fn(f64) -> f64) -> Option<Event> {
-    let Record::Notice(Notice::Declared(event)) = record else {
-        return None;
-    };
-    Some(Event {
-        event: event.kind,
-        onset_s: since(event.onset.samples()),
-        declared_s: since(event.declared as f64),
-        normal_speed_m_s: event.normal_speed,
-        fault: event.fault.map(|it| ChannelFault {
-            channel: channel_name(it.channel),
-            kind: it.kind,
-        }),
-    })
 }
