@@ -131,7 +131,8 @@ impl App {
     /// After `lost` samples and one that was taken.
     fn act(&mut self, board: &mut impl Board, lost: u32) {
         let places = self.state.places();
-        self.lies_still = self.permit.take(places, self.state.phases());
+        let is_proven = self.safety.is_proven();
+        self.lies_still = self.permit.take(places, self.state.phases(), is_proven);
         self.watch_itself(board.config(), places.is_some(), lost);
         let told = self.told.take();
         self.step(told);
