@@ -47,7 +47,7 @@ pub(super) struct PlaneLimits {
 /// What a sample with these five flags adds: of the copies 5 bits apart, copy k has flag k at bit 6 k, and no other flag there.
 #[inline]
 fn adds(flags: u8) -> u32 {
-    u32::from(flags) * 0x0010_8421 & FIRST
+    (u32::from(flags) * 0x0010_8421) & FIRST
 }
 
 impl Limits {
