@@ -52,7 +52,7 @@ impl App {
 
     /// As if the rotor had been lifted before the first sample.
     pub fn assume_lift(&mut self) {
-        self.state.guard_mut().assume_lift();
+        self.state.guard.proof.assume_lift();
     }
 
     /// As if the monitor had `learnt` that of a rotor that had been lifted.
@@ -95,8 +95,8 @@ impl App {
     }
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
-    /// outputs, and last of all the watchdog is fed. The notices are left for the recorder. A sample that was `missed` was
-    /// never taken, and the next one that was does what follows.
+    /// outputs, and last of all the watchdog is fed. The notices are left for the recorder. One that was `missed` was never
+    /// taken, and the next one that was does what follows.
     #[inline]
     pub fn take(
         &mut self,
@@ -131,7 +131,8 @@ impl App {
     /// After `lost` samples and one that was taken.
     fn act(&mut self, board: &mut impl Board, lost: u32) {
         let places = self.state.places();
-        self.lies_still = self.permit.take(places, self.state.phases());
+        let is_proven = self.safety.is_proven();
+        self.lies_still = self.permit.take(places, self.state.phases(), is_proven);
         self.watch_itself(board.config(), places.is_some(), lost);
         let told = self.told.take();
         self.step(told);
@@ -153,7 +154,7 @@ impl App {
     fn step(&mut self, told: Option<Cause>) {
         let was_latched = self.safety.is_latched();
         self.safety.step(&Findings {
-            guard: self.state.guard().verdict(),
+            guard: self.state.guard.verdict,
             told,
             faulted: self.faults.trip(),
             tested: self.tested.config && self.tested.sensors,
@@ -161,7 +162,7 @@ impl App {
             lies_still: self.lies_still,
         });
         if self.safety.is_latched() && !was_latched {
-            self.state.guard_mut().lose_proof();
+            self.state.guard.proof.forget();
         }
     }
 
@@ -179,7 +180,7 @@ impl App {
             self.latch(Fault::Overload);
         }
         // Before the rotor has been proven to float, sensors may come late.
-        let is_blind = self.blind.look(sees) || self.state.guard().verdict().lost;
+        let is_blind = self.blind.look(sees) || self.state.guard.verdict.lost;
         if is_blind && (self.safety.is_proven() || self.safety.is_latched()) {
             self.latch(Fault::SensorsLost);
         }
@@ -216,7 +217,7 @@ impl App {
             return Ok(());
         }
         self.safety.clear();
-        self.state.guard_mut().restart_proof();
+        self.state.guard.proof.restart();
         self.tested = Tested::default();
         self.blind.forget();
         Ok(())

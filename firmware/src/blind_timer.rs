@@ -1,5 +1,7 @@
 //! How long the monitor has not seen the rotor: no plane delivers, or samples are lost.
 
+use touchdown_core::sample::count_in_a_row;
+
 /// Longest time that it may be blind, s: a fall from rest goes 5 um in it, a 60th of the clearance of the rig.
 const TIME: f32 = 1e-3;
 
@@ -28,11 +30,8 @@ impl BlindTimer {
 
     /// Takes whether a sample showed the rotor; whether it has not for too long.
     pub fn look(&mut self, sees: bool) -> bool {
-        (self.dark, self.seen) = if sees {
-            (0, self.seen.saturating_add(1))
-        } else {
-            (self.dark.saturating_add(1), 0)
-        };
+        count_in_a_row(&mut self.seen, sees);
+        count_in_a_row(&mut self.dark, !sees);
         self.dark >= self.limit
     }
 

@@ -109,7 +109,7 @@ impl Intake<'_> {
         if self.samples.capacity() < RING {
             let _ = self.samples.enqueue(NumberedSample { arrival, number });
         }
-        let verdict = self.state.verdict();
+        let verdict = self.state.verdict;
         (verdict.danger || verdict.lost || verdict.off) && self.gate.trip(number)
     }
 }

@@ -1,9 +1,11 @@
-//! Whether the rotor lies still enough on the retainer to be lifted again: each end at rest, or near the bottom for a
-//! while, and in contact there or not moving. No flight stays where it is, whatever the detector takes an end for.
+//! Whether the rotor lies still enough to be lifted again: each end at rest, or near the bottom for a while, and in
+//! contact there or slow. No flight is slow for long, whatever the detector takes an end for. Without weight there is no
+//! bottom: an end that is slow lies.
 
 use touchdown_core::config::NEAREST_WALL;
 use touchdown_core::detect::{DetectorConfig, Phase};
 use touchdown_core::event::{EventKind, Notice, Plane};
+use touchdown_core::sample::count_in_a_row;
 use touchdown_core::sensing::PLANES;
 
 /// Sine of the largest swing from the bottom, 30 degrees.
@@ -11,8 +13,10 @@ const SWING: f32 = 0.5;
 /// Time that it must have stayed within the swing, s: three periods of a pendulum in a clearance of
 /// 0.8 mm, 2 pi sqrt(1.5 x 0.8 mm/g) = 70 ms for a rolling solid cylinder.
 const TIME: f32 = 0.2;
-/// Part of the clearance within which an end does not move, on average over the time below: more than noise does.
-const STILL: f32 = 0.05;
+/// Part of the clearance that the average place of a slow end goes in the time below, s, at most: more than noise does, and
+/// 10 clearances a second. No sample may be as far from that average as a wall is: an end that whirls has an average too.
+const SLOW: f32 = 0.05;
+const SLOW_TIME: f32 = 5e-3;
 /// Time over which places are averaged, s.
 const AVERAGE: f32 = 2e-3;
 
@@ -20,10 +24,12 @@ const AVERAGE: f32 = 2e-3;
 #[derive(Clone, Copy, Debug)]
 pub struct LiftInterlock {
     samples: u32,
+    slow_samples: u32,
     gain: f32,
     /// m^2.
     nearest_square: f32,
-    still_square: f32,
+    slow_square: f32,
+    has_weight: bool,
     /// Ends that are seen.
     seen: [bool; PLANES],
     /// As the detector told last, by end.
@@ -36,8 +42,9 @@ pub struct LiftInterlock {
 struct End {
     /// Within the swing.
     within: u32,
-    /// At `anchor`.
-    still: u32,
+    /// Slow, and since it was last at `anchor`.
+    slow: u32,
+    anchored: u32,
     place: [f32; 2],
     anchor: [f32; 2],
 }
@@ -49,9 +56,11 @@ impl LiftInterlock {
         let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
             samples: (TIME * rate) as u32,
+            slow_samples: (SLOW_TIME * rate) as u32,
             gain: 1.0 / (AVERAGE * rate).max(1.0),
             nearest_square: square(NEAREST_WALL),
-            still_square: square(STILL),
+            slow_square: square(SLOW),
+            has_weight: detector.machine.gravity > 0.0,
             seen: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             rests: [false; PLANES],
             ends: [End::default(); PLANES],
@@ -76,47 +85,51 @@ impl LiftInterlock {
         }
     }
 
-    /// Takes the place (m) of each end in this sample, and its phase; whether the rotor may be lifted.
-    pub fn take(&mut self, places: Option<[[f32; 2]; PLANES]>, phases: [Phase; PLANES]) -> bool {
-        let floats = phases.into_iter().all(|it| it < Phase::FreeFall);
-        let Some(places) = places.filter(|_| !floats) else {
+    /// Takes the place (m) of each end in this sample, and its phase; whether the rotor may be lifted. What the detector
+    /// takes for floating may lie, but not where floating `is_proven`: how long it has lain counts from then on.
+    pub fn take(
+        &mut self,
+        places: Option<[[f32; 2]; PLANES]>,
+        phases: [Phase; PLANES],
+        is_proven: bool,
+    ) -> bool {
+        let Some(places) = places.filter(|_| !is_proven) else {
             self.ends = [End::default(); PLANES];
             return false;
         };
-        let mut all_lie = true;
+        let mut all_lie = phases.into_iter().any(|it| it >= Phase::FreeFall);
         for (at, (place, phase)) in places.into_iter().zip(phases).enumerate() {
-            let (is_low, is_still) = self.follow(at, place);
+            let (is_low, is_slow) = self.follow(at, place);
             let rests = self.rests[at] || !self.seen[at];
-            all_lie &= if phase.is_contact() {
-                is_low || rests
-            } else {
-                is_low && is_still
-            };
+            all_lie &=
+                phase.is_contact() && (is_low || rests) || is_slow && (is_low || !self.has_weight);
         }
         all_lie
     }
 
-    /// Whether an end has been low, and still, for long.
+    /// Whether an end has been low, and slow, for long.
     fn follow(&mut self, at: usize, place: [f32; 2]) -> (bool, bool) {
         let it = &mut self.ends[at];
         let [x, y] = place;
         let square = x * x + y * y;
         let is_low = y < 0.0 && x * x <= SWING * SWING * square && square >= self.nearest_square;
-        it.within = if is_low {
-            it.within.saturating_add(1)
-        } else {
-            0
-        };
+        count_in_a_row(&mut it.within, is_low);
         for (mean, value) in it.place.iter_mut().zip(place) {
             *mean += self.gain * (value - *mean);
         }
-        let [dx, dy] = [it.place[0] - it.anchor[0], it.place[1] - it.anchor[1]];
-        if dx * dx + dy * dy > self.still_square {
-            (it.anchor, it.still) = (it.place, 0);
-        } else {
-            it.still = it.still.saturating_add(1);
+        let apart = |a: [f32; 2], b: [f32; 2]| {
+            let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+            dx * dx + dy * dy
+        };
+        let is_slow = apart(it.place, it.anchor) <= self.slow_square
+            && apart(place, it.place) < self.nearest_square;
+        count_in_a_row(&mut it.slow, is_slow);
+        let is_anchored = is_slow && it.anchored < self.slow_samples;
+        count_in_a_row(&mut it.anchored, is_anchored);
+        if !is_anchored {
+            it.anchor = it.place;
         }
-        (it.within >= self.samples, it.still >= self.samples)
+        (it.within >= self.samples, it.slow >= self.samples)
     }
 }
 
@@ -138,7 +151,7 @@ mod tests {
         (0..40_000).any(|it| {
             let lies = [0.1e-4, -3e-4];
             let places = [lies, place(it as f32 / 20_000.0)];
-            interlock.take(Some(places), [Phase::Sliding, phase])
+            interlock.take(Some(places), [Phase::Sliding, phase], false)
         })
     }
 
@@ -153,6 +166,53 @@ mod tests {
         }
     }
 
+    /// Without weight it lies where it is, though the detector takes it for falling. A whirl does not lie, nor does one that
+    /// is so fast that its average hardly moves.
+    #[test]
+    fn without_weight_an_end_that_is_slow_lies_anywhere() {
+        let is_ever_lifted = |place: &dyn Fn(f32) -> [f32; 2]| {
+            let mut interlock = interlock();
+            interlock.has_weight = false;
+            (0..40_000).any(|it| {
+                let place = place(it as f32 / 20_000.0);
+                interlock.take(Some([place; 2]), [Phase::FreeFall; 2], false)
+            })
+        };
+        assert!(is_ever_lifted(&|_| [-0.8e-4, 0.0]));
+        for (hz, lies) in [
+            (0.5, true),
+            (2.0, false),
+            (20.0, false),
+            (500.0, false),
+            (3_000.0, false),
+        ] {
+            let lifted = is_ever_lifted(&|time| {
+                let (sin, cos) = (f64::from(time) * core::f64::consts::TAU * hz).sin_cos();
+                [3e-4 * cos as f32, 3e-4 * sin as f32]
+            });
+            assert_eq!(lifted, lies, "{hz}");
+        }
+        assert!(!is_ever_lifted(&|time| [-2e-4 + 4e-3 * (time % 0.1), 0.0]));
+    }
+
+    /// The detector declares a fall and withdraws it, again and again.
+    #[test]
+    fn what_the_detector_takes_for_floating_now_and_then_lies_unless_it_is_proven() {
+        for is_proven in [false, true] {
+            let mut interlock = interlock();
+            interlock.has_weight = false;
+            let lifted = (0..40_000).any(|it| {
+                let phase = if it % 3_000 < 2_000 {
+                    Phase::FreeFall
+                } else {
+                    Phase::Levitated
+                };
+                interlock.take(Some([[-0.8e-4, 0.0]; 2]), [phase; 2], is_proven)
+            });
+            assert_eq!(lifted, !is_proven);
+        }
+    }
+
     /// The mean of both ends stays low.
     #[test]
     fn ends_that_whirl_against_each_other_do_not_lie() {
@@ -161,7 +221,7 @@ mod tests {
         for it in 0..40_000 {
             let (sin, cos) = (0.02 * it as f64).sin_cos();
             let [x, y] = [3e-4 * cos as f32, 3e-4 * sin as f32];
-            assert!(!interlock.take(Some([[x, y - 2e-5], [-x, -y - 2e-5]]), phases));
+            assert!(!interlock.take(Some([[x, y - 2e-5], [-x, -y - 2e-5]]), phases, false));
         }
     }
 
@@ -181,7 +241,8 @@ mod tests {
             })
         };
         let mut interlock = interlock();
-        let take = |it: &mut LiftInterlock| it.take(Some([[3e-4, 0.0]; 2]), [Phase::Sliding; 2]);
+        let take =
+            |it: &mut LiftInterlock| it.take(Some([[3e-4, 0.0]; 2]), [Phase::Sliding; 2], false);
         assert!((0..20_000).all(|_| !take(&mut interlock)));
         interlock.hear(&told(EventKind::Rest, Plane::A));
         assert!(!take(&mut interlock));

@@ -12,6 +12,7 @@ use touchdown_scene::names::{channel_name, plane_name};
 /// An event, as far as its declaration tells.
 pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
     DetectedEvent {
+        number: event.number,
         event: event.kind,
         onset_s: timebase.time(event.onset.samples()),
         declared_s: timebase.time(event.declared as f64),
@@ -29,6 +30,28 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
             channel: channel_name(fault.channel),
             kind: fault.kind,
         }),
+    }
+}
+
+/// Takes what a notice tells into `events`: a new one, or what became of the last one of its number.
+pub fn take(events: &mut Vec<DetectedEvent>, notice: &Notice, timebase: Timebase) {
+    let last = |number: u16| move |it: &&mut DetectedEvent| it.number == number;
+    let time = |sample: u64| Some(timebase.time(sample as f64));
+    match notice {
+        Notice::Declared(event) => events.push(declared(event, timebase)),
+        Notice::Confirmed { number, sample } => {
+            let event = events.iter_mut().rfind(last(*number));
+            event
+                .into_iter()
+                .for_each(|it| it.confirmed_s = time(*sample));
+        }
+        Notice::Withdrawn { number, sample } => {
+            let event = events.iter_mut().rfind(last(*number));
+            event
+                .into_iter()
+                .for_each(|it| it.withdrawn_s = time(*sample));
+        }
+        _ => {}
     }
 }
 
@@ -65,36 +88,22 @@ fn add_speeds(touches: &mut [TouchEvent], events: &[DetectedEvent]) {
 pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
     let mut events: Vec<DetectedEvent> = Vec::new();
     let mut forecasts = Vec::new();
-    let mut numbers = Vec::new();
     let mut touches: Vec<TouchEvent> = Vec::new();
     for notice in &answer.notices {
         match *notice {
-            Notice::Declared(event) => {
-                numbers.push(event.number);
-                events.push(declared(&event, timebase));
-            }
             Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
             // One that has ended is told a second time; none begins before.
             Notice::Touch(it) if it.end.is_none() => touches.push(touch(&it, timebase)),
             Notice::Touch(it) => {
                 if let Some(last) = touches.last_mut() {
-                    let begun = (last.sample, last.declared_s);
-                    *last = touch(&it, timebase);
-                    (last.sample, last.declared_s) = begun;
+                    *last = TouchEvent {
+                        sample: last.sample,
+                        declared_s: last.declared_s,
+                        ..touch(&it, timebase)
+                    };
                 }
             }
-            Notice::Alarm(_) | Notice::Ordered(_) => {}
-            Notice::Confirmed { number, sample } => {
-                // From the end: numbers wrap round in a long run.
-                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
-                    events[index].confirmed_s = Some(timebase.time(sample as f64));
-                }
-            }
-            Notice::Withdrawn { number, sample } => {
-                if let Some(index) = numbers.iter().rposition(|n| *n == number) {
-                    events[index].withdrawn_s = Some(timebase.time(sample as f64));
-                }
-            }
+            _ => take(&mut events, notice, timebase),
         }
     }
     add_speeds(&mut touches, &events);

@@ -211,6 +211,7 @@ mod tests {
 
     fn event(event: EventKind, onset_s: f64, declared_s: f64) -> DetectedEvent {
         DetectedEvent {
+            number: 0,
             event,
             onset_s,
             declared_s,

@@ -18,6 +18,9 @@ use touchdown_truth::Moving;
 /// An event of the detector, with times in seconds since the release (or since the stream's zero).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DetectedEvent {
+    /// Counts up from 0, and round.
+    #[serde(skip)]
+    pub number: u16,
     /// What.
     pub event: EventKind,
     /// Estimated physical instant, s.

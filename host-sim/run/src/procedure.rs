@@ -4,7 +4,6 @@ use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_core::sensing::Sensing;
-use touchdown_rotor::error::ConfigError;
 
 /// What is done to a controller over a recording, and where it begins. By default a lift was seen before it, and
 /// nothing is ordered.
@@ -25,47 +24,20 @@ impl Procedure {
     pub fn clears(&self, sample: u64) -> bool {
         self.clear_at.binary_search(&sample).is_ok()
     }
-}
 
-/// Samples, of which it counts those in each zone: that of the plane that is further out.
-pub(crate) struct Zoned<'a, I> {
-    samples: I,
-    sensing: Sensing,
-    fitted: u8,
-    ends: [f64; 3],
-    counts: &'a mut [u64; 4],
-}
-
-impl<'a, I> Zoned<'a, I> {
-    pub(crate) fn new(
-        samples: I,
+    /// The zone of that plane in a sample that is farther out; none where no plane delivers.
+    pub(crate) fn zone(
+        &self,
         config: &MonitorConfig,
-        zones: [f64; 3],
-        counts: &'a mut [u64; 4],
-    ) -> Result<Self, ConfigError> {
+        sensing: &Sensing,
+        sample: &Sample,
+    ) -> Option<usize> {
         let clearance = f64::from(config.detector.machine.clearance);
-        Ok(Self {
-            samples,
-            sensing: Sensing::try_new(&config.sensing)?,
-            fitted: config.fitted,
-            ends: zones.map(|it| it * clearance),
-            counts,
-        })
-    }
-}
-
-impl<I: Iterator<Item = Sample>> Iterator for Zoned<'_, I> {
-    type Item = Sample;
-
-    fn next(&mut self) -> Option<Sample> {
-        let sample = self.samples.next()?;
-        let planes = self.sensing.convert(&sample, self.fitted).planes;
+        let planes = sensing.convert(sample, config.fitted).planes;
         let distances = planes.into_iter().flatten();
         let distances = distances.map(|[x, y]| f64::from(x).hypot(f64::from(y)));
-        if let Some(distance) = distances.reduce(f64::max) {
-            let zone = self.ends.iter().filter(|end| distance > **end).count();
-            self.counts[zone] += 1;
-        }
-        Some(sample)
+        let distance = distances.reduce(f64::max)?;
+        let inner = self.zones.iter().filter(|it| distance > **it * clearance);
+        Some(inner.count())
     }
 }

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
+use touchdown_core::sensing::Sensing;
 
 use crate::controller_run;
 use crate::controller_trace::ControllerTrace;
 use crate::emulator::{Emulator, EmulatorError};
 use crate::monitor_run::{self, MonitorOutput};
-use crate::procedure::{Procedure, Zoned};
+use crate::procedure::Procedure;
 use touchdown_base::failure::Failure;
 use touchdown_rotor::error::ConfigError;
 
@@ -53,7 +54,12 @@ impl Target {
     ) -> Result<(MonitorOutput, ControllerTrace), Failure> {
         let refused = |error: ConfigError| Failure::Usage(format!("monitor: {error}"));
         let mut zones = [0; 4];
-        let samples = Zoned::new(samples, config, procedure.zones, &mut zones).map_err(refused)?;
+        let sensing = Sensing::try_new(&config.sensing).map_err(refused)?;
+        let samples = samples.inspect(|sample| {
+            if let Some(zone) = procedure.zone(config, &sensing, sample) {
+                zones[zone] += 1;
+            }
+        });
         let (answer, trace) = match self {
             Self::Host => controller_run::run(config, procedure, samples).map_err(refused)?,
             Self::Qemu(_) if procedure.learnt.is_some() => {

@@ -42,7 +42,7 @@ impl Learnt {
     pub fn update(&mut self, state: &MonitorState) {
         self.known = state.detector.is_afloat();
         if self.known {
-            self.told = (state.spin, state.levitated);
+            self.told = (state.spin.believed, state.levitated);
             self.health.clone_from(&state.health);
             self.detector.update(&state.detector);
             let next = Moment::of_sample(state.samples());
@@ -124,7 +124,7 @@ impl From<&Learnt> for MonitorState {
     /// The state before the sample that follows, which gets number 0.
     fn from(it: &Learnt) -> Self {
         let mut state = Self::default();
-        (state.spin, state.levitated) = it.told;
+        (state.spin.believed, state.levitated) = it.told;
         state.health = it.health;
         state.detector = DetectorState::from(&it.detector);
         state.tachometers = TachometersState::from(&it.rings);

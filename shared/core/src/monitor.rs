@@ -7,14 +7,13 @@ use crate::detect::{
     Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
 };
 use crate::event::{Motion, Notice, Notices};
-use crate::fault::Found;
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, PlanePositions, Reading, Sensing, SensingConfig, mean};
 use crate::severity::{Severity, SeverityModel, SeverityState};
-use crate::spin::{SpinCheck, SpinFaults};
+use crate::spin::{SpinCheck, SpinState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
@@ -63,17 +62,15 @@ pub struct Seen {
 pub struct MonitorState {
     samples: u64,
     faults: u64,
-    guard: GuardState,
+    /// Of the guard, as it sees the last sample.
+    pub guard: GuardState,
     touch: TouchState,
     pub(crate) health: HealthState,
     pub(crate) tachometers: TachometersState,
     planes: PlanePositions,
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,
-    pub(crate) spin: Option<f32>,
-    /// In a row, that were not believed.
-    odd_spins: u16,
-    spin_faults: SpinFaults,
+    pub(crate) spin: SpinState,
     #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
@@ -188,17 +185,14 @@ impl Monitor {
             contact,
             &state.touch,
         );
-        let spin_fault = if state.odd_spins == 0 && self.spin.follows(sample.spin, state.spin) {
-            state.spin = sample.spin;
-            None
-        } else {
-            self.judge_spin(state, sample)
-        };
+        let spin = &mut state.spin;
+        let (is_unused, spin_fault) = self.spin.update(spin, sample.spin, state.samples);
+        state.faults += u64::from(is_unused);
         #[cfg(feature = "serde")]
         {
             state.levitated = sample.levitated;
         }
-        let spin = state.spin;
+        let spin = state.spin.believed;
         let retainer = self.retainer(state, sample);
         state.samples += 1;
         state.planes = if reading.is_own() {
@@ -220,7 +214,7 @@ impl Monitor {
     #[inline(never)]
     fn miss(&self, state: &mut MonitorState, missed: &Sample) -> Seen {
         let signals = Signals {
-            spin: state.spin,
+            spin: state.spin.believed,
             retainer: self.retainer(state, missed),
             levitated: missed.levitated,
             spin_fault: None,
@@ -231,20 +225,6 @@ impl Monitor {
             reading: Reading::default(),
             signals,
         }
-    }
-
-    /// A spin that does not go on from the last one; what is wrong with it.
-    #[inline(never)]
-    fn judge_spin(&self, state: &mut MonitorState, sample: &Sample) -> Option<Found> {
-        let (known, was_odd) = (state.spin, state.odd_spins);
-        state.spin = self.spin.take(sample.spin, known, &mut state.odd_spins);
-        let is_odd = state.odd_spins > 0 || state.spin.is_none() && sample.spin.is_some();
-        state.faults += u64::from(is_odd);
-        if state.odd_spins > 0 {
-            return None;
-        }
-        let faults = &mut state.spin_faults;
-        (self.spin).find(faults, (known?, was_odd), state.spin, state.samples)
     }
 
     /// Fourth part: the detector.
@@ -267,7 +247,7 @@ impl Monitor {
         let is_released = state.detector.phase() >= Phase::FreeFall;
         let rests = state.detector.rests();
         let estimate = if wants_input && is_released && !rests {
-            self.detector.estimate(&state.detector, state.spin)
+            self.detector.estimate(&state.detector, state.spin.believed)
         } else {
             None
         };
@@ -290,7 +270,7 @@ impl Monitor {
         };
         let edges = &sample.edges;
         state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
-        match state.spin {
+        match state.spin.believed {
             Some(spin) => {
                 Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
             }
@@ -328,23 +308,13 @@ impl MonitorState {
 
     /// Times that the rotor came to the wall, whatever held it.
     pub fn touches(&self) -> u32 {
-        self.touch.count()
-    }
-
-    /// The guard's state.
-    pub fn guard(&self) -> &GuardState {
-        &self.guard
-    }
-
-    /// Likewise, for who keeps the proof of levitation.
-    pub fn guard_mut(&mut self) -> &mut GuardState {
-        &mut self.guard
+        self.touch.count
     }
 
     /// Tells a wall that has moved once more, where it is seen again.
     pub fn forget_wall(&mut self) {
         self.health.wall = Default::default();
-        self.touch.forget_short();
+        self.touch.short = [0; PLANES];
     }
 
     /// The present phase.

@@ -47,3 +47,9 @@ impl Sample {
         channel < CHANNELS && self.valid & (1 << channel) != 0
     }
 }
+
+/// Counts the samples in a row of which something holds.
+#[inline]
+pub const fn count_in_a_row(count: &mut u32, holds: bool) {
+    *count = if holds { count.saturating_add(1) } else { 0 };
+}

@@ -29,11 +29,16 @@ pub(crate) struct SpinCheck {
     impact: f32,
 }
 
-/// The sample from which on one that is gone, and one that is not believed, is told: in between they are one fault.
+/// What is known of it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SpinFaults {
-    gone: u64,
-    odd: u64,
+pub(crate) struct SpinState {
+    /// That is believed, rad/s.
+    pub(crate) believed: Option<f32>,
+    /// Samples in a row that were not.
+    odd: u16,
+    /// The sample from which on one that is gone, and one that was not believed, is told: in between they are one fault.
+    gone_due: u64,
+    odd_due: u64,
 }
 
 impl SpinCheck {
@@ -53,55 +58,52 @@ impl SpinCheck {
         }
     }
 
-    /// Whether a reading goes on from the known spin as a rotor's does, or neither is there.
+    /// Takes a `reading` (rad/s) in this `sample`; whether it is not used, and what is wrong with it.
     #[inline]
-    pub(crate) fn follows(&self, reading: Option<f32>, known: Option<f32>) -> bool {
-        match (reading, known) {
+    pub(crate) fn update(
+        &self,
+        it: &mut SpinState,
+        reading: Option<f32>,
+        sample: u64,
+    ) -> (bool, Option<Found>) {
+        let follows = match (reading, it.believed) {
             (Some(new), Some(known)) => (new - known).abs() < self.most_change,
             (reading, known) => reading.is_none() && known.is_none(),
+        };
+        if it.odd == 0 && follows {
+            it.believed = reading;
+            return (false, None);
         }
+        let found = self.judge(it, reading, sample);
+        let is_unused = it.odd > 0 || it.believed.is_none() && reading.is_some();
+        (is_unused, found)
     }
 
-    /// The spin to believe (rad/s), after the `known` one: that stays while another is not believed, `odd` samples in
-    /// a row by now.
-    pub(crate) fn take(
-        &self,
-        reading: Option<f32>,
-        known: Option<f32>,
-        odd: &mut u16,
-    ) -> Option<f32> {
+    /// Likewise of one that does not go on from the believed one as a rotor's does: that stays while another is not
+    /// believed. A fault is found once, until the reading has been right for as long as it takes to believe another. A rotor
+    /// that stops has no pulses either, so a spin that was no more than a change is not missed.
+    #[inline(never)]
+    fn judge(&self, it: &mut SpinState, reading: Option<f32>, sample: u64) -> Option<Found> {
         let reading = reading.filter(|spin| spin.is_finite());
-        if let (Some(new), Some(known)) = (reading, known)
+        if let (Some(new), Some(known)) = (reading, it.believed)
             && (new - known).abs() > self.most_change
-            && *odd < self.longest
-            && f32::from(*odd) * known.abs() < self.angle
+            && it.odd < self.longest
+            && f32::from(it.odd) * known.abs() < self.angle
         {
-            *odd += 1;
-            return Some(known);
+            it.odd += 1;
+            return None;
         }
-        *odd = 0;
-        reading
-    }
-
-    /// What is wrong with a speed that is gone in this `sample`, or believed again or anew: the `spin` now, and before it
-    /// the known one and the samples in a row that were not believed. Once, until it has been right for as long as it takes
-    /// to believe another. A rotor that stops has no pulses either, so a spin that was no more than a change is not missed.
-    pub(crate) fn find(
-        &self,
-        state: &mut SpinFaults,
-        (known, was_odd): (f32, u16),
-        spin: Option<f32>,
-        sample: u64,
-    ) -> Option<Found> {
-        let (kind, due) = match spin {
-            None if known.abs() > self.most_change => (FaultKind::Missing, &mut state.gone),
+        let was_odd = core::mem::take(&mut it.odd);
+        let known = core::mem::replace(&mut it.believed, reading)?;
+        let (kind, due) = match reading {
+            None if known.abs() > self.most_change => (FaultKind::Missing, &mut it.gone_due),
             Some(new) if (new - known).abs() > self.most_change => {
                 if (new - known).abs() <= self.impact {
                     return None;
                 }
-                (FaultKind::Shift, &mut state.odd)
+                (FaultKind::Shift, &mut it.odd_due)
             }
-            Some(_) if was_odd > 0 => (FaultKind::Spike, &mut state.odd),
+            Some(_) if was_odd > 0 => (FaultKind::Spike, &mut it.odd_due),
             _ => return None,
         };
         let is_new = sample >= *due;
@@ -130,12 +132,12 @@ mod tests {
             longest: (LONGEST * RATE) as u16,
             impact: 25.0,
         };
-        let (mut known, mut odd) = (None, 0);
-        let take = |reading| {
-            known = check.take(reading, known, &mut odd);
-            known
+        let mut state = SpinState::default();
+        let take = |(sample, reading)| {
+            check.update(&mut state, reading, sample);
+            state.believed
         };
-        readings.into_iter().map(take).collect()
+        (0..).zip(readings).map(take).collect()
     }
 
     #[test]

@@ -53,17 +53,11 @@ pub struct TouchState {
     planes: [PlaneTouch; PLANES],
     /// Whether it has been clear of the wall.
     was_clear: bool,
-    open: Option<Open>,
-    count: u32,
-    /// Touches in a row that ended short of the wall, by plane.
-    short: [u8; PLANES],
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Open {
-    onset: u64,
-    planes: [bool; PLANES],
-    peak: f32,
+    open: Option<Touch>,
+    /// Touches so far.
+    pub count: u32,
+    /// Touches in a row that ended short of the told wall where no magnet turned the rotor back, by plane.
+    pub(crate) short: [u8; PLANES],
 }
 
 impl Touches {
@@ -143,67 +137,66 @@ impl Touches {
     #[inline(never)]
     fn take(&self, state: &mut TouchState, sample: u64, notices: &mut Notices) {
         let [a, b] = &state.planes;
-        let is_at_wall = a.at_wall || b.at_wall;
+        let at_wall = match (a.at_wall, b.at_wall) {
+            (true, true) => Some(Plane::Both),
+            (true, false) => Some(Plane::A),
+            (false, true) => Some(Plane::B),
+            (false, false) => None,
+        };
         if !state.was_clear {
             // One that lies there at first has not come.
-            state.was_clear = !is_at_wall;
+            state.was_clear = at_wall.is_none();
             return;
         }
-        let is_new = state.open.is_none();
-        if is_new && !is_at_wall {
-            return;
-        }
-        let mut open = state.open.unwrap_or(Open {
-            onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
-            ..Open::default()
-        });
-        let [was_a, was_b] = open.planes;
-        open.planes = [was_a || a.at_wall, was_b || b.at_wall];
         let peak = if a.last > b.last { a.last } else { b.last };
-        if peak > open.peak {
-            open.peak = peak;
-        }
-        state.open = is_at_wall.then_some(open);
-        if is_at_wall && !is_new {
+        let goes_on = state.open.is_some();
+        let Some(mut touch) = state.open.or(at_wall.map(|plane| Touch {
+            number: state.count as u16,
+            plane,
+            onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
+            declared: sample,
+            end: None,
+            peak,
+        })) else {
             return;
+        };
+        if peak > touch.peak {
+            touch.peak = peak;
         }
-        state.count = state.count.saturating_add(u32::from(is_new));
-        let end = (!is_at_wall).then(|| sample.saturating_sub(u64::from(IN_A_ROW)));
-        let touch = Self::touch(&open, state.count, sample, end);
+        state.open = at_wall.map(|plane| {
+            if plane != touch.plane {
+                touch.plane = Plane::Both;
+            }
+            touch
+        });
+        if state.open.is_none() {
+            touch.declared = sample;
+            touch.end = Some(sample.saturating_sub(u64::from(IN_A_ROW)));
+            self.judge(state, &touch);
+        } else if goes_on {
+            return;
+        } else {
+            state.count = state.count.saturating_add(1);
+        }
         // There is room for all that a tick can say; without it nothing else may suffer.
         let _ = notices.push(Notice::Touch(touch));
-        if let Some(end) = end {
-            self.judge(state, &open, end);
-        }
     }
 
     /// Counts a touch that has ended short of the told wall. One that was too slow to tell counts for nothing.
-    fn judge(&self, state: &mut TouchState, open: &Open, end: u64) {
-        let samples = end.saturating_sub(open.onset);
+    fn judge(&self, state: &mut TouchState, touch: &Touch) {
+        let samples = touch.end.unwrap_or(0).saturating_sub(touch.onset);
         // Of a parabola to the peak: less than its time.
-        let turn = self.turn * (open.peak - AT_WALL);
+        let turn = self.turn * (touch.peak - AT_WALL);
         let is_hit = samples >= LEAST && (samples * samples) as f32 <= turn;
-        for (short, _) in state.short.iter_mut().zip(open.planes).filter(|it| it.1) {
-            if open.peak >= SHORT {
+        for (short, other) in state.short.iter_mut().zip([Plane::B, Plane::A]) {
+            if touch.plane == other {
+                continue;
+            }
+            if touch.peak >= SHORT {
                 *short = 0;
             } else if is_hit {
                 *short = short.saturating_add(1);
             }
-        }
-    }
-
-    fn touch(open: &Open, count: u32, declared: u64, end: Option<u64>) -> Touch {
-        Touch {
-            number: count.saturating_sub(1) as u16,
-            plane: match open.planes {
-                [true, false] => Plane::A,
-                [false, true] => Plane::B,
-                _ => Plane::Both,
-            },
-            onset: open.onset,
-            declared,
-            end,
-            peak: open.peak,
         }
     }
 }
@@ -213,22 +206,5 @@ impl PlaneTouch {
     #[inline]
     fn is_clear(&self) -> bool {
         self.seen && !self.at_wall && self.count == 0
-    }
-}
-
-impl TouchState {
-    /// Touches in a row that ended short of the told wall where no magnet turned the rotor back, by plane.
-    pub(crate) fn short(&self) -> [u8; PLANES] {
-        self.short
-    }
-
-    /// Counts them anew.
-    pub(crate) fn forget_short(&mut self) {
-        self.short = [0; PLANES];
-    }
-
-    /// Touches so far.
-    pub fn count(&self) -> u32 {
-        self.count
     }
 }

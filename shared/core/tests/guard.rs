@@ -80,7 +80,7 @@ impl Bench {
     }
 
     fn verdict(&self) -> Verdict {
-        self.state.verdict()
+        self.state.verdict
     }
 
     fn at(&mut self, place: [f32; 2]) {
@@ -199,7 +199,7 @@ fn a_lift_is_a_proof_and_nothing_that_lies_is() {
     // A float that nobody saw lifted.
     let mut bench = Bench::rig();
     assert!(!bench.stay([0.0; 2], 40_000));
-    bench.state.assume_lift();
+    bench.state.proof.assume_lift();
     assert!(bench.stay([0.0; 2], 4_100));
     // Beyond the alert limit, lifted or not.
     let mut bench = Bench::rig();
@@ -223,7 +223,7 @@ fn a_fall_back_to_where_it_lay_is_danger_whatever_is_told() {
     bench.stay([0.0, -0.42], 15);
     assert!(bench.verdict().danger);
     // A proof that was lost takes its floor along.
-    bench.state.lose_proof();
+    bench.state.proof.forget();
     bench.stay([0.0, -0.42], 20);
     assert!(!bench.verdict().danger);
 }
@@ -285,7 +285,7 @@ fn a_machine_without_weight_needs_the_signal_and_a_commissioning_check() {
 #[test]
 fn a_plane_that_is_fitted_and_does_not_deliver_proves_nothing() {
     let mut bench = Bench::rig();
-    bench.state.assume_lift();
+    bench.state.proof.assume_lift();
     let proven = (0..20_000).any(|_| {
         bench.planes([Some([0.0; 2]), None], None);
         bench.verdict().floats
@@ -300,7 +300,7 @@ fn each_time_at_the_wall_is_a_touch() {
     for number in 0..5 {
         bench.go([0.0; 2], [0.0, -0.9], 60);
         bench.go([0.0, -0.9], [0.0; 2], 60);
-        assert_eq!(bench.touch.count(), number + 1);
+        assert_eq!(bench.touch.count, number + 1);
     }
     // One that comes to stay.
     bench.go([0.0; 2], [0.0, -1.0], 60);

@@ -81,24 +81,23 @@ fn shown(metres: f64) -> f64 {
 fn state(state: &State, watched: &Watched) -> Value {
     let faults = state.faults.iter();
     let sample = (state.sample != u64::MAX).then_some(state.sample);
-    json!({
-        "sample": sample,
-        "time_s": sample.map(|it| watched.timebase().time(it as f64)),
-        "age_s": 1e-6 * f64::from(state.age_us),
-        "phase": told_phase_name(state.phase),
-        "mode": mode_name(state.mode),
-        "cause": state.cause,
-        "touches": state.touches,
-        "run": state.outputs.run,
-        "no_brake": state.outputs.no_brake,
-        "permit": state.outputs.permit,
-        "ready": state.outputs.ready,
-        "faults": faults.map(fault_name).collect::<Vec<_>>(),
-        "lost_samples": state.counters.lost_samples,
-        "unusable_values": state.counters.unusable_values,
-        "lost_notices": state.counters.lost_notices,
-        "damaged_frames": state.counters.damaged_frames,
-    })
+    let parts = [
+        json!(state.outputs),
+        json!(state.counters),
+        json!({
+            "sample": sample,
+            "time_s": sample.map(|it| watched.timebase().time(it as f64)),
+            "age_s": 1e-6 * f64::from(state.age_us),
+            "phase": told_phase_name(state.phase),
+            "mode": mode_name(state.mode),
+            "cause": state.cause,
+            "touches": state.touches,
+            "faults": faults.map(fault_name).collect::<Vec<_>>(),
+        }),
+    ];
+    let keys = parts.iter().filter_map(Value::as_object).flatten();
+    keys.map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
 }
 
 fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {

@@ -11,7 +11,7 @@ use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
 use super::update::{Greeting, Said, Update};
-use touchdown_run::detection::declared;
+use touchdown_run::detection;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::timebase::Timebase;
 
@@ -51,8 +51,7 @@ pub struct Watched {
     frames: VecDeque<f64>,
     trails: [VecDeque<[f64; 2]>; PLANES],
     newest: usize,
-    /// By their numbers, until it is known what became of them.
-    events: VecDeque<(u16, DetectedEvent)>,
+    events: Vec<DetectedEvent>,
     episodes: BTreeMap<u32, Option<Header>>,
     /// What was counted over the monitor's life.
     pub lifetime: Option<Counters>,
@@ -117,29 +116,9 @@ impl Watched {
 
     fn note(&mut self, notice: &Notice) {
         let timebase = self.timebase();
-        let at = |sample: u64| Some(timebase.time(sample as f64));
-        let of = |number: u16| move |it: &&mut (u16, DetectedEvent)| it.0 == number;
-        let mut backward = self.events.iter_mut().rev();
-        match notice {
-            Notice::Declared(event) => {
-                let told = declared(event, timebase);
-                self.events.push_back((event.number, told));
-                while self.events.len() > EVENTS {
-                    self.events.pop_front();
-                }
-            }
-            Notice::Confirmed { number, sample } => {
-                if let Some(it) = backward.find(of(*number)) {
-                    it.1.confirmed_s = at(*sample);
-                }
-            }
-            Notice::Withdrawn { number, sample } => {
-                if let Some(it) = backward.find(of(*number)) {
-                    it.1.withdrawn_s = at(*sample);
-                }
-            }
-            Notice::Outlook(_) | Notice::Alarm(_) | Notice::Touch(_) | Notice::Ordered(_) => {}
-        }
+        detection::take(&mut self.events, notice, timebase);
+        let old = self.events.len().saturating_sub(EVENTS);
+        self.events.drain(..old);
     }
 
     fn follow(&mut self, recent: &Recent) {
@@ -217,7 +196,7 @@ impl Watched {
 
     /// What happened, newest first; times on the controller's clock.
     pub fn events(&self) -> impl Iterator<Item = &DetectedEvent> {
-        self.events.iter().rev().map(|it| &it.1)
+        self.events.iter().rev()
     }
 
     /// Episodes that were seen in the log, newest first.

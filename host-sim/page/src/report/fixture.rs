@@ -113,6 +113,7 @@ pub fn conduct() -> ControllerTrace {
 /// Finds everything but the softest impacts, and one lift-off too many.
 fn detection(truth: &History) -> Detection {
     let event = |event, onset_s: f64, latency: f64| DetectedEvent {
+        number: 0,
         event,
         onset_s,
         declared_s: onset_s + latency,

@@ -13,7 +13,8 @@ const MOST: f32 = 31.0;
 /// A sample is or is not beyond alert, beyond danger, beyond where each has fallen, and below the floor. Their counts share a
 /// word: six bits each, the highest set where the count is enough.
 const PITCH: u32 = 6;
-const KINDS: u32 = 5;
+/// The first bit of each.
+const FIRST: u32 = 0x0104_1041;
 const ENOUGH: u32 = 1 << (PITCH - 1);
 /// Beyond alert or danger, from three quarters of the samples.
 pub(super) const ALERT: u32 = ENOUGH;
@@ -21,20 +22,6 @@ pub(super) const DANGER: u32 = ENOUGH << PITCH;
 /// From beyond a limit to beyond where it has fallen.
 const TO_FALLEN: u32 = 2 * PITCH;
 pub(super) const BELOW: u32 = ENOUGH << (4 * PITCH);
-/// What a sample adds to the counts, by its flags.
-const ADDS: [u32; 1 << KINDS] = {
-    let mut adds = [0; 1 << KINDS];
-    let mut flags = 0;
-    while flags < 1 << KINDS {
-        let mut kind = 0;
-        while kind < KINDS {
-            adds[flags] |= (flags as u32 >> kind & 1) << (PITCH * kind);
-            kind += 1;
-        }
-        flags += 1;
-    }
-    adds
-};
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -57,10 +44,10 @@ pub(super) struct PlaneLimits {
     told: u32,
 }
 
-/// What a sample with these flags adds.
+/// What a sample with these five flags adds: of the copies 5 bits apart, copy k has flag k at bit 6 k, and no other flag there.
 #[inline]
 fn adds(flags: u8) -> u32 {
-    ADDS.get(usize::from(flags & 31)).copied().unwrap_or(0)
+    (u32::from(flags) * 0x0010_8421) & FIRST
 }
 
 impl Limits {
@@ -77,7 +64,7 @@ impl Limits {
                 .map(|part| (part * clearance) * (part * clearance))
                 .map(f32::to_bits),
             length,
-            lacks: (ENOUGH - u32::from(enough)) * adds(u8::MAX),
+            lacks: (ENOUGH - u32::from(enough)) * FIRST,
             stride,
         }
     }
@@ -134,7 +121,7 @@ impl Limits {
     /// What the plane is.
     #[inline]
     pub(super) fn beyond(&self, it: &PlaneLimits) -> u32 {
-        (it.counts + self.lacks) & (ENOUGH * adds(u8::MAX))
+        (it.counts + self.lacks) & (ENOUGH * FIRST)
     }
 }
 

@@ -10,9 +10,11 @@ mod limits;
 mod proof;
 
 use self::limits::{ALERT, BELOW, DANGER, Limits, PlaneLimits};
-use self::proof::{Proof, ProofState};
+use self::proof::Proof;
+pub use self::proof::ProofState;
 use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
+use crate::sample::count_in_a_row;
 use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sqrt;
@@ -20,7 +22,7 @@ use touchdown_rotor::real::sqrt;
 /// Longest time without a position of any plane, s.
 const LOST_TIME: f32 = 1e-3;
 /// Samples with the levitation signal off that are believed.
-const OFF_SAMPLES: u8 = 3;
+const OFF_SAMPLES: u32 = 3;
 
 /// Limits, as parts of the told clearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,21 +64,23 @@ pub struct Guard {
     per_clearance: f32,
     limits: Limits,
     proof: Proof,
-    lost_samples: u16,
+    lost_samples: u32,
 }
 
 /// What it carries from sample to sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardState {
     planes: [PlaneState; PLANES],
-    proof: ProofState,
+    /// Of levitation.
+    pub proof: ProofState,
     /// Samples until one counts for the limits.
     wait: u8,
     /// In a row.
-    lost: u16,
-    off: u8,
+    lost: u32,
+    off: u32,
     is_alert: bool,
-    verdict: Verdict,
+    /// After the last sample.
+    pub verdict: Verdict,
 }
 
 /// Of a plane.
@@ -120,7 +124,7 @@ impl Guard {
             per_clearance: 1.0 / clearance,
             limits,
             proof: Proof::new(config, detector, fitted, commissioned),
-            lost_samples: ((LOST_TIME * rate) as u16).max(2),
+            lost_samples: ((LOST_TIME * rate) as u32).max(2),
         })
     }
 
@@ -144,17 +148,8 @@ impl Guard {
         let [a, b] = places;
         let beyond = self.see(of_a, a, floor_a, counts) | self.see(of_b, b, floor_b, counts);
         let sees = a.is_some() || b.is_some();
-        state.lost = if sees {
-            0
-        } else {
-            state.lost.saturating_add(1)
-        };
-        let is_off = levitated == Some(false);
-        state.off = if is_off {
-            state.off.saturating_add(1)
-        } else {
-            0
-        };
+        count_in_a_row(&mut state.lost, !sees);
+        count_in_a_row(&mut state.off, levitated == Some(false));
         state.is_alert = beyond & ALERT != 0;
         state.verdict = Verdict {
             danger: beyond & (DANGER | BELOW) != 0,
@@ -234,27 +229,5 @@ impl Guard {
         it.late += 1;
         // There is room for all that a tick can say; without it nothing else may suffer.
         let _ = notices.push(Notice::Alarm(alarm));
-    }
-}
-
-impl GuardState {
-    /// What the guard says after the last sample.
-    pub fn verdict(&self) -> Verdict {
-        self.verdict
-    }
-
-    /// As if the rotor had been seen where it is lifted from.
-    pub fn assume_lift(&mut self) {
-        self.proof.assume_lift();
-    }
-
-    /// A proof was lost: where the rotor is lifted from has to be seen anew.
-    pub fn lose_proof(&mut self) {
-        self.proof.forget();
-    }
-
-    /// What was seen so far of a floating rotor does not count.
-    pub fn restart_proof(&mut self) {
-        self.proof.restart();
     }
 }

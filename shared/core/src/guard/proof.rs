@@ -57,7 +57,7 @@ struct PlaneProof {
 
 /// What was seen of the planes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ProofState {
+pub struct ProofState {
     samples: u16,
     helds: u8,
     planes: [PlaneProof; PLANES],
@@ -218,19 +218,19 @@ impl ProofState {
     }
 
     /// As if the rotor had been seen far below.
-    pub(super) fn assume_lift(&mut self) {
+    pub fn assume_lift(&mut self) {
         for it in &mut self.planes {
             it.lowest = f32::NEG_INFINITY;
         }
     }
 
     /// Begins a stay, and keeps where the rotor was lowest.
-    pub(super) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         (self.samples, self.helds) = (0, 0);
     }
 
     /// Begins a stay, and forgets where the rotor was lowest.
-    pub(super) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.restart();
         for it in &mut self.planes {
             (it.lowest, it.floor) = (f32::INFINITY, f32::NEG_INFINITY);

@@ -255,7 +255,7 @@ impl Health {
             let spare = self.fitted == 0b1111 && if index == 0 { of_b } else { of_a };
             state.tell(reading, 2 * index + axis, kind, spare);
         }
-        let walls = state.wall.iter_mut().zip(touches.short());
+        let walls = state.wall.iter_mut().zip(touches.short);
         for ((it, short), slot) in walls.zip(reading.found.iter_mut().step_by(2)) {
             if slot.is_none() && self.wall.tell(it, short) {
                 let (kind, age) = (FaultKind::Moved, 0);

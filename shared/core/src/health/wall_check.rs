@@ -5,6 +5,7 @@
 //! aside by: farther aside the zero has moved.
 
 use crate::config::MachineConfig;
+use crate::sample::count_in_a_row;
 use touchdown_rotor::real::sqrt;
 
 /// Part of the clearance by which the wall may seem off. The check's own errors, 2 % of zero and of gain at 95 %, add up
@@ -15,7 +16,7 @@ const AT_WALL: f32 = 0.7;
 /// Part of the clearance within which a rotor at rest begins and ends what its mean place is taken over.
 const STILL: f32 = 0.04;
 /// Such times in a row, 0.1 s each.
-const RESTS: u8 = 2;
+const RESTS: u32 = 2;
 /// Touches in a row that end short.
 const TOUCHES: u8 = 3;
 
@@ -32,7 +33,7 @@ pub(crate) struct WallCheck {
 /// Of a plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WallCheckState {
-    rests: u8,
+    rests: u32,
     told: bool,
 }
 
@@ -61,11 +62,7 @@ impl WallCheck {
         let aside = (mean[0] * self.per_clearance).abs();
         let is_elsewhere = (distance - 1.0).abs() > OFF || aside > self.aside + OFF;
         let is_off = is_still && distance > AT_WALL && is_elsewhere;
-        it.rests = if is_off {
-            it.rests.saturating_add(1)
-        } else {
-            0
-        };
+        count_in_a_row(&mut it.rests, is_off);
     }
 
     /// Whether it is to be told now, after so many touches in a row that ended `short`: once.
