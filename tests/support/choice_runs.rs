@@ -6,8 +6,8 @@ use std::ops::Range;
 use touchdown_run::ensemble::varied;
 use touchdown_run::fidelity::{self, Choice};
 use touchdown_run::model;
-use touchdown_scene::parts::parts;
-use touchdown_scene::{Auto, Fixed, Output, Request, Scene};
+use touchdown_scene::parts::removable;
+use touchdown_scene::{Auto, Fixed, Output, Removable, Request, Scene};
 
 use crate::accuracy_runs::KINDS;
 use crate::family::{Family, Verdict, seeds};
@@ -17,20 +17,22 @@ use crate::plant::Rng;
 const FRESH: Range<u64> = 1_000..1_100;
 /// Of them, those that must keep the tolerance.
 const KEPT: usize = 95;
-/// The part that each planted machine needs.
-const BOTH_ENDS: &str = "tilt, gyroscopic effect, both ends";
 
 /// The families whose name contains `only`: so many `runs` of answers in the plane, half of it of each other.
 pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
-    let planted = [
-        ("planted: no effect, left out; both ends stay", false),
-        ("planted: effect, stays; both ends stay", true),
+    let planted: [(_, &[bool]); 3] = [
+        ("planted: no effect, left out; both ends stay", &[false]),
+        ("planted: effect, stays; both ends stay", &[true]),
+        (
+            "planted: one without effect, left out, one with, stays; both ends stay",
+            &[false, true],
+        ),
     ];
     let mut families = Vec::new();
-    for (name, has_effect) in planted {
+    for (name, effects) in planted {
         if name.contains(only) {
             let verdicts = seeds(runs / 2, first_seed, |rng| {
-                Some(planted_part(rng, has_effect))
+                Some(planted_parts(rng, effects))
             });
             families.push(Family::of_verdicts(name, "nothing keeps it", verdicts));
         }
@@ -49,8 +51,8 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
     families
 }
 
-/// A machine with two ends and one more part, with or without effect on impacts.
-fn planted_part(rng: &mut Rng, has_effect: bool) -> Verdict {
+/// A machine with two ends and other parts, each with or without effect on impacts.
+fn planted_parts(rng: &mut Rng, effects: &[bool]) -> Verdict {
     let mass = 10_f64.powf(rng.uniform(0.0, 1.5));
     let (radius, length) = (rng.uniform(10.0, 40.0), rng.uniform(300.0, 800.0));
     let clearance = rng.uniform(0.2, 0.4);
@@ -58,14 +60,22 @@ fn planted_part(rng: &mut Rng, has_effect: bool) -> Verdict {
     let speed = rng.uniform(3e3, 2e4);
     let (friction, restitution) = (rng.uniform(0.15, 0.3), rng.uniform(0.5, 0.7));
     let ends = [-rng.uniform(0.3, 0.45), rng.uniform(0.3, 0.45)].map(|it| it * length);
-    let (part, table) = part(rng, mass, radius, length, has_effect);
+    let mut kinds = vec![Removable::Mount, Removable::BallBearing, Removable::Bending];
+    let mut tables = String::new();
+    let mut planted = vec![(Removable::Tilt, true)];
+    for has_effect in effects {
+        let kind = rng.any(&kinds);
+        kinds.retain(|it| *it != kind);
+        tables += &table(rng, kind, mass, radius, length, *has_effect);
+        planted.push((kind, *has_effect));
+    }
     // Falls from the centre to the nearer wall.
     let duration = rng.uniform(3.5, 4.5) * (2e-3 * clearance / 9.81).sqrt();
     let text = format!(
         "[rotor]\nmass_kg = {mass}\nradius_mm = {radius}\nspeed_rpm = {speed}\n\
          [retainer]\nclearance_mm = {clearance}\nfriction = {friction}\nrestitution = {restitution}\n\
          [two_plane]\nrotor_length_mm = {length}\n\
-         [[ring]]\nz_mm = {}\n[[ring]]\nz_mm = {}\nclearance_mm = {wider}\n{table}\
+         [[ring]]\nz_mm = {}\n[[ring]]\nz_mm = {}\nclearance_mm = {wider}\n{tables}\
          [model]\nfidelity = \"auto\"\nstep_us = 2\n[outputs]\nimpact_time_us = 100\n\
          [run]\nduration_s = {duration}\n",
         ends[0], ends[1]
@@ -77,51 +87,48 @@ fn planted_part(rng: &mut Rng, has_effect: bool) -> Verdict {
         return Verdict::Undecided;
     }
     scene.model = choice.taken().model;
-    let stays = |name| {
-        parts(&scene)
-            .iter()
-            .any(|it| it.name == name && it.modelled)
-    };
-    match (stays(BOTH_ENDS), stays(part)) {
-        (true, stays) if stays == has_effect => Verdict::Held,
-        it => Verdict::Failed(format!("{part}, {it:?}: {}", fidelity::explain(&choice))),
+    let modelled = removable(&scene);
+    let wrong = planted
+        .iter()
+        .find(|(part, has_effect)| modelled.contains(part) != *has_effect);
+    match wrong {
+        None => Verdict::Held,
+        Some((part, _)) => Verdict::Failed(format!("{part:?}: {}", fidelity::explain(&choice))),
     }
 }
 
-/// A part and its tables: without effect a mount and an inner ring that are too heavy to be moved, and modes that do not move the
+/// A part's table: without effect a mount and an inner ring that are too heavy to be moved, and modes that do not move the
 /// ends.
-fn part(
+fn table(
     rng: &mut Rng,
+    part: Removable,
     mass: f64,
     radius: f64,
     length: f64,
     has_effect: bool,
-) -> (&'static str, String) {
-    match rng.any(&[0, 1, 2]) {
-        0 => {
+) -> String {
+    match part {
+        Removable::Mount => {
             let ring = if has_effect { 0.3 * mass } else { 1e6 };
             let rate = std::f64::consts::TAU * rng.uniform(50.0, 150.0);
             let (stiffness, damping) = (0.5 * mass * rate * rate, 0.2 * mass * rate);
-            let table = format!(
+            format!(
                 "[support]\nmass_kg = {ring}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
-            );
-            (touchdown_scene::parts::SPRING, table)
+            )
         }
-        1 => {
+        Removable::BallBearing => {
             let rotor = mass * (1e-3 * radius).powi(2);
             let inertia = rotor * if has_effect { 1e-5 } else { 1e5 };
-            let table = format!("[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}\n");
-            ("inner ring, cage, drag, heat", table)
+            format!("[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}\n")
         }
         _ => {
             let frequency = rng.uniform(100.0, 400.0);
             let [end, middle] = [2.0, -1.2].map(|it| it * if has_effect { 1.0 } else { 1e-3 });
             let half = 0.5 * length;
-            let table = format!(
+            format!(
                 "[[mode]]\nfrequency_hz = {frequency}\ndamping_ratio = 0.01\n\
                  at_mm = [-{half}, 0, {half}]\nshape = [{end}, {middle}, {end}]\n"
-            );
-            ("bending of the shaft", table)
+            )
         }
     }
 }

@@ -49,6 +49,7 @@ struct ModelJson {
     rung: Fidelity,
     precision: Precision,
     step_s: f64,
+    left_out: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -159,6 +160,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             rung: scene.model.rung,
             precision: scene.model.precision,
             step_s: scene.model.step,
+            left_out: scene.model.left_out.names(),
         },
         history: history(model),
         end: end(scene, outcome),

@@ -15,8 +15,8 @@ use super::machine::{retainer, rotor, start};
 use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
 use super::support::{BallBearingTable, SupportTable};
 use super::{
-    BallBearing, Fidelity, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme, Start,
-    Support, TwoPlane, limits,
+    BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme,
+    Start, Support, TwoPlane, limits,
 };
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
@@ -255,6 +255,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
         math,
         step,
         cutoff,
+        left_out: LeftOut::default(),
     })
 }
 

@@ -1,6 +1,7 @@
 //! What is modelled, and how it is computed.
 
 use serde::Serialize;
+use strum::VariantArray;
 
 /// Rung of the ladder of models.
 #[derive(
@@ -85,6 +86,72 @@ pub struct Model {
     /// Launch speed from which on the rest of a bounce series is summed, m/s; 0: as low as the number
     /// format resolves. Rung `rigid`.
     pub cutoff: f64,
+    /// What the scene has and the model does without.
+    pub left_out: LeftOut,
+}
+
+/// A part of a machine that a model can do without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
+pub enum Removable {
+    /// It bounds whirl.
+    #[strum(serialize = "retainer's mass, spring, damper")]
+    Mount,
+    /// Of a mount.
+    #[strum(serialize = "hard stop of the retainer")]
+    Stop,
+    /// The wall turns.
+    #[strum(serialize = "inner ring, cage, drag, heat")]
+    BallBearing,
+    /// With all that needs it. The level decides whether a model has it.
+    #[strum(serialize = "tilt, gyroscopic effect, both ends")]
+    Tilt,
+    /// And skew.
+    #[strum(serialize = "unbalance")]
+    Unbalance,
+    /// Of bias or failed magnets.
+    #[strum(serialize = "magnetic force that is left")]
+    Magnets,
+    /// All modes.
+    #[strum(serialize = "bending of the shaft")]
+    Bending,
+    /// What the machine stands on.
+    #[strum(serialize = "motion of the base")]
+    Base,
+}
+
+/// A set of parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut(u8);
+
+impl LeftOut {
+    /// For people.
+    pub fn names(self) -> Vec<&'static str> {
+        let all = Removable::VARIANTS.iter();
+        let out = all.filter(|part| self.0 & 1 << **part as u8 != 0);
+        out.map(<&'static str>::from).collect()
+    }
+}
+
+impl Model {
+    /// Whether it has `part` where its level does; the stop goes with its mount.
+    pub fn has(&self, part: Removable) -> bool {
+        let has = |part| self.left_out.0 & 1 << part as u8 == 0;
+        has(part) && (part != Removable::Stop || has(Removable::Mount))
+    }
+
+    /// The same model without `part`.
+    pub fn without(self, part: Removable) -> Self {
+        match part {
+            Removable::Tilt => Self {
+                rung: Fidelity::Support,
+                ..self
+            },
+            _ => Self {
+                left_out: LeftOut(self.left_out.0 | 1 << part as u8),
+                ..self
+            },
+        }
+    }
 }
 
 impl Fidelity {

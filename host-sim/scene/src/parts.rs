@@ -1,22 +1,22 @@
 //! The parts of a machine: which of them a scene has, and which its rung models.
 
-use super::{Fidelity, Scene};
+use super::model::Removable;
+use super::{Fidelity, Scene, TwoPlane};
 
 /// A part of the machine or of its physics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// For people.
     pub name: &'static str,
+    /// None where every model has it, or none can.
+    pub removable: Option<Removable>,
     /// Whether the scene's rung has it.
     pub modelled: bool,
     /// Whether the scene asks for it.
     pub asked: bool,
     /// Why it is in or out.
-    pub reason: &'static str,
+    pub reason: String,
 }
-
-/// Name of the part that bounds whirl.
-pub const SPRING: &str = "retainer's mass, spring, damper";
 
 /// All parts, in the order of the ladder.
 pub fn parts(scene: &Scene) -> Vec<Part> {
@@ -34,110 +34,73 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     let mut parts = vec![
         Part {
             name: "gap, restitution, friction, spin",
+            removable: None,
             modelled: true,
             asked: true,
-            reason: laws,
+            reason: laws.to_owned(),
         },
         Part {
             name: "contact force and its duration",
+            removable: None,
             modelled: rung == Fidelity::Hertz,
             asked: false,
-            reason: if rung == Fidelity::Hertz {
-                "rung hertz is asked for"
-            } else {
-                "rung hertz has them"
+            reason: match rung {
+                Fidelity::Hertz => "rung hertz is asked for".to_owned(),
+                _ => "rung hertz has them".to_owned(),
             },
         },
     ];
-    let mut part = |name, asked: bool, needs: Fidelity, given, absent| {
-        let modelled = asked && (rung == needs || rung == Fidelity::Coupled);
-        let reason = match (asked, modelled) {
-            (_, true) => given,
-            (true, false) => match needs {
-                Fidelity::Support => "given, but only rung support has it",
-                Fidelity::Coupled => "given, but only rung coupled has it",
-                _ => "given, but only rung two-plane has it",
-            },
-            (false, _) => absent,
-        };
+    let mut part = |removable: Removable, asked: bool, needs: Fidelity, key: &str| {
+        let has = scene.model.has(removable);
+        let modelled = asked && has && (rung == needs || rung == Fidelity::Coupled);
         parts.push(Part {
-            name,
+            name: removable.into(),
+            removable: Some(removable),
             modelled,
             asked,
-            reason,
+            reason: match (asked, modelled) {
+                (_, true) => format!("{key} is given"),
+                (true, _) if !has => "given, but not needed for what is asked".to_owned(),
+                (true, false) => format!("given, but only rung {needs} has it"),
+                (false, _) => format!("no {key}"),
+            },
         });
     };
-    let s = Fidelity::Support;
-    part(
-        SPRING,
-        support.is_some(),
-        s,
-        "[support] is given",
-        "no [support]",
-    );
-    part(
-        "hard stop of the retainer",
-        support.is_some_and(|it| it.travel.is_some()),
-        s,
-        "travel_mm is given",
-        "no travel_mm in [support]",
-    );
-    part(
-        "inner ring, cage, drag, heat",
-        bearing.is_some(),
-        s,
-        "[ball_bearing] is given",
-        "no [ball_bearing]",
-    );
-    let t = Fidelity::TwoPlane;
-    part(
-        "tilt, gyroscopic effect, both ends",
-        two_plane.is_some(),
-        t,
-        "[two_plane] is given",
-        "no [two_plane]",
-    );
-    part(
-        "unbalance",
-        two_plane.is_some_and(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0),
-        t,
-        "unbalance_g_mm or skew_mrad is given",
-        "none given",
-    );
-    part(
-        "magnetic force that is left",
-        two_plane.is_some_and(|it| !it.magnets.is_empty()),
-        t,
-        "[[magnet]] is given",
-        "no [[magnet]]",
-    );
-    let c = Fidelity::Coupled;
-    part(
-        "bending of the shaft",
-        two_plane.is_some_and(|it| !it.modes.is_empty()),
-        c,
-        "[[mode]] is given",
-        "no [[mode]]",
-    );
-    part(
-        "motion of the base",
-        two_plane.is_some_and(|it| it.base.is_some()),
-        c,
-        "[base] is given",
-        "no [base]",
-    );
+    use Removable::{BallBearing, Base, Bending, Magnets, Mount, Stop, Tilt, Unbalance};
+    let (s, t, c) = (Fidelity::Support, Fidelity::TwoPlane, Fidelity::Coupled);
+    let stop = support.is_some_and(|it| it.travel.is_some());
+    let is = |of: fn(&TwoPlane) -> bool| two_plane.is_some_and(of);
+    let turns = is(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0);
+    let magnets = is(|it| !it.magnets.is_empty());
+    let bends = is(|it| !it.modes.is_empty());
+    part(Mount, support.is_some(), s, "[support]");
+    part(Stop, stop, s, "travel_mm");
+    part(BallBearing, bearing.is_some(), s, "[ball_bearing]");
+    part(Tilt, two_plane.is_some(), t, "[two_plane]");
+    part(Unbalance, turns, t, "unbalance_g_mm or skew_mrad");
+    part(Magnets, magnets, t, "[[magnet]]");
+    part(Bending, bends, c, "[[mode]]");
+    part(Base, is(|it| it.base.is_some()), c, "[base]");
     parts.push(Part {
         name: "wear",
+        removable: None,
         modelled: false,
         asked: false,
-        reason: "no rung has it",
+        reason: "no rung has it".to_owned(),
     });
     parts
 }
 
+/// Parts that the scene's model has and can do without.
+pub fn removable(scene: &Scene) -> Vec<Removable> {
+    let modelled = parts(scene).into_iter().filter(|part| part.modelled);
+    modelled.filter_map(|part| part.removable).collect()
+}
+
 /// Of the scene's rung.
 pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
-    let (ring, race) = (scene.support.is_some(), scene.ball_bearing.is_some());
+    let has = removable(scene);
+    let [ring, race] = [Removable::Mount, Removable::BallBearing].map(|it| has.contains(&it));
     match scene.model.rung {
         Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => (3, "x, y, spin"),
         Fidelity::TwoPlane => (5, "x, y, two tilts, spin"),
@@ -155,10 +118,12 @@ pub fn degrees_of_freedom(scene: &Scene) -> (usize, &'static str) {
 }
 
 fn coupled(scene: &Scene) -> usize {
+    let count = |part, of: usize| if scene.model.has(part) { of } else { 0 };
     scene.two_plane.as_ref().map_or(5, |machine| {
-        let ring = |ring: &super::Ring| {
-            2 * usize::from(ring.support.is_some()) + usize::from(ring.ball_bearing.is_some())
-        };
-        5 + 2 * machine.modes.len() + machine.rings.iter().map(ring).sum::<usize>()
+        let mounts = machine.rings.iter().filter(|it| it.support.is_some());
+        let races = machine.rings.iter().filter(|it| it.ball_bearing.is_some());
+        5 + count(Removable::Bending, 2 * machine.modes.len())
+            + count(Removable::Mount, 2 * mounts.count())
+            + count(Removable::BallBearing, races.count())
     })
 }

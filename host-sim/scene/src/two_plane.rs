@@ -8,7 +8,7 @@ use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{MILLI, ON_THE_WALL, above_zero, between};
 use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
-use super::{Retainer, Rotor, Start, limits, list};
+use super::{Retainer, Rotor, Scene, Start, limits, list};
 use touchdown_base::plain::Number;
 
 /// Most rings.
@@ -59,6 +59,44 @@ pub struct Ring {
     pub support: Option<Support>,
     /// Its ball bearing, where it has one.
     pub ball_bearing: Option<BallBearing>,
+}
+
+impl Ring {
+    /// That of a rotor that does not tilt: on the mounts of all rings, and turning with all, side by side.
+    pub fn of_plane(scene: &Scene) -> Self {
+        let all = || scene.two_plane.iter().flat_map(|it| &it.rings);
+        Self {
+            name: String::new(),
+            place: 0.0,
+            radius: scene.rotor.radius,
+            retainer: scene.retainer,
+            support: mounts(all().filter_map(|it| it.support)).or(scene.support),
+            ball_bearing: races(all().filter_map(|it| it.ball_bearing)).or(scene.ball_bearing),
+        }
+    }
+}
+
+fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
+    all.reduce(|a, b| Support {
+        mass: a.mass + b.mass,
+        stiffness: a.stiffness + b.stiffness,
+        damping: a.damping + b.damping,
+        travel: match (a.travel, b.travel) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        },
+    })
+}
+
+fn races(all: impl Iterator<Item = BallBearing>) -> Option<BallBearing> {
+    all.reduce(|a, b| BallBearing {
+        inertia: a.inertia + b.inertia,
+        dry_drag: a.dry_drag + b.dry_drag,
+        viscous_drag: a.viscous_drag + b.viscous_drag,
+        heat_capacity: a.heat_capacity + b.heat_capacity,
+        heat_loss: a.heat_loss + b.heat_loss,
+        ..a
+    })
 }
 
 impl TwoPlane {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use touchdown_run::instructions::{Instructions, Steps};
-use touchdown_scene::{Model, Precision, Fidelity, Scene};
+use touchdown_scene::{Fidelity, LeftOut, Model, Precision, Scene};
 use touchdown_tests::counting::count;
 
 /// Set by `cargo xtask instructions`.
@@ -187,6 +187,7 @@ fn models(model: &Model) -> Vec<Model> {
                     math,
                     step: model.step,
                     cutoff: 0.0,
+                    left_out: LeftOut::default(),
                 }));
             }
         }

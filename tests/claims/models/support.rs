@@ -2,7 +2,7 @@
 
 use touchdown_run::model::run;
 use touchdown_run::model::coupled::watch;
-use touchdown_scene::{Precision, Scene, Start, Support};
+use touchdown_scene::{Precision, Removable, Scene, Start, Support};
 
 fn scene(name: &str, precision: Precision, step: f64) -> Scene {
     let mut scene = Scene::load(name).expect("built-in scene");
@@ -180,4 +180,47 @@ fn a_rigid_support_is_none() {
     }
     assert!(ours.impacts.len() > 20);
     assert_eq!(ours.regime, truth.regime);
+}
+
+/// A scene with the tables `more`.
+fn on(more: &str) -> Scene {
+    let text = format!(
+        "[rotor]\nmass_kg = 5\nradius_mm = 20\nspeed_rpm = 12000\n\
+         [retainer]\nclearance_mm = 0.25\nfriction = 0.2\nrestitution = 0.5\n\
+         [start]\nx_mm = 0.02\n[model]\nstep_us = 10\n[run]\nduration_s = 0.1\n{more}"
+    );
+    Scene::parse("scene", &text).expect("valid")
+}
+
+fn seat(support: [f64; 3], inertia: f64, drag: f64, capacity: f64) -> String {
+    let [mass, stiffness, damping] = support;
+    format!(
+        "[support]\nmass_kg = {mass}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n\
+         travel_mm = 0.2\n[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}\n\
+         dry_drag_n_m = {drag}\nheat_capacity_j_k = {capacity}\n"
+    )
+}
+
+/// The mounts and bearings of all rings act together, whether the rings have them or the scene.
+#[test]
+fn a_rotor_that_does_not_tilt_stands_on_all_mounts() {
+    let ends = "[two_plane]\nrotor_length_mm = 300\n[[ring]]\nz_mm = -100\n[[ring]]\nz_mm = 100\n";
+    let one = seat([0.25, 4e6, 256.0], 2e-5, 0.01, 50.0);
+    let softer = "support = { mass_kg = 0.125, stiffness_n_m = 1e6, damping_n_s_m = 64, travel_mm = 0.3 }\n";
+    let both = seat([0.5, 8e6, 512.0], 4e-5, 0.02, 100.0);
+    let unlike = seat([0.375, 5e6, 320.0], 4e-5, 0.02, 100.0);
+    for (rings, together) in [
+        (format!("{one}{ends}"), both),
+        (format!("{one}{ends}{softer}"), unlike),
+    ] {
+        let mut level = on(&rings);
+        level.model = level.model.without(Removable::Tilt);
+        let [level, together, alone] =
+            [level, on(&together), on(&one)].map(|it| run(&it).expect("possible"));
+        assert!(together.histories.whole.impacts.len() > 3);
+        assert_eq!(level.histories, together.histories);
+        assert_eq!(level.ring, together.ring);
+        // One end's mount would do something else.
+        assert_ne!(level.histories, alone.histories);
+    }
 }

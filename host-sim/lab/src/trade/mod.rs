@@ -15,17 +15,19 @@ pub use page::page;
 pub use row::{Row, json};
 pub use table::table;
 
-use indicatif::ProgressBar;
+use std::time::Instant;
+
 use rayon::prelude::*;
-use touchdown_rotor::error::ConfigError;
 
 use accuracy::Accuracy;
+use pace::Pace;
 use parts::Worth;
+use touchdown_base::history::History;
 use touchdown_base::progress;
 use touchdown_run::fidelity::combination::{self, with};
 use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
-use touchdown_scene::{Model, Scene};
+use touchdown_scene::Scene;
 
 /// The table of a scene, and how much of the scene it was measured over.
 pub struct Trade {
@@ -42,20 +44,24 @@ pub struct Trade {
 /// Measures every part, by so many drops, and every combination over the first second of `scene`.
 pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
     let scene = first_second(scene);
-    let models: Vec<Model> = combination::all()
-        .into_iter()
-        .filter(|&model| is_possible(&scene, model))
-        .collect();
-    let progress = progress::bar("trade", 2 * models.len() as u64);
-    let errors = accuracies(&scene, &models, &progress);
-    let mut rows: Vec<Row> = Vec::with_capacity(models.len());
-    for (model, accuracy) in models.iter().zip(errors) {
-        if let (Ok(pace), Some(accuracy)) = (pace::measure(&with(&scene, *model)), accuracy) {
-            rows.push(Row::new(*model, &accuracy, &pace));
-        }
+    let truth = touchdown_truth::simulate(&scene);
+    let models = combination::all();
+    let progress = progress::bar("trade", models.len() as u64);
+    let measured = models.into_par_iter().map(|model| {
+        let measured = once(&with(&scene, model), &truth);
         progress.inc(1);
-    }
+        measured
+    });
+    let measured: Vec<Option<(Accuracy, Pace)>> = measured.collect();
     progress.finish_and_clear();
+    let mut rows: Vec<Row> = Vec::with_capacity(measured.len());
+    for (model, measured) in combination::all().into_iter().zip(measured) {
+        if let Some((accuracy, pace)) = measured
+            && let Ok(pace) = pace.of_short(&with(&scene, model))
+        {
+            rows.push(Row::new(model, &accuracy, &pace));
+        }
+    }
     pareto::mark(&mut rows);
     Trade {
         scene: scene.heading().to_owned(),
@@ -65,34 +71,10 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
     }
 }
 
-/// How far each model is from the reference; none where the model refuses the scene.
-fn accuracies(scene: &Scene, models: &[Model], progress: &ProgressBar) -> Vec<Option<Accuracy>> {
-    let truth = touchdown_truth::simulate(scene);
-    models
-        .par_iter()
-        .map(|&model| {
-            let scene = with(scene, model);
-            let history = model::simulate(&scene);
-            progress.inc(1);
-            history
-                .ok()
-                .map(|history| Accuracy::of(&history, &truth, &scene))
-        })
-        .collect()
-}
-
-fn is_possible(scene: &Scene, model: Model) -> bool {
-    struct Built;
-    impl model::Use for Built {
-        type Output = ();
-
-        fn with<R, M>(self, _: &model::Subject<R, M>) -> Result<(), ConfigError>
-        where
-            R: touchdown_rotor::Precision,
-            M: touchdown_rotor::Stepper<R>,
-        {
-            Ok(())
-        }
-    }
-    model::with_model(&with(scene, model), Built).is_ok()
+/// How far a model is from the reference, and what its run costs; none where it refuses the scene.
+fn once(scene: &Scene, truth: &History) -> Option<(Accuracy, Pace)> {
+    let begin = Instant::now();
+    let history = model::simulate(scene).ok()?;
+    let pace = Pace::of(scene, begin.elapsed());
+    Some((Accuracy::of(&history, truth, scene), pace))
 }

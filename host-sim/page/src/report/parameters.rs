@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 use std::f64::consts::PI;
 use touchdown_chart::text::{si, significant};
-use touchdown_scene::Scene;
-use touchdown_scene::parts::{SPRING, parts};
+use touchdown_scene::parts::{parts, removable};
 use touchdown_scene::scales::validity;
+use touchdown_scene::{Removable, Scene};
 
 /// Physical and dimensionless parameters and those of the run.
 pub fn parameters(scene: &Scene) -> Markup {
@@ -89,9 +89,7 @@ fn list(name: &str, rows: &[(&str, String)]) -> Markup {
 pub fn limits(scene: &Scene, forces: bool) -> Markup {
     let parts = parts(scene);
     let out = parts.iter().filter(|part| !part.modelled);
-    let is_fixed = !parts
-        .iter()
-        .any(|part| part.name == SPRING && part.modelled);
+    let is_fixed = !removable(scene).contains(&Removable::Mount);
     html! {
         ul {
             @for part in out { li { (part.name) ": " (part.reason) "." } }

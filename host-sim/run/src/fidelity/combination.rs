@@ -1,6 +1,6 @@
 //! What is compared.
 
-use touchdown_scene::{Fidelity, Model, Precision, Scene};
+use touchdown_scene::{Fidelity, LeftOut, Model, Precision, Scene};
 
 /// Steps that are compared, us.
 pub const STEPS_US: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -19,6 +19,7 @@ pub fn all() -> Vec<Model> {
                         math,
                         step: f64::from(step) / 1e6,
                         cutoff: 0.0,
+                        left_out: LeftOut::default(),
                     }));
                 }
             }

@@ -16,17 +16,11 @@ pub fn explain(choice: &Choice) -> String {
         name(&taken.model),
         choice.candidates.len()
     );
-    text += &if choice.suffices() {
-        format!(
-            "the cheapest that suffices, measured over {} s\n",
-            choice.measured
-        )
-    } else {
-        format!(
-            "the nearest: none gives all that is asked, measured over {} s\n",
-            choice.measured
-        )
+    let which = match choice.suffices() {
+        true => "the cheapest that suffices",
+        false => "the nearest: none gives all that is asked",
     };
+    let _ = writeln!(text, "{which}, measured over {} s", choice.measured);
     if let Some(cost) = taken.cost {
         let _ = writeln!(
             text,
@@ -89,14 +83,14 @@ fn lacks(candidate: &Candidate, choice: &Choice) -> String {
 
 /// A combination, for people.
 pub(crate) fn name(model: &Model) -> String {
-    format!(
-        "{} {} {} {}, step {} us",
-        model.rung,
-        model.scheme,
-        model.precision,
-        model.math,
-        (model.step * 1e9).round() / 1e3
-    )
+    let Model { rung, scheme, .. } = model;
+    let step = (model.step * 1e9).round() / 1e3;
+    let numbers = format!("{} {}", model.precision, model.math);
+    let mut name = format!("{rung} {scheme} {numbers}, step {step} us");
+    for part in model.left_out.names() {
+        let _ = write!(name, ", without {part}");
+    }
+    name
 }
 
 fn count(instructions: f64) -> String {

@@ -18,7 +18,8 @@ use crate::ensemble::varied;
 use crate::model;
 use touchdown_base::history::History;
 use touchdown_base::progress;
-use touchdown_scene::{Auto, Model, Request, Scene};
+use touchdown_scene::parts::{degrees_of_freedom, removable};
+use touchdown_scene::{Auto, Fidelity, LeftOut, Model, Request, Scene};
 use touchdown_truth::Truth;
 
 /// Drops of the ensemble. A combination that keeps the tolerances in all of them does so in at least 95 % of drops,
@@ -41,6 +42,8 @@ pub struct Candidate {
     pub errors: Vec<f64>,
     /// What became of it over the ensemble, where it was tried there.
     pub tried: Option<Tried>,
+    /// Its cost, of what was not counted on the target coordinates a second: that comes last.
+    order: f64,
 }
 
 /// A combination over an ensemble.
@@ -65,19 +68,14 @@ impl Candidate {
         around && self.suffices(asked)
     }
 
-    /// Of the errors, the greatest part of its tolerance; outputs that are not given first.
+    /// Of the errors, the greatest part of its tolerance, 1 at least; outputs that are not given first.
     fn misses(&self, asked: &[Request]) -> (usize, f64) {
         let parts = || self.errors.iter().zip(asked);
         let missing = parts().filter(|(error, _)| !error.is_finite()).count();
         let given = parts().filter(|(error, _)| error.is_finite());
-        let worst = given.map(|(error, it)| {
-            if *error <= it.tolerance {
-                0.0
-            } else {
-                error / it.tolerance
-            }
-        });
-        (missing, worst.fold(0.0, f64::max))
+        // The right regime is 0 of 0, which counts for nothing.
+        let worst = given.map(|(error, it)| error / it.tolerance);
+        (missing, worst.fold(1.0, f64::max))
     }
 }
 
@@ -115,12 +113,14 @@ impl Choice {
 pub fn choose(scene: &Scene, auto: &Auto) -> Option<Choice> {
     let scene = &first_second(scene);
     let asked = &auto.asked;
-    let mut candidates = on_its_path(scene, auto);
-    candidates.sort_by(|a, b| order(a).total_cmp(&order(b)));
     let mut around = Around {
         scene,
+        truth: touchdown_truth::simulate(scene),
         drops: Vec::new(),
     };
+    let needless = around.needless(asked);
+    let mut candidates = around.on_its_path(auto, needless);
+    candidates.sort_by(|a, b| a.order.total_cmp(&b.order));
     let mut work = 0.0;
     for candidate in candidates.iter_mut().filter(|it| it.suffices(asked)) {
         if work > WORK {
@@ -146,11 +146,6 @@ pub fn choose(scene: &Scene, auto: &Auto) -> Option<Choice> {
     })
 }
 
-/// What was not counted on the target comes last, long steps first.
-fn order(candidate: &Candidate) -> f64 {
-    candidate.cost.unwrap_or(1e18 / candidate.model.step)
-}
-
 /// What held longest over the ensemble, else what misses least in the scene's own drop; the dearest of such.
 fn nearest(candidates: &[Candidate], asked: &[Request]) -> Option<usize> {
     let kept = |it: &Candidate| it.tried.as_ref().map_or(0, |it| it.kept);
@@ -167,10 +162,65 @@ fn nearest(candidates: &[Candidate], asked: &[Request]) -> Option<usize> {
 /// The drops around the scene's, each with its true history, none where the reference was given up: as many as were needed.
 struct Around<'a> {
     scene: &'a Scene,
+    /// Of its own drop.
+    truth: History,
     drops: Vec<(Scene, Option<History>)>,
 }
 
 impl Around<'_> {
+    /// Parts of level `coupled` that its model at the scene's step can do without, tried one after the other.
+    fn needless(&mut self, asked: &[Request]) -> LeftOut {
+        let mut model = self.scene.model;
+        for part in removable(self.scene) {
+            let less = model.without(part);
+            if less.rung != Fidelity::Coupled || !model.has(part) {
+                continue;
+            }
+            let errors = errors(&with(self.scene, less), &self.truth, asked);
+            let on_path = errors.is_some_and(|it| within(&it, asked));
+            if on_path && self.race(less, asked).kept == DROPS {
+                model = less;
+            }
+        }
+        model.left_out
+    }
+
+    /// Every combination that the scene leaves open, whole and without what is `needless`, in the scene's own drop.
+    fn on_its_path(&self, auto: &Auto, needless: LeftOut) -> Vec<Candidate> {
+        let mut models: Vec<Model> = Vec::new();
+        let open = combination::all().into_iter();
+        for model in open.filter_map(|it| auto.fixed.apply(it)) {
+            let mut less = model;
+            if model.rung == Fidelity::Coupled {
+                less.left_out = needless;
+            }
+            // A fixed step makes rows that differ in nothing else one.
+            for model in [less, model] {
+                if !models.contains(&model) {
+                    models.push(model);
+                }
+            }
+        }
+        let bar = progress::bar("fidelity", models.len() as u64);
+        let candidates = models.into_par_iter().filter_map(|model| {
+            let scene = with(self.scene, model);
+            let errors = errors(&scene, &self.truth, &auto.asked);
+            let coordinates = degrees_of_freedom(&scene).0 as f64;
+            let cost = per_second(&scene);
+            bar.inc(1);
+            Some(Candidate {
+                model,
+                errors: errors?,
+                cost,
+                tried: None,
+                order: cost.unwrap_or(1e18 * coordinates / model.step),
+            })
+        });
+        let candidates = candidates.collect();
+        bar.finish_and_clear();
+        candidates
+    }
+
     /// A combination over them, a few at a time, until it fails.
     fn race(&mut self, model: Model, asked: &[Request]) -> Tried {
         let mut tried = Tried {
@@ -183,11 +233,11 @@ impl Around<'_> {
             let end = (tried.drops + FEW).min(DROPS);
             self.extend(end);
             let some = self.drops[tried.drops..end].par_iter();
-            let errors: Vec<_> = some
-                .map(|(scene, truth)| errors(&with(scene, model), truth.as_ref()?, asked))
-                .collect();
-            for errors in errors {
-                let errors = errors.unwrap_or(vec![f64::INFINITY; asked.len()]);
+            let all = some.map(|(scene, truth)| {
+                let errors = (truth.as_ref()).and_then(|it| errors(&with(scene, model), it, asked));
+                errors.unwrap_or(vec![f64::INFINITY; asked.len()])
+            });
+            for errors in all.collect::<Vec<_>>() {
                 bar.inc(1);
                 tried.drops += 1;
                 tried.kept += usize::from(within(&errors, asked));
@@ -209,36 +259,8 @@ impl Around<'_> {
             let history = whole.then(|| truth.finish().whole);
             (scene, history)
         });
-        let more: Vec<_> = more.collect();
-        self.drops.extend(more);
+        self.drops.par_extend(more);
     }
-}
-
-/// Every combination that the scene leaves open, in its own drop.
-fn on_its_path(scene: &Scene, auto: &Auto) -> Vec<Candidate> {
-    let truth = touchdown_truth::simulate(scene);
-    let mut models: Vec<Model> = Vec::new();
-    for model in combination::all() {
-        // A fixed step makes rows that differ in nothing else one.
-        if let Some(model) = auto.fixed.apply(model).filter(|it| !models.contains(it)) {
-            models.push(model);
-        }
-    }
-    let bar = progress::bar("fidelity", models.len() as u64);
-    let candidates = models.into_par_iter().filter_map(|model| {
-        let scene = with(scene, model);
-        let errors = errors(&scene, &truth, &auto.asked);
-        bar.inc(1);
-        Some(Candidate {
-            model,
-            errors: errors?,
-            cost: per_second(&scene),
-            tried: None,
-        })
-    });
-    let candidates = candidates.collect();
-    bar.finish_and_clear();
-    candidates
 }
 
 /// Of each output that is asked for, infinite where the model is given up; none where it refuses the scene.

@@ -8,15 +8,14 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start};
 
-use super::follow::FollowedDrop;
 use super::machine::MachineDrop;
-pub use super::machine::StepView;
+pub use super::machine::{StepView, WatchedDrop};
 use super::once::Once;
-use super::parts::{ends, modelled_modes, seats, shape};
+use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::ModelRun;
 use super::{InNumbers, Subject, Use, in_numbers, scaled};
 use touchdown_scene::scales::start_speed;
-use touchdown_scene::{Fidelity, MODES, Scene};
+use touchdown_scene::{Fidelity, MODES, Removable, Scene};
 
 /// Coordinates of a rotor that only moves, that tilts too, and that bends too. Modes that a scene does not have
 /// stand still, because each number more is built for every number of rings and kind of numbers.
@@ -118,14 +117,16 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
     config.transverse_inertia = machine.transverse_inertia;
     let (sin, cos) = machine.gravity_angle.sin_cos();
     config.gravity = [scene.run.gravity * sin, -scene.run.gravity * cos];
-    config.unbalance = UnbalanceConfig {
-        eccentricity: machine.unbalance[0] / scene.rotor.mass,
-        angle: machine.unbalance[1],
-        skew: machine.skew[0],
-        skew_angle: machine.skew[1],
-    };
+    if scene.model.has(Removable::Unbalance) {
+        config.unbalance = UnbalanceConfig {
+            eccentricity: machine.unbalance[0] / scene.rotor.mass,
+            angle: machine.unbalance[1],
+            skew: machine.skew[0],
+            skew_angle: machine.skew[1],
+        };
+    }
     let damps = f64::from(u8::from(scene.model.rung == Fidelity::Coupled));
-    for (to, from) in config.magnets.iter_mut().zip(&machine.magnets) {
+    for (to, from) in config.magnets.iter_mut().zip(modelled_magnets(scene)) {
         *to = ActuatorConfig {
             place: from.place,
             stiffness: from.stiffness,
@@ -135,7 +136,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
             shape: shape(scene, from.place),
         };
     }
-    if scene.model.rung == Fidelity::Coupled {
+    if scene.model.rung == Fidelity::Coupled && scene.model.has(Removable::Base) {
         config.base = machine.base.map(|it| BaseConfig {
             amplitude: it.amplitude,
             rate: it.rate,
@@ -175,42 +176,20 @@ fn placement<const N: usize, const Q: usize>(
     }
 }
 
-/// Runs the scene's model with what happens in each ring, watched after each step.
+/// Runs the scene's model, watched after each step.
 pub fn watch(scene: &Scene, each: &mut dyn FnMut(StepView)) -> Result<ModelRun, ConfigError> {
-    in_numbers(scene, Run(scene, each))
-}
-
-struct Run<'a>(&'a Scene, &'a mut dyn FnMut(StepView));
-
-impl InNumbers for Run<'_> {
-    type Output = ModelRun;
-
-    fn with<R: Precision>(self) -> Result<ModelRun, ConfigError> {
-        in_parts::<R, _>(self.0, self)
-    }
-}
-
-impl UseWhole for Run<'_> {
-    type Output = ModelRun;
-
-    fn with<R: Precision, const N: usize, const Q: usize>(
-        self,
-        whole: Whole<R, N, Q>,
-        scales: Scales<f64>,
-    ) -> Result<ModelRun, ConfigError> {
-        Ok(MachineDrop::new(self.0, whole, scales)?.watched(self.1))
-    }
+    Ok(follow(scene)?.watched(each))
 }
 
 /// The scene's machine at its release.
-pub(super) fn follow(scene: &Scene) -> Result<Box<dyn FollowedDrop + '_>, ConfigError> {
+pub(super) fn follow(scene: &Scene) -> Result<Box<dyn WatchedDrop + '_>, ConfigError> {
     in_numbers(scene, MachineRelease(scene))
 }
 
 struct MachineRelease<'a>(&'a Scene);
 
 impl<'a> InNumbers for MachineRelease<'a> {
-    type Output = Box<dyn FollowedDrop + 'a>;
+    type Output = Box<dyn WatchedDrop + 'a>;
 
     fn with<R: Precision>(self) -> Result<Self::Output, ConfigError> {
         in_parts::<R, _>(self.0, self)
@@ -218,7 +197,7 @@ impl<'a> InNumbers for MachineRelease<'a> {
 }
 
 impl<'a> UseWhole for MachineRelease<'a> {
-    type Output = Box<dyn FollowedDrop + 'a>;
+    type Output = Box<dyn WatchedDrop + 'a>;
 
     fn with<R: Precision, const N: usize, const Q: usize>(
         self,

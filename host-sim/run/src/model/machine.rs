@@ -29,6 +29,12 @@ pub struct StepView {
     pub energy: CoupledEnergy<f64>,
 }
 
+/// A drop that can be watched.
+pub trait WatchedDrop: FollowedDrop {
+    /// Runs to the end, watched after each step.
+    fn watched(self: Box<Self>, each: &mut dyn FnMut(StepView)) -> ModelRun;
+}
+
 /// A drop of the machine of a scene.
 pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
     scene: &'a Scene,
@@ -137,19 +143,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         })
     }
 
-    /// Runs to the end, watched after each step.
-    pub(super) fn watched(mut self, each: &mut dyn FnMut(StepView)) -> ModelRun {
-        let (steps, _) = self.steps(self.scene.run.duration);
-        while self.done < steps && self.given_up.is_none() {
-            let done = self.done;
-            self.step();
-            if self.done > done {
-                each(self.view());
-            }
-        }
-        self.ended()
-    }
-
     fn steps(&self, time: f64) -> (u64, f64) {
         steps_of_run(time / self.scene.model.step)
     }
@@ -190,6 +183,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let energy = [self.begun, model.energy(state).to_f64()];
         let mut run = ModelRun {
             given_up: self.given_up,
+            tried: state.tried(),
             ring: None,
             seats: Vec::new(),
             ledger: Some(ledger(scene, unit, &energy)),
@@ -320,6 +314,20 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
     }
 
     fn finish(self: Box<Self>) -> ModelRun {
+        self.ended()
+    }
+}
+
+impl<R: Precision, const N: usize, const Q: usize> WatchedDrop for MachineDrop<'_, R, N, Q> {
+    fn watched(mut self: Box<Self>, each: &mut dyn FnMut(StepView)) -> ModelRun {
+        let (steps, _) = self.steps(self.scene.run.duration);
+        while self.done < steps && self.given_up.is_none() {
+            let done = self.done;
+            self.step();
+            if self.done > done {
+                each(self.view());
+            }
+        }
         self.ended()
     }
 }

@@ -2,7 +2,9 @@
 
 use touchdown_models::{MountConfig, RaceConfig, RingConfig, SeatConfig};
 
-use touchdown_scene::{Fidelity, MODES, Ring, Scene, TwoPlane};
+use touchdown_scene::{
+    BallBearing, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane,
+};
 
 /// The rotor's ends, where the rung has them.
 pub(super) fn ends(scene: &Scene) -> Option<&TwoPlane> {
@@ -11,10 +13,16 @@ pub(super) fn ends(scene: &Scene) -> Option<&TwoPlane> {
 }
 
 /// Bending modes that the rung has.
-pub(super) fn modelled_modes(scene: &Scene) -> impl Iterator<Item = &touchdown_scene::Mode> {
-    let has = scene.model.rung == Fidelity::Coupled;
+pub(super) fn modelled_modes(scene: &Scene) -> impl Iterator<Item = &Mode> {
+    let has = scene.model.rung == Fidelity::Coupled && scene.model.has(Removable::Bending);
     let modes = ends(scene).into_iter().flat_map(|it| &it.modes);
     modes.filter(move |_| has)
+}
+
+/// Magnets that it has.
+pub(super) fn modelled_magnets(scene: &Scene) -> impl Iterator<Item = &Magnet> {
+    let magnets = ends(scene).into_iter().flat_map(|it| &it.magnets);
+    magnets.filter(|_| scene.model.has(Removable::Magnets))
 }
 
 /// Each bending mode's displacement at a place.
@@ -28,16 +36,10 @@ pub(super) fn shape(scene: &Scene, place: f64) -> [f64; MODES] {
 
 /// The retainer's rings with what the rung has of them.
 pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
-    let whole = Ring {
-        name: String::new(),
-        place: 0.0,
-        radius: scene.rotor.radius,
-        retainer: scene.retainer,
-        support: scene.support,
-        ball_bearing: scene.ball_bearing,
-    };
+    let whole = Ring::of_plane(scene);
     let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
-    let moves = scene.model.rung != Fidelity::TwoPlane;
+    let turns = Removable::BallBearing;
+    let has = |part| scene.model.rung != Fidelity::TwoPlane && scene.model.has(part);
     let seat = |ring: &Ring| SeatConfig {
         ring: RingConfig {
             place: ring.place,
@@ -46,23 +48,22 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
             friction: ring.retainer.friction,
             restitution: ring.retainer.restitution,
         },
-        mount: ring.support.as_ref().filter(|_| moves).map(mount),
-        race: ring.ball_bearing.as_ref().filter(|_| moves).map(race),
+        mount: ring
+            .support
+            .filter(|_| has(Removable::Mount))
+            .map(|it| MountConfig {
+                mass: it.mass,
+                stiffness: it.stiffness,
+                damping: it.damping,
+                travel: it.travel.filter(|_| has(Removable::Stop)),
+            }),
+        race: ring.ball_bearing.filter(|_| has(turns)).map(race),
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
 }
 
-fn mount(support: &touchdown_scene::Support) -> MountConfig<f64> {
-    MountConfig {
-        mass: support.mass,
-        stiffness: support.stiffness,
-        damping: support.damping,
-        travel: support.travel,
-    }
-}
-
-fn race(bearing: &touchdown_scene::BallBearing) -> RaceConfig<f64> {
+fn race(bearing: BallBearing) -> RaceConfig<f64> {
     RaceConfig {
         inertia: bearing.inertia,
         dry_drag: bearing.dry_drag,

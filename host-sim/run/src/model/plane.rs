@@ -15,7 +15,7 @@ use touchdown_truth::{Moving, TrueState, held};
 /// The scene's model at the release.
 pub fn follow(scene: &Scene) -> Result<Box<dyn FollowedDrop + '_>, ConfigError> {
     match scene.model.rung {
-        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => coupled::follow(scene),
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => Ok(coupled::follow(scene)?),
         _ => with_model(scene, PlaneRelease(scene)),
     }
 }

@@ -19,6 +19,8 @@ pub struct ModelRun {
     pub histories: Histories,
     /// When it was given up, s: it would take too long.
     pub given_up: Option<f64>,
+    /// Stretches of motion tried, of the rungs `support`, `two-plane` and `coupled`: what it has cost.
+    pub tried: u64,
     /// Its energy, where the rung keeps account of it.
     pub ledger: Option<Ledger>,
     /// The retainer ring at the end, where it moves or turns.
@@ -36,6 +38,7 @@ impl ModelRun {
                 rings: Vec::new(),
             },
             given_up: None,
+            tried: 0,
             ledger: None,
             ring: None,
             seats: Vec::new(),

@@ -13,7 +13,7 @@ use touchdown_scene::{Fidelity, Scene};
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
         Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
-            coupled::watch(scene, &mut |_| ())
+            Ok(coupled::follow(scene)?.finish())
         }
         _ => {
             let to_verdict = false;

@@ -17,16 +17,18 @@ use serde::Serialize;
 
 use touchdown_base::progress;
 use touchdown_run::ensemble::varied;
+use touchdown_run::fidelity::combination::with;
 use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
-use touchdown_scene::Scene;
-use touchdown_scene::leave_out::{removable, without};
+use touchdown_scene::parts::{degrees_of_freedom, removable};
+use touchdown_scene::{Removable, Scene};
 
 use quantity::{COUNT, Values, values};
 
-/// Steps of all drops together where no number of drops is asked for: some 20 s of processor time.
-const WORK: f64 = 2e7;
-const FEWEST: usize = 16;
+/// Work of all drops together after which no more are done where no number of them is asked for: some 20 s of processor time.
+const WORK: f64 = 5e7;
+/// Drops that are done at once.
+const SOME: usize = 16;
 const MOST: usize = 200;
 
 /// What was left out, and what that changes.
@@ -52,6 +54,8 @@ pub struct Worth {
 /// What one machine came to.
 struct Drop {
     values: Values,
+    /// Stretches of motion times coordinates.
+    work: f64,
     /// Processor time, s.
     seconds: f64,
 }
@@ -60,33 +64,34 @@ struct Drop {
 pub fn run(scene: &Scene, drops: Option<usize>) -> Worth {
     let scene = &first_second(scene);
     let parts = removable(scene);
-    let machines = 1 + parts.len();
-    let steps = scene.run.duration / scene.model.step * machines as f64;
-    let drops = drops.unwrap_or(((WORK / steps) as usize).clamp(FEWEST, MOST));
-    if parts.is_empty() || drops == 0 {
-        return Worth {
-            drops: 0,
-            without: vec![],
-        };
+    let most = match parts.is_empty() {
+        true => 0,
+        false => drops.unwrap_or(MOST),
+    };
+    let progress = progress::bar("parts", most as u64);
+    let mut all: Vec<Vec<Drop>> = Vec::new();
+    let (mut done, mut work) = (0, 0.0);
+    while done < most && (drops.is_some() || work < WORK) {
+        let end = most.min(done + SOME);
+        let some: Vec<Option<Vec<Drop>>> = (done..end)
+            .into_par_iter()
+            .map(|number| {
+                let scene = varied(scene, number as u64);
+                let less = parts.iter().map(|part| scene.model.without(*part));
+                let all = [scene.model].into_iter().chain(less);
+                let drops = all.map(|model| dropped(&with(&scene, model))).collect();
+                progress.inc(1);
+                drops
+            })
+            .collect();
+        let drops = some.into_iter().flatten();
+        all.extend(drops.inspect(|it| work += it.iter().map(|it| it.work).sum::<f64>()));
+        done = end;
     }
-    let progress = progress::bar("parts", drops as u64);
-    let all: Vec<Option<Vec<Drop>>> = (0..drops as u64)
-        .into_par_iter()
-        .map(|number| {
-            let whole = varied(scene, number);
-            let left_out = parts.iter().filter_map(|part| without(&whole, part));
-            let machines: Vec<Scene> = left_out.collect();
-            let all = [&whole].into_iter().chain(&machines);
-            let done = all.map(dropped).collect();
-            progress.inc(1);
-            done
-        })
-        .collect();
     progress.finish_and_clear();
-    let all: Vec<Vec<Drop>> = all.into_iter().flatten().collect();
     let seconds = |machine: usize| all.iter().map(|it| it[machine].seconds).sum::<f64>();
-    let omission = |(machine, part): (usize, &touchdown_scene::parts::Part)| Omission {
-        part: part.name,
+    let omission = |(machine, part): (usize, &Removable)| Omission {
+        part: part.into(),
         cost: seconds(machine) / seconds(0),
         changes: (0..COUNT)
             .filter_map(|quantity| {
@@ -109,6 +114,7 @@ fn dropped(scene: &Scene) -> Option<Drop> {
     let begin = Instant::now();
     let run = model::run(scene).ok()?;
     Some(Drop {
+        work: run.tried as f64 * degrees_of_freedom(scene).0 as f64,
         values: values(&run, scene),
         seconds: begin.elapsed().as_secs_f64(),
     })
