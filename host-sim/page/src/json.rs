@@ -49,6 +49,7 @@ struct ModelJson {
     rung: Fidelity,
     precision: Precision,
     step_s: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     left_out: Vec<&'static str>,
 }
 

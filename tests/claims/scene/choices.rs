@@ -9,7 +9,7 @@ const FIRST_SEED: u64 = 900_000;
 fn choices_hold_and_have_the_parts_that_matter() {
     let mut families = choice_runs::run("planted", 6, FIRST_SEED);
     families.extend(choice_runs::run("answers: plane", 3, FIRST_SEED));
-    assert_eq!(families.len(), 3);
+    assert_eq!(families.len(), 4);
     for family in families {
         println!("{family:?}");
         assert_eq!((family.runs, family.failed), (3, 0), "{family:?}");

@@ -28,8 +28,8 @@ pub const DROPS: usize = 59;
 
 /// Drops that are tried at once: most combinations fail in one of the first.
 const FEW: usize = 8;
-/// Steps of all drops that are tried for a choice: some 10 s of processor time of the levels with most parts.
-const WORK: f64 = 1e7;
+/// Steps of all drops that are tried for a choice: some 30 s of processor time of the levels with most parts, references included.
+const WORK: f64 = 4e6;
 
 /// A combination, with what it costs and how wrong it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,18 +117,16 @@ pub fn choose(scene: &Scene, auto: &Auto) -> Option<Choice> {
         scene,
         truth: touchdown_truth::simulate(scene),
         drops: Vec::new(),
+        work: 0.0,
     };
     let needless = around.needless(asked);
     let mut candidates = around.on_its_path(auto, needless);
     candidates.sort_by(|a, b| a.order.total_cmp(&b.order));
-    let mut work = 0.0;
     for candidate in candidates.iter_mut().filter(|it| it.suffices(asked)) {
-        if work > WORK {
+        if around.work > WORK {
             break;
         }
-        let tried = around.race(candidate.model, asked);
-        work += tried.drops as f64 * scene.run.duration / candidate.model.step;
-        candidate.tried = Some(tried);
+        candidate.tried = Some(around.race(candidate.model, asked));
         if candidate.holds(asked) {
             break;
         }
@@ -165,15 +163,18 @@ struct Around<'a> {
     /// Of its own drop.
     truth: History,
     drops: Vec<(Scene, Option<History>)>,
+    /// Steps of all drops tried so far.
+    work: f64,
 }
 
 impl Around<'_> {
-    /// Parts of level `coupled` that its model at the scene's step can do without, tried one after the other.
+    /// Parts of level `coupled` that its model at the scene's step can do without, tried one after the other; half of the
+    /// work is for that.
     fn needless(&mut self, asked: &[Request]) -> LeftOut {
         let mut model = self.scene.model;
         for part in removable(self.scene) {
             let less = model.without(part);
-            if less.rung != Fidelity::Coupled || !model.has(part) {
+            if less.rung != Fidelity::Coupled || !model.has(part) || 2.0 * self.work > WORK {
                 continue;
             }
             let errors = errors(&with(self.scene, less), &self.truth, asked);
@@ -247,6 +248,7 @@ impl Around<'_> {
             }
         }
         bar.finish_and_clear();
+        self.work += tried.drops as f64 * self.scene.run.duration / model.step;
         tried
     }
 

@@ -185,28 +185,7 @@ impl Ballistic {
             let part = CLEAR / sqrt(excess);
             gain[3] = gain[3].map(|it| it * part);
         }
-        let seen_by = sum(track.by_stiffness[0], track.by_stiffness[3]);
-        let [u, v] = seen_by;
-        let mut more = 0.0;
-        let wider = 1.0 + track.stiffness_variance * scale * (u * u + v * v);
-        if excess < CLEAR * CLEAR * wider {
-            track.stiffness_variance /= wider;
-            more = track.stiffness_variance * scale * (u * x + v * y);
-            // Magnets without control push outward, never back.
-            more = more.max(-track.stiffness);
-            track.stiffness += more;
-        }
-        let states = [
-            &mut track.position,
-            &mut track.velocity,
-            &mut track.acceleration,
-            &mut track.offset,
-        ];
-        for ((state, by), gain) in states.into_iter().zip(&mut track.by_stiffness).zip(gain) {
-            *by = less(*by, product(gain, seen_by));
-            *state = sum(*state, product(gain, residual));
-            *state = later(*state, *by, more);
-        }
+        track.take(gain, residual, scale, excess);
         let [p, v, a, o] = shared;
         let [of_p, of_v, of_a, of_o] = gain;
         let less_own = |own: f32, a: [f32; 2], b: [f32; 2]| own - (a[0] * b[0] + a[1] * b[1]);
@@ -300,6 +279,33 @@ impl Track {
             error: self.acceleration_error(),
             stiffness: self.stiffness,
             stiffness_variance: self.stiffness_variance,
+        }
+    }
+
+    /// Takes a residual (m) with these gains, and learns the stiffness from it; `scale` is the inverse of its variance, `excess` its square
+    /// over that.
+    #[inline]
+    fn take(&mut self, gain: [[f32; 2]; 4], residual: [f32; 2], scale: f32, excess: f32) {
+        let seen_by = sum(self.by_stiffness[0], self.by_stiffness[3]);
+        let ([x, y], [u, v]) = (residual, seen_by);
+        let wider = 1.0 + self.stiffness_variance * scale * (u * u + v * v);
+        let mut more = 0.0;
+        if excess < CLEAR * CLEAR * wider {
+            self.stiffness_variance /= wider;
+            more = self.stiffness_variance * scale * (u * x + v * y);
+            // Magnets without control push outward, never back.
+            more = more.max(-self.stiffness);
+            self.stiffness += more;
+        }
+        let states = [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.acceleration,
+            &mut self.offset,
+        ];
+        for ((state, by), gain) in states.into_iter().zip(&mut self.by_stiffness).zip(gain) {
+            *by = less(*by, product(gain, seen_by));
+            *state = later(sum(*state, product(gain, residual)), *by, more);
         }
     }
 
