@@ -30,8 +30,8 @@ const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
-/// Standard deviation of the stiffness of magnets over the mass, 1/s^2.
-const STIFFNESS: f32 = 1e5;
+/// Pull of magnets without control at the wall, one standard deviation, m/s^2.
+const PULL_AT_WALL: f32 = 10.0;
 /// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
 const STEADY: f32 = 0.2;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
@@ -283,11 +283,12 @@ impl FlightTest {
 
     /// What acts in a flight, as far as it is known before it.
     pub(crate) fn pull(&self, flight: &Airborne) -> Pull {
+        let stiffness = PULL_AT_WALL / self.machine.clearance;
         flight.pull.unwrap_or(Pull {
             acceleration: [0.0, -self.machine.gravity],
             error: PULL_ERROR,
             stiffness: 0.0,
-            stiffness_variance: STIFFNESS * STIFFNESS,
+            stiffness_variance: stiffness * stiffness,
         })
     }
 

@@ -75,7 +75,8 @@ impl LiftOff {
     /// Takes the place and its distances from the centre and from the wall's shape, inward (m), known to `variance` (m^2). Where
     /// the rotor has left both the shape and where the wall has lately been: samples since. A shape that has just been learnt
     /// may go on wrongly. A free rotor leaves a whirl on a straight line at most, which is farther inside in its middle: a way c
-    /// is a chord, c^2/(8 R) from the wall. One that was nearer is on a wall, which is there.
+    /// is a chord, c^2/(8 R) from the wall. One that was clearly nearer is on a wall,
+    /// which is there.
     pub(crate) fn take(
         &mut self,
         place: [f32; 2],
@@ -88,7 +89,8 @@ impl LiftOff {
         self.gap = gap.min(self.lately - radius);
         let inward = self.gap / sigma;
         self.sum = (self.sum + SHIFT * (inward.min(MAX_INWARD_SIGMA) - 0.5 * SHIFT)).max(0.0);
-        let is_curved = (self.gap - self.left_gap) * 8.0 * radius < square(place, self.left);
+        let gone = self.gap - self.left_gap + SHIFT * sigma;
+        let is_curved = gone * 8.0 * radius < square(place, self.left);
         if is_curved && self.age > 0 {
             self.lately = radius;
         }

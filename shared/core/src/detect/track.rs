@@ -48,6 +48,8 @@ pub(crate) struct Track {
     /// Change of the acceleration with the place, 1/s^2, and its variance, 1/s^4.
     stiffness: f32,
     stiffness_variance: f32,
+    /// The same, 0 until it is clear of that: what the filter goes by.
+    applied: f32,
     /// What position, velocity, acceleration and offset change by with it.
     by_stiffness: [[f32; 2]; 4],
 }
@@ -121,7 +123,7 @@ impl Ballistic {
     /// To the next sample.
     pub(crate) fn predict(&self, track: &mut Track) {
         let dt = self.period;
-        let stiffness = track.stiffness * dt;
+        let stiffness = track.applied * dt;
         let [p, v, a, o] = track.by_stiffness;
         let [x, y] = track.velocity;
         let way = if x * x + y * y > CLEAR * CLEAR * track.variances[1] {
@@ -244,6 +246,7 @@ impl Track {
             variances: [0.0, 0.0, 0.0, offset * offset],
             stiffness: pull.stiffness,
             stiffness_variance: pull.stiffness_variance,
+            applied: pull.stiffness,
             ..Self::default()
         };
         track.go_on_at(position, variance, spread, error);
@@ -277,7 +280,7 @@ impl Track {
         Pull {
             acceleration: self.acceleration,
             error: self.acceleration_error(),
-            stiffness: self.stiffness,
+            stiffness: self.applied,
             stiffness_variance: self.stiffness_variance,
         }
     }
@@ -288,15 +291,21 @@ impl Track {
     fn take(&mut self, gain: [[f32; 2]; 4], residual: [f32; 2], scale: f32, excess: f32) {
         let seen_by = sum(self.by_stiffness[0], self.by_stiffness[3]);
         let ([x, y], [u, v]) = (residual, seen_by);
-        let wider = 1.0 + self.stiffness_variance * scale * (u * u + v * v);
-        let mut more = 0.0;
+        let square = u * u + v * v;
+        let wider = 1.0 + self.stiffness_variance * scale * square;
         if excess < CLEAR * CLEAR * wider {
             self.stiffness_variance /= wider;
-            more = self.stiffness_variance * scale * (u * x + v * y);
+            let left = u * x + v * y - (self.stiffness - self.applied) * square;
             // Magnets without control push outward, never back.
-            more = more.max(-self.stiffness);
-            self.stiffness += more;
+            self.stiffness = (self.stiffness + self.stiffness_variance * scale * left).max(0.0);
         }
+        let is_clear = self.stiffness * self.stiffness > CLEAR * CLEAR * self.stiffness_variance;
+        let more = if is_clear || self.applied > 0.0 {
+            self.stiffness - self.applied
+        } else {
+            0.0
+        };
+        self.applied += more;
         let states = [
             &mut self.position,
             &mut self.velocity,
@@ -334,7 +343,7 @@ impl Track {
         self.offset = product(self.offset, [cos, sin]);
         self.by_stiffness[3] = product(self.by_stiffness[3], [cos, sin]);
         let [po, vo, ao] = self.with_offset;
-        let ao_next = later(ao, vo, self.stiffness * time);
+        let ao_next = later(ao, vo, self.applied * time);
         self.with_offset =
             [later(po, vo, time), later(vo, ao, time), ao_next].map(|it| product(it, [cos, -sin]));
     }
