@@ -107,7 +107,7 @@ fn an_image_with_a_wrong_bit_never_gives_current() {
         place.unwrap_or_else(|| panic!("{bytes:02x?} is not in the image"))
     };
     // The vector table begins with the first address of the stack (memory.x) and that of the first function, odd in Thumb code.
-    let stack = 0x2000_6800_u32.to_le_bytes();
+    let stack = 0x2000_6c00_u32.to_le_bytes();
     let is_vectors = |it: &[u8]| it[..4] == stack && it[7] == 0x08 && it[4] & 1 == 1;
     let vectors = image.windows(8).position(is_vectors).expect("a vector table");
     // It is the first section of the check, with its address and length.

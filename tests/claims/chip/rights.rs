@@ -307,7 +307,7 @@ fn flip_clearances(debugger: &mut Debugger, first_sample: u64) -> usize {
     assert_eq!(debugger.ask(&format!("z0,{breakpoint}")), "OK");
     let clearance: String = CLEARANCE.to_le_bytes().map(|it| format!("{it:02x}")).concat();
     let mut flipped = 0;
-    for block in (0x2000_6800_u32..0x2002_0000).step_by(0x400) {
+    for block in (0x2000_6c00_u32..0x2002_0000).step_by(0x400) {
         let bytes = debugger.ask(&format!("m{block:x},400"));
         for at in (0..bytes.len()).step_by(8).filter(|at| bytes[*at..].starts_with(&clearance)) {
             let address = block + at as u32 / 2;
