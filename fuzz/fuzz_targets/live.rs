@@ -49,7 +49,7 @@ fn said(reply: Reply) -> Option<Said> {
         Reply::Recent(recent) => Some(Said::Recent(recent)),
         Reply::Chunk { total, bytes } => Some(Said::Episode(total, Episode::of(&bytes).header)),
         Reply::Lifetime(counters) => counters.map(Said::Lifetime),
-        Reply::Done | Reply::Refused(_) | Reply::Episodes(_) => None,
+        Reply::Done | Reply::Refused(_) | Reply::Challenge(..) | Reply::Episodes(_) => None,
     }
 }
 

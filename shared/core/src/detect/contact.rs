@@ -487,6 +487,7 @@ mod tests {
             error: 0.0,
             stiffness: 0.0,
             stiffness_variance: 0.0,
+            is_shown: false,
         };
         let signals = Signals::default();
         let whirl = (1..2_000).find(|&k| {

@@ -259,7 +259,7 @@ impl FlightTest {
             measurement.position,
             measurement.variance,
             ([0.0; 2], UNKNOWN_SPEED),
-            self.pull(flight).as_far_as(threshold_scale),
+            self.pull_in(flight, threshold_scale),
             self.turning(measurement, threshold_scale),
         );
         flight.series = Series::default();
@@ -289,7 +289,16 @@ impl FlightTest {
             error: PULL_ERROR,
             stiffness: 0.0,
             stiffness_variance: stiffness * stiffness,
+            is_shown: true,
         })
+    }
+
+    /// The same in a flight that begins. Where the sensors are loud while the rotor floats, it does not show the stiffness.
+    fn pull_in(&self, flight: &Airborne, threshold_scale: f32) -> Pull {
+        Pull {
+            is_shown: threshold_scale <= 1.0,
+            ..self.pull(flight)
+        }
     }
 
     /// A contact begins.
@@ -330,7 +339,7 @@ impl FlightTest {
             measurement.position,
             measurement.variance,
             (both.track.velocity, UNKNOWN_SPEED),
-            self.pull(both).as_far_as(threshold_scale),
+            self.pull_in(both, threshold_scale),
             self.turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
@@ -358,6 +367,7 @@ impl FlightTest {
                     error: 0.0,
                     stiffness: 0.0,
                     stiffness_variance: 0.0,
+                    is_shown: false,
                 },
                 [0.0; 2],
             );
@@ -416,7 +426,7 @@ impl FlightTest {
         if let Some(jump) = jump {
             let by_wall = !is_clear && is_of_a_wall(&jump, outward);
             let impact = by_wall.then(|| self.judge(flight, &jump, measurement, open));
-            flight.track.shift(&jump);
+            flight.track.shift(&jump, jump.age * self.period);
             flight.bank.restart();
             match impact {
                 Some(Some(hit)) => return Some(self.take_in(flight, &hit)),
@@ -581,7 +591,7 @@ impl FlightTest {
     ) -> Option<Hit> {
         let since = jump.age * self.period;
         let mut after = flight.track;
-        after.shift(jump);
+        after.shift(jump, since);
         let [u, v] = after.velocity_before(since);
         let before = less([u, v], jump.change);
         let stretch = if flight.gives { GROWS } else { 1.0 };

@@ -154,4 +154,20 @@ mod tests {
         let (now, age) = found.expect("found");
         assert!(now < 40.0 && (now - age).abs() < 8.0, "{now} {age}");
     }
+
+    /// Sensors of finite bandwidth show a whirl farther inside than where the wall was learnt; no rotor flies along a circle.
+    #[test]
+    fn a_whirl_is_no_flight() {
+        let radius = 300e-6;
+        for gap in [0.0, 3e-6, 10e-6] {
+            let mut test = LiftOff::default();
+            for k in 0..1_000_u16 {
+                let (sin, cos) = libm::sincosf(0.1 * f32::from(k));
+                let inside = gap * (f32::from(k.max(500) - 500) / 200.0).min(1.0);
+                let seen = radius - inside;
+                let found = test.take([seen * sin, -seen * cos], seen, inside, 1e-12, 25.0);
+                assert_eq!(found, None, "{gap} {k}");
+            }
+        }
+    }
 }

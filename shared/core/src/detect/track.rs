@@ -50,6 +50,8 @@ pub(crate) struct Track {
     stiffness_variance: f32,
     /// The same, 0 until it is clear of that: what the filter goes by.
     applied: f32,
+    /// Whether this flight shows it.
+    is_shown: bool,
     /// What position, velocity, acceleration and offset change by with it.
     by_stiffness: [[f32; 2]; 4],
 }
@@ -64,21 +66,8 @@ pub(crate) struct Pull {
     /// Its change with the place, 1/s^2: negative stiffness of magnets over the mass; and the variance of that, 1/s^4.
     pub(crate) stiffness: f32,
     pub(crate) stiffness_variance: f32,
-}
-
-impl Pull {
-    /// Where the sensors are loud while the rotor floats, a flight does not show the stiffness.
-    pub(crate) fn as_far_as(self, threshold_scale: f32) -> Self {
-        let is_loud = threshold_scale > 1.0;
-        Self {
-            stiffness_variance: if is_loud {
-                0.0
-            } else {
-                self.stiffness_variance
-            },
-            ..self
-        }
-    }
+    /// Whether a flight shows it.
+    pub(crate) is_shown: bool,
 }
 
 /// What a sample told the filter.
@@ -125,12 +114,7 @@ impl Ballistic {
         let dt = self.period;
         let stiffness = track.applied * dt;
         let [p, v, a, o] = track.by_stiffness;
-        let [x, y] = track.velocity;
-        let way = if x * x + y * y > CLEAR * CLEAR * track.variances[1] {
-            dt
-        } else {
-            0.0
-        };
+        let way = if track.is_shown { dt } else { 0.0 };
         track.by_stiffness = [
             later(p, v, dt),
             later(v, a, dt),
@@ -187,7 +171,7 @@ impl Ballistic {
             let part = CLEAR / sqrt(excess);
             gain[3] = gain[3].map(|it| it * part);
         }
-        track.take(gain, residual, scale, excess);
+        track.move_by(gain, residual, scale, excess);
         let [p, v, a, o] = shared;
         let [of_p, of_v, of_a, of_o] = gain;
         let less_own = |own: f32, a: [f32; 2], b: [f32; 2]| own - (a[0] * b[0] + a[1] * b[1]);
@@ -247,6 +231,7 @@ impl Track {
             stiffness: pull.stiffness,
             stiffness_variance: pull.stiffness_variance,
             applied: pull.stiffness,
+            is_shown: pull.is_shown,
             ..Self::default()
         };
         track.go_on_at(position, variance, spread, error);
@@ -282,13 +267,14 @@ impl Track {
             error: self.acceleration_error(),
             stiffness: self.applied,
             stiffness_variance: self.stiffness_variance,
+            is_shown: self.is_shown,
         }
     }
 
-    /// Takes a residual (m) with these gains, and learns the stiffness from it; `scale` is the inverse of its variance, `excess` its square
-    /// over that.
+    /// Moves the states by these gains on a residual (m), and learns the stiffness from it. `scale` is the inverse of its
+    /// variance, `excess` its square over that.
     #[inline]
-    fn take(&mut self, gain: [[f32; 2]; 4], residual: [f32; 2], scale: f32, excess: f32) {
+    fn move_by(&mut self, gain: [[f32; 2]; 4], residual: [f32; 2], scale: f32, excess: f32) {
         let seen_by = sum(self.by_stiffness[0], self.by_stiffness[3]);
         let ([x, y], [u, v]) = (residual, seen_by);
         let square = u * u + v * v;
@@ -300,7 +286,7 @@ impl Track {
             self.stiffness = (self.stiffness + self.stiffness_variance * scale * left).max(0.0);
         }
         let is_clear = self.stiffness * self.stiffness > CLEAR * CLEAR * self.stiffness_variance;
-        let more = if is_clear || self.applied > 0.0 {
+        let more = if is_clear {
             self.stiffness - self.applied
         } else {
             0.0
@@ -408,8 +394,8 @@ impl Track {
         self.with_offset[2] = [0.0; 2];
     }
 
-    /// Takes a velocity jump in.
-    pub(crate) fn shift(&mut self, jump: &Jump) {
+    /// Takes a velocity jump in, `since` seconds ago: the rotor has gone elsewhere since, where magnets pull otherwise.
+    pub(crate) fn shift(&mut self, jump: &Jump, since: f32) {
         let Jump {
             change,
             variance,
@@ -417,6 +403,7 @@ impl Track {
             ..
         } = *jump;
         self.add(effect, change);
+        self.acceleration = later(self.acceleration, change, self.applied * since);
         let [u, v] = change;
         let misplaced = (u * u + v * v) * jump.timing * jump.timing;
         let [p, v, a] = effect;
@@ -479,6 +466,7 @@ mod tests {
                     error: 5.0,
                     stiffness: 0.0,
                     stiffness_variance: spread * spread,
+                    is_shown: true,
                 };
                 track = Track::new(seen, noise, ([0.0; 2], 0.1), pull, [SPIN, SPIN / RATE]);
             } else {
