@@ -1,6 +1,7 @@
 //! Finds the tables of a document.
 
 use std::ops::Range;
+use std::str::Lines;
 
 use anyhow::{Context, bail, ensure};
 
@@ -68,15 +69,8 @@ impl Document {
 
     /// Text of a table's cell: the one row that contains `row`, the column of that heading.
     pub fn cell(&self, block: &Block, row: &str, column: &str) -> anyhow::Result<String> {
-        let cells = |line: &str| -> Vec<String> {
-            let inner = line.trim().trim_matches('|').split('|');
-            inner.map(|it| it.trim().to_owned()).collect()
-        };
-        let mut lines = self.text[block.body.clone()].lines();
-        let heading = cells(lines.next().unwrap_or_default());
-        let place = heading.iter().position(|it| it == column);
-        let place = place.with_context(|| format!("{} has no column {column}", block.name))?;
-        let rows: Vec<_> = lines.filter(|line| line.contains(row)).collect();
+        let (rows, place) = self.column(block, column)?;
+        let rows: Vec<_> = rows.filter(|line| line.contains(row)).collect();
         ensure!(
             rows.len() == 1,
             "{} rows of {} contain \"{row}\"",
@@ -86,6 +80,34 @@ impl Document {
         let found = cells(rows[0]).into_iter().nth(place);
         found.with_context(|| format!("that row of {} is short", block.name))
     }
+
+    /// Name of the row with the largest number in the column of that heading.
+    pub fn most(&self, block: &Block, column: &str) -> anyhow::Result<String> {
+        let (rows, place) = self.column(block, column)?;
+        let numbers = rows.filter_map(|line| {
+            let cells = cells(line);
+            let number: u64 = cells.get(place)?.parse().ok()?;
+            Some((number, cells.into_iter().next()?))
+        });
+        let most = numbers.max_by_key(|it| it.0);
+        let most = most.with_context(|| format!("{} has no number there", block.name))?;
+        Ok(most.1)
+    }
+
+    /// Lines of a table below its heading, and the place of a column in them.
+    fn column(&self, block: &Block, column: &str) -> anyhow::Result<(Lines<'_>, usize)> {
+        let mut lines = self.text[block.body.clone()].lines();
+        let heading = cells(lines.next().unwrap_or_default());
+        let place = heading.iter().position(|it| it == column);
+        let place = place.with_context(|| format!("{} has no column {column}", block.name))?;
+        Ok((lines, place))
+    }
+}
+
+/// Of a row.
+fn cells(line: &str) -> Vec<String> {
+    let inner = line.trim().trim_matches('|').split('|');
+    inner.map(|it| it.trim().to_owned()).collect()
 }
 
 /// Of the marker: name and stamp; the body begins at byte `from`.
@@ -132,6 +154,8 @@ mod tests {
         assert_eq!(document.cell(block, "one", "m").unwrap(), "2");
         assert!(document.cell(block, "two", "m").is_err());
         assert!(document.cell(block, "one", "k").is_err());
+        assert_eq!(document.most(block, "m").unwrap(), "one");
+        assert!(document.most(block, "n").is_err());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use anyhow::{Context, ensure};
 use minijinja::{Environment, Error, ErrorKind, UndefinedBehavior, context};
 use serde_json::{Value, json};
 
-use super::blocks::Document;
+use super::blocks::{Block, Document};
 use super::{number, program};
 use crate::budget;
 use crate::faults;
@@ -61,9 +61,15 @@ impl Sources {
         environment.add_function("claim", move |text: &str| {
             claim(&results, text).map_err(refused)
         });
-        let documents = documents.to_vec();
+        let (of_cells, of_rows) = (documents.to_vec(), documents.to_vec());
         environment.add_function("cell", move |table: &str, row: &str, column: &str| {
-            cell(&documents, table, row, column).map_err(refused)
+            let cell =
+                stamped(&of_cells, table).and_then(|(it, block)| it.cell(block, row, column));
+            cell.map_err(refused)
+        });
+        environment.add_function("most", move |table: &str, column: &str| {
+            let most = stamped(&of_rows, table).and_then(|(it, block)| it.most(block, column));
+            most.map_err(refused)
         });
         Ok(Self {
             environment,
@@ -156,13 +162,11 @@ fn claim(results: &str, text: &str) -> anyhow::Result<f64> {
     Ok(factor.parse()?)
 }
 
-/// Text of a stamped table's cell.
-fn cell<'a>(
+/// A stamped table, and where it stands.
+fn stamped<'a>(
     documents: &'a [Document],
     table: &str,
-    row: &str,
-    column: &str,
-) -> anyhow::Result<String> {
+) -> anyhow::Result<(&'a Document, &'a Block)> {
     let block_of = |it: &'a Document| Some((it, it.blocks.iter().find(|it| it.name == table)?));
     let found = documents.iter().find_map(block_of);
     let (document, block) = found.with_context(|| format!("no table is called {table}"))?;
@@ -170,7 +174,7 @@ fn cell<'a>(
         block.stamped,
         "{table} is generated: take the figure from its source"
     );
-    document.cell(block, row, column)
+    Ok((document, block))
 }
 
 #[cfg(test)]
