@@ -6,9 +6,8 @@ use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
-use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::drop_log::{DropLog, bytes_of};
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
-use touchdown_firmware::store::bytes_of;
 use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
@@ -40,7 +39,7 @@ pub fn run(
         ..Desk::default()
     };
     let mut memory = Box::new(Memory::EMPTY);
-    let identity = Identity::new(&desk.block, log.boot());
+    let identity = Identity::new(&desk.block, log.counters().boots);
     let mut recorder = Recorder::new(&mut memory, config, identity);
     let mut app = App::try_new(config, Faults::NONE)?;
     match &procedure.learnt {
@@ -66,10 +65,10 @@ pub fn run(
         }
         fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
-            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
         }
     }
-    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,

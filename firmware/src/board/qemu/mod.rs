@@ -230,7 +230,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     journal::config(&settings.monitor);
     let identity = Identity::new(
         &block.told(&settings),
-        log.as_ref().map_or(0, DropLog::boot),
+        log.as_ref().map_or(0, |it| it.counters().boots),
     );
     let board = Emulated {
         answer,
@@ -247,7 +247,8 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         Failure::Config
     })?;
     if head.powers_on {
-        tick.app.recall(log.as_ref().and_then(DropLog::uncleared));
+        tick.app
+            .recall(log.as_ref().and_then(|it| it.counters().uncleared));
     } else {
         tick.app.assume_lift();
     }
