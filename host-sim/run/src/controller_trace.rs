@@ -13,7 +13,7 @@ use crate::timebase::Timebase;
 use touchdown_base::paint::Paint;
 use touchdown_files::controller::{AlarmAt, OutputsFrom, table};
 use touchdown_files::drop_log::{Completeness, Dump, Episode};
-use touchdown_scene::names::{busy_name, event_name};
+use touchdown_scene::names::busy_name;
 
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,7 +184,7 @@ fn logged(episode: &Episode) -> String {
         episode.sequence,
         episode
             .header
-            .map_or("no header", |it| event_name(it.trigger_kind)),
+            .map_or("no header", |it| it.trigger_kind.into()),
         episode.samples.iter().flatten().count(),
         episode.events.len(),
     )
