@@ -12,7 +12,7 @@ use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::Hello;
-use touchdown_protocol::wire::{Cleared, Switching};
+use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
@@ -52,10 +52,9 @@ pub fn run(
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
         if procedure.clears(desk.ticks) {
-            desk.cleared.push(Cleared {
-                sample: desk.ticks,
-                refused: app.clear().err(),
-            });
+            let notice = app.clear_as_ordered();
+            desk.report(&notice);
+            recorder.hear(&notice);
         }
         tick(&mut app, &mut recorder, &mut desk, &sample, 0, &mut notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
@@ -84,7 +83,7 @@ pub fn run(
     let state = app.report(0, 0);
     let conduct = ControllerTrace {
         flash: log.flash().0.clone(),
-        ..ControllerTrace::new(&answer.notices, desk.switchings, desk.cleared, hello, state)
+        ..ControllerTrace::new(&answer.notices, desk.switchings, hello, state)
     };
     Ok((answer, conduct))
 }
@@ -97,7 +96,6 @@ struct Desk {
     left_out: u64,
     shown: Option<Shown>,
     switchings: Vec<Switching>,
-    cleared: Vec<Cleared>,
     ticks: u64,
 }
 

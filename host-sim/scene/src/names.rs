@@ -1,7 +1,6 @@
-//! What phases, regimes, channels and refusals are called in text.
+//! What phases, regimes and channels are called in text.
 
 use touchdown_core::sample::CHANNELS;
-use touchdown_protocol::controller::Busy;
 
 use touchdown_base::history::{PhaseKind, Regime};
 
@@ -13,21 +12,6 @@ pub fn phase_name(phase: PhaseKind) -> &'static str {
         PhaseKind::Impact => "impacts",
         PhaseKind::Sliding => "sliding",
         PhaseKind::Rolling => "rolling",
-    }
-}
-
-/// Why an order is refused.
-pub fn busy_name(busy: Busy) -> &'static str {
-    match busy {
-        Busy::DropRuns => "a drop runs",
-        Busy::Blind => "no plane gives a position",
-        Busy::Watching => "it watches, so the machine may run",
-        Busy::Latched => "a drop is latched",
-        Busy::NoRight => "no right: it takes the key of its configuration (--key-file), within 5 s",
-        Busy::Service => "no right: it has no key, so its service input must be on",
-        Busy::Locked => "the episode is locked",
-        Busy::Last => "the episode is the newest one",
-        Busy::Configuration => "the configuration is missing, damaged, or of another board: set it",
     }
 }
 

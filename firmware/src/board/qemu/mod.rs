@@ -20,11 +20,11 @@ use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Shown};
-use touchdown_protocol::wire::{Cleared, Record, Switching};
+use touchdown_protocol::controller::Shown;
+use touchdown_protocol::wire::{Record, ReplayHead, Switching};
 
 pub use self::counter::Counter;
-use self::files::{Answer, Files, Replay, ReplayHead};
+use self::files::{Answer, Files, Replay};
 use self::line::{Bytes, Wire};
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
@@ -125,14 +125,6 @@ impl Board for Emulated {
             self.write(&Record::Switching(switching));
         }
         self.ticks += 1;
-    }
-
-    fn cleared(&mut self, refused: Option<Busy>) {
-        let cleared = Cleared {
-            sample: self.ticks,
-            refused,
-        };
-        self.write(&Record::Cleared(cleared));
     }
 
     fn config(&self) -> &[u8] {
