@@ -1,14 +1,14 @@
 //! The application: the monitor's tick, what follows from it for the outputs, and what latches.
 
 use touchdown_core::detect::Phase;
-use touchdown_core::event::{EventKind, Notice, Notices};
+use touchdown_core::event::{Act, EventKind, Notice, Notices, Ordered};
 use touchdown_core::forecast::ForecastInput;
 use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::ConfigScrub;
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Shown};
-use touchdown_protocol::link::{Counters, State};
+use touchdown_protocol::link::{Counters, Refusal, State};
 use touchdown_rotor::error::ConfigError;
 
 use crate::blind_timer::BlindTimer;
@@ -221,6 +221,16 @@ impl App {
         self.tested = Tested::default();
         self.blind.forget();
         Ok(())
+    }
+
+    /// Likewise, by an order that comes with a sample, as a replay may have it; what came of it.
+    pub fn clear_as_ordered(&mut self) -> Notice {
+        let refused = self.clear().err();
+        Notice::Ordered(Ordered {
+            act: Act::Clear,
+            refused: refused.map_or(0, |it| Refusal::from(it).code()),
+            sample: self.state.samples().wrapping_sub(1),
+        })
     }
 
     /// Whether the controller may be reset to take another configuration.

@@ -25,6 +25,5 @@ pub mod power_on;
 pub mod recorder;
 pub mod safety;
 pub mod speed;
-pub mod store;
 pub mod tick;
 pub mod w25q;

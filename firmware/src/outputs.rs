@@ -63,23 +63,13 @@ mod tests {
         .collect()
     }
 
-    fn named(mode: Mode) -> &'static str {
-        match mode {
-            Mode::SelfTest => "self-test",
-            Mode::Arming => "arming",
-            Mode::Watching => "watching",
-            Mode::Dropped => "dropped",
-            Mode::Faulted => "faulted",
-        }
-    }
-
     #[test]
     fn every_condition_gives_what_the_table_says() {
         let table = table();
         assert_eq!(table.len(), Mode::VARIANTS.len());
         let mut conditions = 0;
         for &mode in Mode::VARIANTS {
-            let row = table.iter().find(|row| row.0 == named(mode));
+            let row = table.iter().find(|row| row.0 == <&str>::from(mode));
             let (_, cells) = row.expect("a row for each mode");
             // The seven bits of the faults: every set of them.
             for faults in (0..1 << 7).map(Faults) {

@@ -115,7 +115,7 @@ impl<F: Ready, const SLOTS: usize> LogStore for DropLog<F, SLOTS> {
         latched: Option<Cause>,
         fetch: impl FnOnce() -> Option<block::Block>,
     ) -> bool {
-        !self.flash().is_ready() || self.work(counted, latched, fetch)
+        !self.flash().is_ready() || self.work(counted, latched, fetch).unwrap_or(false)
     }
 }
 

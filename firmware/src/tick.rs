@@ -92,8 +92,8 @@ impl<'m, B: Board> TickTask<'m, B> {
         let arrival = &taken.arrival;
         (self.desk.number, self.desk.service) = (taken.number, arrival.service);
         if arrival.clear {
-            let refused = self.app.clear().err();
-            self.desk.board.cleared(refused);
+            let notice = self.app.clear_as_ordered();
+            self.hear(&notice);
         }
         if self.desk.waiting.gate.is_overruled(taken.number) {
             self.app.trip(Cause::Danger);

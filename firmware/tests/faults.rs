@@ -601,11 +601,11 @@ fn a_drop_outlives_the_power_until_it_is_cleared() {
     let (chip, bus) = flash(Chip::new(20));
     let mut log = DropLog::<_, 4>::mount(chip).unwrap();
     let mut bench = Bench::watching();
-    let store = |log: &mut DropLog<_, 4>, app: &App| {
-        while log.work(Counted::default(), app.latched(), || None) {}
+    let store = |log: &mut DropLog<W25q<_, _>, 4>, app: &App| {
+        while log.work(Counted::default(), app.latched(), || None) == Ok(true) {}
     };
     store(&mut log, &bench.app);
-    assert_eq!(log.uncleared(), None);
+    assert_eq!(log.counters().uncleared, None);
     for tick in 1..SAMPLE_RATE_HZ {
         let time = seconds(tick);
         bench.place([0.0, -(0.5 * GRAVITY * time * time).min(CLEARANCE)]);
@@ -619,7 +619,7 @@ fn a_drop_outlives_the_power_until_it_is_cleared() {
     for _ in 0..2 {
         log = DropLog::mount(W25q::try_new(bus.clone(), NoDelay).unwrap()).unwrap();
         bench = Bench::new(Faults::NONE);
-        bench.app.recall(log.uncleared());
+        bench.app.recall(log.counters().uncleared);
         bench.app.assume_lift();
         for _ in 0..ARMED {
             assert_eq!(bench.float() & 0b0011, 0);
@@ -633,7 +633,7 @@ fn a_drop_outlives_the_power_until_it_is_cleared() {
     bench.lie_clear_and_lift();
     store(&mut log, &bench.app);
     log = DropLog::mount(W25q::try_new(bus, NoDelay).unwrap()).unwrap();
-    assert_eq!(log.uncleared(), None);
+    assert_eq!(log.counters().uncleared, None);
 }
 
 /// Rests of 0.1 s at a wall that is nearer by a tenth than at the commissioning check.

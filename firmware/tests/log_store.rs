@@ -6,10 +6,11 @@ mod common;
 use embedded_storage::nor_flash::NorFlashErrorKind;
 
 use common::chip::{Bus, Chip, NoDelay, flash, random};
-use common::rig::{Rig, read};
-use touchdown_firmware::store::{EPISODE_BYTES, Store, bytes_of};
+use common::rig::{Rig, episode, read};
+use touchdown_firmware::drop_log::{DropLog, bytes_of};
+use touchdown_firmware::recorder::Counted;
 use touchdown_firmware::w25q::{Error, W25q};
-use touchdown_protocol::link::Refusal;
+use touchdown_protocol::link::{Log as _, Refusal};
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::log::waveform::Counts;
 
@@ -17,48 +18,44 @@ const SLOTS: usize = 5;
 const CAPACITY: u8 = 20;
 const RATE: f32 = 2_000.0;
 
-type Log = Store<SLOTS>;
-type Flash = W25q<Bus, NoDelay>;
+type Log<'a> = DropLog<&'a mut W25q<Bus, NoDelay>, SLOTS>;
 
 /// One drop, recorded and stored; what was fed.
-fn one_drop(log: &mut Log, flash: &mut Flash, seed: u64) -> Vec<Counts> {
+fn one_drop(log: &mut Log<'_>, seed: u64) -> Vec<Counts> {
     let mut rig = Rig::new(RATE, seed);
     (0..150).for_each(|_| rig.tick(&[]));
     (0..500).for_each(|tick| rig.drop_tick(tick, 450));
-    while log.work(flash, || rig.recorder.fetch()).unwrap() {}
+    while log
+        .work(Counted::default(), None, || rig.recorder.fetch())
+        .unwrap()
+    {}
     rig.fed
 }
 
-fn sequences(log: &Log) -> Vec<u32> {
-    let mut found: Vec<_> = log.episodes().map(|(sequence, _)| sequence).collect();
+fn sequences(log: &Log<'_>) -> Vec<u32> {
+    let mut found: Vec<_> = log.slots().map(|(sequence, _)| sequence).collect();
     found.sort_unstable();
     found
-}
-
-fn episode(log: &Log, flash: &mut Flash, sequence: u32) -> Vec<u8> {
-    let mut bytes = vec![0; EPISODE_BYTES];
-    assert_eq!(log.read(flash, sequence, 0, &mut bytes), Ok(EPISODE_BYTES));
-    bytes
 }
 
 #[test]
 fn the_oldest_goes_and_the_locked_one_stays() {
     let (mut flash, bus) = flash(Chip::new(CAPACITY));
-    let mut log = Log::mount(&mut flash, 0).unwrap();
-    let first = one_drop(&mut log, &mut flash, 1);
-    one_drop(&mut log, &mut flash, 2);
-    log.set_locked(&mut flash, 1, true).unwrap();
+    let mut log = Log::mount(&mut flash).unwrap();
+    let first = one_drop(&mut log, 1);
+    one_drop(&mut log, 2);
+    log.set_locked(1, true).unwrap();
     for seed in 3..30 {
-        one_drop(&mut log, &mut flash, seed);
+        one_drop(&mut log, seed);
         if seed % 10 == 0 {
-            log = Log::mount(&mut flash, 0).unwrap();
+            log = Log::mount(&mut flash).unwrap();
         }
     }
     // One slot is erased for the next.
     assert_eq!(sequences(&log), [1, 27, 28, 29]);
-    assert!(read(&episode(&log, &mut flash, 1)).is_whole(&first));
-    log.set_locked(&mut flash, 1, false).unwrap();
-    one_drop(&mut log, &mut flash, 30);
+    assert!(read(&episode(&mut log, 1)).is_whole(&first));
+    log.set_locked(1, false).unwrap();
+    one_drop(&mut log, 30);
     assert_eq!(sequences(&log), [27, 28, 29, 30]);
     assert_eq!(bus.0.borrow().set_bits, 0);
 }
@@ -66,27 +63,24 @@ fn the_oldest_goes_and_the_locked_one_stays() {
 #[test]
 fn locks_leave_room_for_new_episodes() {
     let (mut flash, _) = flash(Chip::new(CAPACITY));
-    let mut log = Log::mount(&mut flash, 0).unwrap();
+    let mut log = Log::mount(&mut flash).unwrap();
     (1..=4).for_each(|seed| {
-        one_drop(&mut log, &mut flash, seed);
+        one_drop(&mut log, seed);
     });
-    assert_eq!(log.set_locked(&mut flash, 1, true), Ok(()));
-    assert_eq!(log.set_locked(&mut flash, 2, true), Ok(()));
-    assert_eq!(log.set_locked(&mut flash, 3, true), Err(Refusal::NoRoom));
-    assert_eq!(log.set_locked(&mut flash, 9, true), Err(Refusal::NoEpisode));
+    assert_eq!(log.set_locked(1, true), Ok(()));
+    assert_eq!(log.set_locked(2, true), Ok(()));
+    assert_eq!(log.set_locked(3, true), Err(Refusal::NoRoom));
+    assert_eq!(log.set_locked(9, true), Err(Refusal::NoEpisode));
     for _ in 0..11 {
-        log.set_locked(&mut flash, 2, false).unwrap();
-        log.set_locked(&mut flash, 2, true).unwrap();
+        log.set_locked(2, false).unwrap();
+        log.set_locked(2, true).unwrap();
     }
-    log.set_locked(&mut flash, 2, false).unwrap();
-    assert_eq!(
-        log.set_locked(&mut flash, 2, true),
-        Err(Refusal::StoreFailed)
-    );
+    log.set_locked(2, false).unwrap();
+    assert_eq!(log.set_locked(2, true), Err(Refusal::StoreFailed));
     for episode in [2, 3, 4] {
-        assert_eq!(log.erase_episode(&mut flash, episode), Ok(()));
+        assert_eq!(log.erase(episode), Ok(()));
     }
-    one_drop(&mut log, &mut flash, 5);
+    one_drop(&mut log, 5);
     assert_eq!(sequences(&log), [1, 5]);
     assert_eq!(log.counters().landings, 5);
 }
@@ -95,11 +89,13 @@ fn locks_leave_room_for_new_episodes() {
 fn the_counters_outlive_many_records() {
     let (mut flash, bus) = flash(Chip::new(CAPACITY));
     for boot in 1..=200 {
-        let mut log = Log::mount(&mut flash, 0).unwrap();
+        let mut log = Log::mount(&mut flash).unwrap();
         assert_eq!(log.counters().boots, boot);
-        log.count_lost(2);
-        log.count_lost(2);
-        while log.work(&mut flash, || None).unwrap() {}
+        let counted = Counted {
+            lost: 2,
+            ..Counted::default()
+        };
+        while log.work(counted, None, || None).unwrap() {}
         assert_eq!(log.counters().lost, 2 * boot);
     }
     // Two copies a record and 64 cells a sector; and twelve sectors a boot for the next episode.
@@ -113,19 +109,16 @@ fn the_counters_outlive_many_records() {
 fn a_flash_that_is_too_small_is_refused() {
     let (mut flash, _) = flash(Chip::new(CAPACITY));
     assert_eq!(bytes_of(SLOTS), 248 * 1024);
-    assert!(Store::<21>::mount(&mut flash, 0).is_ok());
+    assert!(DropLog::<_, 21>::mount(&mut flash).is_ok());
     let beyond = Some(Error::Range(NorFlashErrorKind::OutOfBounds));
-    assert_eq!(Store::<22>::mount(&mut flash, 0).err(), beyond);
-    assert_eq!(Store::<21>::mount(&mut flash, 8 * 4096).err(), beyond);
+    assert_eq!(DropLog::<_, 22>::mount(&mut flash).err(), beyond);
 }
 
 #[test]
 fn one_wrong_bit_costs_at_most_its_block() {
     let (mut flash, bus) = flash(Chip::new(CAPACITY));
-    let mut log = Log::mount(&mut flash, 0).unwrap();
-    let fed: Vec<_> = (1..=4)
-        .map(|seed| one_drop(&mut log, &mut flash, seed))
-        .collect();
+    let mut log = Log::mount(&mut flash).unwrap();
+    let fed: Vec<_> = (1..=4).map(|seed| one_drop(&mut log, seed)).collect();
     let counters = *log.counters();
     let original = bus.0.borrow().clone();
     let used = bytes_of(SLOTS);
@@ -145,9 +138,9 @@ fn one_wrong_bit_costs_at_most_its_block() {
         let mut chip = original.clone();
         chip.bytes[bit / 8] ^= 1 << (bit % 8);
         let (mut flash, _) = common::chip::flash(chip);
-        let log = Log::mount(&mut flash, 0).unwrap();
+        let mut log = Log::mount(&mut flash).unwrap();
         assert_eq!(sequences(&log), [1, 2, 3, 4], "bit {bit}");
-        assert!(log.episodes().all(|(_, locked)| !locked), "bit {bit}");
+        assert!(log.slots().all(|(_, locked)| !locked), "bit {bit}");
         assert_eq!(
             (log.counters().landings, log.counters().weight),
             (counters.landings, counters.weight),
@@ -155,7 +148,7 @@ fn one_wrong_bit_costs_at_most_its_block() {
         );
         let mut damaged = 0;
         for sequence in 1..=4 {
-            let read = read(&episode(&log, &mut flash, sequence));
+            let read = read(&episode(&mut log, sequence));
             checked += 1;
             let report = read.report;
             assert!(read.agrees(&fed[sequence as usize - 1]), "bit {bit}");

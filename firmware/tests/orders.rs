@@ -76,7 +76,7 @@ fn settings(key: Option<Key>) -> Settings {
 /// With the number of the power-on in flash, as both boards have it before they serve the link.
 fn mounted(flash: W25q<Bus, NoDelay>) -> Episodes {
     let mut log = Episodes::mount(flash).unwrap_or_else(|_| panic!("a log"));
-    while log.work(Default::default(), None, || None) {}
+    while log.work(Default::default(), None, || None) == Ok(true) {}
     log
 }
 
@@ -85,10 +85,13 @@ impl Controller {
         let (mut flash, bus) = flash(Chip::new(20));
         for drop in 1..=4 {
             let mut rig = Rig::new(2_000.0, drop);
-            let mut log = touchdown_firmware::store::Store::<5>::mount(&mut flash, 0).unwrap();
+            let mut log = DropLog::<_, 5>::mount(&mut flash).unwrap();
             (0..150).for_each(|_| rig.tick(&[]));
             (0..500).for_each(|tick| rig.drop_tick(tick, 450));
-            while log.work(&mut flash, || rig.recorder.fetch()).unwrap() {}
+            while log
+                .work(Default::default(), None, || rig.recorder.fetch())
+                .unwrap()
+            {}
         }
         Self {
             app: App::try_new(&default_config(), found).expect("a valid configuration"),

@@ -5,9 +5,10 @@
 mod common;
 
 use common::chip::{Bus, Chip, NoDelay, Tear, flash};
-use common::rig::{Rig, read};
+use common::rig::{Rig, episode, read};
 use touchdown_core::event::EventKind;
-use touchdown_firmware::store::{EPISODE_BYTES, Store};
+use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::recorder::Counted;
 use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::controller::Cause;
 use touchdown_protocol::log::counters::Counters;
@@ -18,8 +19,7 @@ const SLOTS: usize = 4;
 /// 256 KiB: counters and four slots.
 const CAPACITY: u8 = 20;
 
-type Log = Store<SLOTS>;
-type Flash = W25q<Bus, NoDelay>;
+type Log<'a> = DropLog<&'a mut W25q<Bus, NoDelay>, SLOTS>;
 
 #[derive(Default)]
 struct Tally {
@@ -44,24 +44,17 @@ struct Known {
     falls: bool,
 }
 
-fn episode(log: &Log, flash: &mut Flash, sequence: u32) -> Vec<u8> {
-    let mut bytes = vec![0; EPISODE_BYTES];
-    let length = log.read(flash, sequence, 0, &mut bytes).unwrap();
-    assert_eq!(length, EPISODE_BYTES);
-    bytes
-}
-
 /// After the cut: mounts, checks all that is there, and records one more drop.
 fn check(chip: Chip, known: &Known, fed: &[Vec<Counts>], tally: &mut Tally, at: &str) {
     let (mut flash, bus) = flash(chip);
-    let mut log = Log::mount(&mut flash, 0).unwrap();
+    let mut log = Log::mount(&mut flash).unwrap();
     tally.cuts += 1;
-    let found: Vec<u32> = log.episodes().map(|(sequence, _)| sequence).collect();
+    let found: Vec<u32> = log.slots().map(|(sequence, _)| sequence).collect();
     for sequence in &known.complete {
         assert!(found.contains(sequence), "{at}: episode {sequence} is gone");
     }
     for &sequence in &found {
-        let bytes = episode(&log, &mut flash, sequence);
+        let bytes = episode(&mut log, sequence);
         let read = read(&bytes);
         let fed = &fed[sequence as usize - 1];
         tally.episodes += 1;
@@ -97,14 +90,14 @@ fn check(chip: Chip, known: &Known, fed: &[Vec<Counts>], tally: &mut Tally, at: 
         assert_eq!(counters.uncleared, None, "{at}: it has been cleared");
     }
     let mut rig = Rig::new(RATE, 99);
-    let before = log.episodes().map(|(it, _)| it).max().unwrap_or(0);
-    one_drop(&mut rig, &mut log, &mut flash, |_| {});
-    let newest = log.episodes().map(|(it, _)| it).max().unwrap();
+    let before = log.slots().map(|(it, _)| it).max().unwrap_or(0);
+    one_drop(&mut rig, &mut log, |_| {});
+    let newest = log.slots().map(|(it, _)| it).max().unwrap();
     assert!(
         newest > before && newest > counters.episodes.min(before),
         "{at}"
     );
-    let bytes = episode(&log, &mut flash, newest);
+    let bytes = episode(&mut log, newest);
     let read = read(&bytes);
     assert!(
         read.is_whole(&rig.fed),
@@ -120,20 +113,23 @@ const RATE: f32 = 2_000.0;
 
 /// Feeds a drop, which is cleared at its end, and lets the store work until it has nothing left to do; `look` comes
 /// after every call of `work`.
-fn one_drop(rig: &mut Rig, log: &mut Log, flash: &mut Flash, mut look: impl FnMut(&Log)) {
+fn one_drop(rig: &mut Rig, log: &mut Log<'_>, mut look: impl FnMut(&Log<'_>)) {
     for _ in 0..150 {
         rig.tick(&[]);
     }
     for tick in 0..600 {
         rig.drop_tick(tick, 450);
         if tick % 3 == 0 {
-            log.note_latched((2..500).contains(&tick).then_some(Cause::Fall));
-            log.work(flash, || rig.recorder.fetch()).unwrap();
+            let latched = (2..500).contains(&tick).then_some(Cause::Fall);
+            log.work(Counted::default(), latched, || rig.recorder.fetch())
+                .unwrap();
             look(log);
         }
     }
-    log.note_latched(None);
-    while log.work(flash, || rig.recorder.fetch()).unwrap() {
+    while log
+        .work(Counted::default(), None, || rig.recorder.fetch())
+        .unwrap()
+    {
         look(log);
     }
     look(log);
@@ -148,7 +144,7 @@ fn power_may_be_cut_at_any_operation() {
     let mut written = Counters::default();
     let mut operations = 0;
     for boot in 0..3 {
-        let mut log = Log::mount(&mut flash, 0).unwrap();
+        let mut log = Log::mount(&mut flash).unwrap();
         for drop in 0..4_u32 {
             let number = boot * 4 + drop + 1;
             let mut rig = rig(number);
@@ -156,7 +152,7 @@ fn power_may_be_cut_at_any_operation() {
             fed.push(forecast(number));
             let mut pending = *log.counters();
             let mut tripped = 0;
-            one_drop(&mut rig, &mut log, &mut flash, |log| {
+            one_drop(&mut rig, &mut log, |log| {
                 let chip = bus.0.borrow();
                 if chip.operations == operations {
                     return;
@@ -164,7 +160,7 @@ fn power_may_be_cut_at_any_operation() {
                 assert_eq!(chip.operations, operations + 1, "one operation a call");
                 operations = chip.operations;
                 tripped = log.counters().uncleared.map_or(0, |_| tripped + 1);
-                let found: Vec<u32> = log.episodes().map(|(it, _)| it).collect();
+                let found: Vec<u32> = log.slots().map(|(it, _)| it).collect();
                 // Those that are given up by this very operation may be there or not.
                 let gone = complete.iter().copied().find(|it| !found.contains(it));
                 complete.retain(|it| found.contains(it));

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use touchdown_calibrate::{Plane, Scale, Value, plane};
+use touchdown_calibrate::{Plane, Value, plane};
 
 use crate::plant::Rng;
 
@@ -177,10 +177,10 @@ pub fn run(runs: u64, first_seed: u64) -> Summary {
             let gap = rng.uniform(0.1e-3, 0.5e-3);
             (0..planes).map(move |_| {
                 let mut truth = Truth::wrong(&mut rng, gap);
-                let mut scale = Scale::Clearance(gap);
+                let mut scale = Some(gap);
                 if seed % 2 == 1 {
                     truth.gain[0] = 1.0;
-                    scale = Scale::Sensor;
+                    scale = None;
                 }
                 let readings = readings(&mut rng, &truth, arc, 1e-6);
                 (seed, plane(&readings, RESOLUTION, scale), truth)

@@ -31,7 +31,7 @@ use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::{Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Shown};
+use touchdown_protocol::controller::Shown;
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
@@ -40,9 +40,6 @@ pub trait Board {
 
     /// Drives the outputs, and may tell why; called every tick.
     fn drive(&mut self, shown: Shown);
-
-    /// An order to clear that came with a sample was `refused`, or done. Only a replay has such.
-    fn cleared(&mut self, _refused: Option<Busy>) {}
 
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];

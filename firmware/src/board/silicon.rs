@@ -193,7 +193,10 @@ impl<C: Chip> ChipTasks<C> {
         (pins, watchdog): (C::Pins, C::Watchdog),
         log: Option<&ChipLog<C>>,
     ) -> Option<(Intake<'static>, MainLoop)> {
-        let identity = Identity::new(&block.told(settings), log.map_or(0, DropLog::boot));
+        let identity = Identity::new(
+            &block.told(settings),
+            log.map_or(0, |it| it.counters().boots),
+        );
         let board = ChipBoard::<C> {
             pins,
             watchdog,
@@ -202,7 +205,7 @@ impl<C: Chip> ChipTasks<C> {
         let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
         let filled = memory.fill(&settings.monitor, found, identity, board);
         let (intake, tick) = filled.inspect_err(refused).ok()?;
-        tick.app.recall(log.and_then(DropLog::uncleared));
+        tick.app.recall(log.and_then(|it| it.counters().uncleared));
         let forecast = memory::forecast_task(&settings.monitor)
             .inspect_err(refused)
             .ok()?;

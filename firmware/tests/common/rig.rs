@@ -7,6 +7,7 @@ use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::board::default_config;
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
 use touchdown_protocol::controller::Shown;
+use touchdown_protocol::link::{Chunk, Log};
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::reader::{Item, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::Counts;
@@ -99,6 +100,19 @@ impl Rig {
             }
             _ if tick < length && tick % 37 == 36 => self.tick(&[EventKind::Impact]),
             _ => self.tick(&[]),
+        }
+    }
+}
+
+/// All bytes of an episode, fetched as over the link.
+pub fn episode(log: &mut impl Log, number: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    loop {
+        let mut chunk = Chunk::new();
+        let total = log.fetch(number, bytes.len() as u32, &mut chunk);
+        bytes.extend_from_slice(&chunk);
+        if bytes.len() >= total.expect("an episode") as usize {
+            return bytes;
         }
     }
 }

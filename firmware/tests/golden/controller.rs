@@ -15,12 +15,13 @@ use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Settings, Wiring};
 use touchdown_protocol::controller::Faults;
-use touchdown_protocol::link::{Chunk, Log};
+use touchdown_protocol::link::Log;
 use touchdown_protocol::log::block::BLOCK_BYTES;
 use touchdown_protocol::log::reader::{Item, Reader};
 
 use crate::common::chip::{Bus, Chip, NoDelay, flash};
 use crate::common::desk::Desk;
+use crate::common::rig::episode;
 use crate::stream::Stream;
 
 type Episodes = DropLog<W25q<Bus, NoDelay>, 4>;
@@ -64,7 +65,11 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
         key: None,
     }));
     let mut memory = Box::new(Memory::EMPTY);
-    let mut recorder = Recorder::new(&mut memory, config, Identity::new(&desk.0, log.boot()));
+    let mut recorder = Recorder::new(
+        &mut memory,
+        config,
+        Identity::new(&desk.0, log.counters().boots),
+    );
     let mut app = App::try_new(config, Faults::NONE).expect("a valid configuration");
     app.assume_lift();
     let mut forecast_task = ForecastTask::try_new(&config.detector).expect("a valid configuration");
@@ -85,7 +90,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
                 .expect("a string");
         }
         if number % BLOCK_SAMPLES == 0 {
-            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
         }
     }
     writeln!(text, "Clear at the end: {:?}", app.clear()).expect("a string");
@@ -93,7 +98,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     for sample in stream.samples.last().into_iter().cycle().take(quiet) {
         recorder.take(sample, &[]);
     }
-    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
 }
 
 fn tell(log: &mut Episodes, text: &mut String) {
@@ -101,7 +106,7 @@ fn tell(log: &mut Episodes, text: &mut String) {
     let range = log.episodes();
     writeln!(text, "episodes {range:?}").expect("a string");
     for number in range.into_iter().flat_map(|(first, last)| first..=last) {
-        let bytes = read(log, number);
+        let bytes = episode(log, number);
         // Without each page's own checksum, after which any page would give the same.
         let mut digest = CRC.digest();
         for page in bytes.chunks_exact(BLOCK_BYTES) {
@@ -119,18 +124,5 @@ fn tell(log: &mut Episodes, text: &mut String) {
             .expect("a string");
         }
         writeln!(text, "{:?}", reader.finish(|_| ())).expect("a string");
-    }
-}
-
-fn read(log: &mut Episodes, number: u32) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    loop {
-        let mut chunk = Chunk::new();
-        let total = log.fetch(number, bytes.len() as u32, &mut chunk);
-        let total = total.expect("an episode") as usize;
-        bytes.extend_from_slice(&chunk);
-        if bytes.len() >= total {
-            return bytes;
-        }
     }
 }

@@ -27,15 +27,6 @@ const KEPT: usize = 1 << 17;
 /// Parts of a recording whose means are compared.
 const PARTS: usize = 50;
 
-/// What is believed: an ellipse alone does not tell gain from radius.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scale {
-    /// The radial clearance, m.
-    Clearance(f64),
-    /// The gain of each plane's first channel.
-    Sensor,
-}
-
 /// Readings of a plane, every second thinned out as often as they are many.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
@@ -126,8 +117,13 @@ impl Checked {
     }
 }
 
-/// Finds zero, gain and skew of a plane whose converter has this resolution, m; why that cannot be.
-pub fn plane(readings: &[[f64; 2]], resolution: f64, scale: Scale) -> Result<Plane, String> {
+/// Finds zero, gain and skew of a plane whose converter has this resolution, m; why that cannot be. An ellipse alone does
+/// not tell gain from radius: the radial `clearance`, m, is believed, or without it the gain of the first channel.
+pub fn plane(
+    readings: &[[f64; 2]],
+    resolution: f64,
+    clearance: Option<f64>,
+) -> Result<Plane, String> {
     let (on_wall, fitted) = wall::find(readings, resolution)?;
     let Fitted {
         ellipse,
@@ -144,13 +140,13 @@ pub fn plane(readings: &[[f64; 2]], resolution: f64, scale: Scale) -> Result<Pla
     };
     let given = |value| Value { value, error: 0.0 };
     let ratio = value(b / a, [0.0, 0.0, -b / (a * a), 1.0 / a, 0.0]);
-    let (gain, radius) = match scale {
-        Scale::Clearance(r) => {
+    let (gain, radius) = match clearance {
+        Some(r) => {
             let first = value(a / r, [0.0, 0.0, 1.0 / r, 0.0, 0.0]);
             let second = value(b / r, [0.0, 0.0, 0.0, 1.0 / r, 0.0]);
             ([first, second], given(r))
         }
-        Scale::Sensor => {
+        None => {
             let radius = value(a, [0.0, 0.0, 1.0, 0.0, 0.0]);
             ([given(1.0), ratio], radius)
         }

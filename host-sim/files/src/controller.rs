@@ -5,7 +5,6 @@ use touchdown_base::paint::Paint;
 use touchdown_core::event::{Alarm, Level};
 use touchdown_protocol::controller::{Cause, Mode, Outputs};
 use touchdown_protocol::wire::Switching;
-use touchdown_scene::names::{cause_name, mode_name, plane_name};
 
 /// Changes of the outputs that the terminal shows.
 const LISTED: usize = 12;
@@ -54,7 +53,7 @@ impl AlarmAt {
     pub fn new(it: &Alarm, time_s: f64) -> Self {
         Self {
             time_s,
-            plane: plane_name(it.plane),
+            plane: it.plane.into(),
             level: it.level,
             fraction: f64::from(it.fraction),
         }
@@ -77,8 +76,8 @@ pub fn table(outputs: &[OutputsFrom], paint: Paint) -> String {
             level(it.outputs.no_brake),
             level(it.outputs.permit),
             level(it.outputs.ready),
-            mode_name(it.mode),
-            it.cause.map_or("", cause_name),
+            <&str>::from(it.mode),
+            it.cause.map_or("", <&str>::from),
         );
         text += &format!("{}\n", line.trim_end());
     }

@@ -10,7 +10,6 @@ use touchdown_run::compare::Comparison;
 use touchdown_run::compare::table::verdict;
 use touchdown_run::replay::Excerpt;
 use touchdown_scene::Scene;
-use touchdown_scene::names::event_name;
 
 /// Writes the page.
 pub fn page(scene: &Scene, comparison: &Comparison) -> String {
@@ -43,7 +42,7 @@ pub fn page(scene: &Scene, comparison: &Comparison) -> String {
 }
 
 fn regime(comparison: &Comparison, index: usize) -> &'static str {
-    comparison.regimes[index].map_or("none", event_name)
+    comparison.regimes[index].map_or("none", <&str>::from)
 }
 
 fn panel(
@@ -75,7 +74,7 @@ fn events(comparison: &Comparison) -> Markup {
         return html! { p { "None." } };
     }
     table("Events", &comparison.events)
-        .words("Event", |it| event_name(it.event))
+        .words("Event", |it| <&str>::from(it.event))
         .number("First\ns", |it| text(it.a_s, 1.0, 7))
         .number("Second\ns", |it| text(it.b_s, 1.0, 7))
         .number("Difference\nms", |it| text(it.difference_s, 1e3, 4))

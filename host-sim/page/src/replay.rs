@@ -10,7 +10,6 @@ use touchdown_chart::text::{ms, si, significant};
 use touchdown_chart::waveform::{Line, Waveform, waveform};
 use touchdown_run::replay::{Excerpt, Replay};
 use touchdown_scene::Scene;
-use touchdown_scene::names::event_name;
 
 /// Writes the page; `drop` is the first drop, sample by sample.
 pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) -> String {
@@ -150,11 +149,11 @@ fn events(replay: &Replay) -> Markup {
         .words("Event", |it| match it.fault {
             Some(fault) => format!(
                 "{} of {}: {}",
-                event_name(it.event),
+                <&str>::from(it.event),
                 fault.channel,
                 fault.kind
             ),
-            None => event_name(it.event).to_owned(),
+            None => <&str>::from(it.event).to_owned(),
         })
         .number("Onset\ns", |it| format!("{:.6}", it.onset_s))
         .number("Declared\ns", |it| format!("{:.6}", it.declared_s))

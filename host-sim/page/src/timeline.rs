@@ -10,7 +10,7 @@ use touchdown_run::matching::{Match, Matches, match_events, regime_event};
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
-use touchdown_scene::names::{channel_name, event_name, phase_name, regime_name};
+use touchdown_scene::names::{channel_name, phase_name, regime_name};
 use touchdown_scene::scales::validity;
 
 /// Phases and impacts that are listed before the rest is summed up.
@@ -355,7 +355,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             .map(|fault| format!("  {} {}", fault.channel, fault.kind));
         let line = format!(
             "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
-            event_name(event.event),
+            <&str>::from(event.event),
             event.onset_s,
             event.declared_s,
             if fate(event) == "declared" {

@@ -6,14 +6,13 @@ use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
-use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::drop_log::{DropLog, bytes_of};
 use touchdown_firmware::recorder::{Identity, Memory, Recorder};
-use touchdown_firmware::store::bytes_of;
 use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::Hello;
-use touchdown_protocol::wire::{Cleared, Switching};
+use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
@@ -40,7 +39,7 @@ pub fn run(
         ..Desk::default()
     };
     let mut memory = Box::new(Memory::EMPTY);
-    let identity = Identity::new(&desk.block, log.boot());
+    let identity = Identity::new(&desk.block, log.counters().boots);
     let mut recorder = Recorder::new(&mut memory, config, identity);
     let mut app = App::try_new(config, Faults::NONE)?;
     match &procedure.learnt {
@@ -53,10 +52,9 @@ pub fn run(
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
         if procedure.clears(desk.ticks) {
-            desk.cleared.push(Cleared {
-                sample: desk.ticks,
-                refused: app.clear().err(),
-            });
+            let notice = app.clear_as_ordered();
+            desk.report(&notice);
+            recorder.hear(&notice);
         }
         tick(&mut app, &mut recorder, &mut desk, &sample, 0, &mut notices);
         if let Some(outlook) = forecast_task.work(&app.forecast_input(forecast_task.wants_input()))
@@ -66,10 +64,10 @@ pub fn run(
         }
         fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
-            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
         }
     }
-    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) {}
+    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,
@@ -85,7 +83,7 @@ pub fn run(
     let state = app.report(0, 0);
     let conduct = ControllerTrace {
         flash: log.flash().0.clone(),
-        ..ControllerTrace::new(&answer.notices, desk.switchings, desk.cleared, hello, state)
+        ..ControllerTrace::new(&answer.notices, desk.switchings, hello, state)
     };
     Ok((answer, conduct))
 }
@@ -98,7 +96,6 @@ struct Desk {
     left_out: u64,
     shown: Option<Shown>,
     switchings: Vec<Switching>,
-    cleared: Vec<Cleared>,
     ticks: u64,
 }
 

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
-use touchdown_core::event::{Alarm, Level, Notice};
+use touchdown_core::event::{Alarm, Level, Notice, Ordered};
 use touchdown_protocol::controller::{Fault, Mode};
 use touchdown_protocol::link::{Counters, Hello, State};
-use touchdown_protocol::wire::{Cleared, Switching};
+use touchdown_protocol::wire::Switching;
 
 use crate::timebase::Timebase;
 use touchdown_base::paint::Paint;
 use touchdown_files::controller::{AlarmAt, OutputsFrom, table};
 use touchdown_files::drop_log::{Completeness, Dump, Episode};
-use touchdown_scene::names::{busy_name, event_name};
+use touchdown_files::link::refused_why;
 
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub struct ControllerTrace {
     pub outputs: Vec<Switching>,
     /// Of the guard.
     pub alarms: Vec<Alarm>,
-    /// What came of the orders to clear.
-    pub orders: Vec<Cleared>,
+    /// What came of the orders.
+    pub orders: Vec<Ordered>,
     /// Samples in the zones A to D.
     pub zones: [u64; 4],
     /// Flash of the drop log after the run: docs/formats/log.md.
@@ -51,7 +51,7 @@ struct OrderAt {
     time_s: f64,
     order: &'static str,
     done: bool,
-    why: Option<&'static str>,
+    why: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -74,11 +74,10 @@ struct Link {
 }
 
 impl ControllerTrace {
-    /// Without log and zones; the alarms are among the `notices`.
+    /// Without log and zones; alarms and orders are among the `notices`.
     pub(crate) fn new(
         notices: &[Notice],
         outputs: Vec<Switching>,
-        orders: Vec<Cleared>,
         hello: Hello,
         state: State,
     ) -> Self {
@@ -86,10 +85,14 @@ impl ControllerTrace {
             Notice::Alarm(alarm) => Some(*alarm),
             _ => None,
         };
+        let order = |notice: &Notice| match notice {
+            Notice::Ordered(order) => Some(*order),
+            _ => None,
+        };
         Self {
             outputs,
             alarms: notices.iter().filter_map(alarm).collect(),
-            orders,
+            orders: notices.iter().filter_map(order).collect(),
             zones: [0; 4],
             flash: Vec::new(),
             hello,
@@ -138,12 +141,14 @@ pub fn alarm(alarm: &Alarm, timebase: Timebase) -> AlarmAt {
     AlarmAt::new(alarm, timebase.time(alarm.sample as f64))
 }
 
-fn order(order: &Cleared, timebase: Timebase) -> OrderAt {
+/// An order, with the time of the sample before which it came.
+fn order(order: &Ordered, timebase: Timebase) -> OrderAt {
+    let why = refused_why(order.refused);
     OrderAt {
-        time_s: timebase.time(order.sample as f64),
-        order: "clear",
-        done: order.refused.is_none(),
-        why: order.refused.map(busy_name),
+        time_s: timebase.time(order.sample.wrapping_add(1) as f64),
+        order: order.act.into(),
+        done: why.is_none(),
+        why,
     }
 }
 
@@ -163,7 +168,7 @@ impl Controller {
                 "{} at {:.4} ms: {}\n",
                 it.order,
                 it.time_s * 1e3,
-                it.why.unwrap_or("done")
+                it.why.as_deref().unwrap_or("done")
             );
         }
         for episode in &self.log.dump.episodes {
@@ -184,7 +189,7 @@ fn logged(episode: &Episode) -> String {
         episode.sequence,
         episode
             .header
-            .map_or("no header", |it| event_name(it.trigger_kind)),
+            .map_or("no header", |it| it.trigger_kind.into()),
         episode.samples.iter().flatten().count(),
         episode.events.len(),
     )

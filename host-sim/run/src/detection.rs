@@ -1,13 +1,13 @@
 //! From the monitor's notices, on the sample clock, to events in seconds.
 
-use touchdown_core::event::{Event, EventKind, Motion, Notice, Touch};
+use touchdown_core::event::{Event, EventKind, Notice, Touch};
 use touchdown_core::forecast::Outlook;
 
 use crate::monitor_run::MonitorOutput;
 use crate::outcome::{DetectedEvent, Detection, Forecast, TouchEvent};
 use crate::timebase::Timebase;
 use touchdown_files::drop_log::ChannelFault;
-use touchdown_scene::names::{channel_name, plane_name};
+use touchdown_scene::names::channel_name;
 
 /// An event, as far as its declaration tells.
 pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
@@ -19,13 +19,10 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
         confirmed_s: None,
         withdrawn_s: None,
         sample: event.declared,
-        plane: plane_name(event.plane),
+        plane: event.plane.into(),
         normal_speed_m_s: (event.kind == EventKind::Impact)
             .then_some(f64::from(event.normal_speed)),
-        motion: match event.motion {
-            Motion::Cylindrical => "cylindrical",
-            Motion::Conical => "conical",
-        },
+        motion: event.motion.into(),
         fault: event.fault.map(|fault| ChannelFault {
             channel: channel_name(fault.channel),
             kind: fault.kind,
@@ -63,7 +60,7 @@ pub fn touch(touch: &Touch, timebase: Timebase) -> TouchEvent {
         declared_s: timebase.time(touch.declared as f64),
         end_s: touch.end.map(|end| timebase.time(end as f64)),
         sample: touch.declared,
-        plane: plane_name(touch.plane),
+        plane: touch.plane.into(),
         peak_fraction: f64::from(touch.peak),
         normal_speed_m_s: None,
     }
@@ -138,7 +135,7 @@ pub fn forecast(outlook: &Outlook, timebase: Timebase) -> Forecast {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchdown_core::event::{Event, Moment, Plane};
+    use touchdown_core::event::{Moment, Motion, Plane};
     use touchdown_core::monitor::Summary;
     use touchdown_core::severity::Severity;
 

@@ -39,12 +39,14 @@ impl Moment {
 }
 
 /// What happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[strum(serialize_all = "kebab-case")]
 pub enum EventKind {
     /// The rotor is unsupported.
+    #[strum(serialize = "free fall")]
     FreeFall = 0,
     /// It hit the retainer.
     Impact = 1,
@@ -55,8 +57,10 @@ pub enum EventKind {
     /// It swings at the bottom of the retainer.
     Pendulum = 4,
     /// It goes round the retainer with the spin: a full turn, or bound to.
+    #[strum(serialize = "forward whirl")]
     ForwardWhirl = 5,
     /// It goes round the retainer against the spin: a full turn, or bound to.
+    #[strum(serialize = "backward whirl")]
     BackwardWhirl = 6,
     /// Permanent contact ended.
     LiftOff = 7,
@@ -65,12 +69,14 @@ pub enum EventKind {
     /// Floating, under control.
     Levitated = 9,
     /// A channel is not to be trusted; the event says why.
+    #[strum(serialize = "sensor fault")]
     SensorFault = 10,
 }
 
 /// Where it happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
+#[strum(serialize_all = "lowercase")]
 pub enum Plane {
     /// Sensor plane a.
     A = 0,
@@ -81,8 +87,9 @@ pub enum Plane {
 }
 
 /// How the rotor moved, as far as both planes show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::FromRepr)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
+#[strum(serialize_all = "lowercase")]
 pub enum Motion {
     /// Its ends went the same way; also where only one is seen.
     #[default]
@@ -142,12 +149,14 @@ pub enum Notice {
 }
 
 /// What can be ordered over the link. The order of variants and fields is its format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[strum(serialize_all = "lowercase")]
 pub enum Act {
     /// Clear what is latched.
     Clear,
     /// Store the configuration that was staged, with this checksum, and start with it.
+    #[strum(serialize = "set configuration")]
     Commit(u32),
     /// Erase this episode.
     Erase(u32),
@@ -204,10 +213,11 @@ pub struct Outlook {
 }
 
 /// Which limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[strum(serialize_all = "lowercase")]
 pub enum Level {
     /// The lower one, which is told.
     Alert = 0,

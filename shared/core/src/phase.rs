@@ -1,8 +1,9 @@
 //! The phase of a drop.
 
 /// Phase of the rotor, or of one end of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[strum(serialize_all = "lowercase")]
 pub enum Phase {
     /// Switched on, not judged yet.
     #[default]
@@ -10,8 +11,10 @@ pub enum Phase {
     /// Floating.
     Levitated = 1,
     /// In flight, before the first impact or after a lift-off.
+    #[strum(serialize = "free fall")]
     FreeFall = 2,
     /// Between impacts.
+    #[strum(serialize = "impacts")]
     Impact = 3,
     /// Permanent contact with slip, or not yet known.
     Sliding = 4,

@@ -1,14 +1,26 @@
 //! What the safety controller is doing: its mode, its faults and its outputs.
 
-use strum::VariantArray as _;
+use serde::{Deserialize, Serialize};
+use strum::{FromRepr, IntoStaticStr, VariantArray};
 
 /// What the controller is doing.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, strum::FromRepr, strum::VariantArray,
-)]
 #[repr(u8)]
-#[derive(serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    FromRepr,
+    VariantArray,
+    IntoStaticStr,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Mode {
     /// Switched on; waits for sensors that deliver and for the first whole check of the configuration.
     #[default]
@@ -24,18 +36,24 @@ pub enum Mode {
 }
 
 /// Why the outputs are as they are; a trip's stays until cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::FromRepr)]
 #[repr(u8)]
-#[derive(serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr, IntoStaticStr, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "lowercase")]
 pub enum Cause {
     /// Levitation has not been proven.
+    #[strum(serialize = "no proof of levitation")]
     NoProof = 0,
     /// A plane was beyond the danger limit.
+    #[strum(serialize = "beyond the danger limit")]
     Danger = 1,
     /// The levitation signal was off.
+    #[strum(serialize = "levitation off")]
     LevitationOff = 2,
     /// No plane delivered a position.
+    #[strum(serialize = "positions lost")]
     PositionsLost = 3,
     /// The detector confirmed a fall.
     Fall = 4,
@@ -46,6 +64,7 @@ pub enum Cause {
     /// A fault of the controller.
     Fault = 7,
     /// An order: cleared.
+    #[strum(serialize = "order to clear")]
     Order = 8,
 }
 
@@ -88,7 +107,7 @@ impl Shown {
 
 /// The outputs, each `true` where its coil or lamp has current. Without current all are safe, so loss
 /// of power, reset and a trip look the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outputs {
     /// Trip relay: with current, the machine may run.
     pub run: bool,
@@ -132,37 +151,45 @@ impl Outputs {
 }
 
 /// What can be wrong with the controller; latched until cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
 #[repr(u8)]
-#[derive(serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, VariantArray, IntoStaticStr, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "lowercase")]
 pub enum Fault {
     /// A tick came too late and lost a sample.
     Overrun = 0,
     /// Samples were lost for so long that the monitor was as good as blind.
     Overload = 1,
     /// No plane delivered a position.
+    #[strum(serialize = "sensors lost")]
     SensorsLost = 2,
     /// The configuration in memory changed by itself.
+    #[strum(serialize = "configuration changed")]
     ConfigChanged = 3,
     /// The stored configuration was damaged at power-on: the defaults are in force.
+    #[strum(serialize = "configuration damaged")]
     ConfigDamaged = 4,
     /// The watchdog reset the core.
+    #[strum(serialize = "watchdog reset")]
     WatchdogReset = 5,
     /// The program stopped by a panic or a fault of the core, and left a record.
     Crash = 6,
     /// No configuration is stored: the defaults are in force.
+    #[strum(serialize = "not configured")]
     Unconfigured = 7,
     /// The stored configuration is none of this board's: the defaults are in force.
+    #[strum(serialize = "configuration of another board")]
     ConfigMisfit = 8,
     /// Coefficients in memory, which follow from the configuration, changed by themselves.
+    #[strum(serialize = "memory changed")]
     MemoryChanged = 9,
     /// The image in flash is not what was built.
+    #[strum(serialize = "image damaged")]
     ImageDamaged = 10,
 }
 
 /// A set of faults; bit i is the fault of code i.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Faults(pub u16);
 
 impl Faults {
@@ -212,9 +239,7 @@ impl Faults {
 }
 
 /// Why the controller does not do what it was asked.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, strum::FromRepr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, FromRepr)]
 #[repr(u8)]
 pub enum Busy {
     /// The rotor falls, bounces, slides or whirls.

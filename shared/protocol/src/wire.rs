@@ -1,125 +1,93 @@
-//! The bytes of samples and notices, little-endian, as they pass between desktop and target.
+//! The bytes of samples and notices, as they pass between desktop and target.
 //!
-//! A replay file is [`REPLAY_MAGIC`], the length of the configuration (u32), the configuration
-//! (postcard), flags ([`POWERS_ON`], [`IN_REAL_TIME`], [`UNCONFIGURED`]),
-//! then one [`SAMPLE_BYTES`] record a sample to the end of the file. The answer is
-//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices, changes of what the controller shows and orders, then that of the
+//! A replay file is [`REPLAY_MAGIC`], the length of the [`ReplayHead`] (u32, little-endian), the head (postcard),
+//! then one record of [`SAMPLE_BYTES`] a [`Played`] sample to the end of the file. The answer is
+//! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices and changes of what the controller shows, then that of the
 //! [`Severity`], and last the one of [`Summary`].
 
-use crate::controller::{Busy, Cause, Mode, Outputs, Shown};
+use serde::{Deserialize, Serialize};
+
+use crate::controller::{Cause, Mode, Outputs, Shown};
 use touchdown_core::event::{
     Alarm, Event, EventKind, Level, Moment, Motion, Notice, Onset, Ordered, Outlook, Plane, Touch,
 };
 use touchdown_core::fault::{Condition, Fault, FaultKind, SPEED};
+use touchdown_core::monitor::MonitorConfig;
 pub use touchdown_core::monitor::Summary;
-use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use touchdown_core::sample::{CHANNELS, Sample};
 use touchdown_core::severity::Severity;
 
 /// First bytes of a replay file; the last is the version.
-pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x06";
+pub const REPLAY_MAGIC: [u8; 4] = *b"TDR\x07";
 /// First bytes of an answer; the last is the version.
-pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x05";
-/// The controller is switched on with the first sample; without it a lift was seen before.
-pub const POWERS_ON: u8 = 1;
-/// Samples come at their rate, whatever becomes of them; without it each waits for the one before it.
-pub const IN_REAL_TIME: u8 = 2;
-/// The configuration does not count as one, as on a chip in which none is stored.
-pub const UNCONFIGURED: u8 = 4;
-/// Bytes of a sample record.
-pub const SAMPLE_BYTES: usize = 21;
+pub const ANSWER_MAGIC: [u8; 4] = *b"TDA\x06";
+/// Bytes of a sample's record, as many as the longest takes; zeros behind another.
+pub const SAMPLE_BYTES: usize = 34;
 /// Bytes of a notice record.
 pub const NOTICE_BYTES: usize = 32;
 
-const SPIN_PRESENT: u8 = 1 << 4;
-const LEVITATED_PRESENT: u8 = 1 << 5;
-const LEVITATED_ON: u8 = 1 << 6;
-const CLEAR: u8 = 1 << 7;
-/// Beside the pulse channels.
-const SERVICE: u8 = 1 << 7;
-/// Likewise: the last byte comes over the line.
-const LINE: u8 = 1 << 6;
+/// What comes before the samples of a replay.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReplayHead {
+    /// In force where none is stored.
+    pub config: MonitorConfig,
+    /// Whether the controller is switched on with the first sample; else a lift was seen before.
+    pub powers_on: bool,
+    /// Whether samples come at their rate, whatever becomes of them; else each waits for the one before it.
+    pub in_real_time: bool,
+    /// Whether `config` counts as configured; else it is as on a chip in which none is stored.
+    pub is_configured: bool,
+}
 
-/// Sample to bytes: four u16 counts, flags, which pulse channels are there, their ages, spin (f32),
-/// their counts (u16), and a byte for the line.
-pub fn encode_sample(sample: &Sample) -> [u8; SAMPLE_BYTES] {
-    let mut bytes = [0; SAMPLE_BYTES];
-    for (pair, count) in bytes.chunks_exact_mut(2).zip(sample.counts) {
-        pair.copy_from_slice(&count.to_le_bytes());
-    }
-    let mut flags = sample.valid & 0x0f;
-    if sample.spin.is_some() {
-        flags |= SPIN_PRESENT;
-    }
-    if let Some(on) = sample.levitated {
-        flags |= LEVITATED_PRESENT | if on { LEVITATED_ON } else { 0 };
-    }
-    bytes[8] = flags;
-    bytes[12..16].copy_from_slice(&sample.spin.unwrap_or(0.0).to_le_bytes());
-    for (channel, edges) in sample.edges.iter().enumerate() {
-        if let Some(Edges { count, age }) = edges {
-            bytes[9] |= 1 << channel;
-            bytes[10 + channel] = *age;
-            bytes[16 + 2 * channel..][..2].copy_from_slice(&count.to_le_bytes());
+impl ReplayHead {
+    /// Of a controller that is configured, and whose samples wait for each other.
+    pub const fn new(config: MonitorConfig, powers_on: bool) -> Self {
+        Self {
+            config,
+            powers_on,
+            in_real_time: false,
+            is_configured: true,
         }
     }
-    bytes
 }
 
-/// Bytes to sample.
-pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
-    let mut counts = [0; CHANNELS];
-    for (count, pair) in counts.iter_mut().zip(bytes.chunks_exact(2)) {
-        *count = u16::from_le_bytes([pair[0], pair[1]]);
+/// A sample of a replay, and what comes with it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Played {
+    /// The sample.
+    pub sample: Sample,
+    /// Whether an order to clear comes before it.
+    pub clear: bool,
+    /// Whether the service input is on at it.
+    pub service: bool,
+    /// The byte that comes over the line in its period.
+    pub line: Option<u8>,
+}
+
+impl From<Sample> for Played {
+    fn from(sample: Sample) -> Self {
+        Self {
+            sample,
+            clear: false,
+            service: false,
+            line: None,
+        }
     }
-    let flags = bytes[8];
-    let spin = f32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]);
-    let mut edges = [None; TACHOMETERS];
-    for (channel, edges) in edges.iter_mut().enumerate() {
-        let count = u16::from_le_bytes([bytes[16 + 2 * channel], bytes[17 + 2 * channel]]);
-        let age = bytes[10 + channel];
-        *edges = (bytes[9] & (1 << channel) != 0).then_some(Edges { count, age });
+}
+
+impl Played {
+    /// As a record.
+    pub fn encode(&self) -> [u8; SAMPLE_BYTES] {
+        let mut bytes = [0; SAMPLE_BYTES];
+        // It has the room.
+        let _ = postcard::to_slice(self, &mut bytes);
+        bytes
     }
-    Sample {
-        counts,
-        valid: flags & 0x0f,
-        spin: (flags & SPIN_PRESENT != 0).then_some(spin),
-        levitated: (flags & LEVITATED_PRESENT != 0).then_some(flags & LEVITATED_ON != 0),
-        edges,
+
+    /// From a record; `None` where that is none.
+    pub fn decode(bytes: &[u8; SAMPLE_BYTES]) -> Option<Self> {
+        postcard::from_bytes(bytes).ok()
     }
-}
-
-/// The bytes of a sample before which an order to clear comes.
-pub fn with_clear(mut bytes: [u8; SAMPLE_BYTES]) -> [u8; SAMPLE_BYTES] {
-    bytes[8] |= CLEAR;
-    bytes
-}
-
-/// Whether an order to clear comes before this sample.
-pub fn has_clear(bytes: &[u8; SAMPLE_BYTES]) -> bool {
-    bytes[8] & CLEAR != 0
-}
-
-/// The bytes of a sample at which the service input is on.
-pub fn with_service(mut bytes: [u8; SAMPLE_BYTES]) -> [u8; SAMPLE_BYTES] {
-    bytes[9] |= SERVICE;
-    bytes
-}
-
-/// Whether the service input is on at this sample.
-pub fn has_service(bytes: &[u8; SAMPLE_BYTES]) -> bool {
-    bytes[9] & SERVICE != 0
-}
-
-/// The bytes of a sample in whose period a byte comes over the line.
-pub fn with_line_byte(mut bytes: [u8; SAMPLE_BYTES], byte: u8) -> [u8; SAMPLE_BYTES] {
-    bytes[9] |= LINE;
-    bytes[20] = byte;
-    bytes
-}
-
-/// The byte that comes over the line in this sample's period.
-pub fn line_byte(bytes: &[u8; SAMPLE_BYTES]) -> Option<u8> {
-    (bytes[9] & LINE != 0).then_some(bytes[20])
 }
 
 /// A change of what the controller shows.
@@ -131,15 +99,6 @@ pub struct Switching {
     pub shown: Shown,
 }
 
-/// An order to clear, and what came of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cleared {
-    /// Number of the sample before which it came, from 0.
-    pub sample: u64,
-    /// Why it was not done; none where it was.
-    pub refused: Option<Busy>,
-}
-
 /// A record of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Record {
@@ -147,8 +106,6 @@ pub enum Record {
     Notice(Notice),
     /// After the notices of its tick.
     Switching(Switching),
-    /// Before the notices of its tick.
-    Cleared(Cleared),
     /// The last record but one: of the last drop.
     Severity(Severity),
     /// The last record.
@@ -164,7 +121,6 @@ const SEVERITY: u8 = 6;
 const SWITCHING: u8 = 7;
 const ALARM: u8 = 8;
 const TOUCH: u8 = 9;
-const CLEARED: u8 = 10;
 const ORDERED: u8 = 11;
 
 /// Record to bytes: tag, kind, plane, motion, number (u16), what is wrong (from 1) with which channel, then
@@ -173,8 +129,8 @@ const ORDERED: u8 = 11;
 /// the severity: tag, a zero byte, the impacts (u16), then the other fields in their order (f32). Of a
 /// change of what is shown: tag, the outputs' bits, mode, cause (from 1), and its sample at 16. Of an alarm: tag,
 /// level, plane, and at 24 the fraction (f32). Of a touch: tag, whether it has ended, plane, number, onset, the sample
-/// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order to clear in a
-/// replay file: tag, why not (from 1). Of one over the link: tag, why not, and the act as over the link.
+/// that told it, peak (f32), and the samples from its onset to its end (u32). Of an order: tag,
+/// why not, and the act as over the link. Tag 10 was another record of an order.
 pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
     let mut bytes = [0; NOTICE_BYTES];
     // Without a path to a panic, which the tick may not have.
@@ -248,10 +204,6 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
                 0,
                 &[SWITCHING, shown.outputs.bits(), shown.mode as u8, cause],
             );
-            put(16, &sample.to_le_bytes());
-        }
-        Record::Cleared(Cleared { sample, refused }) => {
-            put(0, &[CLEARED, refused.map_or(0, |it| 1 + it as u8)]);
             put(16, &sample.to_le_bytes());
         }
         Record::Severity(it) => {
@@ -345,10 +297,6 @@ pub fn decode_record(bytes: &[u8; NOTICE_BYTES]) -> Option<Record> {
                 mode: Mode::from_repr(bytes[2])?,
                 cause: some_of(Cause::from_repr, bytes[3])?,
             },
-        }),
-        CLEARED => Record::Cleared(Cleared {
-            sample,
-            refused: some_of(Busy::from_repr, bytes[1])?,
         }),
         SEVERITY => Record::Severity(Severity {
             impacts: u16::from_le_bytes([bytes[2], bytes[3]]),

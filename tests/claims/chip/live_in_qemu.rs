@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_protocol::wire::{REPLAY_MAGIC, encode_sample};
-use touchdown_run::emulator::built;
+use touchdown_protocol::wire::{Played, ReplayHead};
+use touchdown_run::emulator::{built, replay_head};
 use touchdown_tests::binary::{program, touchdown};
 use touchdown_tests::controller::settings;
 
@@ -87,10 +87,8 @@ fn qemu(folder: &Path) -> (Process, File) {
         .expect("QEMU");
     let process = Process(child);
     let mut samples = File::options().write(true).open(pipe).expect("a pipe");
-    let config = postcard::to_stdvec(&settings().monitor).expect("a configuration");
-    let length = (config.len() as u32).to_le_bytes();
     // A lift was seen before the first sample.
-    let head = [&REPLAY_MAGIC[..], &length, &config, &[0]].concat();
+    let head = replay_head(&ReplayHead::new(settings().monitor, false)).expect("a head");
     samples.write_all(&head).expect("a reader");
     (process, samples)
 }
@@ -106,7 +104,7 @@ impl Feed {
         let block = self.fed..self.fed + blocks * BLOCK;
         let bytes: Vec<u8> = block
             .clone()
-            .flat_map(|it| encode_sample(&sample(it, self.falls)))
+            .flat_map(|it| Played::from(sample(it, self.falls)).encode())
             .collect();
         self.samples.write_all(&bytes).expect("a reader");
         self.fed = block.end;

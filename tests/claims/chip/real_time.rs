@@ -11,7 +11,7 @@ use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::link::{Decoder, FRAME_BYTES, Nonce, Reply, Request, State, encode, mac};
 use touchdown_protocol::wire::{
-    ANSWER_MAGIC, IN_REAL_TIME, NOTICE_BYTES, Record, decode_record, encode_sample, with_line_byte, with_service,
+    ANSWER_MAGIC, NOTICE_BYTES, Played, Record, ReplayHead, decode_record,
 };
 use touchdown_run::emulator::{built, replay_head};
 use touchdown_tests::controller::settings;
@@ -108,17 +108,21 @@ impl Run {
 /// Runs the image at 2^`shift` ns an instruction.
 fn run(shift: u32, asked: &[Asked]) -> Run {
     let folder = TempDir::new().expect("a folder");
-    let mut replay = replay_head(&settings().monitor, false).expect("a configuration");
-    *replay.last_mut().expect("flags") |= IN_REAL_TIME;
+    let head = ReplayHead {
+        in_real_time: true,
+        ..ReplayHead::new(settings().monitor, false)
+    };
+    let mut replay = replay_head(&head).expect("a head");
     let samples = (LASTS * RATE) as u64;
-    let mut records: Vec<_> = (0..samples).map(|it| with_service(encode_sample(&sample(it)))).collect();
+    let mut records: Vec<_> = (0..samples)
+        .map(|it| Played { service: true, ..sample(it).into() })
+        .collect();
     for (sequence, asked) in (1..).zip(asked) {
         for (at, byte) in asked.bytes(sequence) {
-            let record = &mut records[at as usize];
-            *record = with_line_byte(*record, byte);
+            records[at as usize].line = Some(byte);
         }
     }
-    replay.extend(records.concat());
+    replay.extend(records.iter().flat_map(Played::encode));
     fs::write(folder.path().join("replay"), replay).expect("a file");
     let status = Command::new("qemu-system-arm")
         .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "file:line"])

@@ -18,7 +18,7 @@ use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::{self, Key, Settings};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Decoder, Nonce, Refusal, Reply, Request, State, encode, mac};
-use touchdown_protocol::wire::{UNCONFIGURED, encode_sample, with_clear};
+use touchdown_protocol::wire::{Played, ReplayHead};
 use touchdown_run::emulator::{Answer, Emulator, Session, built, replay_head};
 use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
@@ -163,8 +163,8 @@ impl Wire {
 
 /// Switched on with what is stored in `folder`, or as if lifted before.
 fn session(folder: &Path, power_on: bool, samples: impl Iterator<Item = Sample>) -> (Session, Answer) {
-    let mut replay = replay_head(&settings().monitor, power_on).expect("a configuration");
-    samples.for_each(|it| replay.extend(encode_sample(&it)));
+    let mut replay = replay_head(&ReplayHead::new(settings().monitor, power_on)).expect("a head");
+    samples.for_each(|it| replay.extend(Played::from(it).encode()));
     fs::write(folder.join("replay"), replay).expect("a file");
     let _ = fs::remove_file(folder.join("answer"));
     let mut session = emulator().open(folder).unwrap_or_else(|error| panic!("{error}"));
@@ -220,29 +220,36 @@ fn without_a_whole_configuration_of_its_own_there_is_never_current() {
     let whole = config_block::encode(&settings());
     let mut damaged = whole.clone();
     damaged[20] ^= 1;
-    for (stored, flags, fault) in [
-        (None, UNCONFIGURED, Some(Fault::Unconfigured)),
-        (Some(&damaged), UNCONFIGURED, Some(Fault::ConfigDamaged)),
-        (Some(&whole), UNCONFIGURED, None),
-        (None, 0, None),
+    for (stored, is_configured, fault) in [
+        (None, false, Some(Fault::Unconfigured)),
+        (Some(&damaged), false, Some(Fault::ConfigDamaged)),
+        (Some(&whole), false, None),
+        (None, true, None),
     ] {
         let folder = TempDir::new().expect("a folder");
         let at = folder.path();
         if let Some(stored) = stored {
             fs::write(at.join("settings"), stored).expect("a file");
         }
-        let mut replay = replay_head(&settings().monitor, true).expect("a configuration");
-        *replay.last_mut().expect("flags") |= flags;
+        let head = ReplayHead {
+            is_configured,
+            ..ReplayHead::new(settings().monitor, true)
+        };
+        let mut replay = replay_head(&head).expect("a head");
         for (sample, number) in samples(1.3, lifted).zip(0..) {
-            let bytes = encode_sample(&sample);
-            replay.extend(if number == cleared_at { with_clear(bytes) } else { bytes });
+            let clear = number == cleared_at;
+            replay.extend(Played { clear, ..sample.into() }.encode());
         }
         fs::write(at.join("replay"), replay).expect("a file");
         let mut session = emulator().open(at).unwrap_or_else(|error| panic!("{error}"));
         let answer = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(runs(&answer), fault.is_none(), "{fault:?}");
-        let refused: Vec<_> = answer.orders.iter().map(|it| it.refused).collect();
-        assert_eq!(refused, [fault.map(|_| Busy::Configuration)], "{fault:?}");
+        let refusal = |it: &Notice| match it {
+            Notice::Ordered(it) => Some(Refusal::of_code(it.refused)),
+            _ => None,
+        };
+        let refused: Vec<_> = answer.output.notices.iter().filter_map(refusal).collect();
+        assert_eq!(refused, [fault.map(|_| Refusal::Busy(Busy::Configuration))], "{fault:?}");
         let current = answer.shown.iter().any(|it| it.shown.outputs != Outputs::SAFE);
         assert_eq!(current, fault.is_none(), "{fault:?}");
         let faults = Wire::of(&mut session).state().faults;
@@ -328,8 +335,8 @@ fn coefficients_that_change_in_memory_are_a_fault_of_their_own() {
     for flips in [false, true] {
         let folder = TempDir::new().expect("a folder");
         let at = folder.path();
-        let mut replay = replay_head(&settings().monitor, false).expect("a configuration");
-        samples(0.6, |_| 0.0).for_each(|it| replay.extend(encode_sample(&it)));
+        let mut replay = replay_head(&ReplayHead::new(settings().monitor, false)).expect("a head");
+        samples(0.6, |_| 0.0).for_each(|it| replay.extend(Played::from(it).encode()));
         fs::write(at.join("replay"), replay).expect("a file");
         let log = std::thread::scope(|scope| {
             let run = scope.spawn(|| {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use touchdown_calibrate::{Scale, plane};
+use touchdown_calibrate::plane;
 use touchdown_core::event::{EventKind, Moment, Notice};
 use touchdown_core::monitor::Monitor;
 use touchdown_core::sample::{Sample, TACHOMETERS};
@@ -142,7 +142,7 @@ fn speeds_that_wrong_sensors_show_are_right_after_a_check() {
         wrong.add(&found(&machine, None, &counts, &impacts));
         let planes = truths.map(|truth| {
             let led = readings(&mut rng, &truth, 5.0, 1e-6);
-            let found = plane(&led, RESOLUTION, Scale::Clearance(gap)).expect("a wall");
+            let found = plane(&led, RESOLUTION, Some(gap)).expect("a wall");
             PlaneCalibration {
                 zero: found.zero_m.map(|it| it.value as f32),
                 gain: found.gain.map(|it| it.value as f32),

@@ -31,7 +31,7 @@ fn zero_gain_skew_and_radius_are_found_within_their_errors() {
 fn what_cannot_be_known_is_refused() {
     let mut rng = Rng(3);
     let truth = Truth::wrong(&mut rng, 0.3e-3);
-    let scale = touchdown_calibrate::Scale::Sensor;
+    let scale = None;
     let mut refusal = |arc: f64, noise: f64| {
         let readings = readings(&mut rng, &truth, arc, noise);
         match touchdown_calibrate::plane(&readings, RESOLUTION, scale) {

@@ -3,8 +3,7 @@
 use semihosting::experimental::env;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
-use touchdown_core::monitor::MonitorConfig;
-use touchdown_protocol::wire::{self, Record};
+use touchdown_protocol::wire::{self, Played, Record, ReplayHead};
 
 use super::Failure;
 use super::name::Name;
@@ -13,9 +12,9 @@ use super::settings::SettingsFile;
 use crate::intake::Incoming;
 
 const COMMAND_LINE_BYTES: usize = 512;
-const CONFIG_BYTES: usize = 1024;
+const HEAD_BYTES: usize = 1024;
 /// Samples that are read at once.
-const BLOCK_SAMPLES: usize = 30;
+const BLOCK_SAMPLES: usize = 18;
 
 /// What the command line names.
 pub struct Files {
@@ -58,18 +57,6 @@ pub struct Replay {
     at: usize,
 }
 
-/// What the head of a replay says.
-pub struct ReplayHead {
-    /// In force where none is stored.
-    pub config: MonitorConfig,
-    /// Whether the controller is switched on with the first sample.
-    pub powers_on: bool,
-    /// Whether samples come at their rate, whatever becomes of them; else each waits for the one before it.
-    pub in_real_time: bool,
-    /// Whether `config` counts as configured.
-    pub is_configured: bool,
-}
-
 impl Replay {
     fn open(name: &Name) -> Result<Self, Failure> {
         Ok(Self {
@@ -83,31 +70,20 @@ impl Replay {
     /// The start of the file; to be called once, first.
     #[inline(never)]
     pub fn head(&mut self) -> Result<ReplayHead, Failure> {
-        let mut head = [0; 8];
-        let mut config = [0; CONFIG_BYTES];
+        let mut first = [0; 8];
+        let mut head = [0; HEAD_BYTES];
         self.file
-            .read_exact(&mut head)
+            .read_exact(&mut first)
             .map_err(|_| Failure::Replay)?;
-        let [a, b, c, d, length @ ..] = head;
+        let [a, b, c, d, length @ ..] = first;
         if [a, b, c, d] != wire::REPLAY_MAGIC {
             return Err(Failure::Replay);
         }
-        let config = config
+        let head = head
             .get_mut(..u32::from_le_bytes(length) as usize)
             .ok_or(Failure::Replay)?;
-        self.file.read_exact(config).map_err(|_| Failure::Replay)?;
-        let config = postcard::from_bytes(config).map_err(|_| Failure::Replay)?;
-        let mut flags = [0];
-        self.file
-            .read_exact(&mut flags)
-            .map_err(|_| Failure::Replay)?;
-        let [flags] = flags;
-        Ok(ReplayHead {
-            config,
-            powers_on: flags & wire::POWERS_ON != 0,
-            in_real_time: flags & wire::IN_REAL_TIME != 0,
-            is_configured: flags & wire::UNCONFIGURED == 0,
-        })
+        self.file.read_exact(head).map_err(|_| Failure::Replay)?;
+        postcard::from_bytes(head).map_err(|_| Failure::Replay)
     }
 
     /// The next sample and what comes with it; `None` at the end of the file.
@@ -117,14 +93,16 @@ impl Replay {
         }
         let record = self.block.get(self.at..self.records).and_then(<[_]>::first);
         self.at += usize::from(record.is_some());
-        Ok(record.map(|it| {
-            let arrival = Incoming {
-                sample: wire::decode_sample(it),
-                service: wire::has_service(it),
-                clear: wire::has_clear(it),
-            };
-            (arrival, wire::line_byte(it))
-        }))
+        let Some(record) = record else {
+            return Ok(None);
+        };
+        let played = Played::decode(record).ok_or(Failure::Replay)?;
+        let arrival = Incoming {
+            sample: played.sample,
+            service: played.service,
+            clear: played.clear,
+        };
+        Ok(Some((arrival, played.line)))
     }
 
     /// Fills the block as far as the file goes; how many records it has.

@@ -20,11 +20,11 @@ use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
-use touchdown_protocol::controller::{Busy, Shown};
-use touchdown_protocol::wire::{Cleared, Record, Switching};
+use touchdown_protocol::controller::Shown;
+use touchdown_protocol::wire::{Record, ReplayHead, Switching};
 
 pub use self::counter::Counter;
-use self::files::{Answer, Files, Replay, ReplayHead};
+use self::files::{Answer, Files, Replay};
 use self::line::{Bytes, Wire};
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
@@ -127,14 +127,6 @@ impl Board for Emulated {
         self.ticks += 1;
     }
 
-    fn cleared(&mut self, refused: Option<Busy>) {
-        let cleared = Cleared {
-            sample: self.ticks,
-            refused,
-        };
-        self.write(&Record::Cleared(cleared));
-    }
-
     fn config(&self) -> &[u8] {
         self.block.bytes()
     }
@@ -230,7 +222,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     journal::config(&settings.monitor);
     let identity = Identity::new(
         &block.told(&settings),
-        log.as_ref().map_or(0, DropLog::boot),
+        log.as_ref().map_or(0, |it| it.counters().boots),
     );
     let board = Emulated {
         answer,
@@ -247,7 +239,8 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         Failure::Config
     })?;
     if head.powers_on {
-        tick.app.recall(log.as_ref().and_then(DropLog::uncleared));
+        tick.app
+            .recall(log.as_ref().and_then(|it| it.counters().uncleared));
     } else {
         tick.app.assume_lift();
     }

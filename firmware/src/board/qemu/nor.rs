@@ -10,8 +10,8 @@ use semihosting::fs::File;
 use semihosting::io::{Read, Seek, SeekFrom, Write};
 
 use super::{EMULATED_SLOTS, Failure};
+use crate::drop_log::bytes_of;
 use crate::platform::Ready;
-use crate::store::bytes_of;
 
 const SECTOR_BYTES: usize = 4096;
 const PAGE_BYTES: usize = 256;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use serde::Serialize;
 use touchdown_core::detect::Tuning;
 
 use touchdown_base::failure::Failure;
@@ -483,7 +484,7 @@ pub(super) struct CalibrateArgs {
     pub clearance: Option<f64>,
     /// What is believed: the clearance, or the gain of each plane's first axis
     #[arg(long, value_enum, default_value_t)]
-    pub scale: ScaleArg,
+    pub scale: Scale,
     /// Day of the check; today (UTC) without
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = super::calibrate::date)]
     pub date: Option<u32>,
@@ -501,8 +502,9 @@ pub(super) struct CalibrateArgs {
 }
 
 /// What an ellipse leaves open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum ScaleArg {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Scale {
     /// The clearance is right, all gains are measured
     #[default]
     Clearance,

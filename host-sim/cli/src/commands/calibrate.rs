@@ -9,13 +9,13 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
 use touchdown_protocol::config_block::{Settings, Wiring};
 
-use super::args::{CalibrateArgs, ScaleArg};
+use super::args::{CalibrateArgs, Scale};
 use super::{load, warn};
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::shown;
-use touchdown_calibrate::{Checked, Readings, Scale, page, plane};
+use touchdown_calibrate::{Checked, Readings, page, plane};
 use touchdown_files::configuration;
 use touchdown_files::recording::Recording;
 use touchdown_page::json;
@@ -43,11 +43,8 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     if let Some(clearance) = args.clearance {
         *told_clearance = (1e-3 * clearance) as f32;
     }
-    let scale = match args.scale {
-        ScaleArg::Clearance => Scale::Clearance(f64::from(*told_clearance)),
-        ScaleArg::Sensor => Scale::Sensor,
-    };
-    let planes = check(args, &settings.monitor, &scene, scale)?;
+    let believed = (args.scale == Scale::Clearance).then_some(f64::from(*told_clearance));
+    let planes = check(args, &settings.monitor, &scene, believed)?;
     let title = format!("Commissioning check: {name}");
     out.json("--json", || {
         json::text(&told(name, date, args.scale, &planes))
@@ -116,7 +113,7 @@ fn check(
     args: &CalibrateArgs,
     config: &MonitorConfig,
     scene: &Scene,
-    scale: Scale,
+    clearance: Option<f64>,
 ) -> Result<Vec<Checked>, Failure> {
     let sensing = &config.sensing;
     let reading = args.reading.load()?;
@@ -141,7 +138,7 @@ fn check(
         .filter(|((_, it), fitted)| *fitted && !it.kept().is_empty())
         .map(|((name, readings), _)| Checked {
             name,
-            plane: plane(readings.kept(), resolution, scale),
+            plane: plane(readings.kept(), resolution, clearance),
             readings,
         })
         .collect();
@@ -159,7 +156,7 @@ fn is_inside(sensing: &SensingConfig, reading: f64) -> bool {
 }
 
 /// Puts what was found on record; what is worth a warning.
-fn record(monitor: &mut MonitorConfig, date: u32, scale: ScaleArg, planes: &[Checked]) -> String {
+fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checked]) -> String {
     // A plane that the recording lacks keeps what it had.
     let mut calibration = Calibration {
         date,
@@ -180,7 +177,7 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: ScaleArg, planes: &[Che
     }
     monitor.sensing.calibration = Some(calibration);
     monitor.commissioned = true;
-    if scale == ScaleArg::Clearance {
+    if scale == Scale::Clearance {
         return String::new();
     }
     let mean = radii.iter().sum::<f64>() / radii.len() as f64;
@@ -200,7 +197,7 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: ScaleArg, planes: &[Che
 }
 
 /// As JSON.
-fn told(machine: &str, date: u32, scale: ScaleArg, planes: &[Checked]) -> impl Serialize {
+fn told(machine: &str, date: u32, scale: Scale, planes: &[Checked]) -> impl Serialize {
     let planes = planes.iter().map(|it| {
         let told = match &it.plane {
             Ok(plane) => json!(plane),
@@ -211,7 +208,7 @@ fn told(machine: &str, date: u32, scale: ScaleArg, planes: &[Checked]) -> impl S
     json!({
         "date": text_of_day(date),
         "machine": machine,
-        "scale": if scale == ScaleArg::Clearance { "clearance" } else { "sensor" },
+        "scale": scale,
         "planes": planes.collect::<Map<_, _>>(),
     })
 }

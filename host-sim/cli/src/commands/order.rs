@@ -8,7 +8,6 @@ use crate::gate::{Gate, note};
 use touchdown_base::failure::Failure;
 use touchdown_files::link::{Client, LinkError, Port, load_key, why};
 use touchdown_page::json;
-use touchdown_scene::names::act_name;
 
 /// What the command tells.
 #[derive(Serialize)]
@@ -40,7 +39,7 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
     };
     let told = Told {
         port: port.to_string(),
-        order: act_name(act),
+        order: act.into(),
         episode: act.episode(),
         done: why.is_none(),
         why,

@@ -9,7 +9,6 @@ use super::watched::Watched;
 use touchdown_files::link::refused_why;
 use touchdown_run::controller_trace::alarm;
 use touchdown_run::detection::{declared, forecast, touch};
-use touchdown_scene::names::{act_name, event_name, fault_name, mode_name, told_phase_name};
 
 /// The line without its end; `watched` has taken in what came before.
 pub fn line(update: &Update, watched: &Watched) -> String {
@@ -46,7 +45,7 @@ pub fn line(update: &Update, watched: &Watched) -> String {
             "episode",
             json!({
                 "number": number,
-                "trigger": header.map(|it| event_name(it.trigger_kind)),
+                "trigger": header.map(|it| <&str>::from(it.trigger_kind)),
                 "boot": header.map(|it| it.boot),
                 "time_s": header.map(|it| it.trigger as f64 / f64::from(it.sample_rate)),
             }),
@@ -88,11 +87,11 @@ fn state(state: &State, watched: &Watched) -> Value {
             "sample": sample,
             "time_s": sample.map(|it| watched.timebase().time(it as f64)),
             "age_s": 1e-6 * f64::from(state.age_us),
-            "phase": told_phase_name(state.phase),
-            "mode": mode_name(state.mode),
+            "phase": <&str>::from(state.phase),
+            "mode": <&str>::from(state.mode),
             "cause": state.cause,
             "touches": state.touches,
-            "faults": faults.map(fault_name).collect::<Vec<_>>(),
+            "faults": faults.map(<&str>::from).collect::<Vec<_>>(),
         }),
     ];
     let keys = parts.iter().filter_map(Value::as_object).flatten();
@@ -133,7 +132,7 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
 
 fn order(ordered: &Ordered, watched: &Watched) -> Value {
     json!({
-        "order": act_name(ordered.act),
+        "order": <&str>::from(ordered.act),
         "episode": ordered.act.episode(),
         "done": ordered.refused == 0,
         "why": refused_why(ordered.refused),

@@ -12,7 +12,6 @@ use touchdown_protocol::link::State;
 use super::orbit::orbit;
 use super::watched::{Link, Watched};
 use touchdown_run::outcome::DetectedEvent;
-use touchdown_scene::names::{cause_name, event_name, fault_name, mode_name, told_phase_name};
 
 const KEYS: &str = " q quit   space hold   p plane   x clear orbit";
 /// Older than this, what is shown is marked, s.
@@ -198,7 +197,7 @@ fn phase(state: &State, pen: Pen) -> Span<'static> {
         Phase::Levitated => Color::Green,
         Phase::FreeFall | Phase::Impact | Phase::Sliding | Phase::Rolling => Color::Red,
     };
-    pen.of(colour, told_phase_name(state.phase).to_owned())
+    pen.of(colour, <&str>::from(state.phase).to_owned())
 }
 
 fn mode(state: &State, pen: Pen) -> Span<'static> {
@@ -209,8 +208,8 @@ fn mode(state: &State, pen: Pen) -> Span<'static> {
     };
     let cause = state
         .cause
-        .map_or(String::new(), |it| format!(": {}", cause_name(it)));
-    pen.of(colour, mode_name(state.mode).to_owned() + &cause)
+        .map_or(String::new(), |it| format!(": {}", <&str>::from(it)));
+    pen.of(colour, <&str>::from(state.mode).to_owned() + &cause)
 }
 
 fn output((name, on): (&str, bool), pen: Pen) -> Span<'static> {
@@ -222,7 +221,7 @@ fn output((name, on): (&str, bool), pen: Pen) -> Span<'static> {
 }
 
 fn faults(state: &State, pen: Pen) -> Span<'static> {
-    let names: Vec<_> = state.faults.iter().map(fault_name).collect();
+    let names: Vec<_> = state.faults.iter().map(<&str>::from).collect();
     if names.is_empty() {
         Span::raw("none")
     } else {
@@ -241,7 +240,7 @@ fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {
         .normal_speed_m_s
         .map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
     let time = Span::raw(format!("{:>11.4}  ", event.onset_s));
-    let name = pen.of(Color::Yellow, event_name(event.event).to_owned());
+    let name = pen.of(Color::Yellow, <&str>::from(event.event).to_owned());
     Line::from(vec![time, name, Span::raw(fate), Span::raw(speed)])
 }
 
@@ -251,7 +250,7 @@ fn episode_lines(watched: &Watched) -> Vec<Line<'static>> {
             || format!("{number:>5}  header lost"),
             |it| {
                 let at = it.trigger as f64 / f64::from(it.sample_rate);
-                let trigger = event_name(it.trigger_kind);
+                let trigger = <&str>::from(it.trigger_kind);
                 format!("{number:>5} {at:>11.3}  {trigger}, boot {}", it.boot)
             },
         ))

@@ -16,7 +16,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use touchdown_firmware::board::BLOCK_SAMPLES;
-use touchdown_protocol::wire;
+use touchdown_protocol::wire::{Played, ReplayHead};
 
 use crate::gate::print;
 use touchdown_base::failure::Failure;
@@ -151,7 +151,8 @@ impl Supply<'_> {
     /// Switches the controller on.
     fn on(&self) -> Result<(Session, Pipe), EmulatorError> {
         let folder: &Path = &self.options.folder;
-        let head = touchdown_run::emulator::replay_head(&self.scene.monitor_config(), true);
+        let head = ReplayHead::new(self.scene.monitor_config(), true);
+        let head = touchdown_run::emulator::replay_head(&head);
         let pipe = head.and_then(|head| Pipe::make(&folder.join("replay"), head));
         let pipe = pipe.map_err(|e| EmulatorError::Io("make a pipe", e))?;
         let mut session = self.emulator.open(folder)?;
@@ -200,8 +201,11 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
         }
         if pipe.is_free() {
             let samples = machine.by_ref().take(BLOCK_SAMPLES);
-            let bytes = samples.map(|it| wire::encode_sample(&it));
-            pipe.put(bytes.flat_map(|it| if service { wire::with_service(it) } else { it }));
+            let played = samples.map(|sample| Played {
+                service,
+                ..sample.into()
+            });
+            pipe.put(played.flat_map(|it| it.encode()));
             if let Some(at) = machine.given_up() {
                 print(&format!(
                     "truth given up at {:.4} ms: it would take too long. The rotor rolls to the bottom from there\n",

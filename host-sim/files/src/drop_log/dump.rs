@@ -5,7 +5,7 @@ use std::path::Path;
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use serde::Serialize;
-use touchdown_firmware::store::{self, EPISODE_BYTES, Slot, bytes_of};
+use touchdown_firmware::drop_log::{self, EPISODE_BYTES, Slot, bytes_of};
 use touchdown_protocol::log::block::{BLOCK_BYTES, Page};
 use touchdown_protocol::log::counters::Counters;
 
@@ -80,13 +80,13 @@ fn is_block(bytes: &[u8]) -> bool {
 }
 
 fn newest(flash: &mut RamNor) -> Option<Counters> {
-    let counters = store::counters(flash, 0).expect("within the flash");
+    let counters = drop_log::counters(flash).expect("within the flash");
     (counters.generation > 0).then_some(counters)
 }
 
 /// The episode in a slot, if the store finds one there, or would but for damage.
 fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
-    let slot: Slot = store::slot(flash, 0, number).expect("within the flash");
+    let slot: Slot = drop_log::slot(flash, number).expect("within the flash");
     let mut pages = vec![0; EPISODE_BYTES];
     let address = bytes_of(number) as u32;
     flash.read(address, &mut pages).expect("within the flash");

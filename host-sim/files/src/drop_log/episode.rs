@@ -17,7 +17,7 @@ use touchdown_protocol::wire::Record;
 use crate::controller::{AlarmAt, OutputsFrom};
 use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
-use touchdown_scene::names::{act_name, channel_name};
+use touchdown_scene::names::channel_name;
 
 /// An episode.
 #[derive(Clone, Debug, Serialize)]
@@ -172,7 +172,7 @@ impl Episode {
                 self.alarms.push(AlarmAt::new(it, since(it.sample as f64)));
             }
             Record::Notice(Notice::Ordered(it)) => {
-                let (order, time) = (act_name(it.act), 1e3 * since(it.sample as f64));
+                let (order, time) = (<&str>::from(it.act), 1e3 * since(it.sample as f64));
                 let why = refused_why(it.refused);
                 let came = why.map_or("done".to_owned(), |why| format!("refused: {why}"));
                 self.orders.push(format!("{order} at {time:.4} ms: {came}"));

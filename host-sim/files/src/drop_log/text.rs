@@ -1,6 +1,5 @@
 //! The log for people.
 
-use touchdown_core::event::Level;
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::DamageKind;
 
@@ -8,7 +7,6 @@ use super::dump::Dump;
 use super::episode::{Completeness, Episode};
 use crate::controller::table;
 use touchdown_base::paint::Paint;
-use touchdown_scene::names::{cause_name, event_name};
 
 /// A line for each episode, then the counters.
 pub fn list(dump: &Dump, paint: Paint) -> String {
@@ -32,7 +30,7 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
                 it.touches
             );
             if let Some(cause) = it.uncleared {
-                text += &format!("a drop is not cleared: {}\n", cause_name(cause));
+                text += &format!("a drop is not cleared: {}\n", <&str>::from(cause));
             }
         }
         None => text += "no counters\n",
@@ -53,7 +51,7 @@ fn line(episode: &Episode, paint: Paint) -> String {
     format!(
         "{:>6} {state}{:<15}{:>5}{:>12}{:>9}{:>9}{:>8}{}{}\n",
         episode.sequence,
-        header.map_or("-", |it| event_name(it.trigger_kind)),
+        header.map_or("-", |it| it.trigger_kind.into()),
         or(header.map(|it| it.boot.to_string())),
         or(at.map(|it| format!("{it:.3}"))),
         episode.samples.iter().flatten().count(),
@@ -116,7 +114,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             name.trim_end_matches('\0'),
             header.config_hash,
             header.boot,
-            event_name(header.trigger_kind),
+            <&str>::from(header.trigger_kind),
             header.trigger,
             header.trigger as f64 / f64::from(header.sample_rate),
             header.sample_rate,
@@ -153,7 +151,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         let fault = fault.unwrap_or_default();
         text += &format!(
             "{:<16}{:>12.4}{:>14.4}{speed:>10}{fault}\n",
-            event_name(event.event),
+            <&str>::from(event.event),
             event.onset_s * 1e3,
             event.declared_s * 1e3,
         );
@@ -162,10 +160,7 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         text += &table(&episode.outputs, paint);
     }
     for it in &episode.alarms {
-        let level = match it.level {
-            Level::Alert => "alert",
-            Level::Danger => "danger",
-        };
+        let level = <&str>::from(it.level);
         text += &format!(
             "alarm: {level}, plane {} at {:.2} of the clearance, at {:.4} ms\n",
             it.plane,
@@ -187,7 +182,7 @@ fn ended(ending: &Ending) -> String {
         Closing::Longest => "as long as an episode may be",
     };
     let off = match ending.latched {
-        Some(cause) => format!("outputs off: {}", cause_name(cause)),
+        Some(cause) => format!("outputs off: {}", <&str>::from(cause)),
         None => "nothing latched".to_owned(),
     };
     let index = ending.index;

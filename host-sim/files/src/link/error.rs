@@ -4,12 +4,12 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind};
 
 use touchdown_protocol::config_block::BlockError;
+use touchdown_protocol::controller::Busy;
 use touchdown_protocol::link::{Refusal, VERSION};
 
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::reason;
 use touchdown_base::plain::shown;
-use touchdown_scene::names::busy_name;
 
 /// Why a request has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +70,20 @@ pub fn why(refusal: &Refusal) -> String {
         Refusal::NoRoom => "too few slots would be left for new episodes",
     };
     text.to_owned()
+}
+
+fn busy_name(busy: Busy) -> &'static str {
+    match busy {
+        Busy::DropRuns => "a drop runs",
+        Busy::Blind => "no plane gives a position",
+        Busy::Watching => "it watches, so the machine may run",
+        Busy::Latched => "a drop is latched",
+        Busy::NoRight => "no right: it takes the key of its configuration (--key-file), within 5 s",
+        Busy::Service => "no right: it has no key, so its service input must be on",
+        Busy::Locked => "the episode is locked",
+        Busy::Last => "the episode is the newest one",
+        Busy::Configuration => "the configuration is missing, damaged, or of another board: set it",
+    }
 }
 
 /// The reason of a notice of an order, none where it was done.

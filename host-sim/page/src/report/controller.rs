@@ -5,7 +5,6 @@ use touchdown_chart::table::table;
 use touchdown_chart::text::ms;
 use touchdown_core::event::Level;
 use touchdown_run::outcome::Outcome;
-use touchdown_scene::names::{cause_name, mode_name};
 
 /// Draws them as a table, and the guard in two lines.
 pub fn controller(outcome: &Outcome) -> Markup {
@@ -17,9 +16,9 @@ pub fn controller(outcome: &Outcome) -> Markup {
         .words("No brake", |it| level(it.shown.outputs.no_brake))
         .words("Permit", |it| level(it.shown.outputs.permit))
         .words("Ready", |it| level(it.shown.outputs.ready))
-        .words("Mode", |it| mode_name(it.shown.mode).to_owned())
+        .words("Mode", |it| <&str>::from(it.shown.mode).to_owned())
         .words("Cause", |it| {
-            it.shown.cause.map_or("", cause_name).to_owned()
+            it.shown.cause.map_or("", <&str>::from).to_owned()
         });
     let dangers = conduct.alarms.iter().filter(|it| it.level == Level::Danger);
     let percent = |part: f64| format!("{:.1}\u{a0}%", 100.0 * part);

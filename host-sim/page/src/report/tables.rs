@@ -8,7 +8,6 @@ use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches};
 use touchdown_run::outcome::{DetectedEvent, Outcome};
 use touchdown_scene::Scene;
-use touchdown_scene::names::event_name;
 
 /// Velocity jump from which the detector is designed to find an impact, m/s.
 const DESIGN_JUMP: f64 = 18e-3;
@@ -36,7 +35,7 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
             }
         }
         @for missed in missed.iter().take(OPEN) {
-            p.missed { "Missed: " (event_name(missed.kind)) " at " (ms(missed.onset_s)) "\u{a0}ms" }
+            p.missed { "Missed: " (<&str>::from(missed.kind)) " at " (ms(missed.onset_s)) "\u{a0}ms" }
         }
         @if missed.len() > OPEN { p.missed { "and " (missed.len() - OPEN) " more missed." } }
         p.note {
@@ -51,8 +50,8 @@ fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> 
     let truth = |index: usize| matches.of_detected(index);
     table(name, events)
         .words("Event", |(_, it)| match it.normal_speed_m_s {
-            Some(speed) => format!("{}, {}", event_name(it.event), si(speed, "m/s")),
-            None => event_name(it.event).to_owned(),
+            Some(speed) => format!("{}, {}", <&str>::from(it.event), si(speed, "m/s")),
+            None => <&str>::from(it.event).to_owned(),
         })
         .number("Onset\nms", |it| ms(it.1.onset_s))
         .number("Declared\nms", |it| ms(it.1.declared_s))

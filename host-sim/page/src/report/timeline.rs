@@ -9,7 +9,7 @@ use touchdown_chart::plot::{Axis, columns};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_scene::Scene;
-use touchdown_scene::names::{event_name, phase_name};
+use touchdown_scene::names::phase_name;
 
 const BAR: f64 = 24.0;
 const ROW: f64 = 52.0;
@@ -223,7 +223,7 @@ fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize
         .iter()
         .filter(|event| event.event != EventKind::Impact)
     {
-        let name = event_name(event.event);
+        let name = <&str>::from(event.event);
         let fates = [
             (Some(event.declared_s), name.to_owned()),
             (event.confirmed_s, format!("{name} confirmed")),

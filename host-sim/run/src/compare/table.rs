@@ -3,7 +3,6 @@
 use super::{By, Comparison, Pair};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
-use touchdown_scene::names::event_name;
 
 /// Events that are listed.
 const LISTED: usize = 200;
@@ -46,7 +45,7 @@ pub fn table(comparison: &Comparison, paint: Paint) -> String {
             comparison.events.len() - LISTED
         );
     }
-    let regime = comparison.regimes.map(|it| it.map_or("none", event_name));
+    let regime = comparison.regimes.map(|it| it.map_or("none", <&str>::from));
     let same = if regime[0] == regime[1] {
         "the same"
     } else {
@@ -83,7 +82,7 @@ fn line(pair: &Pair, paint: Paint) -> String {
     };
     let text = format!(
         "{:<15}{:>14}{:>14}{:>10}{:>10}{:>10}{:>9}",
-        event_name(pair.event),
+        <&str>::from(pair.event),
         or(pair.a_s, 1.0, 6),
         or(pair.b_s, 1.0, 6),
         or(pair.difference_s, 1e3, 4),

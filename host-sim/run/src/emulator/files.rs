@@ -6,7 +6,7 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire::{self, Cleared, Record, Switching};
+use touchdown_protocol::wire::{self, Played, Record, ReplayHead, Switching};
 
 use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
 use crate::procedure::Procedure;
@@ -19,16 +19,14 @@ pub(super) fn write_replay(
     samples: impl Iterator<Item = Sample>,
 ) -> io::Result<u64> {
     let mut file = BufWriter::new(File::create(path)?);
-    file.write_all(&replay_head(config, procedure.power_on)?)?;
+    file.write_all(&replay_head(&ReplayHead::new(*config, procedure.power_on))?)?;
     let mut count = 0;
     for sample in samples {
-        let bytes = wire::encode_sample(&sample);
-        let bytes = if procedure.clears(count) {
-            wire::with_clear(bytes)
-        } else {
-            bytes
+        let played = Played {
+            clear: procedure.clears(count),
+            ..sample.into()
         };
-        file.write_all(&bytes)?;
+        file.write_all(&played.encode())?;
         count += 1;
     }
     file.flush()?;
@@ -36,16 +34,10 @@ pub(super) fn write_replay(
 }
 
 /// What comes before the samples.
-pub fn replay_head(config: &MonitorConfig, power_on: bool) -> io::Result<Vec<u8>> {
-    let config = postcard::to_stdvec(config).map_err(io::Error::other)?;
-    let length = (config.len() as u32).to_le_bytes();
-    Ok([
-        &wire::REPLAY_MAGIC[..],
-        &length,
-        &config,
-        &[u8::from(power_on)],
-    ]
-    .concat())
+pub fn replay_head(head: &ReplayHead) -> io::Result<Vec<u8>> {
+    let head = postcard::to_stdvec(head).map_err(io::Error::other)?;
+    let length = (head.len() as u32).to_le_bytes();
+    Ok([&wire::REPLAY_MAGIC[..], &length, &head].concat())
 }
 
 /// What the image answered.
@@ -55,8 +47,6 @@ pub struct Answer {
     pub output: MonitorOutput,
     /// Each change of what the controller showed.
     pub shown: Vec<Switching>,
-    /// What came of the orders.
-    pub orders: Vec<Cleared>,
 }
 
 /// A whole answer; `None` for one that is damaged or not at its end.
@@ -74,13 +64,12 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<Answer> {
         return None;
     };
     let (mut notices, mut left_out) = (Vec::new(), 0);
-    let (mut shown, mut orders) = (Vec::new(), Vec::new());
+    let mut shown = Vec::new();
     for record in records {
         match wire::decode_record(record)? {
             Record::Notice(notice) if notices.len() < MOST_NOTICES => notices.push(notice),
             Record::Notice(_) => left_out += 1,
             Record::Switching(switching) => shown.push(switching),
-            Record::Cleared(cleared) => orders.push(cleared),
             Record::Severity(_) | Record::Summary(_) => return None,
         }
     }
@@ -93,7 +82,6 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<Answer> {
             log: Vec::new(),
         },
         shown,
-        orders,
     })
 }
 
@@ -143,7 +131,6 @@ mod tests {
         let answer = Answer {
             output,
             shown: vec![switching],
-            orders: Vec::new(),
         };
         assert_eq!(decode_answer(&bytes), Some(answer));
         bytes.pop();

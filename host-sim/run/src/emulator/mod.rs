@@ -146,16 +146,12 @@ impl Emulator {
             .map_err(|e| EmulatorError::Io("write the replay file", e))?;
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let mut session = self.open(folder.path())?;
-        let Answer {
-            output,
-            shown,
-            orders,
-        } = session.answer(limit)?;
+        let Answer { output, shown } = session.answer(limit)?;
         let mut client = session.client()?;
         let (hello, state) = (client.hello()?, client.state()?);
         let conduct = ControllerTrace {
             flash: read(&folder.path().join("log"))?,
-            ..ControllerTrace::new(&output.notices, shown, orders, hello, state)
+            ..ControllerTrace::new(&output.notices, shown, hello, state)
         };
         let log = session.cut()?;
         Ok((MonitorOutput { log, ..output }, conduct))

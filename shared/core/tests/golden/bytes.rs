@@ -24,7 +24,7 @@ use touchdown_protocol::log::severity;
 use touchdown_protocol::log::waveform;
 use touchdown_protocol::log::waveform::Waveform;
 use touchdown_protocol::wire;
-use touchdown_protocol::wire::{Cleared, Record, Switching};
+use touchdown_protocol::wire::{Played, Record, Switching};
 
 use crate::stream::Stream;
 
@@ -152,9 +152,28 @@ fn put(text: &mut String, name: &str, bytes: &[u8]) {
 }
 
 fn wires(text: &mut String) {
-    let bytes = wire::encode_sample(&SAMPLE);
-    assert_eq!(wire::decode_sample(&bytes), SAMPLE);
-    put(text, "sample", &bytes);
+    let played = Played {
+        sample: SAMPLE,
+        clear: false,
+        service: true,
+        line: Some(0x5a),
+    };
+    let bytes = played.encode();
+    assert_eq!(Played::decode(&bytes), Some(played));
+    put(text, "sample of a replay", &bytes);
+    // As long as any.
+    let longest = Played {
+        sample: Sample {
+            counts: [u16::MAX; 4],
+            edges: [Some(Edges {
+                count: u16::MAX,
+                age: 255,
+            }); 2],
+            ..SAMPLE
+        },
+        ..played
+    };
+    assert_eq!(Played::decode(&longest.encode()), Some(longest));
     let summary = Summary {
         samples: 100_021,
         faults: 7,
@@ -197,13 +216,6 @@ fn wires(text: &mut String) {
         ),
         ("alarm", Record::Notice(Notice::Alarm(ALARM))),
         ("touch", Record::Notice(Notice::Touch(TOUCH))),
-        (
-            "cleared",
-            Record::Cleared(Cleared {
-                sample,
-                refused: Some(Busy::Blind),
-            }),
-        ),
         (
             "ordered",
             Record::Notice(Notice::Ordered(Ordered {

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use chrono::NaiveDate;
+use chrono::{Datelike, NaiveDateTime};
 
 /// Most channels of a kind that are believed.
 const MOST_CHANNELS: usize = 10_000;
@@ -139,14 +139,8 @@ impl Cfg {
         let digital = digital.collect::<Result<_, Diagnostic>>()?;
         lines.next("the line frequency")?;
         let (rates, samples) = rates(&mut lines)?;
-        let mut instant = |what| -> Result<Instant, Diagnostic> {
-            let fields = lines.fields(what)?;
-            Ok(Instant::of(&fields, year))
-        };
-        let (begin, trigger) = (
-            instant("the first sample's time")?,
-            instant("the trigger's time")?,
-        );
+        let first_sample = lines.fields("the first sample's time")?;
+        let trigger = lines.fields("the trigger's time")?;
         let kind = lines.next("the kind of the data file")?;
         let Ok(data) = kind.trim().parse() else {
             let rule = "must be ASCII, BINARY, BINARY32 or FLOAT32";
@@ -163,11 +157,9 @@ impl Cfg {
             return lines.fail("the factor of the stamps must be above 0".to_owned());
         }
         // Since 2013 stamps count nanoseconds where the dates do.
-        let nano = year >= 2013 && begin.decimals > 6;
-        let start = (begin.seconds.zip(trigger.seconds)).map(|(begin, trigger)| {
-            let days = (begin.0 - trigger.0) as f64;
-            86_400.0 * days + (begin.1 - trigger.1)
-        });
+        let nano = year >= 2013 && decimals(&first_sample) > 6;
+        let instants = instant(&first_sample, year).zip(instant(&trigger, year));
+        let start = instants.map(|(begin, trigger)| (begin - trigger).as_seconds_f64());
         Ok(Self {
             year,
             is_episode: first[0] == STATION
@@ -275,49 +267,22 @@ fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Diagnostic> {
     Ok((rates, samples))
 }
 
-/// A date and a time of day.
-struct Instant {
-    /// Days since 1970 and seconds of the day; `None` where it cannot be read.
-    seconds: Option<(i64, f64)>,
-    /// Of the second.
-    decimals: usize,
-}
-
-impl Instant {
-    /// `dd/mm/yyyy` and `hh:mm:ss.ssssss`; in 1991 the month came first.
-    fn of(fields: &[&str], year: u16) -> Self {
-        let (date, time) = (fields.first().unwrap_or(&""), fields.get(1).unwrap_or(&""));
-        let decimals = time.split_once('.').map_or(0, |(_, digits)| digits.len());
-        let seconds = days(date, year).zip(of_day(time));
-        Self { seconds, decimals }
+/// `dd/mm/yyyy` and `hh:mm:ss.ssssss`; in 1991 the month came first, and the year may have two digits.
+fn instant(fields: &[&str], standard: u16) -> Option<NaiveDateTime> {
+    let (date, time) = (fields.first()?, fields.get(1)?);
+    let order = if standard > 1991 { "%d/%m" } else { "%m/%d" };
+    let format = format!("{order}/%Y %H:%M:%S%.f");
+    let read = NaiveDateTime::parse_from_str(&format!("{date} {time}"), &format).ok()?;
+    match read.year() {
+        year @ 0..100 => read.with_year(year + 1900),
+        _ => Some(read),
     }
 }
 
-fn of_day(text: &str) -> Option<f64> {
-    let mut parts = text.split(':');
-    let mut part = || {
-        parts
-            .next()?
-            .trim()
-            .parse::<f64>()
-            .ok()
-            .filter(|it| (0.0..100.0).contains(it))
-    };
-    Some(3600.0 * part()? + 60.0 * part()? + part()?)
-}
-
-/// Days since 1970 began.
-fn days(text: &str, standard: u16) -> Option<i64> {
-    let mut parts = text.split('/').map(|it| it.trim().parse::<u16>().ok());
-    let (one, other, year) = (parts.next()??, parts.next()??, parts.next()??);
-    let (day, month) = if standard > 1991 {
-        (one, other)
-    } else {
-        (other, one)
-    };
-    let year = if year < 100 { year + 1900 } else { year };
-    let date = NaiveDate::from_ymd_opt(year.into(), month.into(), day.into())?;
-    Some(date.to_epoch_days().into())
+/// Digits of the seconds' fraction.
+fn decimals(fields: &[&str]) -> usize {
+    let fraction = fields.get(1).and_then(|time| time.split_once('.'));
+    fraction.map_or(0, |(_, digits)| digits.len())
 }
 
 #[cfg(test)]
@@ -326,11 +291,24 @@ mod tests {
 
     #[test]
     fn days_count_from_1970() {
+        let days = |date: &str, standard| {
+            let read = instant(&[date, "00:00:00"], standard)?;
+            Some(read.and_utc().timestamp() / 86_400)
+        };
         assert_eq!(days("01/01/1970", 1999), Some(0));
         assert_eq!(days("29/02/2000", 1999), Some(11_016));
         assert_eq!(days("02/29/2000", 1991), Some(11_016));
         assert_eq!(days("2/29/72", 1991), Some(789));
         assert_eq!(days("00/00/2000", 1999), None);
+    }
+
+    #[test]
+    fn times_of_day_have_up_to_nine_decimals() {
+        let at = |time: &str| instant(&["01/01/2024", time], 2013);
+        let since = |time: &str| Some((at(time)? - at("0:00:00")?).as_seconds_f64());
+        assert_eq!(since("12:34:56.123456789"), Some(45_296.123_456_789));
+        assert_eq!(since("1:02:03"), Some(3_723.0));
+        assert_eq!(since("1:02"), None);
     }
 
     #[test]

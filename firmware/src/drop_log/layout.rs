@@ -1,4 +1,4 @@
-//! Where things are in flash.
+//! Where things are in flash, from its first byte on.
 
 use touchdown_protocol::log::block::BLOCK_BYTES;
 use touchdown_protocol::log::marks::RELEASE_BYTES;
@@ -21,28 +21,12 @@ pub const fn bytes_of(slots: usize) -> usize {
     (COUNTER_SECTORS as usize + slots * SECTORS_PER_SLOT as usize) * SECTOR_BYTES as usize
 }
 
-/// Addresses.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
-    pub(super) base: u32,
+/// Address of page `block` of a slot.
+pub(super) const fn page(slot: usize, block: u32) -> u32 {
+    bytes_of(slot) as u32 + block * BLOCK_BYTES as u32
 }
 
-impl Layout {
-    pub(super) fn counters(self, sector: u32) -> u32 {
-        self.base + sector * SECTOR_BYTES
-    }
-
-    pub(super) fn slot(self, slot: usize) -> u32 {
-        self.base + bytes_of(slot) as u32
-    }
-
-    pub(super) fn marks(self, slot: usize) -> u32 {
-        self.slot(slot) + EPISODE_BYTES as u32
-    }
-
-    /// From and to.
-    pub(super) fn sector(self, slot: usize, sector: u32) -> (u32, u32) {
-        let from = self.slot(slot) + sector * SECTOR_BYTES;
-        (from, from + SECTOR_BYTES)
-    }
+/// Address of a slot's marks.
+pub(super) const fn marks(slot: usize) -> u32 {
+    page(slot, BLOCKS_PER_SLOT)
 }

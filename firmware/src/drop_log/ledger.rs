@@ -4,7 +4,7 @@
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 use touchdown_protocol::log::counters::{COUNTERS_BYTES, Counters};
 
-use super::layout::{COUNTER_SECTORS, Layout, SECTOR_BYTES};
+use super::layout::{COUNTER_SECTORS, SECTOR_BYTES};
 
 const CELLS: u32 = SECTOR_BYTES / COUNTERS_BYTES as u32;
 /// A wrong bit must not lose the newest record.
@@ -12,7 +12,6 @@ const COPIES: u8 = 2;
 
 #[derive(Clone, Debug)]
 pub(super) struct Ledger {
-    layout: Layout,
     counters: Counters,
     sector: u32,
     /// First free cell of the sector.
@@ -23,9 +22,8 @@ pub(super) struct Ledger {
 
 impl Ledger {
     /// Finds the newest record.
-    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F, layout: Layout) -> Result<Self, F::Error> {
+    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F) -> Result<Self, F::Error> {
         let mut ledger = Self {
-            layout,
             counters: Counters::default(),
             // As if the second one were full: the first record goes to the first, once erased.
             sector: COUNTER_SECTORS - 1,
@@ -36,7 +34,7 @@ impl Ledger {
         for sector in 0..COUNTER_SECTORS {
             let (mut newest, mut free) = (false, 0);
             for cell in 0..CELLS {
-                flash.read(ledger.address(sector, cell), &mut bytes)?;
+                flash.read(address(sector, cell), &mut bytes)?;
                 if let Some(found) = Counters::decode(&bytes)
                     && found.generation > ledger.counters.generation
                 {
@@ -73,20 +71,20 @@ impl Ledger {
     pub(super) fn write<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), F::Error> {
         if self.cell == CELLS {
             let other = (self.sector + 1) % COUNTER_SECTORS;
-            let from = self.layout.counters(other);
+            let from = address(other, 0);
             flash.erase(from, from + SECTOR_BYTES)?;
             (self.sector, self.cell) = (other, 0);
             return Ok(());
         }
-        let address = self.address(self.sector, self.cell);
+        let address = address(self.sector, self.cell);
         // What went wrong may have used up the cell.
         self.cell += 1;
         flash.write(address, &self.counters.encode())?;
         self.copies -= 1;
         Ok(())
     }
+}
 
-    fn address(&self, sector: u32, cell: u32) -> u32 {
-        self.layout.counters(sector) + cell * COUNTERS_BYTES as u32
-    }
+fn address(sector: u32, cell: u32) -> u32 {
+    sector * SECTOR_BYTES + cell * COUNTERS_BYTES as u32
 }

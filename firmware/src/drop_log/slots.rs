@@ -1,0 +1,155 @@
+//! Which episode is in which slot.
+
+use embedded_storage::nor_flash::ReadNorFlash;
+use touchdown_core::event::EventKind;
+use touchdown_protocol::log::block::{BLOCK_BYTES, Kind, Page, Sealed};
+use touchdown_protocol::log::ending::Ending;
+use touchdown_protocol::log::header::Header;
+use touchdown_protocol::log::marks::{MARKS_BYTES, Marks};
+
+use super::layout::{self, BLOCKS_PER_SLOT};
+
+/// Pages of which one tells whose slot it is: so many may be damaged but one.
+const FIRST_PAGES: u32 = 3;
+
+/// What a slot holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Slot {
+    /// Number of its episode, from 1; 0 if it has none.
+    pub sequence: u32,
+    /// Not to be overwritten.
+    pub locked: bool,
+    /// Its episode has been given up: what is left of it is none.
+    pub released: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Slots<const SLOTS: usize>([Slot; SLOTS]);
+
+impl<const SLOTS: usize> Slots<SLOTS> {
+    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F) -> Result<Self, F::Error> {
+        let mut slots = [Slot::default(); SLOTS];
+        for (number, slot) in slots.iter_mut().enumerate() {
+            *slot = SlotReader(flash, number).found()?;
+        }
+        Ok(Self(slots))
+    }
+
+    /// Slots with episodes after `sequence`, and these.
+    pub(super) fn after(&self, sequence: u32) -> impl Iterator<Item = (usize, u32)> + '_ {
+        let numbered = self.0.iter().map(|slot| slot.sequence).enumerate();
+        numbered.filter(move |&(_, it)| it > sequence)
+    }
+
+    pub(super) fn episodes(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let used = self.0.iter().filter(|slot| slot.sequence != 0);
+        used.map(|slot| (slot.sequence, slot.locked))
+    }
+
+    pub(super) fn find(&self, sequence: u32) -> Option<usize> {
+        self.0
+            .iter()
+            .position(|slot| slot.sequence == sequence && sequence != 0)
+    }
+
+    pub(super) fn newest(&self) -> u32 {
+        self.0.iter().map(|slot| slot.sequence).max().unwrap_or(0)
+    }
+
+    pub(super) fn unlocked(&self) -> usize {
+        self.0.iter().filter(|slot| !slot.locked).count()
+    }
+
+    /// Slot to be written next: an empty one, or else the oldest that is not locked.
+    pub(super) fn oldest(&self) -> Option<usize> {
+        let slots = self.0.iter().enumerate();
+        slots
+            .filter(|(_, slot)| !slot.locked)
+            .min_by_key(|(_, slot)| slot.sequence)
+            .map(|(number, _)| number)
+    }
+
+    pub(super) fn get(&self, slot: usize) -> Slot {
+        self.0.get(slot).copied().unwrap_or_default()
+    }
+
+    pub(super) fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
+        if let Some(slot) = self.0.get_mut(slot) {
+            *slot = Slot {
+                sequence,
+                locked,
+                released: false,
+            };
+        }
+    }
+}
+
+/// Flash, and the slot of it that is read.
+pub(super) struct SlotReader<'a, F>(pub(super) &'a mut F, pub(super) usize);
+
+impl<F: ReadNorFlash> SlotReader<'_, F> {
+    /// What it holds.
+    pub(super) fn found(&mut self) -> Result<Slot, F::Error> {
+        let marks = self.marks()?;
+        let sequence = if marks.released { 0 } else { self.owner()? };
+        Ok(Slot {
+            sequence,
+            locked: marks.locked && sequence != 0,
+            released: marks.released,
+        })
+    }
+
+    /// Its marks.
+    pub(super) fn marks(&mut self) -> Result<Marks, F::Error> {
+        let mut bytes = [0; MARKS_BYTES];
+        self.0.read(layout::marks(self.1), &mut bytes)?;
+        Ok(Marks::decode(&bytes))
+    }
+
+    /// The ending of episode `sequence`, if it has one.
+    pub(super) fn ending(&mut self, sequence: u32) -> Result<Option<Ending>, F::Error> {
+        let mut bytes = [0; BLOCK_BYTES];
+        for block in (0..BLOCKS_PER_SLOT).rev() {
+            let sealed = self.sealed(block, &mut bytes)?;
+            let own = sealed.filter(|it| it.sequence == sequence && it.kind == Some(Kind::Ending));
+            if let Some(ending) = own.and_then(|it| Ending::decode(it.payload)) {
+                return Ok(Some(ending));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What began episode `sequence`; none where its first page is lost.
+    pub(super) fn trigger(&mut self, sequence: u32) -> Result<Option<EventKind>, F::Error> {
+        let mut bytes = [0; BLOCK_BYTES];
+        let own = self
+            .sealed(0, &mut bytes)?
+            .filter(|it| it.sequence == sequence);
+        let header = own.and_then(|it| Header::decode(it.payload));
+        Ok(header.map(|it| it.trigger_kind))
+    }
+
+    /// Episode that its first pages belong to; 0 for none.
+    fn owner(&mut self) -> Result<u32, F::Error> {
+        let mut bytes = [0; BLOCK_BYTES];
+        for block in 0..FIRST_PAGES {
+            if let Some(sealed) = self.sealed(block, &mut bytes)? {
+                return Ok(sealed.sequence);
+            }
+        }
+        Ok(0)
+    }
+
+    /// The block on a page, if one is whole there.
+    fn sealed<'b>(
+        &mut self,
+        block: u32,
+        bytes: &'b mut [u8; BLOCK_BYTES],
+    ) -> Result<Option<Sealed<'b>>, F::Error> {
+        self.0.read(layout::page(self.1, block), bytes)?;
+        Ok(match Page::open(bytes) {
+            Page::Sealed(sealed) => Some(sealed),
+            Page::Blank | Page::Broken => None,
+        })
+    }
+}
