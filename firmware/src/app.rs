@@ -156,6 +156,7 @@ impl App {
         self.safety.step(&Findings {
             guard: self.state.guard.verdict,
             told,
+            sees_all: self.state.sees_all(),
             faulted: self.faults.trip(),
             tested: self.tested.config && self.tested.sensors,
             lies: self.state.phase().is_contact(),

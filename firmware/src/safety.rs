@@ -12,6 +12,8 @@ pub struct Findings {
     pub guard: Verdict,
     /// What the detector tells that trips: a fall, whirl, or contact.
     pub told: Option<Cause>,
+    /// Whether each channel that is fitted gives values of its own.
+    pub sees_all: bool,
     /// Whether a fault that trips is latched.
     pub faulted: bool,
     /// Whether the self-test has seen all that it waits for.
@@ -69,7 +71,7 @@ impl Safety {
         if self.mode == Mode::SelfTest && findings.tested {
             let cause = self.cause.filter(|_| self.whirls());
             (self.mode, self.cause) = (Mode::Arming, cause.or(Some(Cause::NoProof)));
-        } else if self.mode == Mode::Arming && self.proven && !findings.lies {
+        } else if self.mode == Mode::Arming && self.may_run(findings) {
             (self.mode, self.cause) = (Mode::Watching, None);
         }
     }
@@ -109,6 +111,11 @@ impl Safety {
     /// Whether a trip waits for an order to clear.
     pub fn is_latched(&self) -> bool {
         matches!(self.mode, Mode::Dropped | Mode::Faulted)
+    }
+
+    /// Whether it is proven to float, and nothing speaks against it.
+    fn may_run(&self, findings: &Findings) -> bool {
+        self.proven && findings.sees_all && !findings.lies
     }
 
     /// The first cause stays.

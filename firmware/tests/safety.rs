@@ -61,6 +61,8 @@ struct Input {
     tested: bool,
     faulted: bool,
     clears: bool,
+    /// Each channel that is fitted gives values of its own.
+    sees_all: bool,
 }
 
 fn inputs() -> Vec<Input> {
@@ -72,7 +74,7 @@ fn inputs() -> Vec<Input> {
             Some(Cause::Whirl),
             Some(Cause::Contact),
         ] {
-            for bits in 0..1 << 7 {
+            for bits in 0..1 << 8 {
                 let bit = |at: u8| bits >> at & 1 != 0;
                 all.push(Input {
                     reading,
@@ -84,6 +86,7 @@ fn inputs() -> Vec<Input> {
                     faulted: bit(4),
                     clears: bit(5),
                     still: bit(6),
+                    sees_all: bit(7),
                 });
             }
         }
@@ -136,13 +139,18 @@ impl World {
             danger: self.beyond.count_ones() >= 3,
             lost: self.lost >= WINDOW,
             off: self.off >= OFF,
-            // A window with a sample beyond or without one completes no proof.
-            floats: input.shows && self.beyond == 0 && self.lost == 0 && self.off == 0,
+            // A window with a sample beyond or without one completes no proof, nor does one of which a sensor does not work.
+            floats: input.shows
+                && input.sees_all
+                && self.beyond == 0
+                && self.lost == 0
+                && self.off == 0,
         };
         let before = self;
         self.safety.step(&Findings {
             guard,
             told: input.told,
+            sees_all: input.sees_all,
             faulted: input.faulted,
             tested: input.tested,
             lies: input.lies,
@@ -185,6 +193,9 @@ impl World {
         }
         if run && !self.shown {
             because("runs without proof");
+        }
+        if run && !before.outputs(false).run && !input.sees_all {
+            because("begins to run with a sensor that does not work");
         }
         if run && self.latched.is_some() {
             because("runs after a latch without an order");
@@ -276,6 +287,8 @@ struct Stretch {
     sees: bool,
     levitated: Option<bool>,
     clears: bool,
+    /// A bit for each channel that tells the same count all the time.
+    stuck: u8,
 }
 
 fn stretch() -> impl Strategy<Value = Stretch> {
@@ -289,14 +302,16 @@ fn stretch() -> impl Strategy<Value = Stretch> {
     let signal = prop_oneof![6 => Just(None), 3 => Just(Some(true)), 1 => Just(Some(false))];
     let sees = prop::bool::weighted(0.95);
     let clears = prop::bool::weighted(0.3);
-    (place(), place(), 1_u32..6_000, sees, signal, clears).prop_map(
-        |(from, to, samples, sees, levitated, clears)| Stretch {
+    let stuck = prop_oneof![6 => Just(0_u8), 1 => 0_u8..16];
+    (place(), place(), 1_u32..6_000, sees, signal, clears, stuck).prop_map(
+        |(from, to, samples, sees, levitated, clears, stuck)| Stretch {
             from,
             to,
             samples,
             sees,
             levitated,
             clears,
+            stuck,
         },
     )
 }
@@ -315,6 +330,7 @@ proptest! {
         let (mut beyond, mut blind, mut off, mut latched) = (0, 0, 0, false);
         // Lowest height since the last latch, as a part of the gap.
         let mut lowest = f64::INFINITY;
+        let (mut counts, mut still, mut ran) = ([0; 4], [0; 4], false);
         for it in stretches {
             if it.clears && app.clear().is_ok() {
                 latched = false;
@@ -324,8 +340,18 @@ proptest! {
                 let place = [0, 1].map(|axis| it.from[axis] + part * (it.to[axis] - it.from[axis]));
                 let count = |part: f64| (2_048.0 + part * gap * 4_096.0 / 2_000e-6).round() as u16;
                 let [x, y] = place.map(count);
+                // A count of noise.
+                let told = [x, y, x, y].map(|count| count + (number / 3 % 2) as u16);
+                for (at, still) in still.iter_mut().enumerate() {
+                    if it.stuck >> at & 1 == 0 || counts[at] == 0 {
+                        counts[at] = told[at];
+                        *still = 0;
+                    } else {
+                        *still += 1;
+                    }
+                }
                 let sample = Sample {
-                    counts: [x, y, x, y],
+                    counts,
                     valid: if it.sees { 0b1111 } else { 0 },
                     spin: None,
                     levitated: it.levitated,
@@ -333,21 +359,25 @@ proptest! {
                 };
                 app.take(&mut board, &sample, false, 0, &mut notices);
                 let shown = app.shown();
-                // A count is 0.0016 of the gap.
-                let is_beyond = it.sees && place[0].hypot(place[1]) > 0.672;
+                // As plane a reads; a count is 0.0016 of the gap.
+                let [x, y] = [counts[0], counts[1]]
+                    .map(|it: u16| (f64::from(it) - 2_048.0) * 2_000e-6 / 4_096.0 / gap);
+                let is_beyond = it.sees && x.hypot(y) > 0.672;
                 beyond = if is_beyond { beyond + 1 } else if it.sees { 0 } else { beyond };
                 blind = if it.sees { 0 } else { blind + 1 };
                 off = if it.levitated == Some(false) { off + 1 } else { 0 };
                 if it.sees {
-                    lowest = lowest.min(place[1]);
+                    lowest = lowest.min(y);
                 }
                 if shown.outputs.run {
+                    prop_assert!(ran || still.iter().all(|it| *it < 400), "begins to run with a stuck channel");
                     prop_assert!(beyond < 20, "runs beyond danger");
                     prop_assert!(blind < 20, "runs blind");
                     prop_assert!(off < 3, "runs with levitation off");
                     prop_assert!(!latched, "runs after a latch without an order");
                     prop_assert!(lowest < 0.26, "runs without having been lower");
                 }
+                ran = shown.outputs.run;
                 if matches!(shown.mode, Mode::Dropped | Mode::Faulted) && !latched {
                     (latched, lowest) = (true, f64::INFINITY);
                 }

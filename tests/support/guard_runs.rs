@@ -9,6 +9,8 @@ use crate::touch_runs::touches;
 
 /// Longest time from a reading beyond a limit to outputs that are off, s.
 const ANSWER: f64 = 1e-3;
+/// A count, m.
+const COUNT: f64 = 2_000e-6 / 4_096.0;
 /// Samples of a millisecond at 20 kHz.
 const MILLISECOND: usize = 20;
 /// Speed below which a rotor lies still, m/s, and how long it has to, s.
@@ -28,7 +30,7 @@ struct Kind {
 }
 
 /// Cycles in contact above all: a tenth of the runs for each other family.
-const FAMILIES: [Kind; 7] = [
+const FAMILIES: [Kind; 8] = [
     Kind {
         name: "cycles, told wrong by up to 30 %: never runs in contact",
         part: 1,
@@ -65,6 +67,12 @@ const FAMILIES: [Kind; 7] = [
             Some(cycle(rng, &told, true, false, 0.0))
         },
         undecided: "likewise",
+    },
+    Kind {
+        name: "lifts, told wrong by up to 30 %, an end stays down, its sensors get stuck: never runs",
+        part: 10,
+        judged: |rng| Some(stuck_lift(rng)),
+        undecided: "",
     },
     Kind {
         name: "drops out of wander, slow roll, drift: off at the limit",
@@ -206,6 +214,52 @@ fn cycle(rng: &mut Rng, told: &Told, is_near: bool, apart: bool, gravity: f64) -
     }
     if is_near && !cleared {
         return Verdict::Undecided;
+    }
+    Verdict::Held
+}
+
+/// One end is lifted and the other stays down. A channel or both of it get stuck before or in the lift: at the told centre, where
+/// they are, or anywhere.
+fn stuck_lift(rng: &mut Rng) -> Verdict {
+    let machine = machine(rng);
+    let part = rng.any(&[0.0, 0.3]);
+    let told = Told::wrong(rng, part);
+    let rate = rng.any(&[10_000.0, 20_000.0]);
+    let rest = rng.uniform(0.3, 0.8);
+    let lift = rng.uniform(0.05, 0.4);
+    let (float, disturbances) = (0.8, Vec::new());
+    let time = rest + lift + float;
+    let lifted = [
+        Phase::Rest { time: rest },
+        Phase::Lift { time: lift },
+        Phase::Float {
+            time: float,
+            disturbances,
+        },
+    ];
+    let mut run =
+        Run::new(&machine, &lifted, &told, rate).with_other_end(&machine, &[Phase::Rest { time }]);
+    let in_lift = rest + lift * rng.uniform(0.0, 1.0);
+    let at = rng.any(&[0.0, rest, in_lift]);
+    let channels = rng.any(&[&[2][..], &[3], &[2, 3]]);
+    let far = machine.gap / COUNT;
+    let anywhere = rng.uniform(-far, far);
+    let value = rng.any(&[Some(0.0), None, Some(anywhere)]);
+    let mut number = 0_u32;
+    while let Some((truth, shown)) = run.step(machine.spin) {
+        if shown.outputs.run {
+            return Verdict::Failed(format!(
+                "runs at {:.4} s, channels {channels:?} stuck since {at:.4} s at {value:?} of {far:.0} counts",
+                truth.time
+            ));
+        }
+        if f64::from(number) >= at * rate && run.stuck == [None; 4] {
+            for &channel in channels {
+                let count = value.map(|it| (2_048.0 + it).round() as u16);
+                run.stuck[channel] = Some(count.unwrap_or(run.counts[channel]));
+            }
+        }
+        number += 1;
     }
     Verdict::Held
 }

@@ -73,12 +73,16 @@ pub struct Run {
     pub has_signal: bool,
     /// The sensors.
     pub chain: Chain,
+    /// Channels that tell the same count all the time.
+    pub stuck: [Option<u16>; 4],
     rate: f64,
     told_gap: f64,
     /// Readings of the last sample, as parts of the told gap: of each plane, and of that farther out.
     pub readings: [f64; 2],
     /// Likewise.
     pub reading: f64,
+    /// Of the last sample.
+    pub counts: [u16; 4],
     /// Of the last sample.
     pub notices: Notices,
 }
@@ -113,10 +117,12 @@ impl Run {
             plants: (Plant::new(machine, phases), None),
             has_signal: false,
             chain,
+            stuck: [None; 4],
             rate,
             told_gap,
             readings: [0.0; 2],
             reading: 0.0,
+            counts: [0; 4],
             notices: Notices::new(),
         }
     }
@@ -143,7 +149,11 @@ impl Run {
             truth.in_contact |= other.in_contact;
             truth.afloat &= other.afloat;
         }
-        let counts = self.chain.counts_of(places);
+        let mut counts = self.chain.counts_of(places);
+        for (count, stuck) in counts.iter_mut().zip(self.stuck) {
+            *count = stuck.unwrap_or(*count);
+        }
+        self.counts = counts;
         let sample = Sample {
             counts,
             valid: 0b1111,

@@ -68,6 +68,8 @@ pub struct MonitorState {
     pub(crate) health: HealthState,
     pub(crate) tachometers: TachometersState,
     planes: PlanePositions,
+    /// Whether a channel that is fitted gave no value of its own.
+    lacks: bool,
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,
     pub(crate) spin: SpinState,
@@ -138,7 +140,7 @@ impl Monitor {
         notices: &mut Notices,
     ) {
         let places = self.guard(state, sample);
-        self.tell(state, &places, sample.levitated, notices);
+        self.tell(state, &places, sample, notices);
         let seen = if missed {
             self.miss(state, sample)
         } else {
@@ -163,15 +165,17 @@ impl Monitor {
         &self,
         state: &mut MonitorState,
         places: &[Option<[f32; 2]>; PLANES],
-        levitated: Option<bool>,
+        sample: &Sample,
         notices: &mut Notices,
     ) {
         notices.clear();
-        let sample = state.samples;
+        let number = state.samples;
+        // No proof comes from a machine of which a sensor does not work.
+        let believed = if state.lacks { &[None; PLANES] } else { places };
         let guard = &mut state.guard;
-        self.guard.follow(guard, places, levitated, sample, notices);
+        self.guard.follow(guard, believed, sample, number, notices);
         self.touches
-            .update(&mut state.touch, places, sample, notices);
+            .update(&mut state.touch, places, number, notices);
     }
 
     /// Third part: what the sensors say, and whether they can be believed.
@@ -200,6 +204,7 @@ impl Monitor {
         } else {
             [None; PLANES]
         };
+        state.lacks = reading.unusable != 0;
         state.faults += u64::from(reading.unusable.count_ones());
         let signals = Signals {
             spin,
@@ -299,6 +304,11 @@ impl MonitorState {
     pub fn places(&self) -> Option<[[f32; 2]; PLANES]> {
         let [a, b] = self.planes;
         Some([a.or(b)?, b.or(a)?])
+    }
+
+    /// Whether each channel that is fitted gives values of its own.
+    pub fn sees_all(&self) -> bool {
+        !self.lacks
     }
 
     /// What can be had of each channel.

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::{Alarm, Level, Notice, Notices, Plane, Touch};
 use touchdown_core::guard::{Guard, GuardConfig, GuardState, Verdict};
+use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::touch::{TouchState, Touches};
 
 const GAP: f32 = 0.3e-3;
@@ -17,6 +18,8 @@ struct Bench {
     alarms: Vec<Alarm>,
     touches: Vec<Touch>,
     sample: u64,
+    /// A bit for each channel that tells the same count all the time.
+    stuck: u8,
 }
 
 fn detector(rate: f32, gravity: f32) -> DetectorConfig {
@@ -48,6 +51,7 @@ impl Bench {
             alarms: Vec::new(),
             touches: Vec::new(),
             sample: 0,
+            stuck: 0,
         }
     }
 
@@ -59,11 +63,21 @@ impl Bench {
     fn planes(&mut self, planes: [Option<[f32; 2]>; 2], levitated: Option<bool>) {
         let places = planes.map(|it| it.map(|place| place.map(|part| part * GAP)));
         self.guard.update(&mut self.state, places, levitated);
+        // What the places are from has a count of noise.
+        let noise = (self.sample / 3 % 2) as u16;
+        let counts =
+            [0, 1, 2, 3].map(|at| 2_048 + if self.stuck >> at & 1 == 0 { noise } else { 0 });
         let mut notices = Notices::new();
         self.guard.follow(
             &mut self.state,
             &places,
-            levitated,
+            &Sample {
+                counts,
+                valid: 0b1111,
+                spin: None,
+                levitated,
+                edges: [None; TACHOMETERS],
+            },
             self.sample,
             &mut notices,
         );
@@ -208,6 +222,33 @@ fn a_lift_is_a_proof_and_nothing_that_lies_is() {
     // A wall that is told far too wide reads within all limits: what lies there is not lifted.
     let mut bench = Bench::rig();
     assert!(!bench.stay([0.0, -0.43], 40_000));
+}
+
+/// At the told centre it would be the best of proofs.
+#[test]
+fn a_channel_that_is_not_seen_to_work_proves_nothing() {
+    for stuck in 1..1 << 4 {
+        let mut bench = Bench::rig();
+        bench.stay([0.0, -1.0], 5_000);
+        bench.go([0.0, -1.0], [0.0; 2], 2_000);
+        bench.stuck = stuck;
+        assert!(!bench.stay([0.0; 2], 40_000), "{stuck:b}");
+        bench.stuck = 0;
+        assert!(bench.stay([0.0; 2], 4_100), "{stuck:b}");
+    }
+    // One that stops late in a stay; one that is not fitted.
+    let mut bench = Bench::rig();
+    bench.stay([0.0, -1.0], 5_000);
+    let proven = (0..100).any(|_| {
+        bench.stuck = 0;
+        let early = bench.stay([0.0; 2], 1_600);
+        bench.stuck = 0b0100;
+        early | bench.stay([0.0; 2], 400)
+    });
+    assert!(!proven);
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
+    bench.guard = Guard::try_new(&config, &machine, 0b0011, false).expect("a valid configuration");
+    assert!(bench.stay([0.0; 2], 4_100));
 }
 
 /// Lies, as it reads with zero and gain told wrong, is lifted and drops: danger is told where 0.67 of what is told is

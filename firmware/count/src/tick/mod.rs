@@ -131,8 +131,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let (monitor, state) = app.monitor();
         let (places, guard) = counter.count(|| monitor.guard(state, sample));
         let places = black_box(&places);
-        let ((), told) =
-            counter.count(|| monitor.tell(state, places, sample.levitated, &mut notices));
+        let ((), told) = counter.count(|| monitor.tell(state, places, sample, &mut notices));
         let (seen, sensing) = counter.count(|| monitor.sense(state, sample));
         let seen = black_box(&seen);
         let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));

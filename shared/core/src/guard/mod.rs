@@ -14,7 +14,7 @@ use self::proof::Proof;
 pub use self::proof::ProofState;
 use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
-use crate::sample::count_in_a_row;
+use crate::sample::{Sample, count_in_a_row};
 use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sqrt;
@@ -191,24 +191,27 @@ impl Guard {
         self.limits.beyond(&it.limits)
     }
 
-    /// What follows from a tick and needs not be on time, in the same `sample`: proof, and the next alarm.
+    /// What follows from a tick and needs not be on time, in the same `sample` of this `number`: proof, and the next
+    /// alarm.
     #[inline]
     pub fn follow(
         &self,
         state: &mut GuardState,
         places: &[Option<[f32; 2]>; PLANES],
-        levitated: Option<bool>,
-        sample: u64,
+        sample: &Sample,
+        number: u64,
         notices: &mut Notices,
     ) {
-        let floats = self.proof.take(&mut state.proof, places, levitated);
+        let (counts, levitated) = (&sample.counts, sample.levitated);
+        let proof = &mut state.proof;
+        let floats = self.proof.take(proof, places, counts, levitated);
         state.verdict.floats = floats && !state.is_alert;
         let [a, b] = &mut state.planes;
         if a.alarms != 0 {
             b.late += u8::from(b.alarms != 0);
-            self.tell(a, Plane::A, sample, notices);
+            self.tell(a, Plane::A, number, notices);
         } else if b.alarms != 0 {
-            self.tell(b, Plane::B, sample, notices);
+            self.tell(b, Plane::B, number, notices);
         }
     }
 
