@@ -71,7 +71,7 @@ impl Safety {
         if self.mode == Mode::SelfTest && findings.tested {
             let cause = self.cause.filter(|_| self.whirls());
             (self.mode, self.cause) = (Mode::Arming, cause.or(Some(Cause::NoProof)));
-        } else if self.mode == Mode::Arming && self.may_run(findings) {
+        } else if self.mode == Mode::Arming && self.proven && findings.sees_all && !findings.lies {
             (self.mode, self.cause) = (Mode::Watching, None);
         }
     }
@@ -111,11 +111,6 @@ impl Safety {
     /// Whether a trip waits for an order to clear.
     pub fn is_latched(&self) -> bool {
         matches!(self.mode, Mode::Dropped | Mode::Faulted)
-    }
-
-    /// Whether it is proven to float, and nothing speaks against it.
-    fn may_run(&self, findings: &Findings) -> bool {
-        self.proven && findings.sees_all && !findings.lies
     }
 
     /// The first cause stays.
