@@ -286,7 +286,7 @@ impl Track {
             self.stiffness = (self.stiffness + self.stiffness_variance * scale * left).max(0.0);
         }
         let is_clear = self.stiffness * self.stiffness > CLEAR * CLEAR * self.stiffness_variance;
-        let more = if is_clear {
+        let more = if is_clear || self.applied > 0.0 {
             self.stiffness - self.applied
         } else {
             0.0
