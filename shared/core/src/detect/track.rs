@@ -434,10 +434,11 @@ mod tests {
     const VELOCITY: [f32; 2] = [0.02, -0.01];
 
     /// A rotor whose shaft circles around its centre of mass with this offset (m) at first, in a flight of `samples` without
-    /// gravity, by magnets of this stiffness over the mass (1/s^2): the track, and offset and velocity at its end.
+    /// gravity, by magnets of this stiffness over the mass (1/s^2), which is told so, and known to so much: the track, and
+    /// offset and velocity at its end.
     fn flight(
         offset: [f32; 2],
-        (stiffness, spread): (f32, f32),
+        (stiffness, told, spread): (f32, f32, f32),
         samples: u16,
         seed: &mut u64,
     ) -> (Track, [[f32; 2]; 2]) {
@@ -464,7 +465,7 @@ mod tests {
                 let pull = Pull {
                     acceleration: [0.0; 2],
                     error: 5.0,
-                    stiffness: 0.0,
+                    stiffness: told,
                     stiffness_variance: spread * spread,
                     is_shown: true,
                 };
@@ -485,8 +486,12 @@ mod tests {
             let (mut of_offset, mut of_velocity, mut largest) = (0.0, 0.0, 0.0_f32);
             for k in 0..200_u16 {
                 let (sin, cos) = libm::sincosf(f32::from(k));
-                let (track, [truth, moves]) =
-                    flight([4e-6 * cos, 4e-6 * sin], (0.0, 0.0), samples, &mut seed);
+                let (track, [truth, moves]) = flight(
+                    [4e-6 * cos, 4e-6 * sin],
+                    (0.0, 0.0, 0.0),
+                    samples,
+                    &mut seed,
+                );
                 let [x, y] = less(track.offset, truth);
                 let [u, v] = less(track.velocity, moves);
                 let [_, velocity, _, offset] = track.variances;
@@ -514,7 +519,7 @@ mod tests {
                 for k in 0..200_u16 {
                     let (sin, cos) = libm::sincosf(f32::from(k));
                     let offset = [unbalance * cos, unbalance * sin];
-                    let (track, _) = flight(offset, (stiffness, 1e5), 160, &mut seed);
+                    let (track, _) = flight(offset, (stiffness, 0.0, 1e5), 160, &mut seed);
                     let off = track.stiffness - stiffness;
                     error += off * off / (200.0 * track.stiffness_variance);
                     assert!(track.variances.iter().all(|&it| it > 0.0));
@@ -525,6 +530,17 @@ mod tests {
                     "{stiffness} {unbalance}: {error}"
                 );
             }
+        }
+    }
+
+    /// Magnets that pulled before and do so no more: what is applied goes down with what is found.
+    #[test]
+    fn magnets_are_followed_down() {
+        let mut seed = 1;
+        for _ in 0..50 {
+            let (track, _) = flight([0.0; 2], (0.0, 1e5, 1e5), 160, &mut seed);
+            assert!(track.stiffness < 4e4, "{}", track.stiffness);
+            assert!(track.applied < track.stiffness + 1.0, "{}", track.applied);
         }
     }
 }
