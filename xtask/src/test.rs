@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::io::{self, BufRead, BufReader};
-use std::thread;
 
 use anyhow::{Context, ensure};
 
@@ -12,14 +11,11 @@ use crate::workspace;
 
 /// Runs all tests; fails if one fails or if a layer ran none.
 pub fn run() -> anyhow::Result<()> {
-    // There is one rig: a test that waits for it holds a thread, so there is a thread more than cores.
-    let threads = thread::available_parallelism()?.get() + 1;
     // One pipe for both, so that cargo's headings stay before the results below them.
     let (reader, writer) = io::pipe()?;
     let mut cargo = default_cargo();
     cargo
         .args(["test", "--workspace", "--no-fail-fast"])
-        .env("RUST_TEST_THREADS", threads.to_string())
         .current_dir(workspace())
         .stdout(writer.try_clone()?)
         .stderr(writer);

@@ -434,8 +434,8 @@ mod tests {
     const VELOCITY: [f32; 2] = [0.02, -0.01];
 
     /// A rotor whose shaft circles around its centre of mass with this offset (m) at first, in a flight of `samples` without
-    /// gravity, by magnets of this stiffness over the mass (1/s^2), which is told so, and known to so much: the track, and
-    /// offset and velocity at its end.
+    /// gravity: the track, and offset and velocity at its end. Of the magnets: stiffness over the mass, what the track takes it
+    /// for at first, and how well it is known (1/s^2).
     fn flight(
         offset: [f32; 2],
         (stiffness, told, spread): (f32, f32, f32),
