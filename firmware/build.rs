@@ -6,10 +6,11 @@ use std::fs;
 use std::path::Path;
 
 /// What starts on the chip; `touchdown-tick` never does.
-const IMAGES: [&str; 4] = [
+const IMAGES: [&str; 5] = [
     "touchdown-firmware",
     "touchdown-qemu",
     "touchdown-crash",
+    "touchdown-count-tick",
     "touchdown-g474",
 ];
 

@@ -1,4 +1,4 @@
-//! Names the linker scripts and the compiler, for the target only.
+//! Names the linker's scripts and the compiler, for the target only.
 
 use std::env;
 use std::error::Error;
@@ -9,11 +9,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
         return Ok(());
     }
-    // Counts of instructions belong to the compiler that made them.
     let compiler = Command::new(env::var("RUSTC")?).arg("--version").output()?;
     println!(
         "cargo::rustc-env=COMPILER={}",
         String::from_utf8(compiler.stdout)?.trim()
+    );
+    // Of the memory map, which is the workspace's.
+    println!(
+        "cargo::rustc-link-search={}/../..",
+        env::var("CARGO_MANIFEST_DIR")?
     );
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
     println!("cargo::rustc-link-arg-bins=-Tdefmt.x");

@@ -25,7 +25,6 @@ struct Image {
 }
 
 const FIRMWARE: &str = "touchdown-firmware";
-const COUNT: &str = "touchdown-count";
 /// Small below the tick, fast in it.
 const PROFILE: &str = "firmware";
 /// As fast as can be: for what the model costs.
@@ -40,8 +39,8 @@ const IMAGES: [Image; 6] = [
     image(FIRMWARE, "touchdown-firmware", PROFILE),
     image(FIRMWARE, "touchdown-qemu", PROFILE),
     image(FIRMWARE, "touchdown-crash", PROFILE),
-    image(COUNT, "touchdown-count-tick", PROFILE),
-    image(COUNT, "touchdown-count", FASTEST),
+    image(FIRMWARE, "touchdown-count-tick", PROFILE),
+    image("touchdown-count", "touchdown-count", FASTEST),
 ];
 /// The budget looks at it; without a stack, as it is never run.
 const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
@@ -88,10 +87,10 @@ pub const PLANTED: &str = "planted";
 pub fn build_planted() -> anyhow::Result<()> {
     let planted = images().join(PLANTED);
     fs::create_dir_all(&planted).context("cannot make a folder for images")?;
-    for image in [NEVER_RUN, image(COUNT, "touchdown-count-tick", PROFILE)] {
-        cargo(&image, &["--features", "plants"])?;
-        let built = images().join(image.name);
-        fs::copy(built, planted.join(image.name)).context("cannot copy an image")?;
+    for name in [NEVER_RUN.name, "touchdown-count-tick"] {
+        cargo(&image(FIRMWARE, name, PROFILE), &["--features", "plants"])?;
+        let built = images().join(name);
+        fs::copy(built, planted.join(name)).context("cannot copy an image")?;
     }
     Ok(())
 }

@@ -5,9 +5,9 @@ use core::hint::black_box;
 
 use touchdown_rotor::real::{Micro32, Poly32, Poly64, Real};
 
-use touchdown_firmware::board::qemu::Counter;
+use touchdown_count::counter::Counter;
 
-use crate::table::{Name, Table, Tally};
+use touchdown_count::table::{Name, Table, Tally};
 
 /// Arguments in a set.
 const ARGUMENTS: usize = 61;

@@ -6,20 +6,25 @@ use heapless::String;
 use semihosting::fs::File;
 use semihosting::io::Write as _;
 
+/// Counts of instructions belong to the compiler that made them.
+pub const COMPILER: &str = env!("COMPILER");
+
 const LINE_BYTES: usize = 160;
 
 /// Calls of a kind.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Tally {
-    pub(crate) calls: u32,
+pub struct Tally {
+    /// How many.
+    pub calls: u32,
     /// Instructions.
-    pub(crate) sum: u64,
+    pub sum: u64,
     /// Instructions of one call.
-    pub(crate) worst: u32,
+    pub worst: u32,
 }
 
 impl Tally {
-    pub(crate) fn add(&mut self, instructions: u32) {
+    /// One call more.
+    pub fn add(&mut self, instructions: u32) {
         self.calls += 1;
         self.sum += u64::from(instructions);
         self.worst = self.worst.max(instructions);
@@ -28,21 +33,30 @@ impl Tally {
 
 /// The number format and its functions, as a scene names them.
 #[derive(Clone, Copy)]
-pub(crate) struct Name {
-    pub(crate) precision: &'static str,
-    pub(crate) math: &'static str,
+pub struct Name {
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// Whose functions.
+    pub math: &'static str,
 }
 
 /// The file of counts.
-pub(crate) struct Table(File);
+pub struct Table(File);
 
 impl Table {
     /// Of that name.
-    pub(crate) fn create(name: &core::ffi::CStr) -> Self {
+    ///
+    /// # Panics
+    /// Where the folder cannot be written.
+    pub fn create(name: &core::ffi::CStr) -> Self {
         Self(File::create(name).expect("a writable folder"))
     }
 
-    pub(crate) fn line(&mut self, text: core::fmt::Arguments<'_>) {
+    /// Writes a line.
+    ///
+    /// # Panics
+    /// Where the file cannot be written.
+    pub fn line(&mut self, text: core::fmt::Arguments<'_>) {
         let mut line: String<LINE_BYTES> = String::new();
         writeln!(line, "{text}").expect("longer than any line of the table");
         self.0.write_all(line.as_bytes()).expect("a writable file");

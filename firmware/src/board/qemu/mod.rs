@@ -4,7 +4,6 @@
 //! TIM2's interrupt gives a sample each period, in emulated time: by default only once all that follows from the one
 //! before is done, so that any rate gives the same bits on any desktop; in real time whatever becomes of it.
 
-mod counter;
 mod files;
 mod line;
 mod name;
@@ -23,7 +22,6 @@ use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{Record, ReplayHead, Switching};
 
-pub use self::counter::Counter;
 use self::files::{Answer, Files, Replay};
 use self::line::{Bytes, Wire};
 use self::nor::NorFile;

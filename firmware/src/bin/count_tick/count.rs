@@ -5,8 +5,6 @@
 //! little more or less than the whole, which the compiler optimises as one. Where there is a file `streams.bin`, the
 //! streams that it describes are played in their place, once.
 
-mod scenes;
-
 use core::hint::black_box;
 use core::mem::MaybeUninit;
 
@@ -17,10 +15,9 @@ use touchdown_core::event::{Notice, Notices};
 use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 
-use self::scenes::{NUMBERS, SCENES, Scene};
-use touchdown_firmware::board::qemu::Counter;
-
-use crate::table::{Table, Tally};
+use crate::scenes::{NUMBERS, SCENES, Scene};
+use touchdown_count::counter::Counter;
+use touchdown_count::table::{COMPILER, Table, Tally};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::Board;
 use touchdown_firmware::intake::Ring;
@@ -59,7 +56,7 @@ impl Memory {
 pub fn main(memory: &'static mut Memory) -> ! {
     let counter = Counter::take();
     let mut table = Table::create(c"tick.csv");
-    table.line(format_args!("compiler,{}", env!("COMPILER")));
+    table.line(format_args!("compiler,{}", COMPILER));
     if let Ok(mut file) = File::open(c"streams.bin") {
         let mut bytes = [[0; 4]; NUMBERS];
         for k in 0_u32.. {
@@ -82,10 +79,9 @@ pub fn main(memory: &'static mut Memory) -> ! {
         let (whole, notices) = whole(&counter, scene, memory);
         write("tick", whole);
         let parts = parts(&counter, scene, memory);
-        PARTS
-            .into_iter()
-            .zip(parts)
-            .for_each(|(part, tally)| write(part, tally));
+        for (part, tally) in PARTS.into_iter().zip(parts) {
+            write(part, tally);
+        }
         table.line(format_args!("notices|{name}|{notices}"));
     }
     semihosting::process::exit(0)

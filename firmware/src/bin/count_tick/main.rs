@@ -2,24 +2,29 @@
 //! The image that counts the instructions of a tick in the emulator; on the desktop it says how to build itself.
 
 #[cfg(target_os = "none")]
+mod count;
+#[cfg(target_os = "none")]
+mod scenes;
+
+#[cfg(target_os = "none")]
 mod image {
     use cortex_m_rt::{ExceptionFrame, entry, exception};
     use defmt_semihosting as _;
     use panic_probe as _;
     use stm32f4 as _;
-    use touchdown_count::tick::{self, Memory};
-    use touchdown_firmware::board::qemu;
+
+    use crate::count::{self, Memory};
 
     #[entry]
     fn main() -> ! {
         static mut MEMORY: Memory = Memory::EMPTY;
-        tick::main(MEMORY)
+        count::main(MEMORY)
     }
 
     // The runtime asks for an unsafe function; there is nothing unsafe in it.
     #[exception]
     unsafe fn HardFault(_: &ExceptionFrame) -> ! {
-        qemu::abort()
+        semihosting::process::abort()
     }
 }
 
