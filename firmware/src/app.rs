@@ -181,7 +181,8 @@ impl App {
             self.latch(Fault::Overload);
         }
         // Before the rotor has been proven to float, sensors may come late.
-        let is_blind = self.blind.look(sees) || self.state.guard.verdict.lost;
+        let lost = self.state.guard.verdict.lost && self.safety.is_proven();
+        let is_blind = self.blind.look(sees) || lost;
         if is_blind && (self.safety.is_proven() || self.safety.is_latched()) {
             self.latch(Fault::SensorsLost);
         }

@@ -47,7 +47,8 @@ impl Safety {
     pub fn step(&mut self, findings: &Findings) {
         let guard = beyond(&findings.guard);
         if findings.faulted {
-            self.latch(Mode::Faulted, guard.unwrap_or(Cause::Fault));
+            let cause = guard.filter(|_| self.proven).unwrap_or(Cause::Fault);
+            self.latch(Mode::Faulted, cause);
             return;
         }
         // What has not been proven to float may lie there, to be lifted, and a lift may fail: it does not run.

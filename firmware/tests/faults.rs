@@ -381,23 +381,40 @@ fn sensors_lost_trip_after_1_ms() {
 }
 
 #[test]
-fn one_channel_of_each_plane_lost_is_blindness_and_one_plane_lost_is_not() {
-    let mut bench = Bench::watching();
-    for _ in 0..ARMED {
-        let sample = Sample {
-            valid: 0b0011,
-            ..bench.at([0.0; 2])
-        };
-        assert_eq!(bench.take(&sample, 0) & 1, 1);
+fn one_channel_lost_is_its_plane_lost_which_trips_after_1_ms() {
+    for valid in [0b0111, 0b1110, 0b0101, 0b0011, 0b1100] {
+        let mut bench = Bench::watching();
+        let ticks = ticks_until(BLIND, || {
+            let sample = Sample {
+                valid,
+                ..bench.at([0.0; 2])
+            };
+            bench.take(&sample, 0) == 0
+        });
+        assert_eq!(ticks, BLIND, "{valid:04b}");
+        assert_eq!(bench.cause(), Some(Cause::PositionsLost));
+        assert!(bench.has(Fault::SensorsLost));
     }
-    let ticks = ticks_until(BLIND, || {
-        let sample = Sample {
-            valid: 0b0101,
-            ..bench.at([0.0; 2])
-        };
-        bench.take(&sample, 0) == 0
-    });
-    assert_eq!(ticks, BLIND);
+}
+
+/// Its plane reads as the stillest of rotors, wherever its end is.
+#[test]
+fn one_channel_that_freezes_trips_after_two_looks_of_10_ms() {
+    for channel in 0..4 {
+        let mut bench = Bench::watching();
+        let frozen = bench.at([0.0; 2]).counts[channel];
+        let looks = SAMPLE_RATE_HZ / 50;
+        let ticks = ticks_until(looks, || {
+            let mut sample = bench.at([0.0; 2]);
+            sample.counts[channel] = frozen;
+            bench.take(&sample, 0) & 1 == 0
+        });
+        assert!(ticks >= looks / 2, "{ticks}");
+        assert_eq!(
+            (bench.mode(), bench.cause()),
+            (Mode::Faulted, Some(Cause::PositionsLost))
+        );
+    }
 }
 
 #[test]

@@ -195,7 +195,13 @@ fn lost_after_a_millisecond_and_off_after_three_samples() {
         assert_eq!(bench.verdict().lost, number == 20);
     }
     bench.planes([None, Some([0.0; 2])], Some(true));
-    assert!(!bench.verdict().lost, "one plane sees");
+    assert!(bench.verdict().lost, "one plane is still gone");
+    bench.planes([Some([0.0; 2]); 2], Some(true));
+    assert!(!bench.verdict().lost);
+    for number in 1..=20 {
+        bench.planes([Some([0.0; 2]), None], Some(true));
+        assert_eq!(bench.verdict().lost, number == 20, "one plane is gone");
+    }
     for number in 1..=3 {
         bench.planes([Some([0.0; 2]); 2], Some(false));
         assert_eq!(bench.verdict().off, number == 3);
@@ -249,6 +255,33 @@ fn a_channel_that_is_not_seen_to_work_proves_nothing() {
     let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
     bench.guard = Guard::try_new(&config, &machine, 0b0011, false).expect("a valid configuration");
     assert!(bench.stay([0.0; 2], 4_100));
+}
+
+/// For whoever runs by a proof: at the latest after two looks of 10 ms.
+#[test]
+fn a_channel_that_freezes_is_told_and_one_that_is_not_fitted_is_not() {
+    for stuck in 1..1 << 4 {
+        let mut bench = Bench::rig();
+        bench.stay([0.0; 2], 1_030);
+        assert!(!bench.verdict().lost);
+        bench.stuck = stuck;
+        let told = (1..=400).find(|_| {
+            bench.at([0.0; 2]);
+            bench.verdict().lost
+        });
+        assert!(told.is_some_and(|it| it > 200), "{stuck:b}: {told:?}");
+        bench.stuck = 0;
+        bench.stay([0.0; 2], 400);
+        assert!(!bench.verdict().lost);
+    }
+    let mut bench = Bench::rig();
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
+    bench.guard = Guard::try_new(&config, &machine, 0b0011, false).expect("a valid configuration");
+    bench.stuck = 0b1100;
+    for _ in 0..1_000 {
+        bench.planes([Some([0.0; 2]), None], None);
+        assert!(!bench.verdict().lost);
+    }
 }
 
 /// Lies, as it reads with zero and gain told wrong, is lifted and drops: danger is told where 0.67 of what is told is

@@ -3,12 +3,15 @@
 //!
 //! | file | says |
 //! |---|---|
+//! | `channels` | whether each channel is seen to work |
 //! | `limits` | when a plane is beyond a limit |
 //! | `proof` | whether the rotor has been seen to float |
 
+mod channels;
 mod limits;
 mod proof;
 
+use self::channels::{Channels, ChannelsState};
 use self::limits::{ALERT, BELOW, DANGER, Limits, PlaneLimits};
 use self::proof::Proof;
 pub use self::proof::ProofState;
@@ -19,7 +22,7 @@ use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sqrt;
 
-/// Longest time without a position of any plane, s.
+/// Longest time without a position of a plane that is fitted, s.
 const LOST_TIME: f32 = 1e-3;
 /// Samples with the levitation signal off that are believed.
 const OFF_SAMPLES: u32 = 3;
@@ -63,20 +66,24 @@ pub struct Guard {
     clear_square: f32,
     per_clearance: f32,
     limits: Limits,
+    channels: Channels,
     proof: Proof,
-    lost_samples: u32,
+    /// Which planes are fitted.
+    has: [bool; PLANES],
+    /// Samples without a place that each plane may have in a row; any number where it is not fitted.
+    most_lost: [u32; PLANES],
 }
 
 /// What it carries from sample to sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardState {
     planes: [PlaneState; PLANES],
+    channels: ChannelsState,
     /// Of levitation.
     pub proof: ProofState,
     /// Samples until one counts for the limits.
     wait: u8,
     /// In a row.
-    lost: u32,
     off: u32,
     is_alert: bool,
     /// After the last sample.
@@ -88,6 +95,8 @@ pub struct GuardState {
 struct PlaneState {
     limits: PlaneLimits,
     seen: bool,
+    /// Samples in a row without a place.
+    lost: u32,
     /// Alarms that are still to be told, samples since then, and the square of the distance then, m^2.
     alarms: u32,
     late: u8,
@@ -99,7 +108,7 @@ struct PlaneState {
 pub struct Verdict {
     /// A plane is beyond the danger limit, or on its way back to where it was lifted from.
     pub danger: bool,
-    /// No plane has delivered a position for a millisecond.
+    /// A plane that is fitted has not delivered a position for a millisecond, or a channel told one count for 10 ms.
     pub lost: bool,
     /// The levitation signal is off.
     pub off: bool,
@@ -118,13 +127,17 @@ impl Guard {
     ) -> Result<Self, ConfigError> {
         config.validate()?;
         let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
+        let has = [0b0011, 0b1100].map(|channels| fitted & channels != 0);
+        let most_lost = ((LOST_TIME * rate) as u32).max(2) - 1;
         let limits = Limits::new(config, clearance, rate);
         Ok(Self {
             clear_square: limits.least(),
             per_clearance: 1.0 / clearance,
             limits,
-            proof: Proof::new(config, detector, fitted, commissioned),
-            lost_samples: ((LOST_TIME * rate) as u32).max(2),
+            channels: Channels::new(fitted, rate),
+            proof: Proof::new(config, detector, commissioned),
+            has,
+            most_lost: has.map(|has| if has { most_lost } else { u32::MAX }),
         })
     }
 
@@ -147,13 +160,13 @@ impl Guard {
         let [floor_a, floor_b] = state.proof.floors();
         let [a, b] = places;
         let beyond = self.see(of_a, a, floor_a, counts) | self.see(of_b, b, floor_b, counts);
-        let sees = a.is_some() || b.is_some();
-        count_in_a_row(&mut state.lost, !sees);
+        let [most_a, most_b] = self.most_lost;
+        let lost = of_a.lost > most_a || of_b.lost > most_b;
         count_in_a_row(&mut state.off, levitated == Some(false));
         state.is_alert = beyond & ALERT != 0;
         state.verdict = Verdict {
             danger: beyond & (DANGER | BELOW) != 0,
-            lost: state.lost >= self.lost_samples,
+            lost,
             off: state.off >= OFF_SAMPLES,
             floats: false,
         };
@@ -168,14 +181,17 @@ impl Guard {
             if is_near || !it.seen || !it.limits.is_clear() {
                 return self.look(it, square, y < floor, counts);
             }
+            it.lost = 0;
             return 0;
         }
+        it.lost = it.lost.saturating_add(1);
         self.limits.beyond(&it.limits)
     }
 
     /// Likewise, near a limit, or not long after.
     #[inline(never)]
     fn look(&self, it: &mut PlaneState, square: f32, is_below: bool, counts: bool) -> u32 {
+        it.lost = 0;
         let flags = self.limits.flags(square, is_below);
         if counts {
             let alarms = if it.seen {
@@ -202,10 +218,15 @@ impl Guard {
         number: u64,
         notices: &mut Notices,
     ) {
-        let (counts, levitated) = (&sample.counts, sample.levitated);
-        let proof = &mut state.proof;
-        let floats = self.proof.take(proof, places, counts, levitated);
-        state.verdict.floats = floats && !state.is_alert;
+        self.channels.take(&mut state.channels, &sample.counts);
+        if state.channels.frozen {
+            state.verdict.lost = true;
+            state.proof.restart();
+        } else {
+            let proof = &mut state.proof;
+            let floats = self.proof.take(proof, places, self.has, sample.levitated);
+            state.verdict.floats = floats && !state.is_alert;
+        }
         let [a, b] = &mut state.planes;
         if a.alarms != 0 {
             b.late += u8::from(b.alarms != 0);

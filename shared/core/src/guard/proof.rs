@@ -6,7 +6,6 @@
 
 use super::GuardConfig;
 use crate::config::DetectorConfig;
-use crate::sample::CHANNELS;
 use crate::sensing::PLANES;
 
 /// Time at or below a height that makes it one where the rotor was, s: longer than most bursts of disturbance.
@@ -20,14 +19,12 @@ const HEIGHT: f32 = 0.25;
 const FLOOR: f32 = 0.35;
 /// Part of the clearance that it stays within, of its mean place.
 const SPREAD: f32 = 0.2;
-/// Samples of a turn: each plane's place is taken in one, and judged in another; in one the counts are looked at.
+/// Samples of a turn: each plane's place is taken in one, and judged in another.
 const TURN: u16 = 4;
 
 /// Coefficients; m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proof {
-    /// A bit for each channel.
-    fitted: u8,
     /// Whether weight shows where the rotor lies.
     has_weight: bool,
     commissioned: bool,
@@ -62,9 +59,6 @@ struct PlaneProof {
 pub struct ProofState {
     samples: u16,
     helds: u8,
-    /// Counts at the begin of the present part, and which channels have told another one since then.
-    counts: [u16; CHANNELS],
-    moved: u8,
     planes: [PlaneProof; PLANES],
 }
 
@@ -84,17 +78,11 @@ impl Default for PlaneProof {
 }
 
 impl Proof {
-    pub(super) fn new(
-        config: &GuardConfig,
-        detector: &DetectorConfig,
-        fitted: u8,
-        commissioned: bool,
-    ) -> Self {
+    pub(super) fn new(config: &GuardConfig, detector: &DetectorConfig, commissioned: bool) -> Self {
         let clearance = detector.machine.clearance;
         let turns = ((HELD * detector.sample_rate) as u16 / TURN).max(4);
         let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
-            fitted,
             has_weight: detector.machine.gravity > 0.0,
             commissioned,
             held_samples: TURN * turns,
@@ -105,17 +93,15 @@ impl Proof {
         }
     }
 
-    /// Takes each plane's place, m, and the counts that it is from; whether this sample completes a proof. Every channel
-    /// that is fitted has to deliver, and to be seen to: one that tells the same count throughout may be stuck.
+    /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to deliver.
     #[inline]
     pub(super) fn take(
         &self,
         state: &mut ProofState,
         [a, b]: &[Option<[f32; 2]>; PLANES],
-        counts: &[u16; CHANNELS],
+        has @ [has_a, has_b]: [bool; PLANES],
         levitated: Option<bool>,
     ) -> bool {
-        let [has_a, has_b] = self.has();
         let delivers = (a.is_some() || !has_a) && (b.is_some() || !has_b);
         if !delivers || levitated == Some(false) {
             state.restart();
@@ -128,41 +114,32 @@ impl Proof {
         match (turn, a, b) {
             (0, Some(place), _) => of_a.take(*place, is_new, begins),
             (1, _, Some(place)) => of_b.take(*place, is_new, begins),
-            (2, ..) => {
-                if state.samples + 1 == self.held_samples {
-                    self.judge(of_a);
-                }
-                state.look(counts, is_new);
-            }
+            (2, ..) if state.samples + 1 == self.held_samples => self.judge(of_a),
             (3, ..) if state.samples == self.held_samples => {
                 self.judge(of_b);
-                return self.end_part(state, levitated);
+                return self.end_part(state, has, levitated);
             }
             _ => {}
         }
         false
     }
 
-    /// Which planes are fitted.
-    fn has(&self) -> [bool; PLANES] {
-        [0b0011, 0b1100].map(|channels| self.fitted & channels != 0)
-    }
-
     /// At the end of a part of a stay: whether it completes a proof.
     #[inline(never)]
-    fn end_part(&self, state: &mut ProofState, levitated: Option<bool>) -> bool {
+    fn end_part(
+        &self,
+        state: &mut ProofState,
+        has: [bool; PLANES],
+        levitated: Option<bool>,
+    ) -> bool {
         state.samples = 0;
-        if self.fitted & !state.moved != 0 {
-            state.restart();
-            return false;
-        }
         state.helds += 1;
         if state.helds < HELDS {
             return false;
         }
         state.helds = 0;
         let shows = self.has_weight || self.commissioned && levitated == Some(true);
-        let mut planes = state.planes.iter().zip(self.has());
+        let mut planes = state.planes.iter().zip(has);
         let floats = shows && planes.all(|(it, fitted)| it.floats || !fitted);
         if floats {
             state.planes.iter_mut().for_each(|it| self.put_floor(it));
@@ -236,17 +213,6 @@ impl ProofState {
     pub(super) fn floors(&self) -> [f32; PLANES] {
         let [a, b] = &self.planes;
         [a.floor, b.floor]
-    }
-
-    /// Which channels move.
-    fn look(&mut self, counts: &[u16; CHANNELS], is_new: bool) {
-        if is_new {
-            (self.counts, self.moved) = (*counts, 0);
-        }
-        let pairs = counts.iter().zip(&self.counts).enumerate();
-        self.moved |= pairs.fold(0, |all, (at, (now, then))| {
-            all | u8::from(now != then) << at
-        });
     }
 
     /// As if the rotor had been seen far below.
