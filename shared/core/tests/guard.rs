@@ -284,6 +284,20 @@ fn a_channel_that_freezes_is_told_and_one_that_is_not_fitted_is_not() {
     }
 }
 
+/// Without a plane nothing would be asked of a proof.
+#[test]
+fn fitted_are_whole_planes_and_one_at_least() {
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
+    for fitted in 0..=u8::MAX {
+        let is_taken = Guard::try_new(&config, &machine, fitted, false).is_ok();
+        assert_eq!(
+            is_taken,
+            [0b0011, 0b1100, 0b1111].contains(&fitted),
+            "{fitted:b}"
+        );
+    }
+}
+
 /// Lies, as it reads with zero and gain told wrong, is lifted and drops: danger is told where 0.67 of what is told is
 /// never reached.
 #[test]

@@ -126,6 +126,12 @@ impl Guard {
         commissioned: bool,
     ) -> Result<Self, ConfigError> {
         config.validate()?;
+        if !matches!(fitted, 0b0011 | 0b1100 | 0b1111) {
+            return Err(ConfigError::OutOfRange(
+                "fitted",
+                "both channels of one plane or of two",
+            ));
+        }
         let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
         let has = [0b0011, 0b1100].map(|channels| fitted & channels != 0);
         let most_lost = ((LOST_TIME * rate) as u32).max(2) - 1;
