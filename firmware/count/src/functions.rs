@@ -3,30 +3,28 @@
 use core::f64::consts::{FRAC_PI_4, PI, TAU};
 use core::hint::black_box;
 
-use touchdown_rotor::real::{Micro32, Poly32, Poly64, Real};
+use touchdown_rotor::real::Real;
 
-use touchdown_count::counter::Counter;
+use touchdown_counter::counter::Counter;
 
-use touchdown_count::table::{Name, Table, Tally};
+use touchdown_counter::table::{Name, Table, Tally};
 
 /// Arguments in a set.
 const ARGUMENTS: usize = 61;
 
-pub(super) fn count(counter: &Counter, table: &mut Table) {
-    let name = |precision, math| Name { precision, math };
-    of_number::<f32>(counter, table, name("f32", "libm"));
-    of_number::<Poly32>(counter, table, name("f32", "polynomial"));
-    of_number::<Micro32>(counter, table, name("f32", "micromath"));
-    of_number::<f64>(counter, table, name("f64", "libm"));
-    of_number::<Poly64>(counter, table, name("f64", "polynomial"));
-    // For comparison only: no number uses it.
-    let name = name("f32", "micromath");
+/// For comparison only: no number uses it.
+pub(super) fn own_sqrt(counter: &Counter, table: &mut Table) {
+    let name = Name {
+        precision: "f32",
+        math: "micromath",
+    };
     let own_sqrt = |x: f32| micromath::F32(x).sqrt().0;
     let one = |x: f32, y| [x, 0.0, y, 0.0];
     of_function(counter, table, name, "own sqrt", sizes(), own_sqrt, one);
 }
 
-fn of_number<R: Real>(counter: &Counter, table: &mut Table, name: Name) {
+/// All functions of one kind of number.
+pub(super) fn of_number<R: Real>(counter: &Counter, table: &mut Table, name: Name) {
     let one = |x: R, y: R| [x, R::ZERO, y, R::ZERO];
     // What handing over argument and result takes is part of every row.
     of_function(counter, table, name, "identity", sizes(), |x| x, one);

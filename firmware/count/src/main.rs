@@ -18,8 +18,8 @@ mod image {
     use defmt_semihosting as _;
     use panic_probe as _;
     use semihosting::process;
-    use touchdown_count::counter::Counter;
-    use touchdown_count::table::{COMPILER, Name, Table};
+    use touchdown_counter::counter::Counter;
+    use touchdown_counter::table::{COMPILER, Name, Table};
     use touchdown_rotor::real::{Micro32, Poly32, Poly64};
     use touchdown_rotor::{Precision, Rigid};
 
@@ -31,22 +31,20 @@ mod image {
         let counter = Counter::take();
         let mut table = Table::create(c"counts.csv");
         table.line(format_args!("compiler,{}", COMPILER));
-        functions::count(&counter, &mut table);
-        drops(&counter, &mut table);
+        let (of, to) = (&counter, &mut table);
+        let name = |precision, math| Name { precision, math };
+        of_number::<f32>(of, to, name("f32", "libm"));
+        of_number::<Poly32>(of, to, name("f32", "polynomial"));
+        of_number::<Micro32>(of, to, name("f32", "micromath"));
+        of_number::<f64>(of, to, name("f64", "libm"));
+        of_number::<Poly64>(of, to, name("f64", "polynomial"));
+        functions::own_sqrt(of, to);
         process::exit(0)
     }
 
-    fn drops(counter: &Counter, table: &mut Table) {
-        let name = |precision, math| Name { precision, math };
-        of_number::<f32>(counter, table, name("f32", "libm"));
-        of_number::<Poly32>(counter, table, name("f32", "polynomial"));
-        of_number::<Micro32>(counter, table, name("f32", "micromath"));
-        of_number::<f64>(counter, table, name("f64", "libm"));
-        of_number::<Poly64>(counter, table, name("f64", "polynomial"));
-    }
-
-    /// Every model in one kind of number.
+    /// The functions, and every model, in one kind of number.
     fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+        functions::of_number::<R>(counter, table, name);
         for step in STEPS {
             let run = Run {
                 counter,

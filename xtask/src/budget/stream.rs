@@ -15,7 +15,7 @@ pub const FILE: &str = "firmware/corpus.toml";
 /// A number of a description: its name, the lowest and the highest, and whether it is whole.
 type Field = (&'static str, f32, f32, bool);
 
-/// In the order in which the image takes them (`firmware/count/src/tick/scenes.rs`), SI; times in samples.
+/// In the order in which the image takes them (`firmware/src/bin/count_tick/scenes.rs`), SI; times in samples.
 const FIELDS: [Field; 24] = [
     // Sample at which the first end is released, and how much later the second one is.
     ("release", 3_000.0, 5_500.0, true),

@@ -16,8 +16,8 @@ use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
 use touchdown_protocol::controller::{Faults, Shown};
 
 use crate::scenes::{NUMBERS, SCENES, Scene};
-use touchdown_count::counter::Counter;
-use touchdown_count::table::{COMPILER, Table, Tally};
+use touchdown_counter::counter::Counter;
+use touchdown_counter::table::{COMPILER, Table, Tally};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::Board;
 use touchdown_firmware::intake::Ring;

@@ -127,10 +127,7 @@ impl Guard {
     ) -> Result<Self, ConfigError> {
         config.validate()?;
         if !matches!(fitted, 0b0011 | 0b1100 | 0b1111) {
-            return Err(ConfigError::OutOfRange(
-                "fitted",
-                "both channels of one plane or of two",
-            ));
+            return Err(ConfigError::OutOfRange("fitted", "one plane or two"));
         }
         let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
         let has = [0b0011, 0b1100].map(|channels| fitted & channels != 0);

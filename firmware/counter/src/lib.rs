@@ -1,0 +1,7 @@
+#![no_std]
+//! Counts instructions on the target, and writes the counts to a file of the desktop.
+
+#[cfg(target_os = "none")]
+pub mod counter;
+#[cfg(target_os = "none")]
+pub mod table;
