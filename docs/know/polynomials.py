@@ -68,14 +68,8 @@ COSINE = (cosine_part, lambda z: z**2, QUARTER)
 ARCTANGENT = (odd_part(mp.atan, 1), lambda z: z, EIGHTH)
 AREA_TANGENT = (odd_part(lambda s: 2 * mp.atanh(s), 2), lambda z: z / 2, LOGARITHM)
 
-for name, function, single, double in [
-    ("sin", SINE, 3, 6),
-    ("cos", COSINE, 3, 6),
-    ("atan", ARCTANGENT, 4, 10),
-    ("ln", AREA_TANGENT, 3, 7),
-]:
-    for digits, terms in [(9, single), (17, double)]:
-        coefficients, error = minimax(*function, terms)
-        print(f"{name}, {terms} terms: {mp.nstr(error, 2)}")
-        for value in coefficients:
-            print("   ", mp.nstr(value, digits))
+for name, function, terms in [("sin", SINE, 3), ("cos", COSINE, 3), ("atan", ARCTANGENT, 4), ("ln", AREA_TANGENT, 3)]:
+    coefficients, error = minimax(*function, terms)
+    print(f"{name}, {terms} terms: {mp.nstr(error, 2)}")
+    for value in coefficients:
+        print("   ", mp.nstr(value, 9))

@@ -111,10 +111,8 @@ enum Task {
 
 /// Builds both at once: linking an image keeps one core busy.
 fn images_and_tests() -> anyhow::Result<()> {
-    let mut cargo = toolchain::default_cargo();
-    cargo.args(["test", "--workspace", "--no-run"]);
     thread::scope(|scope| {
-        let tests = scope.spawn(|| toolchain::run(&mut cargo, "the tests do not build"));
+        let tests = scope.spawn(test::build);
         // These first: the others take their names.
         let images = firmware::build_planted().and_then(|()| firmware::build(None));
         images.and(tests.join().expect("it does not panic"))

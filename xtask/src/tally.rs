@@ -66,11 +66,6 @@ impl Tally {
         let empty = self.layers.iter().filter(|(_, count)| **count == 0);
         empty.map(|(name, _)| name.as_str()).collect()
     }
-
-    /// Number of layers seen.
-    pub fn layers(&self) -> usize {
-        self.layers.len()
-    }
 }
 
 fn number_before(text: &str, word: &str) -> u32 {
@@ -128,7 +123,6 @@ test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; fini
     #[test]
     fn only_layers_must_not_be_empty() {
         let tally = tally(OUTPUT);
-        assert_eq!(tally.layers(), 2);
         assert_eq!(tally.empty_layers(), ["analytic.rs"]);
     }
 

@@ -20,7 +20,7 @@ mod image {
     use semihosting::process;
     use touchdown_counter::counter::Counter;
     use touchdown_counter::table::{COMPILER, Name, Table};
-    use touchdown_rotor::real::{Micro32, Poly32, Poly64};
+    use touchdown_rotor::real::{Micro32, Poly32};
     use touchdown_rotor::{Precision, Rigid};
 
     use crate::drop::{Run, STEPS, WHOLE, config};
@@ -37,12 +37,14 @@ mod image {
         of_number::<Poly32>(of, to, name("f32", "polynomial"));
         of_number::<Micro32>(of, to, name("f32", "micromath"));
         of_number::<f64>(of, to, name("f64", "libm"));
-        of_number::<Poly64>(of, to, name("f64", "polynomial"));
+        models::in_rings::<f32>(of, to, name("f32", "libm"));
+        models::in_rings::<Poly32>(of, to, name("f32", "polynomial"));
+        models::in_rings::<f64>(of, to, name("f64", "libm"));
         functions::own_sqrt(of, to);
         process::exit(0)
     }
 
-    /// The functions, and every model, in one kind of number.
+    /// The functions, and every model in the plane, in one kind of number.
     fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
         functions::of_number::<R>(counter, table, name);
         for step in STEPS {
@@ -56,7 +58,7 @@ mod image {
             run.of_model::<R, _>(&rigid.rounded(), rigid.scales())
                 .write(table, "rigid", "launch", &run);
         }
-        models::count::<R>(counter, table, name);
+        models::in_plane::<R>(counter, table, name);
     }
 
     // The runtime asks for an unsafe function; there is nothing unsafe in it.

@@ -16,8 +16,8 @@ const SHORT_STEPS: [u32; 2] = [10, 100];
 /// Speed after a fall through the gap, m/s.
 const FASTEST: f64 = 0.0767;
 
-/// Counts their drops in one kind of number.
-pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+/// Counts the drops of those in the plane in one kind of number.
+pub(super) fn in_plane<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
     let with_step = |step| Run {
         counter,
         name,
@@ -27,22 +27,31 @@ pub(super) fn count<R: Precision>(counter: &Counter, table: &mut Table, name: Na
     for step in STEPS {
         let run = with_step(step);
         let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
-        let scales = moreau.scales();
-        run.of_model::<R, _>(&moreau.rounded(), scales)
+        run.of_model::<R, _>(&moreau.rounded(), moreau.scales())
             .write(table, "moreau", "midpoint", &run);
-        let run = Run {
-            duration: BEGIN,
-            ..run
-        };
-        run.of_model::<R, _>(&support::<R>(step), scales)
-            .write(table, "support", "midpoint", &run);
-        run.of_model::<R, _>(&ends::<R>(step), scales)
-            .write(table, "two-plane", "midpoint", &run);
     }
     for step in SHORT_STEPS {
         let run = with_step(step);
         run.of_hertz::<R, Euler>(table, "euler");
         run.of_hertz::<R, Verlet>(table, "verlet");
+    }
+}
+
+/// Counts the drops of those with rings of their own, in one kind of number.
+pub(super) fn in_rings<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+    for step in STEPS {
+        let run = Run {
+            counter,
+            name,
+            step,
+            duration: BEGIN,
+        };
+        // Their start is their own: of these scales only the spin's counts.
+        let plane = Moreau::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&support::<R>(step), plane.scales())
+            .write(table, "support", "midpoint", &run);
+        run.of_model::<R, _>(&ends::<R>(step), plane.scales())
+            .write(table, "two-plane", "midpoint", &run);
     }
 }
 

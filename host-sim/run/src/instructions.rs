@@ -127,7 +127,7 @@ mod tests {
         let mut model = Scene::load("rig").unwrap().model;
         assert_eq!(model.rung, Fidelity::Rigid);
         for precision in Precision::ALL {
-            for &math in precision.maths() {
+            for &math in model.rung.maths(precision) {
                 model.precision = precision;
                 model.math = math;
                 assert!(Instructions::of(&model).is_some(), "{model:?}");

@@ -234,8 +234,12 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     };
     let math = match table.math.as_deref() {
         None => Math::Libm,
-        Some(name) => named("model", "math", name, precision.maths(), Math::into)?,
+        Some(name) => named("model", "math", name, &Math::ALL, Math::into)?,
     };
+    if !rung.maths(precision).contains(&math) {
+        let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
+        return Err(Diagnostic::new("model", "math", rule));
+    }
     let step = match table.step_us {
         Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),

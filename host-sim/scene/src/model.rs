@@ -64,7 +64,7 @@ pub enum Precision {
 pub enum Math {
     /// The libm crate.
     Libm,
-    /// Own bounded polynomials.
+    /// Own bounded polynomials; single precision only.
     Polynomial,
     /// The micromath crate; single precision only.
     Micromath,
@@ -173,17 +173,24 @@ impl Fidelity {
             Self::Hertz => &[Scheme::Euler, Scheme::Verlet],
         }
     }
+
+    /// The functions that it has in a number format. What would only cost accuracy is left out: own polynomials in f64,
+    /// and micromath in a machine with rings of its own, both of which save no instructions on the target.
+    pub fn maths(self, precision: Precision) -> &'static [Math] {
+        match (self, precision) {
+            (_, Precision::F64) => &[Math::Libm],
+            (Self::Support | Self::TwoPlane | Self::Coupled, _) => &[Math::Libm, Math::Polynomial],
+            _ => &[Math::Libm, Math::Polynomial, Math::Micromath],
+        }
+    }
+}
+
+impl Math {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Libm, Self::Polynomial, Self::Micromath];
 }
 
 impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::F32, Self::F64];
-
-    /// The functions that exist in it.
-    pub fn maths(self) -> &'static [Math] {
-        match self {
-            Self::F32 => &[Math::Libm, Math::Polynomial, Math::Micromath],
-            Self::F64 => &[Math::Libm, Math::Polynomial],
-        }
-    }
 }

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::IndexMut;
 
-use crate::real::{Micro32, Poly32, Poly64, Real};
+use crate::real::{Micro32, Poly32, Real};
 
 /// Constants of the model that follow the precision.
 pub trait Precision: Real + 'static {
@@ -59,4 +59,3 @@ macro_rules! like {
 
 like!(Poly32, f32);
 like!(Micro32, f32);
-like!(Poly64, f64);

@@ -173,7 +173,7 @@ fn models(model: &Model) -> Vec<Model> {
     for rung in PLANAR {
         for &scheme in rung.schemes() {
             for precision in Precision::ALL {
-                all.extend(precision.maths().iter().map(|&math| Model {
+                all.extend(rung.maths(precision).iter().map(|&math| Model {
                     rung,
                     scheme,
                     precision,

@@ -1,6 +1,6 @@
 //! The functions of each kind of number on the emulated target: the same bits as on the desktop.
 
-use touchdown_rotor::real::{Micro32, Poly32, Poly64, Real};
+use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_tests::counting::COUNTS;
 
 /// Bits of the results as f64.
@@ -41,11 +41,10 @@ fn every_function_gives_the_same_bits() {
             ("f32", "polynomial") => desktop::<Poly32>(function, arguments),
             ("f32", "micromath") => desktop::<Micro32>(function, arguments),
             ("f64", "libm") => desktop::<f64>(function, arguments),
-            ("f64", "polynomial") => desktop::<Poly64>(function, arguments),
             _ => panic!("{line}"),
         };
         assert_eq!(target, desktop, "{line}");
         compared += 1;
     }
-    assert!(compared >= 5 * 7 * 61, "{compared}");
+    assert!(compared >= 4 * 7 * 61, "{compared}");
 }

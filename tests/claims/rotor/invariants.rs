@@ -2,7 +2,7 @@
 //! finite, takes a bounded number of changes a step, and goes the same way when no step is looked at.
 
 use proptest::prelude::*;
-use touchdown_rotor::real::{Micro32, Poly32, Poly64};
+use touchdown_rotor::real::{Micro32, Poly32};
 use touchdown_rotor::{Change, Instant, Kinematics, Precision, Rigid, Start, Touch};
 use touchdown_tests::drops::{Drop, inside};
 
@@ -126,7 +126,6 @@ proptest! {
 
     #[test]
     fn with_polynomials(drop in drops()) {
-        check::<Poly64>(&drop, 300, 1e-9)?;
         check::<Poly32>(&drop, 300, 1e-4)?;
     }
 

@@ -6,7 +6,7 @@ use touchdown_base::machine::Start;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, ModelEvent, Kinematics, Precision as Digits, Stepper};
 use touchdown_run::model::{Subject, Use, simulate, with_model};
-use touchdown_scene::{Math, Precision, Scene};
+use touchdown_scene::{Fidelity, Math, Precision, Scene};
 use touchdown_tests::cases::{Case, open_cases};
 
 const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
@@ -34,7 +34,7 @@ fn open_case(name: &str) -> Case {
 fn runs(case: &Case) -> Vec<(String, Precision, History)> {
     let mut all = Vec::new();
     for precision in PRECISIONS {
-        for &math in precision.maths() {
+        for &math in Fidelity::Rigid.maths(precision) {
             for step in STEPS {
                 let name = format!("{} {precision:?} {math:?} {step:e} s", case.name);
                 all.push((name, precision, run(case, precision, math, step)));
@@ -185,7 +185,7 @@ fn permanent_contact_meets_the_target_at_any_step() {
 fn the_result_does_not_depend_on_the_step() {
     for case in open_cases() {
         for (precision, target) in [(Precision::F64, 1e-13), (Precision::F32, 1e-6)] {
-            for &math in precision.maths() {
+            for &math in Fidelity::Rigid.maths(precision) {
                 let fine = run(&case, precision, math, STEPS[0]);
                 let coarse = STEPS[1..].iter();
                 let spread = coarse

@@ -259,11 +259,11 @@ fn optional_keys_are_checked_too() {
         ),
         (
             "[model]\nmath = \"cordic\"",
-            "scene.toml:12: math must be \"libm\" or \"polynomial\", is \"cordic\"",
+            "scene.toml:12: math must be \"libm\" or \"polynomial\" or \"micromath\", is \"cordic\"",
         ),
         (
-            "[model]\nprecision = \"f64\"\nmath = \"micromath\"",
-            "scene.toml:13: math must be \"libm\" or \"polynomial\", is \"micromath\"",
+            "[model]\nmath = \"polynomial\"",
+            "scene.toml:12: math = \"polynomial\" is not in rung = \"rigid\" in f64",
         ),
         ("[sensors]\nbits = 3", "scene.toml:12: bits must be 4 to 16"),
         (

@@ -85,6 +85,13 @@ fn the_good_values_are_taken() {
 }
 
 #[test]
+fn the_coarsest_functions_are_those_of_the_plane() {
+    let parts = format!("[model]\nprecision = \"f32\"\nmath = \"libm\"\n{GIVES_WAY}");
+    let rule = "math = \"micromath\" is not in rung = \"support\" in f32";
+    refuse(&parts, "model", "math", "\"micromath\"", rule);
+}
+
+#[test]
 fn a_support_is_checked() {
     for (key, value, rule) in [
         ("mass_kg", "0", "mass_kg must be above 0, is 0"),

@@ -377,3 +377,26 @@ fn a_path_wins_over_a_built_in_name() {
     fs::write(folder.path().join("rig"), MINIMAL).unwrap();
     assert_eq!(drop_json(folder.path(), "rig")["final"]["time_s"], 0.02);
 }
+
+#[test]
+fn the_rig_is_explained_by_its_known_numbers() {
+    let text = explain(&Scene::load("rig").unwrap());
+    for number in [
+        "334.",
+        "7.8206 ms",
+        "5.5300 ms",
+        "54.2494 mm/s",
+        "-1389.84",
+        "28.780 Hz",
+    ] {
+        assert!(text.contains(number), "{number} in\n{text}");
+    }
+}
+
+#[test]
+fn a_scene_without_gravity_is_explained_too() {
+    let text = touchdown_scene::BUILT_IN[0]
+        .text
+        .replace("duration_s", "gravity_m_s2 = 0\nduration_s");
+    assert!(explain(&Scene::parse("s", &text).unwrap()).contains("no gravity"));
+}

@@ -9,6 +9,7 @@ use nix::sys::time::TimeValLike;
 
 use super::layers::{Member, members};
 use crate::faults::{Tree, faults};
+use crate::test;
 use crate::toolchain::default_cargo;
 use crate::workspace;
 
@@ -42,8 +43,8 @@ pub fn time() -> anyhow::Result<Duration> {
 /// Processor time that a build in `tree` takes, its `members` as by profile `quick`.
 fn build(tree: &Path, members: &[Member]) -> anyhow::Result<Duration> {
     let mut cargo = default_cargo();
-    cargo.args(["test", "--no-run", "--quiet", "--workspace"]);
-    cargo.args(["--bin", "touchdown"]);
+    cargo.args(["test", "--no-run", "--quiet", "--bin", "touchdown"]);
+    cargo.args(test::OTHERS);
     for member in members {
         for setting in QUICK {
             cargo.arg("--config");

@@ -73,6 +73,7 @@ impl Use for Press<'_> {
                 start,
                 spin,
                 scales,
+                ..
             },
         ) = (self.scene, subject);
         let n = match scene.materials.contact {

@@ -59,6 +59,7 @@ impl Use for Watch<'_> {
             start,
             spin,
             scales,
+            ..
         } = subject;
         let step = self.0.model.step / scales.time;
         let rounded_in_a_step = u64::from(self.0.model.rung != Fidelity::Rigid);

@@ -85,6 +85,7 @@ impl Use for Curve<'_> {
             start,
             spin,
             scales,
+            ..
         } = subject;
         let mut state = model.start(start, *spin, |_| {})?;
         let upwards =

@@ -69,8 +69,11 @@ struct Size;
 impl Use for Size {
     type Output = usize;
 
-    fn with<R: Precision, M: Stepper<R>>(self, _: &Subject<R, M>) -> Result<usize, ConfigError> {
-        Ok(size_of::<M::State>())
+    fn with<R: Precision, M: Stepper<R>>(
+        self,
+        subject: &Subject<R, M>,
+    ) -> Result<usize, ConfigError> {
+        Ok(subject.state_size)
     }
 }
 

@@ -11,7 +11,7 @@ pub fn all() -> Vec<Model> {
     for rung in Fidelity::ALL {
         for &scheme in rung.schemes() {
             for precision in Precision::ALL {
-                for &math in precision.maths() {
+                for &math in rung.maths(precision) {
                     all.extend(STEPS_US.map(|step| Model {
                         rung,
                         scheme,

@@ -1,19 +1,19 @@
 //! Rungs `support`, `two-plane` and `coupled`: from the scene's parts to a model.
 
 use touchdown_models::{
-    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, ModeConfig, Placement, UnbalanceConfig,
-    Whole,
+    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement,
+    UnbalanceConfig, Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start};
 
+use super::boxed::Boxed;
 use super::machine::MachineDrop;
 pub use super::machine::{StepView, WatchedDrop};
-use super::once::Once;
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::ModelRun;
-use super::{InNumbers, Subject, Use, in_numbers, scaled};
+use super::{InNumbers, Subject, in_numbers_of_rings, scaled};
 use touchdown_scene::scales::start_speed;
 use touchdown_scene::{Fidelity, MODES, Removable, Scene};
 
@@ -25,46 +25,47 @@ const BENDS: usize = 2 + MODES;
 
 /// What is done with the model, whatever its rings and coordinates.
 trait UseWhole {
-    type Output;
+    type Output<R: Precision>;
 
     fn with<R: Precision, const N: usize, const Q: usize>(
         self,
         whole: Whole<R, N, Q>,
         scales: Scales<f64>,
-    ) -> Result<Self::Output, ConfigError>;
+    ) -> Result<Self::Output<R>, ConfigError>;
 }
 
-struct AsModel<'a, U>(&'a Scene, U);
+struct AsSubject<'a>(&'a Scene);
 
-impl<U: Use> UseWhole for AsModel<'_, U> {
-    type Output = U::Output;
+impl UseWhole for AsSubject<'_> {
+    type Output<R: Precision> = Subject<R, Boxed<R>>;
 
     fn with<R: Precision, const N: usize, const Q: usize>(
         self,
         whole: Whole<R, N, Q>,
         scales: Scales<f64>,
-    ) -> Result<U::Output, ConfigError> {
-        self.1.with(&Subject {
+    ) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+        Ok(Subject {
             start: Start::Free {
                 position: whole.start.position,
                 velocity: whole.start.velocity,
             },
             spin: R::lit(self.0.rotor.spin / scales.spin),
             scales,
-            model: Once(whole),
+            state_size: size_of::<CoupledState<R, N, Q>>(),
+            model: Boxed::new(whole),
         })
     }
 }
 
-/// Builds the model with the scene's parts for `what`.
-pub(super) fn with_parts<R: Precision, U: Use>(
-    scene: &Scene,
-    what: U,
-) -> Result<U::Output, ConfigError> {
-    in_parts::<R, _>(scene, AsModel(scene, what))
+/// The model with the scene's parts.
+pub(super) fn subject<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+    in_parts::<R, _>(scene, AsSubject(scene))
 }
 
-fn in_parts<R: Precision, V: UseWhole>(scene: &Scene, what: V) -> Result<V::Output, ConfigError> {
+fn in_parts<R: Precision, V: UseWhole>(
+    scene: &Scene,
+    what: V,
+) -> Result<V::Output<R>, ConfigError> {
     let rings = seats(scene).len();
     let bends = modelled_modes(scene).next().is_some();
     match (scene.model.rung, bends) {
@@ -87,7 +88,7 @@ fn in_parts<R: Precision, V: UseWhole>(scene: &Scene, what: V) -> Result<V::Outp
 fn built<R: Precision, V: UseWhole, const N: usize, const Q: usize>(
     scene: &Scene,
     what: V,
-) -> Result<V::Output, ConfigError> {
+) -> Result<V::Output<R>, ConfigError> {
     let model = Coupled::<f64, N, Q>::try_new(&config::<N>(scene)?)?;
     let whole = Whole {
         start: placement(scene, &model).rounded::<R>(),
@@ -183,7 +184,7 @@ pub fn watch(scene: &Scene, each: &mut dyn FnMut(StepView)) -> Result<ModelRun, 
 
 /// The scene's machine at its release.
 pub(super) fn follow(scene: &Scene) -> Result<Box<dyn WatchedDrop + '_>, ConfigError> {
-    in_numbers(scene, MachineRelease(scene))
+    in_numbers_of_rings(scene, MachineRelease(scene))
 }
 
 struct MachineRelease<'a>(&'a Scene);
@@ -197,13 +198,13 @@ impl<'a> InNumbers for MachineRelease<'a> {
 }
 
 impl<'a> UseWhole for MachineRelease<'a> {
-    type Output = Box<dyn WatchedDrop + 'a>;
+    type Output<R: Precision> = Box<dyn WatchedDrop + 'a>;
 
     fn with<R: Precision, const N: usize, const Q: usize>(
         self,
         whole: Whole<R, N, Q>,
         scales: Scales<f64>,
-    ) -> Result<Self::Output, ConfigError> {
+    ) -> Result<Box<dyn WatchedDrop + 'a>, ConfigError> {
         Ok(Box::new(MachineDrop::new(self.0, whole, scales)?))
     }
 }

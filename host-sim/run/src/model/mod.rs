@@ -1,25 +1,23 @@
 //! The model under test over a scene.
 
+mod boxed;
 pub mod coupled;
 mod follow;
 mod machine;
-mod once;
 mod parts;
 mod plane;
 mod seen;
 mod simulate;
 
+use boxed::Boxed;
 pub use follow::FollowedDrop;
-use once::Once;
 pub use plane::follow;
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 pub use simulate::{run, simulate, simulate_to_verdict};
 
-use touchdown_models::{
-    Euler, Hertz, Line, LinePower, Moreau, Point, Scheme as ContactScheme, Shape, Verlet,
-};
+use touchdown_models::{Euler, Hertz, Line, LinePower, Moreau, Point, Shape, Verlet};
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::real::{Micro32, Poly32, Poly64};
+use touchdown_rotor::real::{Micro32, Poly32};
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Rigid, Start as ScaledStart, Stepper};
 
@@ -49,6 +47,8 @@ pub struct Subject<R, M> {
     pub spin: R,
     /// Its units.
     pub scales: Scales<f64>,
+    /// Size of its state, bytes.
+    pub state_size: usize,
 }
 
 /// What is done with numbers of a kind.
@@ -60,102 +60,115 @@ trait InNumbers {
 
 /// Calls `what` with the scene's kind of numbers.
 fn in_numbers<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output, ConfigError> {
-    match (scene.model.precision, scene.model.math) {
-        (touchdown_scene::Precision::F64, Math::Libm) => what.with::<f64>(),
-        (touchdown_scene::Precision::F32, Math::Libm) => what.with::<f32>(),
-        (touchdown_scene::Precision::F64, Math::Polynomial) => what.with::<Poly64>(),
-        (touchdown_scene::Precision::F32, Math::Polynomial) => what.with::<Poly32>(),
-        (touchdown_scene::Precision::F32, Math::Micromath) => what.with::<Micro32>(),
-        (touchdown_scene::Precision::F64, Math::Micromath) => Err(ConfigError::OutOfRange(
-            "math",
-            "\"libm\" or \"polynomial\" in f64",
-        )),
+    match (scene.model.math, scene.model.precision) {
+        (Math::Micromath, touchdown_scene::Precision::F32) => what.with::<Micro32>(),
+        _ => in_numbers_of_rings(scene, what),
+    }
+}
+
+/// Likewise, of those in which there are rings that give way or turn, and rotors that tilt.
+fn in_numbers_of_rings<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output, ConfigError> {
+    match (scene.model.math, scene.model.precision) {
+        (Math::Libm, touchdown_scene::Precision::F64) => what.with::<f64>(),
+        (Math::Libm, touchdown_scene::Precision::F32) => what.with::<f32>(),
+        (Math::Polynomial, touchdown_scene::Precision::F32) => what.with::<Poly32>(),
+        _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
     }
 }
 
 /// Builds the scene's rung in the scene's numbers, for `what`.
 pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
-    in_numbers(scene, InRung { scene, what })
-}
-
-struct InRung<'a, U> {
-    scene: &'a Scene,
-    what: U,
-}
-
-impl<U: Use> InNumbers for InRung<'_, U> {
-    type Output = U::Output;
-
-    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
-        in_rung::<R, U>(self.scene, self.what)
+    match scene.model.rung {
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
+            in_numbers_of_rings(scene, InRings(scene, what))
+        }
+        _ => in_numbers(scene, InPlane(scene, what)),
     }
 }
 
-fn in_rung<R: Precision, U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
-    match scene.model.rung {
-        Fidelity::Rigid => {
-            let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
-            what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+struct InRings<'a, U>(&'a Scene, U);
+
+impl<U: Use> InNumbers for InRings<'_, U> {
+    type Output = U::Output;
+
+    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
+        self.1.with(&coupled::subject::<R>(self.0)?)
+    }
+}
+
+struct InPlane<'a, U>(&'a Scene, U);
+
+impl<U: Use> InNumbers for InPlane<'_, U> {
+    type Output = U::Output;
+
+    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
+        let Self(scene, what) = self;
+        match scene.model.rung {
+            Fidelity::Rigid => {
+                let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
+                what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+            }
+            Fidelity::Moreau => {
+                let model = Moreau::try_new(&config(scene))?;
+                what.with(&boxed(scene, model.rounded::<R>(), *model.scales()))
+            }
+            _ => what.with(&hertz::<R>(scene)?),
         }
-        Fidelity::Moreau => {
-            let model = Moreau::try_new(&config(scene))?;
-            what.with(&subject(scene, Once(model.rounded::<R>()), *model.scales()))
-        }
-        Fidelity::Hertz => match (scene.materials.contact, scene.model.scheme) {
-            (Contact::Point, Scheme::Verlet) => {
-                hertz::<R, Point, Point, Verlet, U>(scene, Point, what)
-            }
-            (Contact::Point, _) => hertz::<R, Point, Point, Euler, U>(scene, Point, what),
-            (Contact::Line { length }, Scheme::Verlet) => {
-                hertz::<R, Line<f64>, Line<R>, Verlet, U>(scene, Line { length }, what)
-            }
-            (Contact::Line { length }, _) => {
-                hertz::<R, Line<f64>, Line<R>, Euler, U>(scene, Line { length }, what)
-            }
-            (Contact::LinePower { length }, Scheme::Verlet) => {
-                hertz::<R, LinePower<f64>, LinePower<R>, Verlet, U>(
-                    scene,
-                    LinePower { length },
-                    what,
-                )
-            }
-            (Contact::LinePower { length }, _) => {
-                hertz::<R, LinePower<f64>, LinePower<R>, Euler, U>(
-                    scene,
-                    LinePower { length },
-                    what,
-                )
-            }
-        },
-        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
-            coupled::with_parts::<R, U>(scene, what)
+    }
+}
+
+fn hertz<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+    match scene.materials.contact {
+        Contact::Point => in_scheme::<R, Point, Point>(scene, Point),
+        Contact::Line { length } => in_scheme::<R, Line<f64>, Line<R>>(scene, Line { length }),
+        Contact::LinePower { length } => {
+            in_scheme::<R, LinePower<f64>, LinePower<R>>(scene, LinePower { length })
         }
     }
 }
 
 /// `D` is the shape `C` in the numbers `R`.
-fn hertz<R, C, D, S, U>(scene: &Scene, shape: C, what: U) -> Result<U::Output, ConfigError>
+fn in_scheme<R, C, D>(scene: &Scene, shape: C) -> Result<Subject<R, Boxed<R>>, ConfigError>
 where
     R: Precision,
     C: Shape<f64>,
     D: Shape<R> + 'static,
-    S: ContactScheme + 'static,
-    U: Use,
 {
-    let model = Hertz::<f64, C, S>::try_new(&compliant(scene, shape))?;
-    what.with(&subject(
-        scene,
-        Once(model.rounded::<R, D>()),
-        *model.scales(),
-    ))
+    let config = compliant(scene, shape);
+    Ok(match scene.model.scheme {
+        Scheme::Verlet => {
+            let model = Hertz::<f64, C, Verlet>::try_new(&config)?;
+            boxed(scene, model.rounded::<R, D>(), *model.scales())
+        }
+        _ => {
+            let model = Hertz::<f64, C, Euler>::try_new(&config)?;
+            boxed(scene, model.rounded::<R, D>(), *model.scales())
+        }
+    })
 }
 
-fn subject<R: Precision, M>(scene: &Scene, model: M, scales: Scales<f64>) -> Subject<R, M> {
+fn subject<R: Precision, M: Stepper<R>>(
+    scene: &Scene,
+    model: M,
+    scales: Scales<f64>,
+) -> Subject<R, M> {
     Subject {
         model,
         start: scaled(&scene.start, &scales).rounded(),
         spin: R::lit(scene.rotor.spin / scales.spin),
         scales,
+        state_size: size_of::<M::State>(),
+    }
+}
+
+fn boxed<R: Precision, M: Stepper<R> + 'static>(
+    scene: &Scene,
+    model: M,
+    scales: Scales<f64>,
+) -> Subject<R, Boxed<R>> {
+    Subject {
+        state_size: size_of::<M::State>(),
+        ..subject(scene, Boxed::new(model), scales)
     }
 }
 

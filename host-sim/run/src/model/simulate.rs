@@ -5,20 +5,18 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Precision, Stepper};
 
 use super::seen::{ModelRun, STILL, Seen, steps_of_run};
-use super::{Subject, Use, coupled, with_model};
+use super::{Subject, Use, follow, with_model};
 use touchdown_base::history::{History, Recorder};
 use touchdown_scene::{Fidelity, Scene};
 
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
     match scene.model.rung {
-        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
-            Ok(coupled::follow(scene)?.finish())
-        }
-        _ => {
+        Fidelity::Rigid => {
             let to_verdict = false;
             with_model(scene, Simulate { scene, to_verdict }).map(ModelRun::of_rotor)
         }
+        _ => Ok(follow(scene)?.finish()),
     }
 }
 
@@ -31,13 +29,10 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
 /// has gone round once and that nothing can end.
 pub fn simulate_to_verdict(scene: &Scene) -> Result<History, ConfigError> {
     match scene.model.rung {
-        Fidelity::Rigid => with_model(
-            scene,
-            Simulate {
-                scene,
-                to_verdict: true,
-            },
-        ),
+        Fidelity::Rigid => {
+            let to_verdict = true;
+            with_model(scene, Simulate { scene, to_verdict })
+        }
         _ => simulate(scene),
     }
 }
@@ -60,6 +55,7 @@ impl Use for Simulate<'_> {
             start,
             spin,
             scales,
+            ..
         } = subject;
         let seen = Seen {
             scales: *scales,

@@ -3,7 +3,7 @@
 //! | number | functions |
 //! |---|---|
 //! | `f32`, `f64` | libm |
-//! | [`Poly32`], [`Poly64`] | own polynomials; square root by hardware where it is there |
+//! | [`Poly32`] | own polynomials; square root by hardware where it is there |
 //! | [`Micro32`] | micromath; square root as in [`Poly32`] |
 //!
 //! Each gives the same bits on desktop and target: all of it is addition, multiplication, division
@@ -21,7 +21,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 pub use micromath::Micro32;
-pub use polynomial::{Poly32, Poly64, atan2, ln, sin_cos};
+pub use polynomial::{Poly32, atan2, ln, sin_cos};
 pub use root::root;
 pub use touchdown_fpu::sqrt;
 
