@@ -14,8 +14,6 @@ use crate::workspace;
 /// one is already built with those that it asks for.
 pub const OTHERS: &[&str] = &["--workspace", "--exclude=xtask"];
 const PACKAGES: [&[&str]; 2] = [OTHERS, &["--package=xtask"]];
-/// All but examples in documentation, of which there are none: each crate would be read once more for them.
-const TARGETS: [&str; 4] = ["--lib", "--bins", "--tests", "--examples"];
 
 /// Builds all tests.
 pub fn build() -> anyhow::Result<()> {
@@ -66,7 +64,7 @@ fn run_each(packages: &[&str], tally: &mut Tally) -> anyhow::Result<ExitStatus> 
 
 fn cargo_test(packages: &[&str]) -> Command {
     let mut cargo = toolchain::default_cargo();
-    cargo.arg("test").args(packages).args(TARGETS);
+    cargo.arg("test").args(packages);
     cargo.current_dir(workspace());
     cargo
 }
