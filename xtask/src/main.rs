@@ -67,7 +67,7 @@ enum Task {
         /// Write nothing; fail where a table is not what was measured, or says not where its figures come from
         #[arg(long)]
         check: bool,
-        /// The program whose output is taken, in place of the one in target/ that was built last
+        /// The program whose output is taken, in place of that of the tests, which is built
         #[arg(long, value_name = "FILE")]
         program: Option<PathBuf>,
     },

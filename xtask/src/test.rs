@@ -62,7 +62,8 @@ fn run_each(packages: &[&str], tally: &mut Tally) -> anyhow::Result<ExitStatus> 
     Ok(child.wait()?)
 }
 
-fn cargo_test(packages: &[&str]) -> Command {
+/// `cargo test` of these packages.
+pub fn cargo_test(packages: &[&str]) -> Command {
     let mut cargo = toolchain::default_cargo();
     cargo.arg("test").args(packages);
     cargo.current_dir(workspace());

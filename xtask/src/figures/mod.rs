@@ -33,12 +33,12 @@ Examples:
 It runs `limits`, `paper`, `trade` and `drop` of the program, half a minute in all.";
 
 /// Writes the generated tables; or, to `check`, fails where one differs. Figures of the program come from `program`,
-/// else from the one that was built last.
+/// else from that of the tests, which it builds.
 pub fn run(check: bool, program: Option<PathBuf>) -> anyhow::Result<()> {
     let documents = read_documents()?;
     let templates = read_templates(&workspace().join("xtask/figures"))?;
     one_origin_each(&documents, &templates)?;
-    let program = program.map_or_else(program::newest, Ok)?;
+    let program = program.map_or_else(program::built, Ok)?;
     println!("Figures: of {}", program.display());
     let sources = Sources::read(&program, &documents)?;
     let mut differences = Vec::new();

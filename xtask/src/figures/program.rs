@@ -10,24 +10,19 @@ use std::thread;
 use anyhow::{Context, bail, ensure};
 use serde_json::Value;
 
-use crate::workspace;
+use crate::{test, toolchain, workspace};
 
 /// What begins the extremes of other levels of fidelity than `rigid`.
 const LEVELS: [&str; 4] = ["moreau", "hertz", "support", "two-plane"];
 
-/// The one that was built last.
-pub fn newest() -> anyhow::Result<PathBuf> {
+/// Builds that of the tests: where they are built, it is there.
+pub fn built() -> anyhow::Result<PathBuf> {
+    let mut cargo = test::cargo_test(test::OTHERS);
+    cargo.args(["--no-run", "--quiet", "--test", "program"]);
+    toolchain::run(&mut cargo, "the program does not build")?;
     let target = env::var_os("CARGO_TARGET_DIR");
     let target = target.map_or_else(|| workspace().join("target"), PathBuf::from);
-    let built = ["debug", "quick", "release"].map(|it| target.join(it).join("touchdown"));
-    let built = built.into_iter().filter_map(|it| {
-        let time = it.metadata().and_then(|it| it.modified()).ok()?;
-        Some((time, it))
-    });
-    let (_, program) = built.max().context(
-        "the program is not built: `cargo build` builds it, or --program says where it is",
-    )?;
-    Ok(program)
+    Ok(target.join("debug/touchdown"))
 }
 
 /// What `program` prints with each of these arguments, all at once.
