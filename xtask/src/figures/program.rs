@@ -1,7 +1,6 @@
 //! Figures that the program prints.
 
 use std::collections::BTreeMap;
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,11 +16,11 @@ const LEVELS: [&str; 4] = ["moreau", "hertz", "support", "two-plane"];
 
 /// Builds that of the tests: where they are built, it is there.
 pub fn built() -> anyhow::Result<PathBuf> {
+    let target = workspace().join("target");
     let mut cargo = test::cargo_test(test::OTHERS);
     cargo.args(["--no-run", "--quiet", "--test", "program"]);
+    cargo.env("CARGO_TARGET_DIR", &target);
     toolchain::run(&mut cargo, "the program does not build")?;
-    let target = env::var_os("CARGO_TARGET_DIR");
-    let target = target.map_or_else(|| workspace().join("target"), PathBuf::from);
     Ok(target.join("debug/touchdown"))
 }
 

@@ -78,10 +78,8 @@ impl Use for Size {
 }
 
 fn state(scene: &Scene) -> String {
-    match with_model(scene, Size) {
-        Ok(bytes) => format!("{bytes} bytes"),
-        Err(error) => error.to_string(),
-    }
+    let size = with_model(scene, Size);
+    size.map_or_else(|error| error.to_string(), |it| format!("{it} bytes"))
 }
 
 /// Counted on the emulated target, with output of the place.

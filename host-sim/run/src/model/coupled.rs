@@ -13,7 +13,7 @@ use super::machine::MachineDrop;
 pub use super::machine::{StepView, WatchedDrop};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::ModelRun;
-use super::{InNumbers, Subject, in_numbers_of_rings, scaled};
+use super::{InNumbers, Numbers, Subject, in_numbers_of_rings, scaled};
 use touchdown_scene::scales::start_speed;
 use touchdown_scene::{Fidelity, MODES, Removable, Scene};
 
@@ -192,7 +192,7 @@ struct MachineRelease<'a>(&'a Scene);
 impl<'a> InNumbers for MachineRelease<'a> {
     type Output = Box<dyn WatchedDrop + 'a>;
 
-    fn with<R: Precision>(self) -> Result<Self::Output, ConfigError> {
+    fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError> {
         in_parts::<R, _>(self.0, self)
     }
 }

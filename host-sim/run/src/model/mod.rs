@@ -51,11 +51,30 @@ pub struct Subject<R, M> {
     pub state_size: usize,
 }
 
+/// Numbers of which this crate has the models: each other one that uses a model would build it again.
+trait Numbers: Precision {
+    /// The model of a rung that goes by steps.
+    fn by_steps(scene: &Scene) -> Result<Subject<Self, Boxed<Self>>, ConfigError>;
+}
+
+macro_rules! numbers {
+    ($($number:ty: $build:ident),+) => {
+        $(impl Numbers for $number {
+            fn by_steps(scene: &Scene) -> Result<Subject<Self, Boxed<Self>>, ConfigError> {
+                $build(scene)
+            }
+        })+
+    };
+}
+
+numbers!(f64: in_rung, f32: in_rung, Poly32: in_rung, Micro32: in_plane);
+
+const NO_SUCH_MATH: ConfigError = ConfigError::OutOfRange("math", "one that the rung has");
 /// What is done with numbers of a kind.
 trait InNumbers {
     type Output;
 
-    fn with<R: Precision>(self) -> Result<Self::Output, ConfigError>;
+    fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError>;
 }
 
 /// Calls `what` with the scene's kind of numbers.
@@ -72,48 +91,47 @@ fn in_numbers_of_rings<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output
         (Math::Libm, touchdown_scene::Precision::F64) => what.with::<f64>(),
         (Math::Libm, touchdown_scene::Precision::F32) => what.with::<f32>(),
         (Math::Polynomial, touchdown_scene::Precision::F32) => what.with::<Poly32>(),
-        _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
+        _ => Err(NO_SUCH_MATH),
     }
 }
 
 /// Builds the scene's rung in the scene's numbers, for `what`.
 pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
-    match scene.model.rung {
-        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => {
-            in_numbers_of_rings(scene, InRings(scene, what))
-        }
-        _ => in_numbers(scene, InPlane(scene, what)),
-    }
+    in_numbers(scene, InRung(scene, what))
 }
 
-struct InRings<'a, U>(&'a Scene, U);
+struct InRung<'a, U>(&'a Scene, U);
 
-impl<U: Use> InNumbers for InRings<'_, U> {
+impl<U: Use> InNumbers for InRung<'_, U> {
     type Output = U::Output;
 
-    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
-        self.1.with(&coupled::subject::<R>(self.0)?)
-    }
-}
-
-struct InPlane<'a, U>(&'a Scene, U);
-
-impl<U: Use> InNumbers for InPlane<'_, U> {
-    type Output = U::Output;
-
-    fn with<R: Precision>(self) -> Result<U::Output, ConfigError> {
+    fn with<R: Numbers>(self) -> Result<U::Output, ConfigError> {
         let Self(scene, what) = self;
         match scene.model.rung {
             Fidelity::Rigid => {
                 let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
                 what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
             }
-            Fidelity::Moreau => {
-                let model = Moreau::try_new(&config(scene))?;
-                what.with(&boxed(scene, model.rounded::<R>(), *model.scales()))
-            }
-            _ => what.with(&hertz::<R>(scene)?),
+            _ => what.with(&R::by_steps(scene)?),
         }
+    }
+}
+
+fn in_rung<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+    match scene.model.rung {
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => coupled::subject(scene),
+        _ => in_plane(scene),
+    }
+}
+
+fn in_plane<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+    match scene.model.rung {
+        Fidelity::Moreau => {
+            let model = Moreau::try_new(&config(scene))?;
+            Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
+        }
+        Fidelity::Hertz => hertz(scene),
+        _ => Err(NO_SUCH_MATH),
     }
 }
 
