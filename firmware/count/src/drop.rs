@@ -6,7 +6,6 @@ use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, RigidConfig, Solved, Start, Stepper, Touch};
 
 use touchdown_counter::counter::Counter;
-
 use touchdown_counter::table::{Name, Table, Tally};
 
 /// Duration of the drop, us.

@@ -6,7 +6,6 @@ use core::hint::black_box;
 use touchdown_rotor::real::Real;
 
 use touchdown_counter::counter::Counter;
-
 use touchdown_counter::table::{Name, Table, Tally};
 
 /// Arguments in a set.

@@ -8,7 +8,6 @@ use touchdown_rotor::Precision;
 
 use super::drop::{BEGIN, POSITION, Run, STEPS, WHOLE, config};
 use touchdown_counter::counter::Counter;
-
 use touchdown_counter::table::{Name, Table};
 
 /// Steps of rung `hertz`, which refuses longer ones, us.

@@ -174,8 +174,8 @@ impl Fidelity {
         }
     }
 
-    /// The functions that it has in a number format. What would only cost accuracy is left out: own polynomials in f64,
-    /// and micromath in a machine with rings of its own, both of which save no instructions on the target.
+    /// The functions that it has in a number format. Left out is what changes a step by less than 2 % on the target:
+    /// own polynomials in f64, and micromath in rungs with rings of their own (docs/decisions/0033-functions-of-the-model.md).
     pub fn maths(self, precision: Precision) -> &'static [Math] {
         match (self, precision) {
             (_, Precision::F64) => &[Math::Libm],

@@ -51,7 +51,7 @@ pub struct Subject<R, M> {
     pub state_size: usize,
 }
 
-/// Numbers of which this crate has the models: each other one that uses a model would build it again.
+/// Numbers in which this crate builds the models. Else each crate that uses a model would build it again.
 trait Numbers: Precision {
     /// The model of a rung that goes by steps.
     fn by_steps(scene: &Scene) -> Result<Subject<Self, Boxed<Self>>, ConfigError>;
@@ -69,7 +69,6 @@ macro_rules! numbers {
 
 numbers!(f64: in_rung, f32: in_rung, Poly32: in_rung, Micro32: in_plane);
 
-const NO_SUCH_MATH: ConfigError = ConfigError::OutOfRange("math", "one that the rung has");
 /// What is done with numbers of a kind.
 trait InNumbers {
     type Output;
@@ -91,7 +90,7 @@ fn in_numbers_of_rings<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output
         (Math::Libm, touchdown_scene::Precision::F64) => what.with::<f64>(),
         (Math::Libm, touchdown_scene::Precision::F32) => what.with::<f32>(),
         (Math::Polynomial, touchdown_scene::Precision::F32) => what.with::<Poly32>(),
-        _ => Err(NO_SUCH_MATH),
+        _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
     }
 }
 
@@ -131,7 +130,7 @@ fn in_plane<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigE
             Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
         }
         Fidelity::Hertz => hertz(scene),
-        _ => Err(NO_SUCH_MATH),
+        _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
     }
 }
 

@@ -12,7 +12,7 @@ number!(
 );
 
 /// tan(pi/8).
-const TAN_EIGHTH: f32 = (core::f64::consts::SQRT_2 - 1.0) as f32;
+const TAN_PI_8: f32 = (core::f64::consts::SQRT_2 - 1.0) as f32;
 
 /// Mantissa, 1 to 2, and exponent of 2 of a finite number above 0.
 fn parts(x: f32) -> (f32, i32) {
@@ -73,7 +73,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     if large == 0.0 {
         return 0.0;
     }
-    let (start, slope) = if small > TAN_EIGHTH * large {
+    let (start, slope) = if small > TAN_PI_8 * large {
         (FRAC_PI_4, (small - large) / (small + large))
     } else {
         (0.0, small / large)
