@@ -32,8 +32,8 @@ pub fn trade(scene: &str) -> serde_json::Value {
 }
 
 /// Cargo gives a test only the programs of its own package, so the test builds the other one, beside
-/// itself: `target/<profile>/deps/<test>`. It is built already if by the same packages: of others the crates from
-/// elsewhere have other features, and all is built again.
+/// itself: `target/<profile>/deps/<test>`. The packages are those of `cargo xtask test`, which has built it then: with
+/// others, crates from elsewhere have other features, and all is built again.
 fn build() -> PathBuf {
     let test = std::env::current_exe().expect("the test has a path");
     let profile = test
