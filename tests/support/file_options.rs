@@ -157,8 +157,8 @@ pub const ROWS: &[Row] = &[
     },
     Row {
         command: "trade",
-        words: "trade my.toml --drops 0",
-        inputs: &[("scene", "my.toml")],
+        words: "trade short.toml --drops 0",
+        inputs: &[("scene", "short.toml")],
         outputs: &[File("--json"), File("--report"), File("--svg")],
         others: &["drops"],
         ..NONE
@@ -172,7 +172,7 @@ pub const ROWS: &[Row] = &[
     },
     Row {
         command: "limits",
-        words: "limits",
+        words: "limits --drops 1",
         outputs: &[File("--json")],
         others: &["machines", "machine", "drops"],
         ..NONE
@@ -363,6 +363,17 @@ pub const ROWS: &[Row] = &[
     },
 ];
 
+/// The scene `my.toml`, for what takes seconds over all of it.
+///
+/// # Panics
+/// If its duration has changed.
+pub fn short_scene() -> String {
+    let scene = BUILT_IN[0].text;
+    let short = scene.replace("duration_s = 0.3", "duration_s = 0.01");
+    assert_ne!(short, scene, "its duration has changed");
+    short
+}
+
 /// The options and arguments with a value of each command, by the rows.
 pub fn listed() -> BTreeMap<String, BTreeSet<String>> {
     let mut all = BTreeMap::<_, BTreeSet<String>>::new();
@@ -415,6 +426,7 @@ pub fn folder() -> TempDir {
     let at = folder.path();
     let put = |name: &str, bytes: &[u8]| fs::write(at.join(name), bytes).expect(name);
     put("my.toml", BUILT_IN[0].text.as_bytes());
+    put("short.toml", short_scene().as_bytes());
     put("plan.toml", PLAN.as_bytes());
     put("flash.bin", &dump(&[episode(1), episode(2)]));
     put("led.csv", led_rounds::example().as_bytes());
@@ -463,9 +475,11 @@ pub fn emulator(folder: &Path, script: &str) {
 pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
+        let entry = entry.expect("an entry");
+        let path = entry.path();
         let name = path.file_name().expect("a name").to_string_lossy();
-        if path.is_dir() {
+        // Not through a link to a folder: it may lead back here.
+        if entry.file_type().expect("its kind").is_dir() {
             all.insert(format!("{name}/"), vec![]);
             let within = contents(&path);
             all.extend(

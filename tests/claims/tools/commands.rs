@@ -15,6 +15,7 @@ use touchdown_sim::commands::Cli;
 use touchdown_tests::binary::{program, touchdown};
 use touchdown_tests::controller::settings;
 use touchdown_tests::episode::{dump, episode};
+use touchdown_tests::file_options::short_scene;
 use touchdown_tests::led_rounds::example;
 
 const PLAN: &str = r#"
@@ -40,6 +41,7 @@ fn folder() -> TempDir {
     let at = folder.path();
     let scene = BUILT_IN[0].text;
     fs::write(at.join("my.toml"), scene).expect("a scene");
+    fs::write(at.join("short.toml"), short_scene()).expect("a scene");
     fs::write(at.join("led.csv"), example()).expect("a recording");
     fs::write(at.join("old.toml"), text(&settings())).expect("a configuration");
     fs::write(at.join("plan.toml"), PLAN).expect("a plan");
@@ -79,8 +81,8 @@ const JSON: [&str; 16] = [
     "drop my.toml",
     "replay s.csv --scene my.toml",
     "compare a.csv b.csv --scene my.toml",
-    "trade my.toml --drops 0",
-    "limits",
+    "trade short.toml --drops 0",
+    "limits --drops 1",
     "paper --drops 2",
     "score --quick --only quiet",
     "sweep plan.toml",
@@ -175,10 +177,7 @@ fn json_on_standard_output_is_alone_there() {
 #[test]
 fn a_pipe_gets_neither_colour_nor_progress() {
     let folder = folder();
-    for run in JSON
-        .iter()
-        .filter(|it| **it != "limits" && **it != "trade my.toml --drops 0")
-    {
+    for run in JSON {
         let run = touchdown(folder.path())
             .args(run.split(' '))
             .env_remove("NO_COLOR")
@@ -340,11 +339,9 @@ fn only_read(example: &str) -> Option<&'static str> {
         (".cfg", "read in recordings.rs"),
         ("--hours 24", "24 hours"),
         ("> ~", "writes to the home folder"),
-        (
-            "touchdown limits",
-            "runs in json_on_standard_output_is_alone_there",
-        ),
-        ("touchdown trade", "runs there too"),
+        ("touchdown limits", "runs in lab/limits.rs"),
+        ("touchdown trade", "runs in lab/trade.rs"),
+        ("--drops 100", "runs there with fewer"),
         ("touchdown paper --json", "runs as touchdown paper"),
     ];
     let found = reasons.iter().find(|(part, _)| example.contains(part));

@@ -296,10 +296,6 @@ fn files_take_their_names_together_or_not_at_all() {
         let names = names(&row);
         for failing in &names {
             for old in [Some("what was there"), None] {
-                // Each run of it takes seconds.
-                if row.command == "trade" && old.is_none() {
-                    continue;
-                }
                 let others: Vec<_> = names.iter().filter(|it| *it != failing).collect();
                 for name in &others {
                     if let Some(old) = old {
