@@ -341,7 +341,7 @@ fn only_read(example: &str) -> Option<&'static str> {
         ("> ~", "writes to the home folder"),
         ("touchdown limits", "runs in lab/limits.rs"),
         ("touchdown trade", "runs in lab/trade.rs"),
-        ("--drops 100", "runs there with fewer"),
+        ("soft-support --drops", "runs there with fewer"),
         ("touchdown paper --json", "runs as touchdown paper"),
     ];
     let found = reasons.iter().find(|(part, _)| example.contains(part));
