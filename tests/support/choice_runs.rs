@@ -34,7 +34,7 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
             let verdicts = seeds(runs / 2, first_seed, |rng| {
                 Some(planted_parts(rng, effects))
             });
-            families.push(Family::of_verdicts(name, "nothing keeps it", verdicts));
+            families.push(Family::of_verdicts(name, verdicts));
         }
     }
     let [(_, plane), (_, two_ends)] = KINDS;
@@ -45,7 +45,7 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
     for (name, runs, make) in answers {
         if name.contains(only) {
             let verdicts = seeds(runs, first_seed, |rng| Some(answer(rng, make)));
-            families.push(Family::of_verdicts(name, "nothing keeps it", verdicts));
+            families.push(Family::of_verdicts(name, verdicts));
         }
     }
     families
@@ -84,7 +84,7 @@ fn planted_parts(rng: &mut Rng, effects: &[bool]) -> Verdict {
     scene.run.seed = rng.next_u64();
     let choice = chosen(&scene);
     if !choice.suffices() {
-        return Verdict::Undecided;
+        return Verdict::Undecided("nothing keeps it".into());
     }
     scene.model = choice.taken().model;
     let modelled = removable(&scene);
@@ -152,7 +152,7 @@ fn answer(rng: &mut Rng, make: fn(u64) -> Scene) -> Verdict {
     scene.auto = Some(Auto { asked, fixed });
     let choice = chosen(&scene);
     if !choice.suffices() {
-        return Verdict::Undecided;
+        return Verdict::Undecided("nothing keeps it".into());
     }
     scene.model = choice.taken().model;
     let keeps = |number: &u64| {

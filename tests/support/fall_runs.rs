@@ -98,7 +98,13 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Falls> {
                 confirmed_before_contact: Some(early),
             }
         });
-    floating.chain(dropping).collect()
+    let lifting = Some("lifts: told wrong by 30 %")
+        .filter(|name| name.contains(only))
+        .map(|name| Falls {
+            family: Family::of(name, &seeds(runs, first_seed, |rng| Some(lifts(rng)))),
+            confirmed_before_contact: None,
+        });
+    floating.chain(dropping).chain(lifting).collect()
 }
 
 fn any<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
@@ -243,6 +249,45 @@ fn floats(rng: &mut Rng, kinds: &[Kind]) -> Option<Result<(), String>> {
             of(&machine, &run)
         )),
     })
+}
+
+/// Lies where the wall may read well within the told clearance, is lifted, and floats on an orbit: no fall is confirmed.
+fn lifts(rng: &mut Rng) -> Result<(), String> {
+    let machine = Machine {
+        after: Orbit::Ends,
+        ..machine(rng)
+    };
+    let rate = any(rng, &[10_000.0, 20_000.0, 50_000.0]);
+    let mut told = Told::wrong(rng, 0.3);
+    told.chain.noise = rng.uniform(0.3, 3.0);
+    let phases = [
+        Phase::Rest {
+            time: rng.uniform(0.3, 0.8),
+        },
+        Phase::Lift {
+            time: rng.uniform(0.05, 0.4),
+        },
+        Phase::Float {
+            time: 1.5,
+            disturbances: Vec::new(),
+        },
+    ];
+    let mut run = Run::new(&machine, &phases, &told, rate);
+    while let Some((truth, shown)) = run.step(machine.spin) {
+        let mut notices = run.notices.iter();
+        if notices.any(|it| matches!(it, Notice::Confirmed { .. })) {
+            return Err(format!(
+                "a fall is confirmed at {:.4} s in phase {}, afloat {}, {:?}: told {:.2}, {}",
+                truth.time,
+                truth.phase,
+                truth.afloat,
+                shown.mode,
+                told.gap,
+                of(&machine, &run)
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Falls in the midst of it: whether it is confirmed before contact; if not, it is off at the latest 1 ms after it. It is

@@ -1,5 +1,7 @@
 //! Families of seeded runs, each with what it must show, and how often it did not.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -92,10 +94,8 @@ pub struct Family {
     pub runs: usize,
     /// Of them, those in which it did not hold.
     pub failed: usize,
-    /// Runs, besides these, that no rule could tell, and why.
-    pub undecided: usize,
-    /// Why.
-    pub undecided_why: &'static str,
+    /// Why runs, besides these, could not be judged, and how many.
+    pub undecided: BTreeMap<String, usize>,
     /// Above this rate at 95 %, if it fails at all.
     pub rate_below: f64,
     /// The first seeds that failed, and how.
@@ -109,34 +109,32 @@ pub enum Verdict {
     Held,
     /// Not, and how.
     Failed(String),
-    /// No rule could tell.
-    Undecided,
+    /// No rule could tell, and why.
+    Undecided(String),
 }
 
 impl Family {
-    /// Of verdicts, and why some are undecided.
-    pub fn of_verdicts(
-        name: &'static str,
-        undecided_why: &'static str,
-        verdicts: Vec<(u64, Verdict)>,
-    ) -> Self {
-        let all = verdicts.len();
+    /// Of seeds and what became of them.
+    pub fn of_verdicts(name: &'static str, verdicts: Vec<(u64, Verdict)>) -> Self {
+        let mut undecided = BTreeMap::new();
         let decided = verdicts
             .into_iter()
             .filter_map(|(seed, verdict)| match verdict {
                 Verdict::Held => Some((seed, Ok(()))),
                 Verdict::Failed(why) => Some((seed, Err(why))),
-                Verdict::Undecided => None,
+                Verdict::Undecided(why) => {
+                    *undecided.entry(why).or_default() += 1;
+                    None
+                }
             });
         let decided: Vec<_> = decided.collect();
         Self {
-            undecided: all - decided.len(),
-            undecided_why,
+            undecided,
             ..Self::of(name, &decided)
         }
     }
 
-    /// Of seeds and what became of them.
+    /// Likewise, where each can be judged.
     pub fn of(name: &'static str, outcomes: &[(u64, Result<(), String>)]) -> Self {
         let failures: Vec<String> = outcomes
             .iter()
@@ -146,8 +144,7 @@ impl Family {
             name,
             runs: outcomes.len(),
             failed: failures.len(),
-            undecided: 0,
-            undecided_why: "",
+            undecided: BTreeMap::new(),
             rate_below: upper_bound(failures.len(), outcomes.len()),
             failures: failures.into_iter().take(10).collect(),
         }
@@ -164,14 +161,12 @@ pub fn table(families: &[Family]) -> String {
             runs,
             failed,
             rate_below,
+            undecided,
             ..
         } = it;
         table += &format!("| {name} | {runs} | {failed} | {rate_below:.2e} |\n");
-        if it.undecided > 0 {
-            table += &format!(
-                "| undecided: {} | {} | | |\n",
-                it.undecided_why, it.undecided
-            );
+        for (why, runs) in undecided {
+            table += &format!("| undecided: {why} | {runs} | | |\n");
         }
     }
     table

@@ -1,6 +1,6 @@
 //! Runs of the whole controller on a machine of [`crate::plant`], told more or less wrong: what must hold of its guard.
 
-use touchdown_protocol::controller::Cause;
+use touchdown_protocol::controller::{Cause, Shown};
 
 use crate::family::{Family, Verdict, seeds};
 use crate::plant::{Disturbance, GRAVITY, Machine, Phase, Rng};
@@ -26,7 +26,6 @@ struct Kind {
     /// One of so many runs of the first.
     part: u64,
     judged: Judged,
-    undecided: &'static str,
 }
 
 /// Cycles in contact above all: a tenth of the runs for each other family.
@@ -39,7 +38,6 @@ const FAMILIES: [Kind; 8] = [
             let apart = rng.next_u64().is_multiple_of(2);
             Some(cycle(rng, &told, false, apart, GRAVITY))
         },
-        undecided: "",
     },
     Kind {
         name: "cycles, told within 5 %: runs within 0.5 s of being afloat",
@@ -48,7 +46,6 @@ const FAMILIES: [Kind; 8] = [
             let told = Told::wrong(rng, 0.05);
             Some(cycle(rng, &told, true, false, GRAVITY))
         },
-        undecided: "it whirled, or rocked on, until it was lifted: no order to clear is taken",
     },
     Kind {
         name: "likewise, the ends apart: cleared where it lies still, runs within 0.5 s",
@@ -57,7 +54,6 @@ const FAMILIES: [Kind; 8] = [
             let told = Told::wrong(rng, 0.05);
             Some(cycle(rng, &told, true, true, GRAVITY))
         },
-        undecided: "likewise",
     },
     Kind {
         name: "likewise, the axis upright, with the levitation signal",
@@ -66,31 +62,26 @@ const FAMILIES: [Kind; 8] = [
             let told = Told::wrong(rng, 0.05);
             Some(cycle(rng, &told, true, false, 0.0))
         },
-        undecided: "likewise",
     },
     Kind {
         name: "lifts, told wrong by up to 30 %, an end stays down, its sensors get stuck: never runs",
         part: 10,
         judged: |rng| Some(stuck_lift(rng)),
-        undecided: "",
     },
     Kind {
         name: "drops out of wander, slow roll, drift: off at the limit",
         part: 10,
         judged: |rng| Some(wandering_drop(rng)),
-        undecided: "told wrong by 10 %, it never ran",
     },
     Kind {
         name: "orbits, moves, loads, shocks to 0.6, bursts, told within 5 %: no trip by the guard",
         part: 10,
         judged: calm,
-        undecided: "the burst itself reads beyond danger in three quarters of a millisecond",
     },
     Kind {
         name: "shocks and rubs with the magnets on: each excursion is a touch",
         part: 10,
         judged: touches,
-        undecided: "a peak within noise and smoothing of 0.8 of the clearance",
     },
 ];
 
@@ -100,7 +91,7 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Family> {
     chosen
         .map(|it| {
             let verdicts = seeds(runs.div_ceil(it.part), first_seed, it.judged);
-            Family::of_verdicts(it.name, it.undecided, verdicts)
+            Family::of_verdicts(it.name, verdicts)
         })
         .collect()
 }
@@ -213,7 +204,9 @@ fn cycle(rng: &mut Rng, told: &Told, is_near: bool, apart: bool, gravity: f64) -
         }
     }
     if is_near && !cleared {
-        return Verdict::Undecided;
+        return Verdict::Undecided(
+            "it whirled, or rocked on, until it was lifted: no order to clear is taken".into(),
+        );
     }
     Verdict::Held
 }
@@ -302,9 +295,12 @@ fn wandering_drop(rng: &mut Rng) -> Verdict {
     if rng.next_u64().is_multiple_of(2) {
         run = run.with_other_end(&other_end(rng, &machine), &phases);
     }
-    let (mut beyond, mut ran) = (0_u32, false);
+    let (mut beyond, mut ran, mut why) = (0_u32, false, String::new());
     while let Some((truth, shown)) = run.step(machine.spin) {
         ran |= shown.outputs.run && truth.phase >= 3;
+        if !ran && truth.phase == 3 {
+            why = format!("told wrong by 10 %, it never ran: {}", reason(&shown));
+        }
         beyond = if run.reading >= 0.67 { beyond + 1 } else { 0 };
         if shown.outputs.run && f64::from(beyond) > ANSWER * rate {
             return Verdict::Failed(format!(
@@ -319,7 +315,16 @@ fn wandering_drop(rng: &mut Rng) -> Verdict {
     if ran {
         Verdict::Held
     } else {
-        Verdict::Undecided
+        Verdict::Undecided(why)
+    }
+}
+
+/// What it does, and why.
+fn reason(shown: &Shown) -> String {
+    let mode: &str = shown.mode.into();
+    match shown.cause {
+        Some(cause) => format!("{mode}, {}", <&str>::from(cause)),
+        None => mode.into(),
     }
 }
 
@@ -382,7 +387,10 @@ fn calm(rng: &mut Rng) -> Option<Verdict> {
             last[number % MILLISECOND] = reading >= 0.67 && truth.phase >= 2;
             let beyond = last.iter().filter(|it| **it).count();
             if is_burst && 4 * beyond >= 3 * MILLISECOND {
-                return Some(Verdict::Undecided);
+                return Some(Verdict::Undecided(
+                    "the burst itself reads beyond danger in three quarters of a millisecond"
+                        .into(),
+                ));
             }
         }
         number += 1;

@@ -162,7 +162,7 @@ pub(crate) fn touches(rng: &mut Rng) -> Option<Verdict> {
         )));
     }
     Some(if excursions.iter().any(is_hidden) {
-        Verdict::Undecided
+        Verdict::Undecided("a peak within noise and smoothing of 0.8 of the clearance".into())
     } else {
         Verdict::Held
     })

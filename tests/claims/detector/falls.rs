@@ -9,7 +9,7 @@ const FIRST_SEED: u64 = 900_000;
 #[test]
 fn disturbances_are_no_falls_and_falls_out_of_them_are_found() {
     let families = fall_runs::run("", RUNS, FIRST_SEED);
-    assert_eq!(families.len(), 20);
+    assert_eq!(families.len(), 21);
     for falls in families {
         println!("{falls:?}");
         let family = falls.family;

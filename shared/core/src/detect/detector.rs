@@ -300,6 +300,10 @@ impl Detector {
         let unforeseen = is_full
             .then(|| (self.falls).unforeseen(&state.blocks, variance, state.orbit.is_certain()))
             .flatten();
+        let home = state.levitation.mean;
+        if is_full && (self.phase_machine).is_lifted(state.blocks.newest_without_orbit(), home) {
+            return self.learn_again(state, writer);
+        }
         let is_near = is_full && {
             let (_, radius) = direction(state.blocks.newest());
             radius >= self.phase_machine.near
@@ -508,6 +512,7 @@ impl Detector {
                 let far = [(a, home_a), (b, home_b)].map(|(measurement, centre)| {
                     let position = measurement.position;
                     self.phase_machine.is_far(position, centre)
+                        && !self.phase_machine.is_lifted(position, centre)
                         && Ends::is_off(position, centre, variance)
                 });
                 if far == [false; PLANES] || !state.levitation.is_armed() {

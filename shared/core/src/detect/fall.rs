@@ -324,6 +324,11 @@ impl Blocks {
         self.back(0, 0)
     }
 
+    /// Likewise, of the position without the orbit, m.
+    pub(crate) fn newest_without_orbit(&self) -> [f32; 2] {
+        self.back(0, 1)
+    }
+
     /// One part of the mean so many blocks ago, less than all, m.
     fn back(&self, blocks: usize, part: usize) -> [f32; 2] {
         let parts = self

@@ -255,6 +255,14 @@ impl PhaseMachine {
         square(position, centre) > self.travel * self.travel
     }
 
+    /// Whether a rotor that was taken to float at `home` and is at `place` (m) has been lifted from there: it may have lain on a
+    /// wall that was told wrong.
+    pub(crate) fn is_lifted(&self, place: [f32; 2], home: [f32; 2]) -> bool {
+        let is_nearer = square(place, [0.0; 2]) < square(home, [0.0; 2]);
+        let rises = self.machine.gravity == 0.0 || place[1] > home[1];
+        self.is_far(place, home) && is_nearer && rises
+    }
+
     /// Speed into the wall, m/s, that shows a fall: no controller puts a rotor down as fast, and a fall that begins upward
     /// goes less far than gravity's way.
     fn landing_speed(&self, pending: &Pending, now: Moment) -> f32 {
@@ -384,15 +392,38 @@ mod tests {
     use crate::config::Tuning;
     use crate::detect::series::tests::MACHINE;
 
-    /// Half of gravity's way is a fall, less is none.
-    #[test]
-    fn what_goes_half_as_far_as_gravity_takes_it_fell() {
+    fn machine() -> PhaseMachine {
         let config = DetectorConfig {
             sample_rate: 20_000.0,
             machine: MACHINE,
             tuning: Tuning::default(),
         };
-        let machine = PhaseMachine::new(&config, 25.3);
+        PhaseMachine::new(&config, 25.3)
+    }
+
+    #[test]
+    fn what_comes_up_and_nearer_to_the_centre_was_lifted() {
+        let machine = machine();
+        let at = |part: f32| [0.0, part * MACHINE.clearance];
+        for (home, place, is_lifted) in [
+            (-0.9, -0.7, true),
+            (-0.9, -0.8, false),
+            (0.3, 0.1, false),
+            (0.0, -0.5, false),
+            (-0.1, 0.15, false),
+        ] {
+            assert_eq!(
+                machine.is_lifted(at(place), at(home)),
+                is_lifted,
+                "{home} {place}"
+            );
+        }
+    }
+
+    /// Half of gravity's way is a fall, less is none.
+    #[test]
+    fn what_goes_half_as_far_as_gravity_takes_it_fell() {
+        let machine = machine();
         let pending = Pending {
             number: 0,
             since: Moment::of_sample(1_000),
