@@ -291,7 +291,7 @@ fn lifts(rng: &mut Rng) -> Result<(), String> {
 }
 
 /// Falls in the midst of it: whether it is confirmed before contact; if not, it is off at the latest 1 ms after it. It is
-/// told in any case.
+/// told in any case, be it since before, as what disturbs it seemed to be one.
 fn drops(rng: &mut Rng, kinds: &[Kind]) -> Option<(bool, Result<(), String>)> {
     let after = rng.uniform(0.0, 0.1);
     let (machine, mut run) = lifted(rng, kinds, after, Some(Phase::Drop { time: 0.15 }));
@@ -300,6 +300,17 @@ fn drops(rng: &mut Rng, kinds: &[Kind]) -> Option<(bool, Result<(), String>)> {
     while let Some((truth, shown)) = run.step(machine.spin) {
         if truth.phase < DISTURBED {
             continue;
+        }
+        for notice in &run.notices {
+            match notice {
+                // Of the disturbance: a fall is told while nothing takes it back.
+                Notice::Declared(event) if truth.phase == DISTURBED => {
+                    told = event.kind == EventKind::FreeFall;
+                }
+                Notice::Withdrawn { .. } if truth.phase == DISTURBED => told = false,
+                Notice::Declared(event) if event.kind != EventKind::SensorFault => told = true,
+                _ => {}
+            }
         }
         if truth.phase == DISTURBED {
             ran = shown.outputs.run;
@@ -316,14 +327,9 @@ fn drops(rng: &mut Rng, kinds: &[Kind]) -> Option<(bool, Result<(), String>)> {
         if !shown.outputs.run {
             off.get_or_insert(now);
         }
-        for notice in &run.notices {
-            match notice {
-                Notice::Confirmed { .. } => {
-                    confirmed.get_or_insert(now);
-                }
-                Notice::Declared(event) if event.kind != EventKind::SensorFault => told = true,
-                _ => {}
-            }
+        let mut notices = run.notices.iter();
+        if notices.any(|it| matches!(it, Notice::Confirmed { .. })) {
+            confirmed.get_or_insert(now);
         }
     }
     let (released, contact) = (released?, contact?);

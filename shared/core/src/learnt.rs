@@ -77,10 +77,10 @@ impl Learnt {
         match number {
             0 => put(to, &(&self.told, &self.detector.place, release)),
             1 => put(to, &self.detector.orbit),
-            2 => put(to, release.levels()),
+            2 => put(to, &release.levels),
             3 | 4 => {
                 let from = INSTANTS * usize::from(number - FIRST_INSTANTS);
-                let rest = release.candidates().get(from..).unwrap_or_default();
+                let rest = release.candidates.get(from..).unwrap_or_default();
                 put(to, rest.get(..INSTANTS).unwrap_or(rest))
             }
             5 => put(to, &(a, b)),
@@ -99,11 +99,11 @@ impl Learnt {
         match number {
             0 => (self.told, self.detector.place, self.detector.release) = get(body)?,
             1 => self.detector.orbit = get(body)?,
-            2 => *self.detector.release.levels_mut() = get(body)?,
+            2 => self.detector.release.levels = get(body)?,
             3 | 4 => {
                 let from = INSTANTS * usize::from(number - FIRST_INSTANTS);
                 let instants: Vec<_, INSTANTS> = get(body)?;
-                let places = self.detector.release.candidates_mut();
+                let places = &mut self.detector.release.candidates;
                 let places = places.get_mut(from..)?.get_mut(..instants.len())?;
                 places.copy_from_slice(&instants);
             }

@@ -260,9 +260,9 @@ impl Detector {
     /// Switched on: floats, or lies on the wall already. What moves along the wall is in contact; what
     /// keeps still there is, if it could lie there.
     fn starting(&self, state: &mut DetectorState, measurement: &Measurement) {
-        let (outward, radius) = direction(measurement.position);
+        let (outward, _) = direction(measurement.position);
         let machine = &self.config.machine;
-        state.off_wall |= radius < self.phase_machine.near;
+        state.off_wall |= !self.phase_machine.is_near(measurement.position);
         self.learning
             .take(&mut state.levitation, measurement.position);
         let origin = *state.origin.get_or_insert(measurement.position);
@@ -304,10 +304,7 @@ impl Detector {
         if is_full && (self.phase_machine).is_lifted(state.blocks.newest_without_orbit(), home) {
             return self.learn_again(state, writer);
         }
-        let is_near = is_full && {
-            let (_, radius) = direction(state.blocks.newest());
-            radius >= self.phase_machine.near
-        };
+        let is_near = is_full && self.phase_machine.is_near(state.blocks.newest());
         state.off_wall |= is_full && !is_near;
         let touches = is_near && state.off_wall;
         state.hold = state.hold.saturating_sub(1);
@@ -399,17 +396,11 @@ impl Detector {
             return;
         }
         if self.resolve(state, measurement, writer) {
-            state.rotor.phase = Phase::Levitated;
             return;
         }
         if self.phase_machine.floats(&mut state.rotor, measurement) {
             if state.pending.is_some() {
-                // It never fell: what is learnt of it holds.
-                writer.resolve(&mut state.pending, false);
-                state.release.restart();
-                state.hold = self.hold_samples;
-                state.rotor.phase = Phase::Levitated;
-                return;
+                return self.go_on(state, writer);
             }
             self.learn_again(state, writer);
             self.phase_machine.tell_levitated(writer);
@@ -444,16 +435,21 @@ impl Detector {
         match fall {
             FallVerdict::Open => return false,
             FallVerdict::Certain => writer.resolve(&mut state.pending, true),
-            FallVerdict::Caught => {
-                writer.resolve(&mut state.pending, false);
-                state.release.restart();
-                state.hold = self.hold_samples;
-            }
+            FallVerdict::Caught => self.go_on(state, writer),
         }
         fall == FallVerdict::Caught
     }
 
+    /// It never fell: what is learnt of it holds.
+    fn go_on(&self, state: &mut DetectorState, writer: &mut EventWriter) {
+        writer.resolve(&mut state.pending, false);
+        state.release.restart();
+        state.hold = self.hold_samples;
+        state.rotor.phase = Phase::Levitated;
+    }
+
     /// Floats again: withdraws what is open.
+    #[inline(never)]
     fn learn_again(&self, state: &mut DetectorState, writer: &mut EventWriter) {
         writer.resolve(&mut state.pending, false);
         state.rotor.phase = Phase::Levitated;
@@ -554,7 +550,6 @@ impl Detector {
             && self.resolve(state, measurement, writer)
         {
             state.ends.unite();
-            state.rotor.phase = Phase::Levitated;
             return;
         }
         let ends = &mut state.ends;

@@ -194,7 +194,7 @@ impl EndsTest {
                 }
                 (Phase::FreeFall | Phase::Impact, None) => self.phase_machine.skip(phase_state),
                 (Phase::Starting | Phase::Levitated, Some(measurement)) => {
-                    if self.phase_machine.is_near(measurement) {
+                    if self.phase_machine.is_near(measurement.position) {
                         self.phase_machine
                             .fly(phase_state, measurement, None, threshold_scale);
                     }

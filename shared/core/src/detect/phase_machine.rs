@@ -27,10 +27,10 @@ const LANDING_SPEED: f32 = 0.01;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhaseMachine {
     machine: MachineConfig,
-    /// Radius from which on the rotor may be at the wall, m.
-    pub(crate) near: f32,
-    /// Way that no caught disturbance goes, m.
-    travel: f32,
+    /// Square of the radius from which on the rotor may be at the wall, m^2.
+    near_square: f32,
+    /// Likewise of the way that no caught disturbance goes.
+    travel_square: f32,
     /// s.
     period: f32,
     flight: FlightTest,
@@ -81,11 +81,13 @@ impl PhaseMachine {
     /// `config` must be valid.
     pub(crate) fn new(config: &DetectorConfig, threshold: f32) -> Self {
         let (machine, tuning) = (config.machine, &config.tuning);
+        let near = machine.clearance * (1.0 - tuning.wall_tolerance);
+        let travel = tuning.confirm_travel * machine.clearance;
         let samples = |time: f32| (time * config.sample_rate).max(1.0) as u32;
         Self {
             machine,
-            near: machine.clearance * (1.0 - tuning.wall_tolerance),
-            travel: tuning.confirm_travel * machine.clearance,
+            near_square: near * near,
+            travel_square: travel * travel,
             period: 1.0 / config.sample_rate,
             flight: FlightTest::new(config, threshold),
             contact: ContactTest::new(config, threshold),
@@ -207,9 +209,9 @@ impl PhaseMachine {
         strain
     }
 
-    /// Whether it may be at the wall.
-    pub(crate) fn is_near(&self, measurement: &Measurement) -> bool {
-        direction(measurement.position).1 >= self.near
+    /// Whether a rotor at `position`, m, may be at the wall.
+    pub(crate) fn is_near(&self, position: [f32; 2]) -> bool {
+        square(position, [0.0; 2]) >= self.near_square
     }
 
     /// Without a usable sample.
@@ -252,11 +254,12 @@ impl PhaseMachine {
 
     /// Whether no caught disturbance goes from `centre` to `position`, m.
     pub(crate) fn is_far(&self, position: [f32; 2], centre: [f32; 2]) -> bool {
-        square(position, centre) > self.travel * self.travel
+        square(position, centre) > self.travel_square
     }
 
     /// Whether a rotor that was taken to float at `home` and is at `place` (m) has been lifted from there: it may have lain on a
     /// wall that was told wrong.
+    #[inline(never)]
     pub(crate) fn is_lifted(&self, place: [f32; 2], home: [f32; 2]) -> bool {
         let is_nearer = square(place, [0.0; 2]) < square(home, [0.0; 2]);
         let rises = self.machine.gravity == 0.0 || place[1] > home[1];

@@ -50,12 +50,12 @@ pub(crate) struct Candidate {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ReleaseBank {
-    /// The newest first.
+    /// The newest first; used or not.
     #[cfg_attr(feature = "serde", serde(skip))]
-    candidates: [Candidate; MOST_INSTANTS],
+    pub(crate) candidates: [Candidate; MOST_INSTANTS],
     /// Mean of the statistic by age, in steps from one instant to the next, m^2.
     #[cfg_attr(feature = "serde", serde(skip))]
-    levels: [f32; MOST_INSTANTS],
+    pub(crate) levels: [f32; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,
     wait: u16,
@@ -83,30 +83,6 @@ impl ReleaseBank {
     pub(crate) fn restart(&mut self) {
         self.live = 0;
         self.wait = 0;
-    }
-
-    /// The instants, used or not.
-    #[cfg(feature = "serde")]
-    pub(crate) fn candidates(&self) -> &[Candidate] {
-        &self.candidates
-    }
-
-    /// The instants, used or not.
-    #[cfg(feature = "serde")]
-    pub(crate) fn candidates_mut(&mut self) -> &mut [Candidate] {
-        &mut self.candidates
-    }
-
-    /// The levels, used or not.
-    #[cfg(feature = "serde")]
-    pub(crate) fn levels_mut(&mut self) -> &mut [f32; MOST_INSTANTS] {
-        &mut self.levels
-    }
-
-    /// The levels, used or not.
-    #[cfg(feature = "serde")]
-    pub(crate) fn levels(&self) -> &[f32; MOST_INSTANTS] {
-        &self.levels
     }
 
     /// Forgets what was learnt as well.
