@@ -1,5 +1,6 @@
 //! Writes anew what the golden tests hold.
 
+use crate::test::OTHERS;
 use crate::toolchain::{default_cargo, run as run_cargo};
 
 /// The expected texts; before them the streams, if `streams`.
@@ -13,8 +14,8 @@ pub fn run(streams: bool) -> anyhow::Result<()> {
             "golden_streams",
         ])?;
     }
-    let packages = ["-p", "touchdown-core", "-p", "touchdown-firmware"];
-    cargo(&[&["test"][..], &packages, &["--test", "golden"]].concat())?;
+    let targets = ["--test", "golden", "--test", "golden_controller"];
+    cargo(&[&["test"][..], OTHERS, &targets].concat())?;
     println!("`git diff` shows what has changed");
     Ok(())
 }

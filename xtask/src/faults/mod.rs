@@ -19,7 +19,7 @@ use crate::workspace;
 /// Held streams and values of the core.
 const OF_CORE: &str = "touchdown-core --test golden";
 /// The same streams through the controller.
-const OF_FIRMWARE: &str = "touchdown-firmware --test golden";
+const OF_FIRMWARE: &str = "touchdown-firmware --test golden_controller";
 
 /// Tries some of those in the detector, which the core's golden streams find.
 pub fn sample() -> anyhow::Result<()> {
@@ -74,7 +74,7 @@ impl Bench {
         let folder = workspace().join("target/faults");
         Ok(Self {
             tree: Tree::copy(workspace(), &folder.join("tree"))?,
-            target: folder.join("build"),
+            target: workspace().join("target"),
             passing: BTreeSet::new(),
         })
     }

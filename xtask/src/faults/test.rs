@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail, ensure};
 use serde_json::Value;
 
+use crate::test::OTHERS;
 use crate::toolchain::default_cargo;
 
 /// Beyond it a test hangs, and that finds a fault as well.
@@ -51,6 +52,15 @@ impl Test {
         words.concat().join(" ")
     }
 
+    /// Those of all tests where the target tells it from others: crates from elsewhere have the same features then, and are
+    /// built already.
+    fn packages(&self) -> Vec<&str> {
+        match self.target.as_slice() {
+            [_] => vec!["-p", &self.package],
+            _ => OTHERS.to_vec(),
+        }
+    }
+
     /// Builds it from the sources in `tree`.
     pub fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<Program> {
         let mut cargo = default_cargo();
@@ -60,7 +70,7 @@ impl Test {
                 "--no-run",
                 "--message-format=json-render-diagnostics",
             ])
-            .args(["-p", &self.package])
+            .args(self.packages())
             .args(&self.target)
             .arg("--target-dir")
             .arg(target)

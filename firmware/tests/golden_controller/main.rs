@@ -29,7 +29,10 @@ with_streams!(tests);
 
 #[test]
 fn no_text_is_of_a_stream_that_is_gone() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/expected");
+    let folder = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/golden_controller/expected"
+    );
     for file in std::fs::read_dir(folder).expect("a folder").flatten() {
         let name = file.file_name().into_string().expect("a name");
         let stem = name.trim_end_matches(".txt");
