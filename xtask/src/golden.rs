@@ -14,8 +14,8 @@ pub fn run(streams: bool) -> anyhow::Result<()> {
             "golden_streams",
         ])?;
     }
-    let targets = ["--test", "golden", "--test", "golden_controller"];
-    cargo(&[&["test"][..], OTHERS, &targets].concat())?;
+    let targets = ["--test=golden", "--test=golden_controller"];
+    cargo(&[&["test"], OTHERS, &targets].concat())?;
     println!("`git diff` shows what has changed");
     Ok(())
 }

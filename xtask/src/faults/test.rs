@@ -52,17 +52,11 @@ impl Test {
         words.concat().join(" ")
     }
 
-    /// Those of all tests where the target tells it from others: crates from elsewhere have the same features then, and are
-    /// built already.
-    fn packages(&self) -> Vec<&str> {
-        match self.target.as_slice() {
-            [_] => vec!["-p", &self.package],
-            _ => OTHERS.to_vec(),
-        }
-    }
-
     /// Builds it from the sources in `tree`.
     pub fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<Program> {
+        // As all tests are built, where the target is one package's: crates from elsewhere are there already.
+        let package = ["-p", &self.package];
+        let is_library = self.target.len() == 1;
         let mut cargo = default_cargo();
         cargo
             .args([
@@ -70,7 +64,7 @@ impl Test {
                 "--no-run",
                 "--message-format=json-render-diagnostics",
             ])
-            .args(self.packages())
+            .args(if is_library { &package } else { OTHERS })
             .args(&self.target)
             .arg("--target-dir")
             .arg(target)

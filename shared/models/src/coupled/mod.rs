@@ -137,11 +137,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         &self.scales
     }
 
-    /// Angular speed (rad/T) of a spin given as surface speed at the first ring.
-    pub fn angular_speed(&self, spin: R) -> R {
-        self.turn * spin
-    }
-
     /// Unit of the tilt, rad: the tilt that displaces the axis by a clearance at the radius of gyration.
     pub fn tilt_scale(&self) -> R {
         self.tilt
