@@ -58,7 +58,7 @@ pub(super) struct Orbit {
     angle: [f32; 2],
     turn: [f32; 2],
     /// Change of theta in a sample, rad, and that of it.
-    rate: f32,
+    pub(super) rate: f32,
     slope: f32,
     /// Samples in which theta changes by one.
     radian: f32,

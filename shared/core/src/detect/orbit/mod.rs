@@ -30,7 +30,7 @@ const MOST_LEFT: f32 = 0.5;
 /// Radius from which on an orbit is the rotor's and ends with the levitation, m: sensors' runout, which goes
 /// on, is smaller.
 const RUNOUT: f32 = 8e-6;
-/// Slowest orbit, rad/s, that is followed: slower ones are a trend.
+/// Slowest orbit, rad/s, that is found and followed: slower ones are a trend.
 const SLOWEST: f32 = 50.0;
 
 /// Coefficients.
@@ -168,6 +168,7 @@ impl Orbiting {
     fn judge(&self, state: &mut OrbitState, [x, y]: [f32; 2], (variance, noise): (f32, f32)) {
         state.count = state.count.saturating_add(1);
         let turn = state.orbit.as_ref().map_or(0.0, Orbit::turn);
+        let is_slow = (state.orbit.as_ref()).is_some_and(|it| it.rate < self.slowest);
         let trial = self.fit_samples.max((TRIAL * turn) as u32);
         let memory = self.samples.max(turn as u32);
         let gain = 1.0 / state.count.min(memory) as f32;
@@ -181,7 +182,7 @@ impl Orbiting {
             state.variance = 0.0;
         }
         if state.count >= trial {
-            state.is_certain = state.variance <= MOST_LEFT * variance + noise;
+            state.is_certain = !is_slow && state.variance <= MOST_LEFT * variance + noise;
             if !state.is_certain {
                 state.begin_anew();
             }
