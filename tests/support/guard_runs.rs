@@ -69,7 +69,7 @@ const FAMILIES: [Kind; 8] = [
         judged: |rng| Some(stuck_lift(rng)),
     },
     Kind {
-        name: "drops out of wander, slow roll, drift: off at the limit",
+        name: "drops out of wander, slow roll, drift: off at the limit, and not before",
         part: 10,
         judged: |rng| Some(wandering_drop(rng)),
     },
@@ -298,6 +298,13 @@ fn wandering_drop(rng: &mut Rng) -> Verdict {
     let (mut beyond, mut ran, mut why) = (0_u32, false, String::new());
     while let Some((truth, shown)) = run.step(machine.spin) {
         ran |= shown.outputs.run && truth.phase >= 3;
+        if truth.phase <= 3 && shown.latched().is_some() {
+            return Verdict::Failed(format!(
+                "trips at {:.4} s, though it floats: {}",
+                truth.time,
+                reason(&shown)
+            ));
+        }
         if !ran && truth.phase == 3 {
             why = format!("told wrong by 10 %, it never ran: {}", reason(&shown));
         }
