@@ -119,7 +119,7 @@ fn look(seed: u64, scene: &Scene) -> Option<Seen> {
         return None;
     }
     let ours = run.histories.whole;
-    let told = accuracy::estimate(scene, &ours)?;
+    let told = accuracy::estimate(scene, &ours, run.histories.rings.iter())?;
     let truths = if scene.model.rung == Fidelity::Rigid {
         [
             Some(touchdown_truth::simulate(scene)),

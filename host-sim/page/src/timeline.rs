@@ -282,12 +282,12 @@ pub fn accuracy(outcome: &Outcome) -> Vec<String> {
             "accuracy: times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s"
         ));
     }
-    if let Some(index) = accuracy.uncertain_from() {
+    if let Some(index) = accuracy.uncertain_from {
         lines.push(format!(
             "accuracy: from impact {index} on not certain: read statistics"
         ));
-    } else if let Some(end) = accuracy.end {
-        let place = end.position_m * 1e3;
+    } else {
+        let place = accuracy.end.position_m * 1e3;
         lines.push(format!("accuracy: place at the end to {place:.0e} mm"));
     }
     if !accuracy.regime_is_certain {

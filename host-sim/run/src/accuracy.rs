@@ -1,16 +1,16 @@
 //! How far the numbers of a run may be from the exact solution of the equations that the model solves.
 //!
 //! The same drop is run again in f64: the rigid rung from starts that differ by a rounding, which shows how fast an error
-//! grows; a rung that steps also by half, twice and four times the step, which shows what the step costs. An
+//! grows; a rung that steps also by half and twice the step, which shows what the step costs. An
 //! impact's error is the greatest distance to its nearest in any of these runs. It does not shrink from one impact
-//! to the next; it is not told from the first impact on that one of the runs lacks. How good that is: docs/know/accuracy.md.
+//! to the next. Where it has grown to a tenth of the natural scales, the runs no longer have the same impacts. How good that
+//! is: docs/know/accuracy.md.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use touchdown_base::history::{History, Impact};
 use touchdown_base::progress;
-use touchdown_rotor::error::ConfigError;
 use touchdown_scene::{Fidelity, Math, Precision, Scene, Start};
 use touchdown_truth::Units;
 
@@ -18,15 +18,18 @@ use crate::model;
 
 /// Change of a start, in parts of clearance, speed and spin: some roundings.
 const NUDGE: f64 = 16.0 * f64::EPSILON;
-/// Beyond this, in T or V, an impact is another one.
+/// Errors beyond this, in T or V, are those of another course.
 const OTHER: f64 = 0.1;
 /// Longest part of a run by steps that is run again, s.
 const LONGEST: f64 = 1.0;
 
 /// Of a run: part of its step, and of its distance that counts as error. An error of the second order is 4/3 of the distance
 /// to half the step, one of the first order twice that, or the distance to twice the step.
-const STEPPED: [[f64; 2]; 3] = [[0.5, 2.0], [2.0, 1.0], [4.0, 0.5]];
-const NOT_STEPPED: [[f64; 2]; 3] = [[1.0, 2.0]; 3];
+const STEPPED: &[[f64; 2]] = &[[0.5, 2.0], [2.0, 1.0]];
+const NOT_STEPPED: &[[f64; 2]] = &[[1.0, 2.0]; 3];
+/// What an error is taken to be greater by, in parts of itself for each T or V of it: it changes the course, and so grows
+/// faster than what the other runs show.
+const GROWTH: f64 = 50.0;
 /// Of the starts: x, y, their speeds, spin.
 const DIRECTIONS: [[f64; 5]; 3] = [
     [1.0, -0.7, 0.9, 0.8, 1.0],
@@ -34,11 +37,13 @@ const DIRECTIONS: [[f64; 5]; 3] = [
     [0.5, 0.9, -1.0, 0.7, 0.6],
 ];
 
-/// Estimated errors of a run's numbers; `None` where the runs do not agree.
+/// Estimated errors of a run's numbers; `None` where another run has nothing of the kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunAccuracy {
     /// Of each impact.
     pub impacts: Vec<Option<ImpactError>>,
+    /// The first impact that not all runs have.
+    pub uncertain_from: Option<usize>,
     /// s.
     pub contact_starts_s: Vec<Option<f64>>,
     /// s.
@@ -49,7 +54,7 @@ pub struct RunAccuracy {
     pub regime_is_certain: bool,
     /// At the end of the run.
     #[serde(rename = "final")]
-    pub end: Option<EndError>,
+    pub end: EndError,
 }
 
 /// Of an impact.
@@ -63,6 +68,13 @@ pub struct ImpactError {
     pub normal_impulse_n_s: Option<f64>,
 }
 
+impl ImpactError {
+    /// In T or V, the greater.
+    fn apart(&self, units: &Units) -> f64 {
+        (self.time_s / units.time).max(self.normal_speed_m_s / units.speed)
+    }
+}
+
 /// Of the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EndError {
@@ -73,40 +85,28 @@ pub struct EndError {
 }
 
 impl RunAccuracy {
-    /// The first impact that not all runs have.
-    pub fn uncertain_from(&self) -> Option<usize> {
-        self.impacts.iter().position(Option::is_none)
-    }
-
-    /// Of the last impact that all runs have: the greatest of all.
+    /// Of the last impact that all runs have: the greatest of theirs.
     pub fn worst(&self) -> Option<ImpactError> {
-        self.impacts.iter().flatten().last().copied()
+        let certain = self.uncertain_from.unwrap_or(self.impacts.len());
+        *self.impacts[..certain].last()?
     }
 }
 
-/// Of what `scene`'s model gave; none where the run or its step is too long, or another start or step is refused.
-pub fn estimate(scene: &Scene, history: &History) -> Option<RunAccuracy> {
+/// Of what `scene`'s model gave, `rings` of it where the rotor tilts; none where the run or its step is too long, or another
+/// start or step is refused.
+pub fn estimate<'a>(
+    scene: &Scene,
+    history: &History,
+    rings: impl Iterator<Item = &'a History> + Clone,
+) -> Option<RunAccuracy> {
     let stepped = scene.model.rung != Fidelity::Rigid;
     if stepped && scene.run.duration > LONGEST || !scene.step_is_short() {
         return None;
     }
-    let runs = if stepped { STEPPED } else { NOT_STEPPED };
-    let bar = progress::bar("accuracy", runs.len() as u64);
-    let others = runs
-        .into_par_iter()
-        .zip(DIRECTIONS)
-        .map(|([step, weight], direction)| {
-            let history = model::simulate(&again(scene, step, direction))?;
-            bar.inc(1);
-            Ok(Other { history, weight })
-        })
-        .collect::<Result<Vec<_>, ConfigError>>();
-    bar.finish_and_clear();
-    let others = others.ok()?;
+    let others = others(scene, if stepped { STEPPED } else { NOT_STEPPED })?;
     let units = Units::of(scene);
-    let limit = OTHER * units.time;
     let times = |of: fn(&History) -> &[f64]| {
-        let near = |time: &f64| greatest(&others, |it| it.time(*time, of(&it.history), limit));
+        let near = |time: &f64| greatest(&others, |it| it.time(*time, of(&it.history)));
         of(history).iter().map(near).collect()
     };
     let mut impacts = Vec::new();
@@ -115,19 +115,27 @@ pub fn estimate(scene: &Scene, history: &History) -> Option<RunAccuracy> {
         worst = worst.and_then(|worst| worse(worst, impact, &others, &units));
         // The model tells the end of a series that is shorter than a step with its last impact.
         let starts = |it: &f64| it.total_cmp(&impact.state.time);
-        let lumped = stepped && history.contact_starts.binary_search_by(starts).is_ok();
-        impacts.push(worst.map(|worst| ImpactError {
-            normal_impulse_n_s: worst.normal_impulse_n_s.filter(|_| !lumped),
-            ..worst
+        let ends = |it: &History| stepped && it.contact_starts.binary_search_by(starts).is_ok();
+        let lumped = ends(history) || rings.clone().any(ends);
+        impacts.push(worst.map(|worst| {
+            let impulse = worst.normal_impulse_n_s.filter(|_| !lumped);
+            let more = 1.0 + GROWTH * worst.apart(&units);
+            ImpactError {
+                time_s: more * worst.time_s,
+                normal_speed_m_s: more * worst.normal_speed_m_s,
+                normal_impulse_n_s: impulse.map(|it| more * it),
+            }
         }));
     }
+    let other = |it: &Option<ImpactError>| it.is_none_or(|it| it.apart(&units) > OTHER);
     Some(RunAccuracy {
+        uncertain_from: impacts.iter().position(other),
         impacts,
         contact_starts_s: times(|it| &it.contact_starts),
         lift_offs_s: times(|it| &it.lift_offs),
         rolling_starts_s: times(|it| &it.rolling_starts),
         regime_is_certain: others.iter().all(|it| it.history.regime == history.regime),
-        end: end(history, &others, &units),
+        end: end(history, &others),
     })
 }
 
@@ -137,27 +145,48 @@ struct Other {
     weight: f64,
 }
 
+fn others(scene: &Scene, runs: &[[f64; 2]]) -> Option<Vec<Other>> {
+    let bar = progress::bar("accuracy", runs.len() as u64);
+    let run = |(&[step, weight], direction): (&[f64; 2], [f64; 5])| {
+        let history = model::simulate(&again(scene, step, direction)).ok()?;
+        bar.inc(1);
+        Some(Other { history, weight })
+    };
+    let all = runs.into_par_iter().zip(DIRECTIONS).map(run).collect();
+    bar.finish_and_clear();
+    all
+}
+
 impl Other {
-    fn time(&self, time: f64, times: &[f64], limit: f64) -> Option<f64> {
+    fn time(&self, time: f64, times: &[f64]) -> Option<f64> {
         let after = times.partition_point(|it| *it < time);
         let around = times[after.saturating_sub(1)..].iter().take(2);
         let nearest = around.map(|it| (it - time).abs()).reduce(f64::min)?;
-        (nearest <= limit).then_some(self.weight * nearest)
+        Some(self.weight * nearest)
     }
 
     fn impact(&self, impact: &Impact, units: &Units) -> Option<ImpactError> {
+        let late = |it: &Impact| (it.state.time - impact.state.time).abs() / units.time;
         let apart = |it: &Impact| {
-            let time = (it.state.time - impact.state.time) / units.time;
             let speed = (it.normal_speed - impact.normal_speed) / units.speed;
-            time.abs().max(speed.abs())
+            late(it).max(speed.abs())
         };
-        let (time, limit) = (impact.state.time, OTHER * units.time);
         let all = &self.history.impacts;
-        let of_time = |time: f64| all.partition_point(|it| it.state.time < time);
-        let near = &all[of_time(time - limit)..of_time(time + limit)];
-        let nearest = near.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        let (before, after) =
+            all.split_at(all.partition_point(|it| it.state.time < impact.state.time));
+        let mut nearest: Option<&Impact> = None;
+        let mut look = |it| {
+            let farthest = nearest.map_or(f64::INFINITY, apart);
+            if apart(it) < farthest {
+                nearest = Some(it);
+            }
+            late(it) <= farthest
+        };
+        let _ = before.iter().rev().all(&mut look);
+        let _ = after.iter().all(&mut look);
+        let nearest = nearest?;
         let of = |ours: f64, theirs: f64| self.weight * (ours - theirs).abs();
-        (apart(nearest) <= OTHER).then(|| ImpactError {
+        Some(ImpactError {
             time_s: of(impact.state.time, nearest.state.time),
             normal_speed_m_s: of(impact.normal_speed, nearest.normal_speed),
             normal_impulse_n_s: Some(of(impact.normal_impulse, nearest.normal_impulse)),
@@ -189,18 +218,17 @@ fn worse(
     })
 }
 
-fn end(history: &History, others: &[Other], units: &Units) -> Option<EndError> {
+fn end(history: &History, others: &[Other]) -> EndError {
     let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
     let end = &history.end;
-    let place = |it: &Other| it.weight * apart(end.position, it.history.end.position);
-    let speed = |it: &Other| it.weight * apart(end.velocity, it.history.end.velocity);
-    let worst = EndError {
-        position_m: greatest(others, |it| Some(place(it)))?,
-        velocity_m_s: greatest(others, |it| Some(speed(it)))?,
+    let greatest = |of: &dyn Fn(&History) -> f64| {
+        let all = others.iter().map(|it| it.weight * of(&it.history));
+        all.fold(0.0, f64::max)
     };
-    let near =
-        worst.position_m <= OTHER * units.length && worst.velocity_m_s <= OTHER * units.speed;
-    near.then_some(worst)
+    EndError {
+        position_m: greatest(&|it| apart(end.position, it.end.position)),
+        velocity_m_s: greatest(&|it| apart(end.velocity, it.end.velocity)),
+    }
 }
 
 /// The same drop in f64 and with another step, its start changed by next to nothing.

@@ -33,7 +33,8 @@ pub fn run<W: Write>(
     let model = model::follow(scene).map_err(|error| refused(scene, &error))?;
     let (mut outcome, stream) = sensed(scene, target, stream, Mover::Model(model))?;
     if outcome.model_given_up.is_none() {
-        outcome.accuracy = accuracy::estimate(scene, &outcome.model);
+        let rings = outcome.rings.iter().map(|[model, _]| model);
+        outcome.accuracy = accuracy::estimate(scene, &outcome.model, rings);
     }
     Ok((outcome, stream))
 }

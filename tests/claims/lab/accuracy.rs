@@ -18,13 +18,10 @@ fn told_errors_cover_the_true_ones() {
         assert!(it.impacts > 300, "{it:?}");
         assert!(it.over[0] < 10.0, "{it:?}");
     }
-    let [plane, two_ends] = &kinds[..] else {
-        panic!("two kinds");
-    };
-    assert_eq!((plane.told, plane.beyond), (plane.impacts, 0), "{plane:?}");
-    assert!(2 * two_ends.told > two_ends.impacts, "{two_ends:?}");
-    // Of these seeds. Over more, one in 80 (docs/know/accuracy.md); aimed at, one in 1000.
-    assert_eq!(two_ends.beyond, 0, "{two_ends:?}");
+    for it in &kinds {
+        // Of these seeds. Over more: docs/know/accuracy.md.
+        assert_eq!((it.told, it.beyond), (it.impacts, 0), "{it:?}");
+    }
 }
 
 fn accuracy(arguments: &[&str]) -> (String, Value) {
@@ -50,7 +47,8 @@ fn a_drop_tells_how_far_to_trust_it() {
     let (text, chaotic) = accuracy(&["york-ymc2"]);
     assert!(text.contains("on not certain: read statistics"), "{text}");
     let impacts = chaotic["impacts"].as_array().expect("a list");
-    assert!(impacts[0].is_object() && impacts.last().expect("some").is_null());
+    let certain = chaotic["uncertain_from"].as_u64().expect("a number") as usize;
+    assert!(0 < certain && certain < impacts.len() && impacts[certain].is_object());
     // The reference tells itself.
     let (text, none) = accuracy(&["rig", "--truth"]);
     assert!(text.contains("model off by") && none.is_null(), "{text}");

@@ -26,7 +26,7 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
             (si(scene.model.step, "s")) ". "
             @if outcome.by_reference { "The reference is an independent solver in f64." }
             @else if outcome.accuracy.is_some() {
-                "The same drop was run again three times: from starts that differ by a rounding, and where the model steps, by other steps."
+                "The same drop was run again: from starts that differ by a rounding, and where the model steps, by other steps."
             }
             @else { "Its errors are not known: it is too long to be run again, or its step too long for other steps to tell." }
             @for line in crate::timeline::given_up(outcome) { " " strong { "The " (line) "." } }
@@ -40,7 +40,9 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
 fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
     let mut rows = Vec::new();
     for (index, (impact, known)) in model.impacts.iter().zip(&accuracy.impacts).enumerate() {
-        let errors = known.map(|it| [it.time_s, it.normal_speed_m_s]);
+        let certain = accuracy.uncertain_from != Some(index);
+        let errors = known.filter(|_| certain);
+        let errors = errors.map(|it| [it.time_s, it.normal_speed_m_s]);
         let [time, speed] =
             [(0, "s"), (1, "m/s")].map(|(k, unit)| bound(errors.map(|it| it[k]), unit));
         rows.push([format!("Impact {index}, ms"), ms(impact.state.time), time]);
@@ -49,7 +51,7 @@ fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
             mm_s(impact.normal_speed),
             speed,
         ]);
-        if known.is_none() || index + 1 == IMPACTS {
+        if !certain || index + 1 == IMPACTS {
             break;
         }
     }

@@ -23,6 +23,10 @@ const MOST_CROSSINGS: usize = 4;
 /// Distance from a wall, in units of epsilon and its radius, that counts as on it.
 const ON_WALL: f64 = 64.0;
 
+/// Part of a step on the way to a stop that is too short to tell whether the axis leaves its wall: its speed across the
+/// wall is not nothing, but of the step's error.
+const TOO_SHORT: f64 = 1e-3;
+
 /// What the square of the distance from a wall of radius 1 may lack of being on it.
 pub(super) fn on_wall<R: Real>() -> R {
     R::lit(ON_WALL) * R::EPSILON
@@ -100,7 +104,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         mut on_event: impl FnMut(RingEvent<R>),
     ) {
         let whole = self.step * part;
-        let (mut left, mut longest, mut impacts, mut crossings) = (whole, whole, 0, 0);
+        let short = R::lit(TOO_SHORT) * self.step;
+        let (mut left, mut longest, mut impacts) = (whole, whole, 0);
+        let (mut crossings, mut to_stop) = (0, false);
         for seat in &mut state.seats {
             (seat.impulse, seat.held_impulse) = (R::ZERO, R::ZERO);
         }
@@ -122,23 +128,25 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             match self.beyond(state, &passage) {
                 None => {
                     left -= time;
-                    (longest, crossings) = (R::TWO * time, 0);
-                    self.accept(state, &passage, (whole - left) / self.step, &mut on_event);
+                    let now = (whole - left) / self.step;
+                    let keeps = to_stop && time <= short;
+                    self.accept(state, &passage, now, keeps, &mut on_event);
+                    (longest, crossings, to_stop) = (R::TWO * time, 0, false);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
                     self.meet(state, Some(beyond.who), stays, now, &mut on_event);
                     impacts += 1;
-                    (longest, crossings) = (whole, 0);
+                    (longest, crossings, to_stop) = (whole, 0, false);
                 }
                 Some(beyond) => {
                     crossings += 1;
-                    longest = if crossings > MOST_CROSSINGS {
-                        time * beyond.share.least(R::HALF)
-                    } else {
-                        time * beyond.share
-                    };
+                    to_stop = matches!(beyond.who, Arrival::Ring(_));
+                    longest = time * beyond.share;
+                    if crossings > MOST_CROSSINGS {
+                        longest = longest.least(R::HALF * time);
+                    }
                 }
             }
         }
@@ -186,11 +194,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         first
     }
 
+    /// Takes a stretch; with `keeps` no ring is left in it.
     fn accept(
         &self,
         state: &mut CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,
         part: R,
+        keeps: bool,
         on_event: &mut impl FnMut(RingEvent<R>),
     ) {
         let before = *state;
@@ -210,7 +220,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             self.advance_ring(state, passage, i, spin);
         }
         for i in 0..N {
-            if state.is_held(i) && passage.presses[i].is_none() {
+            if !keeps && state.is_held(i) && passage.presses[i].is_none() {
                 state.seats[i].held = None;
                 self.tell(state, i, part, Change::LiftsOff, on_event);
             }
@@ -228,6 +238,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 continue;
             };
             held.turns.add(place.cross(end).atan2(place.dot(end)));
+            if passage.presses[i].is_none() {
+                continue;
+            }
             let rolled = core::mem::replace(&mut held.rolling, stuck[i]);
             let change = match (rolled, stuck[i]) {
                 (false, true) => Change::RollingStarts,
