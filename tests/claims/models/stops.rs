@@ -18,7 +18,8 @@ fn drop(mass: f64, precision: Precision) -> Scene {
     scene
 }
 
-/// Else the rotor strikes ring and stop in turn, as often as the numbers can tell.
+/// Else the rotor strikes ring and stop in turn, as often as the numbers can tell: 21, 20 and 22 times with 0.01 kg. With these masses no
+/// series of bounces ends within the drop; where one does, a step tells fewer of them.
 #[test]
 fn a_rotor_that_meets_a_ring_on_its_stop_strikes_it_once() {
     for mass in [0.01, 0.03, 0.1] {
