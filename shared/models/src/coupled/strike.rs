@@ -4,7 +4,7 @@
 //! into them without giving it back. Where friction would gain energy it follows the normal impulses; where
 //! unlike restitutions would, there is none.
 
-use super::follow::Arrival;
+use super::follow::{Arrival, on_wall};
 use super::links::{Grip, Link, Links};
 use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent};
@@ -13,9 +13,6 @@ use touchdown_rotor::precision::Precision;
 
 /// What an impact may gain, in units of epsilon and the energy of the motion into the walls.
 const CLOSE: f64 = 64.0;
-/// Distance from its stop, in clearances or travels, at which a ring that the axis strikes is on it: less than the roughness
-/// of a seat. Without it the rotor bounces between ring and stop, in times that fall below any rounding.
-const AT_STOP: f64 = 1e-3;
 
 /// A ring in an impact.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,8 +20,6 @@ struct Meeting<R> {
     /// Whether the axis is at its wall, and the ring at its stop.
     touches: bool,
     stops: bool,
-    /// Whether the stop takes an impulse.
-    pressed: bool,
     /// Whether the axis arrives, or lies, on a wall that does not hold it yet.
     new: bool,
     /// Speed into the wall.
@@ -87,7 +82,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 };
                 self.tell(state, i, part, change, on_event);
             }
-            if meeting.pressed
+            if meeting.stops
                 && let Some(mount) = &self.rings[i].mount
             {
                 mount.seat(&mut state.seats[i].mount);
@@ -123,11 +118,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             touches = held || arrives || outward >= R::ZERO;
         }
         let travel = ring.mount.and_then(|mount| mount.travel());
-        let near_stop = |travel: R| {
-            let near = R::lit(AT_STOP) * ring.limit.least(travel);
-            travel - state.ring_place(i).length() <= near
-        };
-        let at_stop = touches && travel.is_some_and(near_stop);
+        let at_stop =
+            travel.is_some_and(|it| state.ring_place(i).square() >= (R::ONE - on_wall()) * it * it);
         Meeting {
             touches,
             stops: at_stop || state.is_stopped(i) || arrived == Some(Arrival::Ring(i)),
@@ -247,7 +239,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let contact = places[i].and_then(|place| Some((place, links.get(place)?)));
             let stop = stops[i].and_then(|place| links.get(place));
             let by_stop = stop.map_or(Vector::default(), Link::push);
-            meetings[i].pressed = stop.is_some_and(|it| it.pressed > R::ZERO);
             let mut push = Vector::default();
             if let Some((place, link)) = contact {
                 push = link.push();

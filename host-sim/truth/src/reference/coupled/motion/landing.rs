@@ -31,35 +31,24 @@ impl<L: Law> Motion<L> {
         landing: Option<usize>,
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) {
-        // One that has just been left takes no part: what it meets next, it meets with its restitution.
         let touches = |link: &usize| match self.system.links[*link].clearance() {
             None => false,
             Some(clearance) => {
                 self.modes[*link] != Mode::Flight
                     || Some(*link) == landing
                     || self.distance(*link) >= (1.0 - ON_WALL) * clearance
-                        && self.closing(*link) >= 0.0
             }
         };
-        let all = 0..self.modes.len();
-        let links: Vec<usize> = all.clone().filter(touches).collect();
+        let links: Vec<usize> = (0..self.modes.len()).filter(touches).collect();
         for link in &links {
             impact::keep_place(&self.system, *link, &mut self.place);
         }
-        let near = |link: &usize| !links.contains(link) && self.is_near(*link, &links);
-        let near: Vec<usize> = all.filter(near).collect();
         let touch = |link: &usize| Touching::new(&self.system, *link, &self.place, &self.speed);
-        let mut touching: Vec<Touching> = links.iter().chain(&near).map(touch).collect();
+        let mut touching: Vec<Touching> = links.iter().map(touch).collect();
         let passes = impact::strike(&self.system, &mut touching, &mut self.speed);
-        self.cost += passes as usize * touching.len();
+        self.cost += passes as usize * links.len();
         for touch in &touching {
             let (link, cutoff) = (touch.link, self.cutoff(touch.link));
-            if near.contains(&link) {
-                if touch.impulse == 0.0 {
-                    continue;
-                }
-                impact::keep_place(&self.system, link, &mut self.place);
-            }
             let flew = self.modes[link] == Mode::Flight;
             self.modes[link] = match touch.outward(&self.system, &self.speed) {
                 outward if outward < -cutoff => Mode::Flight,
@@ -71,21 +60,6 @@ impl<L: Law> Motion<L> {
         }
         self.release_brakes();
         self.count();
-    }
-
-    /// Whether a link is on its wall as one of those that touch pushes it there.
-    fn is_near(&self, link: usize, touching: &[usize]) -> bool {
-        let it = &self.system.links[link];
-        let pushed = |other: &usize| self.system.lateral(*other, link) != 0.0;
-        it.clearance().is_some_and(|clearance| {
-            let near = it.near > 0.0 && self.distance(link) >= clearance - it.near;
-            near && touching.iter().any(pushed)
-        })
-    }
-
-    /// Speed of a link into its wall.
-    fn closing(&self, link: usize) -> f64 {
-        Touching::new(&self.system, link, &self.place, &self.speed).closing
     }
 
     /// A brake has no impulse: what an impact has set turning slips in it.
