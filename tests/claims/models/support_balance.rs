@@ -29,7 +29,7 @@ fn drops(step: f64) -> [(&'static str, Fall, f64, f64); 8] {
             1e-3,
         ),
         ("stop", soft.stopping(1e-5), 0.01, 3e-6),
-        ("light, stop", light.stopping(1e-5), 0.01, 2e-5),
+        ("light, stop", light.stopping(1e-5), 0.01, 3e-5),
         ("bearing", bearing, 0.02, 1e-13),
         ("drag", bearing.dragged(2e-2, 1e-4), 0.02, 1e-8),
         ("all", all, 0.01, 1e-5),

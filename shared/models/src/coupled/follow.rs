@@ -23,8 +23,8 @@ const MOST_CROSSINGS: usize = 4;
 /// Distance from a wall, in units of epsilon and its radius, that counts as on it.
 const ON_WALL: f64 = 64.0;
 
-/// Part of a step on the way to a stop that is too short to tell whether the axis leaves its wall: its speed across the
-/// wall is not nothing, but of the step's error.
+/// Part of a step on the way to an impact that is too short to tell whether the axis leaves another wall: its speed across
+/// that is not nothing, but of the step's error.
 const TOO_SHORT: f64 = 1e-3;
 
 /// What the square of the distance from a wall of radius 1 may lack of being on it.
@@ -106,7 +106,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let whole = self.step * part;
         let short = R::lit(TOO_SHORT) * self.step;
         let (mut left, mut longest, mut impacts) = (whole, whole, 0);
-        let (mut crossings, mut to_stop) = (0, false);
+        let (mut crossings, mut to_wall) = (0, false);
         for seat in &mut state.seats {
             (seat.impulse, seat.held_impulse) = (R::ZERO, R::ZERO);
         }
@@ -129,20 +129,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 None => {
                     left -= time;
                     let now = (whole - left) / self.step;
-                    let keeps = to_stop && time <= short;
+                    let keeps = to_wall && time <= short;
                     self.accept(state, &passage, now, keeps, &mut on_event);
-                    (longest, crossings, to_stop) = (R::TWO * time, 0, false);
+                    (longest, crossings, to_wall) = (R::TWO * time, 0, false);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
                     self.meet(state, Some(beyond.who), stays, now, &mut on_event);
                     impacts += 1;
-                    (longest, crossings, to_stop) = (whole, 0, false);
+                    (longest, crossings, to_wall) = (whole, 0, false);
                 }
                 Some(beyond) => {
                     crossings += 1;
-                    to_stop = matches!(beyond.who, Arrival::Ring(_));
+                    to_wall = true;
                     longest = time * beyond.share;
                     if crossings > MOST_CROSSINGS {
                         longest = longest.least(R::HALF * time);

@@ -183,6 +183,13 @@ impl<R: Real> Sprung<R> {
         state.damped.add(taken);
     }
 
+    /// Takes a part of the velocity that is across all others: the stop takes its energy.
+    pub(super) fn arrest(&self, state: &mut SprungState<R>, velocity: Vector<R>) {
+        state.velocity.add(Vector::default() - velocity);
+        let taken = R::HALF * self.mass * velocity.square();
+        state.stopping.add(taken);
+    }
+
     /// Takes what an impact gives, and impulse `stop` away from the stop.
     pub(super) fn strike(&self, state: &mut SprungState<R>, push: Vector<R>, stop: Vector<R>) {
         let kick = (push + stop).times(self.yielding());

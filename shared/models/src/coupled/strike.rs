@@ -13,6 +13,9 @@ use touchdown_rotor::precision::Precision;
 
 /// What an impact may gain, in units of epsilon and the energy of the motion into the walls.
 const CLOSE: f64 = 64.0;
+/// Distance from its stop, in clearances or travels, at which a ring that the axis strikes is at rest on it: less than the
+/// roughness of a seat. Without it the rotor bounces between ring and stop, in times that fall below any rounding.
+const AT_STOP: f64 = 1e-3;
 
 /// A ring in an impact.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,6 +23,8 @@ struct Meeting<R> {
     /// Whether the axis is at its wall, and the ring at its stop.
     touches: bool,
     stops: bool,
+    /// Whether the ring is so near to its stop that it is at rest on it as the axis strikes it.
+    backed: bool,
     /// Whether the axis arrives, or lies, on a wall that does not hold it yet.
     new: bool,
     /// Speed into the wall.
@@ -54,6 +59,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         near -= Self::together();
         let mut meetings: [Meeting<R>; N] =
             core::array::from_fn(|i| self.meeting(state, i, arrived, near));
+        for (i, meeting) in meetings.iter_mut().enumerate().filter(|(_, it)| it.new) {
+            self.back(state, i, meeting);
+        }
         if !meetings.iter().any(|it| it.new || it.stops) {
             return;
         }
@@ -130,6 +138,24 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
+    /// A ring that is struck towards its stop, near to it, is at rest there, where the axis closes on it then.
+    fn back(&self, state: &mut CoupledState<R, N, Q>, i: usize, meeting: &mut Meeting<R>) {
+        let ring = &self.rings[i];
+        let Some((mount, travel)) = ring.mount.and_then(|it| Some((it, it.travel()?))) else {
+            return;
+        };
+        let (within, place) = (self.within(state, i), state.ring_place(i));
+        let (limit, way) = (within.length(), place.length());
+        let along = within.dot(place) / (limit * way);
+        let speed = place.dot(state.ring_velocity(i)) / way;
+        let outward = meeting.outward + along * speed;
+        let near = R::lit(AT_STOP) * ring.limit.least(travel);
+        if travel - way <= near && along > R::ZERO && outward > R::ZERO {
+            mount.arrest(&mut state.seats[i].mount, place.times(speed / way));
+            (meeting.backed, meeting.outward) = (true, outward);
+        }
+    }
+
     fn strike(&self, state: &mut CoupledState<R, N, Q>, meetings: &mut [Meeting<R>; N]) {
         for (i, meeting) in meetings.iter().enumerate() {
             if (meeting.touches || meeting.stops)
@@ -196,7 +222,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 };
                 places[i] = Some(links.add(link));
             }
-            if meeting.stops {
+            if meeting.stops || meeting.backed {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());
                 stops[i] = Some(links.add(Link::new(normal, state.ring_velocity(i))));

@@ -60,6 +60,11 @@ impl Touching {
         w[1] * self.normal[0] - w[0] * self.normal[1] + link.turning(speed)
     }
 
+    /// Cosine of the angle between the normals.
+    pub fn along(&self, other: &Self) -> f64 {
+        self.normal[0] * other.normal[0] + self.normal[1] * other.normal[1]
+    }
+
     fn press(&self, system: &System, impulse: f64, speed: &mut [f64]) {
         let vector = self.normal.map(|n| -n * impulse);
         system.push(self.link, vector, 0.0, speed);
@@ -217,6 +222,13 @@ fn at_once(
     };
     let all = touching.iter().zip(&impulses).all(fits);
     all.then_some((impulses, after))
+}
+
+/// Takes the normal speed of a link.
+pub fn arrest(system: &System, link: usize, place: &[f64], speed: &mut [f64]) {
+    let touch = Touching::new(system, link, place, speed);
+    let impulse = touch.closing / system.lateral(link, link);
+    touch.press(system, impulse, speed);
 }
 
 /// Takes what is left of normal speed and slip from links that have none.

@@ -14,6 +14,9 @@ use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
 use touchdown_scene::{Base, Magnet, Support};
 
+/// Distance from its stop, in clearances or travels, at which a ring that the rotor strikes is on it.
+const AT_STOP: f64 = 1e-3;
+
 /// A retainer's bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
@@ -172,6 +175,7 @@ impl CoupledMachine {
                     friction: ring.friction,
                     restitution: ring.restitution,
                 },
+                near: 0.0,
                 told,
             });
             stops.extend(mount.and_then(|mount| mount.travel).map(|travel| Link {
@@ -182,6 +186,7 @@ impl CoupledMachine {
                     friction: 0.0,
                     restitution: 0.0,
                 },
+                near: AT_STOP * ring.clearance.min(travel),
                 told: with(none.clone(), body, 1.0),
             }));
             let dry = race.map_or(0.0, |race| race.dry_drag);
@@ -189,6 +194,7 @@ impl CoupledMachine {
                 shares: none.clone(),
                 arms: with(still, 1 + i, bore),
                 hold: Hold::Brake(dry / bore),
+                near: 0.0,
                 told: none,
             }));
         }

@@ -31,6 +31,8 @@ pub struct Link {
     pub arms: Vec<f64>,
     /// What holds it.
     pub hold: Hold,
+    /// Distance from the wall at which an impact that pushes it there finds it on it, m.
+    pub near: f64,
     /// The position told in happenings: the part that each body has in it.
     pub told: Vec<f64>,
 }

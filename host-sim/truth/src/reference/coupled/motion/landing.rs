@@ -31,23 +31,31 @@ impl<L: Law> Motion<L> {
         landing: Option<usize>,
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) {
+        // One that has just been left takes no part: what it meets next, it meets with its restitution.
         let touches = |link: &usize| match self.system.links[*link].clearance() {
             None => false,
             Some(clearance) => {
                 self.modes[*link] != Mode::Flight
                     || Some(*link) == landing
                     || self.distance(*link) >= (1.0 - ON_WALL) * clearance
+                        && self.touch(*link).closing >= 0.0
             }
         };
-        let links: Vec<usize> = (0..self.modes.len()).filter(touches).collect();
+        let all = 0..self.modes.len();
+        let links: Vec<usize> = all.clone().filter(touches).collect();
         for link in &links {
             impact::keep_place(&self.system, *link, &mut self.place);
         }
-        let touch = |link: &usize| Touching::new(&self.system, *link, &self.place, &self.speed);
-        let mut touching: Vec<Touching> = links.iter().map(touch).collect();
+        let backed: Vec<usize> = all.filter(|link| self.is_backed(*link, &links)).collect();
+        for link in &backed {
+            impact::arrest(&self.system, *link, &self.place, &mut self.speed);
+        }
+        let near = backed.iter().filter(|link| !links.contains(link));
+        let all = links.iter().chain(near);
+        let mut touching: Vec<Touching> = all.map(|link| self.touch(*link)).collect();
         let passes = impact::strike(&self.system, &mut touching, &mut self.speed);
-        self.cost += passes as usize * links.len();
-        for touch in &touching {
+        self.cost += passes as usize * touching.len();
+        for touch in &touching[..links.len()] {
             let (link, cutoff) = (touch.link, self.cutoff(touch.link));
             let flew = self.modes[link] == Mode::Flight;
             self.modes[link] = match touch.outward(&self.system, &self.speed) {
@@ -60,6 +68,31 @@ impl<L: Law> Motion<L> {
         }
         self.release_brakes();
         self.count();
+    }
+
+    /// Whether a link's body is at rest on its wall as one of those that arrive strikes it towards there: it is near, and
+    /// they would close were it at rest.
+    fn is_backed(&self, link: usize, touching: &[usize]) -> bool {
+        let it = &self.system.links[link];
+        let near = |clearance: f64| it.near > 0.0 && self.distance(link) >= clearance - it.near;
+        if !it.clearance().is_some_and(near) {
+            return false;
+        }
+        let wall = self.touch(link);
+        let mut arriving = touching
+            .iter()
+            .filter(|other| self.modes[**other] == Mode::Flight);
+        arriving.any(|other| {
+            let other = self.touch(*other);
+            // What the other's normal has of the wall's, for the body that is between them.
+            let lateral = self.system.lateral(link, link);
+            let along = -self.system.lateral(other.link, link) / lateral * other.along(&wall);
+            along > 0.0 && other.closing + along * wall.closing > 0.0
+        })
+    }
+
+    fn touch(&self, link: usize) -> Touching {
+        Touching::new(&self.system, link, &self.place, &self.speed)
     }
 
     /// A brake has no impulse: what an impact has set turning slips in it.
