@@ -32,7 +32,7 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
     front.sort_by(|a, b| a.worst_error.total_cmp(&b.worst_error));
     for row in front {
         text += &format!(
-            "{:<31}step {:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
+            "{:<32} step {:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
             row.name(),
             short(row.step_s * 1e6),
             row.worst_error,

@@ -181,7 +181,7 @@ impl Orbiting {
             // What the fit did not know yet is no noise.
             state.variance = 0.0;
         }
-        if state.count >= trial {
+        if state.is_certain || state.count >= trial {
             state.is_certain = !is_slow && state.variance <= MOST_LEFT * variance + noise;
             if !state.is_certain {
                 state.begin_anew();
@@ -340,6 +340,34 @@ mod tests {
         for (hz, most) in [(0.0, 1.1), (2.0, 1.1), (5.0, 1.3)] {
             let (left, firsts) = left(hz, 20_000.0, 0.0);
             assert!(left < most && firsts == 0, "{hz} Hz: {left} um, {firsts}");
+        }
+    }
+
+    /// Whatever its speed does, also before its trial would be over at the new one.
+    #[test]
+    fn no_orbit_is_followed_below_the_slowest() {
+        for (from, time) in [(30.0, 0.5), (30.0, 0.2), (60.0, 0.3), (100.0, 0.2)] {
+            let sample_rate = 20_000.0;
+            let orbiting = orbiting(sample_rate);
+            let (mut state, mut seed) = (OrbitState::default(), 1);
+            let (mut angle, mut found, mut slow) = (0.0, 0, 0);
+            for k in 0..(1.5 * sample_rate) as u32 {
+                let after = f64::from(k) / f64::from(sample_rate) - 0.6;
+                let hz: f64 = from * (1.0 - after / time).clamp(0.0, 1.0);
+                angle += core::f64::consts::TAU * hz / f64::from(sample_rate);
+                let (sin, cos) = libm::sincos(angle);
+                let [x, y] = [white(&mut seed), white(&mut seed)].map(|it| 1e-6 * it);
+                let position = [3e-5 * cos as f32 + x, 3e-5 * sin as f32 + y];
+                orbiting.advance(&mut state, None);
+                orbiting.take(&mut state, position, (4.5e-10, 1e-12), true);
+                let certain = state.certain();
+                found += u32::from(certain.is_some());
+                slow += u32::from(certain.is_some_and(|it| it.rate < orbiting.slowest));
+            }
+            assert!(
+                found > 0 && slow == 0,
+                "{from} Hz, {time} s: {found}, {slow}"
+            );
         }
     }
 }
