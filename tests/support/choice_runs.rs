@@ -93,7 +93,10 @@ fn planted_parts(rng: &mut Rng, effects: &[bool]) -> Verdict {
         .find(|(part, has_effect)| modelled.contains(part) != *has_effect);
     match wrong {
         None => Verdict::Held,
-        Some((part, _)) => Verdict::Failed(format!("{part:?}: {}", fidelity::explain(&choice))),
+        Some((part, has_effect)) => {
+            let what = if *has_effect { "left out" } else { "stays" };
+            Verdict::Failed(format!("{part:?} {what}: {}", fidelity::explain(&choice)))
+        }
     }
 }
 
