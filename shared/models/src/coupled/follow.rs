@@ -106,7 +106,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let whole = self.step * part;
         let short = R::lit(TOO_SHORT) * self.step;
         let (mut left, mut longest, mut impacts) = (whole, whole, 0);
-        let (mut crossings, mut to_wall) = (0, false);
+        let mut crossings = 0;
         for seat in &mut state.seats {
             (seat.impulse, seat.held_impulse) = (R::ZERO, R::ZERO);
         }
@@ -129,20 +129,19 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 None => {
                     left -= time;
                     let now = (whole - left) / self.step;
-                    let keeps = to_wall && time <= short;
+                    let keeps = crossings > 0 && time <= short;
                     self.accept(state, &passage, now, keeps, &mut on_event);
-                    (longest, crossings, to_wall) = (R::TWO * time, 0, false);
+                    (longest, crossings) = (R::TWO * time, 0);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
                     self.meet(state, Some(beyond.who), stays, now, &mut on_event);
                     impacts += 1;
-                    (longest, crossings, to_wall) = (whole, 0, false);
+                    (longest, crossings) = (whole, 0);
                 }
                 Some(beyond) => {
                     crossings += 1;
-                    to_wall = true;
                     longest = time * beyond.share;
                     if crossings > MOST_CROSSINGS {
                         longest = longest.least(R::HALF * time);

@@ -13,8 +13,8 @@ use touchdown_rotor::precision::Precision;
 
 /// What an impact may gain, in units of epsilon and the energy of the motion into the walls.
 const CLOSE: f64 = 64.0;
-/// Distance from its stop, in clearances or travels, at which a ring that the axis strikes is at rest on it: less than the
-/// roughness of a seat. Without it the rotor bounces between ring and stop, in times that fall below any rounding.
+/// Distance from its stop, in clearances or travels, at which a ring that the axis strikes is at rest on it. Chosen: about
+/// the roughness of a seat. Without it the rotor bounces between ring and stop, in times that fall below any rounding.
 const AT_STOP: f64 = 1e-3;
 
 /// A ring in an impact.
