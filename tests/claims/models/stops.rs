@@ -21,7 +21,7 @@ fn drop(mass: f64, precision: Precision) -> Scene {
 
 /// Else the rotor strikes ring and stop in turn, as often as the numbers can tell.
 #[test]
-fn a_rotor_that_meets_a_ring_on_its_stop_strikes_it_once() {
+fn the_number_of_impacts_at_a_stop_is_the_same_in_any_number_format() {
     for mass in [0.01, 0.03, 0.1] {
         let ours = |precision| {
             let run = model::run(&drop(mass, precision)).expect("valid");

@@ -145,13 +145,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return;
         };
         let (within, place) = (self.within(state, i), state.ring_place(i));
-        let (limit, way) = (within.length(), place.length());
-        let along = within.dot(place) / (limit * way);
-        let speed = place.dot(state.ring_velocity(i)) / way;
+        let (reach, excursion) = (within.length(), place.length());
+        let along = within.dot(place) / (reach * excursion);
+        let speed = place.dot(state.ring_velocity(i)) / excursion;
         let outward = meeting.outward + along * speed;
         let near = R::lit(AT_STOP) * ring.limit.least(travel);
-        if travel - way <= near && along > R::ZERO && outward > R::ZERO {
-            mount.arrest(&mut state.seats[i].mount, place.times(speed / way));
+        if travel - excursion <= near && along > R::ZERO && outward > R::ZERO {
+            mount.arrest(&mut state.seats[i].mount, place.times(speed / excursion));
             (meeting.backed, meeting.outward) = (true, outward);
         }
     }

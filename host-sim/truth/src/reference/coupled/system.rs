@@ -31,7 +31,7 @@ pub struct Link {
     pub arms: Vec<f64>,
     /// What holds it.
     pub hold: Hold,
-    /// Distance from the wall at which an impact that pushes it there finds it on it, m.
+    /// Of a stop: distance from it within which a ring that is struck towards it is at rest on it, m; else 0.
     pub near: f64,
     /// The position told in happenings: the part that each body has in it.
     pub told: Vec<f64>,
