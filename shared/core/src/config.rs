@@ -10,8 +10,7 @@ pub const NEAREST_WALL: f32 = 0.38;
 pub(crate) const MOST_INSTANTS: usize = 32;
 
 /// The machine, as far as the detector needs it; SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MachineConfig {
     /// Rotor mass, kg; for impulses and loads only.
     pub mass: f32,
@@ -33,9 +32,8 @@ pub struct MachineConfig {
 }
 
 /// Thresholds and times, SI; `docs/know/detector.md` derives each. The defaults suit the rig of the source paper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Tuning {
     /// Probability with which one instant of a test's bank declares something in one sample of white
     /// noise, 1e-15 to 0.01. Every likelihood ratio is compared with the logarithm of its inverse.
@@ -100,8 +98,7 @@ impl Default for Tuning {
 }
 
 /// All that the detector is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DetectorConfig {
     /// Samples per second, Hz.
     pub sample_rate: f32,

@@ -16,8 +16,7 @@ const WELL_KNOWN: f32 = 0.05;
 const FOLLOWED: f32 = 0.3;
 
 /// What the last drop has done so far; SI.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Severity {
     /// Impacts that were declared.
     pub impacts: u16,

@@ -1,10 +1,8 @@
 //! The detector: learns while the rotor floats, finds the release, and follows from there on the rotor
 //! as a whole or, where they move apart, its ends.
 
-#[cfg(feature = "serde")]
 mod learnt;
 
-#[cfg(feature = "serde")]
 pub(crate) use self::learnt::Afloat;
 use crate::config::DetectorConfig;
 use crate::detect::contact::Touching;

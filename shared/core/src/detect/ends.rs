@@ -3,10 +3,8 @@
 //! With a and b the positions of the planes, h = (a + b)/2 is what the ends share and e = (a - b)/2
 //! how far they are from it. Both have the same noise.
 
-#[cfg(feature = "serde")]
 mod learnt;
 
-#[cfg(feature = "serde")]
 pub(crate) use self::learnt::Together;
 use crate::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;

@@ -145,8 +145,7 @@ impl Airborne {
 }
 
 /// How loud the impact test is while the rotor floats.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct NoiseFloor {
     level: f32,
     count: f32,

@@ -14,8 +14,7 @@ pub(crate) struct Learning {
 }
 
 /// What has been learnt.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Levitation {
     count: u32,
     gain: f32,

@@ -50,8 +50,7 @@ pub(crate) struct Watch {
 }
 
 /// What is known of a channel.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ChannelMonitorState {
     position: f32,
     velocity: f32,

@@ -26,8 +26,7 @@ pub(crate) struct ContactCheck {
 }
 
 /// What has been seen of it.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCheckState {
     looks: u16,
     /// All the time.

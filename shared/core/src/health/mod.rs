@@ -66,8 +66,7 @@ pub struct HealthState {
 }
 
 /// What is known of the planes.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PlanesState {
     pairing: PlaneOffsetState,
     floating: [OrbitSenseState; PLANES],

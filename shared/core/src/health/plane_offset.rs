@@ -14,8 +14,7 @@ pub(crate) struct PlaneOffset {
 }
 
 /// What is known of the two.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PlaneOffsetState {
     /// Half the difference, a - b, m.
     half: [f32; 2],

@@ -19,8 +19,7 @@ pub(crate) struct Afloat {
 }
 
 /// Where it floats, and how quietly.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Place {
     next_number: u16,
     noise: Noise,

@@ -4,8 +4,7 @@ use super::Ends;
 use crate::detect::levitation::Levitation;
 
 /// What outlasts a tick.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Together {
     levitation: Levitation,
     mean: [[f32; 2]; 2],

@@ -4,8 +4,7 @@ use super::{Orbit, OrbitState};
 use crate::detect::trend::TrendObserver;
 
 /// The trend, and the orbit that is followed, if there is one.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Followed {
     alone: TrendObserver,
     beside: TrendObserver,

@@ -3,12 +3,10 @@
 //! noise.
 
 mod follow;
-#[cfg(feature = "serde")]
 mod learnt;
 mod search;
 
 use self::follow::{Follow, Orbit};
-#[cfg(feature = "serde")]
 pub(crate) use self::learnt::Followed;
 use self::search::{Search, Searching};
 use crate::config::DetectorConfig;
