@@ -1,12 +1,11 @@
 //! What the detector knows of a rotor that floats, and the detector that goes on from there.
 
 use super::DetectorState;
-use crate::detect::ends::Together;
+use crate::detect::ends::LearntEnds;
 use crate::detect::flight::NoiseFloor;
 use crate::detect::levitation::Levitation;
 use crate::detect::noise::Noise;
-use crate::detect::orbit::Followed;
-use crate::detect::phase_machine::PhaseState;
+use crate::detect::orbit::LearntOrbit;
 use crate::detect::release::ReleaseBank;
 use crate::phase::Phase;
 
@@ -14,7 +13,7 @@ use crate::phase::Phase;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Afloat {
     pub(crate) place: Place,
-    pub(crate) orbit: Followed,
+    pub(crate) orbit: LearntOrbit,
     pub(crate) release: ReleaseBank,
 }
 
@@ -25,7 +24,7 @@ pub(crate) struct Place {
     noise: Noise,
     levitation: Levitation,
     listener: NoiseFloor,
-    ends: Together,
+    ends: LearntEnds,
 }
 
 impl DetectorState {
@@ -45,28 +44,26 @@ impl Afloat {
             noise: state.noise,
             levitation: state.levitation,
             listener: state.listener,
-            ends: state.ends.together(),
+            ends: state.ends.learnt,
         };
-        self.orbit = state.orbit.followed();
+        self.orbit = state.orbit.learnt();
         self.release.clone_from(&state.release);
     }
 }
 
 impl From<&Afloat> for DetectorState {
     fn from(it: &Afloat) -> Self {
-        Self {
+        let mut state = Self {
             next_number: it.place.next_number,
             noise: it.place.noise,
             levitation: it.place.levitation,
-            orbit: it.orbit.into(),
             release: it.release,
             listener: it.place.listener,
-            rotor: PhaseState {
-                phase: Phase::Levitated,
-                ..PhaseState::default()
-            },
-            ends: it.place.ends.into(),
             ..Self::default()
-        }
+        };
+        state.orbit.learnt = it.orbit;
+        state.ends.learnt = it.place.ends;
+        state.rotor.phase = Phase::Levitated;
+        state
     }
 }
