@@ -3,7 +3,7 @@
 //! The rotor as a whole has one; so has each end while the two move apart.
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::contact::{ContactTest, Finding, Regime, Touching};
+use crate::detect::contact::{ContactTest, Touching};
 use crate::detect::estimate::{Estimate, Place};
 use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
@@ -11,7 +11,6 @@ use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
 use crate::detect::measurement::Measurement;
 use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
-use crate::detect::slip::Kind;
 use crate::detect::still::Still;
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
@@ -175,7 +174,7 @@ impl PhaseMachine {
                 // Against a ring that turns, or where it rolls, the slip is known and not the spin.
                 if let Some(slip) = &contact.slip {
                     estimate.spin = (slip.speed - speed) / radius;
-                } else if contact.kind == Some(Kind::Rolling) {
+                } else if contact.kind == Some(EventKind::Rolling) {
                     estimate.spin = -speed / radius;
                 }
                 estimate.speed_error = contact.track.rate_spread() * machine.clearance;
@@ -353,36 +352,23 @@ impl PhaseMachine {
             signals,
         );
         let lifting = whose(&phase_state.contact);
-        if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
+        if matches!(findings, [Some((EventKind::LiftOff, _)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;
         }
-        for finding in findings.into_iter().flatten() {
-            let (kind, age) = match finding {
-                Finding::Kind(Kind::Sliding, age) => {
-                    phase_state.phase = Phase::Sliding;
-                    (EventKind::Sliding, age)
-                }
-                Finding::Kind(Kind::Rolling, age) => {
-                    phase_state.phase = Phase::Rolling;
-                    (EventKind::Rolling, age)
-                }
-                Finding::Regime(regime, age) => match regime {
-                    Regime::Unknown => continue,
-                    Regime::Rest => (EventKind::Rest, age),
-                    Regime::Pendulum => (EventKind::Pendulum, age),
-                    Regime::ForwardWhirl => (EventKind::ForwardWhirl, age),
-                    Regime::BackwardWhirl => (EventKind::BackwardWhirl, age),
-                },
-                Finding::LiftOff(age) => {
+        for (kind, age) in findings.into_iter().flatten() {
+            match kind {
+                EventKind::Sliding => phase_state.phase = Phase::Sliding,
+                EventKind::Rolling => phase_state.phase = Phase::Rolling,
+                EventKind::LiftOff => {
                     let wall = Some(phase_state.contact.wall());
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
                     self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {
                         self.fly(phase_state, measurement, wall, threshold_scale);
                     }
-                    (EventKind::LiftOff, age)
                 }
-            };
+                _ => {}
+            }
             writer.declare(kind, age, 0.0);
         }
         true
