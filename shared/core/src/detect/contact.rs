@@ -466,10 +466,7 @@ mod tests {
         let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
         let pull = Pull {
             acceleration: [0.0, -MACHINE.gravity],
-            error: 0.0,
-            stiffness: 0.0,
-            stiffness_variance: 0.0,
-            is_shown: false,
+            ..Pull::default()
         };
         let signals = Signals::default();
         let whirl = (1..2_000).find(|&k| {

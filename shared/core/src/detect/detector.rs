@@ -187,12 +187,18 @@ impl Detector {
             return None;
         };
         state.noise.take(position, planes);
-        state.noise.is_known().then(|| Measurement {
+        let is_known = state.noise.is_known();
+        is_known.then(|| self.measured(state, position, planes))
+    }
+
+    /// The mean position, m, of so many planes.
+    fn measured(&self, state: &DetectorState, position: [f32; 2], planes: u8) -> Measurement {
+        Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(planes, self.resolution),
             spin: state.spin.unwrap_or(self.config.machine.spin),
-        })
+        }
     }
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends move as one.
@@ -219,13 +225,7 @@ impl Detector {
         state: &DetectorState,
         planes: &PlanePositions,
     ) -> [Option<Measurement>; PLANES] {
-        let measurement = |position| Measurement {
-            now: Moment::of_sample(state.sample.saturating_sub(1)),
-            position,
-            variance: state.noise.variance(1, self.resolution),
-            spin: state.spin.unwrap_or(self.config.machine.spin),
-        };
-        planes.map(|position| position.map(measurement))
+        planes.map(|plane| plane.map(|position| self.measured(state, position, 1)))
     }
 
     /// The rotor as a whole.

@@ -8,6 +8,7 @@
 use crate::config::DetectorConfig;
 use crate::detect::pending::{Pending, StraightWay};
 use crate::event::Moment;
+use crate::vector::{length, sum};
 use touchdown_rotor::real::sqrt;
 
 /// Length of a block, s.
@@ -109,9 +110,8 @@ impl FallTest {
 
     /// Takes a position (m), as it is and without the orbit; true where a block is full.
     pub(crate) fn take(&self, blocks: &mut Blocks, parts: [[f32; 2]; 2]) -> bool {
-        for (sum, [x, y]) in blocks.sum.iter_mut().zip(parts) {
-            sum[0] += x;
-            sum[1] += y;
+        for (total, part) in blocks.sum.iter_mut().zip(parts) {
+            *total = sum(*total, part);
         }
         blocks.taken += 1;
         self.end(blocks)
@@ -346,8 +346,4 @@ impl Blocks {
             ..Self::default()
         };
     }
-}
-
-fn length([x, y]: [f32; 2]) -> f32 {
-    sqrt(x * x + y * y)
 }

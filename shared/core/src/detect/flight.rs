@@ -9,7 +9,7 @@ use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Jump, Pull, Track};
 use crate::event::Moment;
-use crate::vector::{direction, less, square, sum};
+use crate::vector::{direction, length, less, square, sum};
 use core::f32::consts::TAU;
 use touchdown_rotor::real::{root, sqrt};
 
@@ -353,21 +353,13 @@ impl FlightTest {
         flight: &mut Airborne,
         measurement: &Measurement,
     ) {
-        let Measurement {
-            position, variance, ..
-        } = *measurement;
+        let (position, variance) = (measurement.position, measurement.variance);
         if listener.count == 0.0 {
             flight.track = Track::new(
                 position,
                 variance,
                 ([0.0; 2], UNKNOWN_SPEED),
-                Pull {
-                    acceleration: [0.0; 2],
-                    error: 0.0,
-                    stiffness: 0.0,
-                    stiffness_variance: 0.0,
-                    is_shown: false,
-                },
+                Pull::default(),
                 [0.0; 2],
             );
             flight.bank.begin(0.0);
@@ -549,8 +541,7 @@ impl FlightTest {
     /// the one before, which takes it inward and along the wall by no more than its speed.
     fn is_possible(&self, track: &Track, measurement: &Measurement) -> bool {
         let noise = self.certain * track.spread(measurement.variance);
-        let [u, v] = track.velocity;
-        let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
+        let speed = length(track.velocity) + FASTER * track.speed_error();
         let kick = KICK * self.period * speed;
         let [x, y] = track.seen();
         let ([nx, ny], _) = direction([x, y]);
@@ -670,8 +661,7 @@ impl FlightTest {
     /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
     fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
         let squares = last.along * last.along + launch * launch;
-        let [a, b] = last.pull;
-        let back = squares / self.machine.clearance + sqrt(a * a + b * b);
+        let back = squares / self.machine.clearance + length(last.pull);
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 

@@ -14,8 +14,7 @@ use crate::detect::signals::Signals;
 use crate::detect::still::Still;
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
-use crate::vector::{direction, square};
-use touchdown_rotor::real::sqrt;
+use crate::vector::{direction, length, square};
 
 /// Part of gravity's way that is less than any fall goes, whatever forces are left.
 const FALLS: f32 = 0.5;
@@ -189,10 +188,9 @@ impl PhaseMachine {
     pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
         let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
         let clearance = self.machine.clearance;
-        let [u, v] = track.velocity;
         let mut strain = Exposure {
             is_released: phase_state.phase >= Phase::FreeFall,
-            speed: sqrt(u * u + v * v),
+            speed: length(track.velocity),
             speed_error: track.speed_error(),
             restitution: phase_state.flight.series.restitution(&self.machine),
             ahead: phase_state.flight.series.yet_to_come(&self.machine),
