@@ -18,18 +18,11 @@ impl Moment {
     }
 
     /// Samples from `earlier` to here.
-    pub const fn since(self, earlier: Self) -> f32 {
+    pub fn since(self, earlier: Self) -> f32 {
         // Spans of more than a few hours of samples saturate; none is compared that is so long.
         let span = self.0.saturating_sub(earlier.0);
-        let bound = i32::MAX as i64;
-        let span = if span > bound {
-            bound
-        } else if span < -bound {
-            -bound
-        } else {
-            span
-        };
-        span as i32 as f32 / 256.0
+        let bound = i64::from(i32::MAX);
+        span.clamp(-bound, bound) as i32 as f32 / 256.0
     }
 
     /// Samples and their fraction since sample 0.

@@ -101,7 +101,7 @@ impl Monitor {
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
             spin: SpinCheck::new(&config.detector),
-            severeness: SeverityModel::try_new(&config.detector)?,
+            severeness: SeverityModel::new(&config.detector),
             touches: Touches::new(
                 config.detector.machine.clearance,
                 config.detector.sample_rate,

@@ -57,7 +57,7 @@ pub(crate) struct Touching {
     /// Rest, pendulum or whirl, once known.
     regime: Option<EventKind>,
     /// Samples since the contact began.
-    age: u32,
+    pub(crate) age: u32,
     /// Farthest angle turned in the present direction, rad, samples since, and the direction.
     turning: Turning,
     /// Slip that friction cannot have used up yet, m/s.
@@ -366,11 +366,6 @@ impl Touching {
             age: self.age as f32 * period,
             turned: self.swing().turned,
         }
-    }
-
-    /// Samples since it began.
-    pub(crate) fn age(&self) -> u32 {
-        self.age
     }
 
     /// Whether it is known to go round.

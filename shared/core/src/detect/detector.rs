@@ -154,7 +154,7 @@ impl Detector {
             _ if planes == reading.planes => state.ends.lose_sight(),
             _ => {}
         }
-        if state.ends.are_alone() {
+        if state.ends.are_alone {
             self.apart(state, measurement.as_ref(), &planes, signals, &mut writer);
         } else {
             self.together(state, measurement.as_ref(), signals, &mut writer);
@@ -203,7 +203,7 @@ impl Detector {
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends move as one.
     pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
-        if state.ends.are_alone() {
+        if state.ends.are_alone {
             return None;
         }
         let at = Moment::of_sample(state.sample.saturating_sub(1));
@@ -291,7 +291,7 @@ impl Detector {
     ) {
         let before = state.levitation.variance;
         let (released, is_full) = self.watch(state, measurement, (before, true));
-        let is_armed = state.levitation.is_armed();
+        let is_armed = state.levitation.is_armed;
         self.listen(state, measurement);
         let threshold_scale = state.listener.threshold_scale();
         let variance = measurement.variance;
@@ -340,7 +340,7 @@ impl Detector {
     /// How loud the impact test is, with the orbit taken off that ends with the levitation.
     fn listen(&self, state: &mut DetectorState, measurement: &Measurement) {
         let is_known = self.learning.has_position(&state.levitation) && state.orbit.is_settled();
-        if is_known && !state.listener.is_known() {
+        if is_known && !state.listener.is_known {
             let measurement = Measurement {
                 position: less(measurement.position, state.orbit.ending()),
                 ..*measurement
@@ -509,7 +509,7 @@ impl Detector {
                         && !self.phase_machine.is_lifted(position, centre)
                         && Ends::is_off(position, centre, variance)
                 });
-                if far == [false; PLANES] || !state.levitation.is_armed() {
+                if far == [false; PLANES] || !state.levitation.is_armed {
                     return;
                 }
                 let number = writer.declare_at(far, EventKind::FreeFall);
@@ -569,7 +569,7 @@ impl DetectorState {
         if let Some(origin) = &mut self.origin {
             *origin = sum(*origin, way);
         }
-        if !self.ends.are_alone() {
+        if !self.ends.are_alone {
             let track = &mut self.rotor.flight.track;
             track.position = sum(track.position, way);
             self.rotor.flight.wall.shift(way);
@@ -620,7 +620,7 @@ impl DetectorState {
 
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
-        self.levitation.is_armed()
+        self.levitation.is_armed
     }
 
     /// Hands out the words that every tick's outcome depends on.

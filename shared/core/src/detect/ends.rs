@@ -52,7 +52,7 @@ pub(crate) struct Ends {
     lifts: bool,
     /// Each end's own, while they are apart.
     alone: [PhaseState; PLANES],
-    are_alone: bool,
+    pub(crate) are_alone: bool,
 }
 
 /// What outlasts a tick of the ends of a rotor that floats as one.
@@ -256,11 +256,6 @@ impl Ends {
     pub(crate) fn unite(&mut self) {
         self.are_alone = false;
         self.learnt.apart = 0;
-    }
-
-    /// Whether each end has a ladder of its own.
-    pub(crate) fn are_alone(&self) -> bool {
-        self.are_alone
     }
 
     /// Each end's phase, while they are apart.

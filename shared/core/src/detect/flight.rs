@@ -140,7 +140,7 @@ impl Airborne {
         self.gives = other.gives;
         self.is_rigid = other.is_rigid;
         self.lies = other.lies;
-        self.restart(other.bank.threshold_scale());
+        self.restart(other.bank.threshold_scale);
     }
 }
 
@@ -149,15 +149,11 @@ impl Airborne {
 pub(crate) struct NoiseFloor {
     level: f32,
     count: f32,
-    is_known: bool,
+    /// Whether enough has been heard.
+    pub(crate) is_known: bool,
 }
 
 impl NoiseFloor {
-    /// Whether enough has been heard.
-    pub(crate) fn is_known(&self) -> bool {
-        self.is_known
-    }
-
     /// Listens anew, unless enough has been heard.
     pub(crate) fn interrupt(&mut self) {
         if !self.is_known {
@@ -265,7 +261,7 @@ impl FlightTest {
         flight.is_rigid &= wall.is_some();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         // What it has been from the release on, it is after a lift-off.
-        let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale());
+        let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale);
         flight.restart(threshold_scale.max(heard));
     }
 
@@ -342,7 +338,7 @@ impl FlightTest {
             self.turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
-        (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale()));
+        (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale));
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
@@ -454,7 +450,7 @@ impl FlightTest {
         } else {
             out.min(flight.wall.surely_beyond(here, &self.told))
         };
-        let noise = measurement.variance * flight.bank.threshold_scale();
+        let noise = measurement.variance * flight.bank.threshold_scale;
         match touch.look(out, sqrt(noise), gone) {
             TouchStage::GivesWay => {
                 flight.gives = true;
@@ -486,7 +482,7 @@ impl FlightTest {
         let touch = flight.touch.as_mut()?;
         let stage = touch.follow(
             radius - flight.wall.distance(n) - flight.wall.beyond(touch.place),
-            sqrt(variance * flight.bank.threshold_scale()),
+            sqrt(variance * flight.bank.threshold_scale),
             (speed, track.speed_error()),
             bounce.normal_acceleration * self.period,
         );
@@ -553,7 +549,7 @@ impl FlightTest {
     /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
     /// well, it does not.
     fn relaunch(&self, flight: &mut Airborne, measurement: &Measurement) {
-        if flight.bank.threshold_scale() > 1.0 {
+        if flight.bank.threshold_scale > 1.0 {
             return;
         }
         let (Some(after), Some(last)) =
@@ -606,13 +602,13 @@ impl FlightTest {
         let mut age = stretch * jump.dated;
         let mut least = self.min_detectable_speed(
             bounce.normal_acceleration,
-            measurement.variance * flight.bank.threshold_scale(),
+            measurement.variance * flight.bank.threshold_scale,
         );
         let mut launch_speed = 0.0;
         let mut foreseen = false;
         if let Some(last) = flight.series.last() {
             let flown = bounce.at.since(last.at) * self.period;
-            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch) {
                 return None;
             }
             let [u, v] = [before[0] - pull[0] * flown, before[1] - pull[1] * flown];
@@ -628,7 +624,7 @@ impl FlightTest {
                 if foreseen {
                     age = next.age(measurement.now, age);
                     bounce.at = measurement.now.later(-age);
-                    bounce.normal_speed = next.speed();
+                    bounce.normal_speed = next.speed;
                     least *= FAINTER;
                 }
             }
@@ -667,7 +663,7 @@ impl FlightTest {
 
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
-        let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
+        let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale);
         let ([x, y], _) = self.outward(flight, track.seen());
         let [u, v] = track.velocity;
         let along = v * x - u * y;
@@ -704,7 +700,7 @@ impl FlightTest {
         }
         flight.near_wall += 1;
         let at_wall = flight.near_wall as f32 * self.period;
-        if let Some(end) = flight.series.end() {
+        if let Some(end) = flight.series.end {
             let over = measurement.now.since(end) * self.period;
             if over < SERIES_MARGIN {
                 return None;
@@ -831,7 +827,7 @@ mod tests {
         let contact = |away: core::ops::Range<u64>| {
             let mut flight = Airborne::default();
             flight.series.take(bounce, 0.0, &MACHINE, test.period);
-            let end = flight.series.end().expect("the wall presses").samples();
+            let end = flight.series.end.expect("the wall presses").samples();
             assert!((1_080.0..1_085.0).contains(&end), "{end}");
             (1_000..1_105).find(|&sample| {
                 let y = if away.contains(&sample) { -2e-4 } else { -3e-4 };

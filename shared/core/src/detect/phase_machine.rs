@@ -200,7 +200,7 @@ impl PhaseMachine {
             let rate = contact.swing().rate;
             strain.speed = clearance * rate.abs();
             strain.speed_error = clearance * contact.track.rate_spread();
-            strain.contact_age = Some(contact.age());
+            strain.contact_age = Some(contact.age);
             strain.whirl = contact.whirls().then_some(rate);
         }
         strain

@@ -30,9 +30,9 @@ pub(crate) struct Place {
 impl DetectorState {
     /// Whether the rotor floats as one, and all of it has been learnt.
     pub(crate) fn is_afloat(&self) -> bool {
-        let floats = self.rotor.phase == Phase::Levitated && self.levitation.is_armed();
-        let is_known = self.listener.is_known();
-        floats && is_known && !self.ends.are_alone() && self.pending.is_none()
+        let floats = self.rotor.phase == Phase::Levitated && self.levitation.is_armed;
+        let is_known = self.listener.is_known;
+        floats && is_known && !self.ends.are_alone && self.pending.is_none()
     }
 }
 
