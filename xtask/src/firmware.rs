@@ -13,7 +13,7 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
 use crate::image_check;
 use crate::machine::Machine;
 use crate::toolchain::{TARGET, default_cargo, run};
-use crate::workspace;
+use crate::{files, workspace};
 
 /// An image: its package, name and profile.
 struct Image {
@@ -152,7 +152,7 @@ fn target_directory() -> PathBuf {
 
 /// What an image holds from the flash's first address on.
 pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let file = object::File::parse(&*bytes)?;
     let mut content = vec![];
     for section in file.sections() {
@@ -170,7 +170,7 @@ pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// Flash and RAM that an image takes, bytes.
 pub fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let file = object::File::parse(&*bytes)?;
     let stack = file.symbols().find(|it| it.name() == Ok("_stack_start"));
     let stack = stack.context("the image has no stack")?.address();

@@ -9,13 +9,15 @@ use object::elf::{FileHeader32, PT_LOAD, SHF_ALLOC};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{LittleEndian, Object, ObjectSection, SectionFlags};
 
+use crate::files;
+
 /// Where the image keeps it.
 const SECTION: &str = ".image_check";
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Writes it, where the image has a place for it.
 pub fn write(image: &Path) -> anyhow::Result<()> {
-    let mut elf = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let mut elf = files::bytes(image)?;
     let Some((at, check)) = check(&elf)? else {
         return Ok(());
     };

@@ -2,14 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
-use std::path::Path;
 
-use anyhow::Context;
 use serde::Deserialize;
 
 use super::cycles::Modelled;
 use super::{Budget, Instructions};
+use crate::{files, workspace};
 
 /// What fails the check, and what is aimed at.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -30,13 +28,9 @@ pub struct Limits {
     goals: BTreeMap<String, u64>,
 }
 
-impl Limits {
-    /// Of this file.
-    pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text =
-            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-        toml::from_str(&text).with_context(|| format!("{}", file.display()))
-    }
+/// Those in force.
+pub fn limits() -> anyhow::Result<Limits> {
+    files::toml(&workspace().join("firmware/budget.toml"))
 }
 
 /// Name, measured and limit, where there is a number to compare.
@@ -207,7 +201,7 @@ mod tests {
 
     #[test]
     fn the_limits_in_force_can_be_read() {
-        Limits::read(&crate::workspace().join("firmware/budget.toml")).unwrap();
+        limits().unwrap();
     }
 
     #[test]

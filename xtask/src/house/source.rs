@@ -1,12 +1,13 @@
 //! What one source file has: lines, functions, type names and imports, without its tests.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use proc_macro2::Span;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
+
+use crate::files;
 
 /// A file of a crate.
 #[derive(Debug)]
@@ -30,20 +31,18 @@ pub struct Source {
 impl Source {
     /// Every file of the crate whose sources are in `folder`.
     pub fn of_crate(folder: &Path) -> anyhow::Result<Vec<Self>> {
-        let mut sources = Vec::new();
-        collect(folder, folder, &mut sources)?;
+        let files = files::below(folder, "rs")?;
+        let read = |file: &PathBuf| {
+            let source = Self::parse(folder, file, &files::text(file)?);
+            source.with_context(|| file.display().to_string())
+        };
+        let mut sources = files.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
         let of_tests: Vec<_> = sources
             .iter()
             .flat_map(|it| it.test_modules.clone())
             .collect();
         sources.retain(|it| !of_tests.iter().any(|test| it.module.starts_with(test)));
-        sources.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(sources)
-    }
-
-    fn read(root: &Path, path: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        Self::parse(root, path, &text).with_context(|| path.display().to_string())
     }
 
     fn parse(root: &Path, path: &Path, text: &str) -> anyhow::Result<Self> {
@@ -62,18 +61,6 @@ impl Source {
                 .collect(),
         })
     }
-}
-
-fn collect(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> anyhow::Result<()> {
-    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let path = entry?.path();
-        if path.is_dir() {
-            collect(root, &path, sources)?;
-        } else if path.extension().is_some_and(|it| it == "rs") {
-            sources.push(Source::read(root, &path)?);
-        }
-    }
-    Ok(())
 }
 
 fn module_of(root: &Path, path: &Path) -> Vec<String> {
