@@ -116,7 +116,7 @@ impl Bench {
     }
 
     fn run(&self, test: &Test) -> anyhow::Result<(bool, f64)> {
-        let (passes, time) = test.build(&self.tree.folder, &self.target)?.run()?;
+        let (passes, time) = test.run(&self.tree.folder, &self.target)?;
         Ok((passes, time.as_secs_f64()))
     }
 }

@@ -52,8 +52,8 @@ impl Test {
         words.concat().join(" ")
     }
 
-    /// Builds it from the sources in `tree`.
-    pub fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<Program> {
+    /// Builds it from the sources in `tree`: its executable and its package's folder.
+    fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<(PathBuf, PathBuf)> {
         // As all tests are built, where the target is one package's: crates from elsewhere are there already.
         let package = ["-p", &self.package];
         let is_library = self.target.len() == 1;
@@ -81,41 +81,27 @@ impl Test {
         );
         let messages = String::from_utf8_lossy(&built.stdout);
         let mut programs = messages.lines().filter_map(test_program);
-        let (Some((executable, folder)), None) = (programs.next(), programs.next()) else {
+        let (Some(program), None) = (programs.next(), programs.next()) else {
             bail!("{}: cargo must build one test program for it", self.text());
         };
-        Ok(Program {
-            executable,
-            folder,
-            tree: tree.to_owned(),
-            names: self.names.clone(),
-        })
+        Ok(program)
     }
-}
 
-/// A test that is built.
-pub struct Program {
-    executable: PathBuf,
-    folder: PathBuf,
-    tree: PathBuf,
-    names: Vec<String>,
-}
-
-impl Program {
-    /// Whether it passes, and how long that takes.
-    pub fn run(&self) -> anyhow::Result<(bool, Duration)> {
+    /// Builds and runs it: whether it passes, and how long it ran.
+    pub fn run(&self, tree: &Path, target: &Path) -> anyhow::Result<(bool, Duration)> {
+        let (executable, folder) = self.build(tree, target)?;
         let begun = Instant::now();
-        let mut child = Command::new(&self.executable)
+        let mut child = Command::new(&executable)
             .args(&self.names)
-            .current_dir(&self.folder)
-            .env("CARGO_MANIFEST_DIR", &self.folder)
+            .current_dir(&folder)
+            .env("CARGO_MANIFEST_DIR", &folder)
             // Where expect-test looks for its files; it must not write them.
-            .env("CARGO_WORKSPACE_DIR", &self.tree)
+            .env("CARGO_WORKSPACE_DIR", tree)
             .env_remove("UPDATE_EXPECT")
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
-            .with_context(|| format!("cannot start {}", self.executable.display()))?;
+            .with_context(|| format!("cannot start {}", executable.display()))?;
         loop {
             let taken = begun.elapsed();
             if let Some(status) = child.try_wait()? {
