@@ -60,9 +60,9 @@ pub struct Module {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Instructions {
     /// Mean while the rotor floats on its orbit.
-    instructions_typical: u32,
+    instructions_typical: u64,
     /// Greatest that was met in any stream.
-    instructions_worst: u32,
+    instructions_worst: u64,
 }
 
 /// A part of the tick.
