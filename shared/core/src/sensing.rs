@@ -201,22 +201,6 @@ impl Sensing {
         [plane(a, 0b0011, ax, ay), plane(b, 0b1100, bx, by)]
     }
 
-    /// Converts one sample. Channels of `fitted` (one bit each) that are invalid, at 0 or at full
-    /// scale come out as unusable.
-    pub fn convert(&self, sample: &Sample, fitted: u8) -> Reading {
-        let mut reading = Reading::default();
-        let mut counts = [None; CHANNELS];
-        for (index, (slot, count)) in counts.iter_mut().zip(sample.counts).enumerate() {
-            let usable = sample.is_valid(index) && count > 0 && count < self.full_scale;
-            *slot = usable.then_some(f32::from(count));
-            if !usable {
-                reading.unusable |= fitted & (1 << index);
-            }
-        }
-        reading.planes = self.place(counts);
-        reading
-    }
-
     /// Positions of the planes, m, from their channels' counts, whole or not.
     pub fn place(&self, [ax, ay, bx, by]: [Option<f32>; CHANNELS]) -> [Option<[f32; 2]>; PLANES] {
         let [a, b] = &self.planes;

@@ -115,7 +115,6 @@ impl Detector {
     ) {
         let sample = state.sample;
         state.sample += 1;
-        let mut next_number = state.next_number;
         let mut writer = EventWriter {
             sample,
             plane: match reading.planes {
@@ -124,7 +123,7 @@ impl Detector {
                 _ => Plane::Both,
             },
             motion: Motion::Cylindrical,
-            next_number: &mut next_number,
+            next_number: state.next_number,
             notices,
         };
         for (channel, found) in (0..).zip(&reading.found) {
@@ -162,7 +161,7 @@ impl Detector {
                 self.part(state, &planes, &mut writer);
             }
         }
-        state.next_number = next_number;
+        state.next_number = writer.next_number;
     }
 
     /// The planes' positions, m: none where a rotor that floats cannot be.
@@ -329,7 +328,7 @@ impl Detector {
                 since: measurement.now.later(-age),
                 declared: measurement.now,
                 paths,
-                back: 0,
+                ..Pending::default()
             });
         }
         if unforeseen.is_some() || signals.levitated == Some(false) {
@@ -517,8 +516,7 @@ impl Detector {
                     number,
                     since: ends[0].now,
                     declared: ends[0].now,
-                    paths: Default::default(),
-                    back: 0,
+                    ..Pending::default()
                 });
                 writer.resolve(&mut state.pending, true);
                 self.phase_machine

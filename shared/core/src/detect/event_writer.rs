@@ -10,7 +10,7 @@ pub(crate) struct EventWriter<'a> {
     pub(crate) sample: u64,
     pub(crate) plane: Plane,
     pub(crate) motion: Motion,
-    pub(crate) next_number: &'a mut u16,
+    pub(crate) next_number: u16,
     pub(crate) notices: &'a mut Notices,
 }
 
@@ -50,8 +50,8 @@ impl EventWriter<'_> {
         normal_speed: f32,
         fault: Option<Fault>,
     ) -> u16 {
-        let number = *self.next_number;
-        *self.next_number = number.wrapping_add(1);
+        let number = self.next_number;
+        self.next_number = number.wrapping_add(1);
         // A full list loses the notice, not the tick; NOTICES_PER_TICK is above what one can find.
         let _ = self.notices.push(Notice::Declared(Event {
             number,

@@ -415,8 +415,7 @@ mod tests {
             number: 0,
             since: Moment::of_sample(1_000),
             declared: Moment::of_sample(1_010),
-            paths: Default::default(),
-            back: 0,
+            ..Pending::default()
         };
         let way = 0.5 * MACHINE.gravity * 0.005 * 0.005;
         let fell = |part: f32| {
