@@ -5,6 +5,7 @@ use std::env::{
     consts::{DLL_PREFIX, DLL_SUFFIX},
 };
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
@@ -46,7 +47,8 @@ const IMAGES: [Image; 6] = [
 const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
 /// The emulator's plugin that models cycles.
 const PLUGIN: &str = "touchdown-cycles";
-const FLASH_START: u64 = 0x0800_0000;
+/// Program flash: below lies the code that the linker left out, above is RAM.
+pub const FLASH: Range<u64> = 0x0800_0000..0x0810_0000;
 const RAM_START: u64 = 0x2000_0000;
 
 const fn image(package: &'static str, name: &'static str, profile: &'static str) -> Image {
@@ -156,7 +158,7 @@ pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
     let file = object::File::parse(&*bytes)?;
     let mut content = vec![];
     for section in file.sections() {
-        let Some(at) = section.address().checked_sub(FLASH_START) else {
+        let Some(at) = section.address().checked_sub(FLASH.start) else {
             continue;
         };
         if section.address() < RAM_START && section.kind() != object::SectionKind::Metadata {

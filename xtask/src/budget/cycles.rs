@@ -330,10 +330,7 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
         typical_modelled: mean(typical().flat_map(|it| it.part(k))).modelled,
         worst_modelled: worst(streams.iter().flat_map(|it| it.part(k))).modelled,
     };
-    let queues: Vec<_> = RATES
-        .into_iter()
-        .map(|rate| at_rate(&interrupts, rate, RING))
-        .collect();
+    let queues: Vec<_> = RATES.map(|rate| at_rate(&interrupts, rate)).into();
     let spans = interrupts.iter().flat_map(|it| it.windows(SPAN));
     let mean_10_ms = spans.map(|it| it.iter().sum::<u64>() / SPAN as u64).max();
     Modelled {
@@ -366,16 +363,16 @@ impl PlayedStream<'_> {
 }
 
 /// Each stream by itself.
-fn at_rate(streams: &[Vec<u64>], rate: u64, places: usize) -> AtRate {
+fn at_rate(streams: &[Vec<u64>], rate: u64) -> AtRate {
     let period = CLOCK / rate;
-    let queues = streams.iter().map(|it| queue::simulate(it, period, places));
+    let queues = streams.iter().map(|it| queue::simulate(it, period, RING));
     let all = queues.fold(Queue::default(), |a, b| Queue {
         lost: a.lost + b.lost,
         latency_worst: a.latency_worst.max(b.latency_worst),
     });
     AtRate {
         samples_per_s: rate,
-        places,
+        places: RING,
         samples_lost: all.lost,
         latency_worst_us: all.latency_worst.div_ceil(CLOCK / 1_000_000),
     }

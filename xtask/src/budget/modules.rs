@@ -8,11 +8,9 @@ use object::{Object, ObjectSection};
 
 use super::Module;
 use crate::files;
+use crate::firmware::FLASH;
 
 type Slice<'a> = EndianSlice<'a, LittleEndian>;
-
-/// Program flash: below lies the code that the linker left out, above is RAM.
-const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0810_0000;
 
 /// Bytes of code by module, the largest first.
 pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {

@@ -50,7 +50,7 @@ pub(crate) struct ContactTest {
 pub(crate) struct Touching {
     /// Angle and rate.
     pub(crate) track: WallTrack,
-    lift: LiftOff,
+    pub(crate) lift: LiftOff,
     still: Still,
     /// Sliding or rolling, once known.
     pub(crate) kind: Option<EventKind>,
@@ -329,27 +329,12 @@ impl ContactTest {
 }
 
 impl Touching {
-    /// Radius at which the wall has lately been, m.
-    pub(crate) fn wall(&self) -> f32 {
-        self.lift.lately
-    }
-
-    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
-    pub(crate) fn wavering(&self) -> Option<f32> {
-        self.lift.wavering()
-    }
-
     /// As it goes on at one end of the rotor alone, where the sensors show all by `way` (m) elsewhere.
     pub(crate) fn at_one_end(&self, way: [f32; 2]) -> Self {
         let mut it = *self;
         let [x, y] = self.outward();
         it.lift = it.lift.at_one_end(way[0] * x + way[1] * y);
         it
-    }
-
-    /// Where the wall is must be learnt anew.
-    pub(crate) fn learn_anew(&mut self) {
-        self.lift = LiftOff::default();
     }
 
     /// Unit vector from the centre to the contact.

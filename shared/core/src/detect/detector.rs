@@ -248,9 +248,11 @@ impl Detector {
             }
             (Phase::FreeFall | Phase::Impact, None) => {
                 self.phase_machine.skip(&mut state.rotor);
-                self.falls.skip(&mut state.blocks);
+                self.falls.advance(&mut state.blocks);
             }
-            (Phase::Starting | Phase::Levitated, None) => self.falls.skip(&mut state.blocks),
+            (Phase::Starting | Phase::Levitated, None) => {
+                self.falls.advance(&mut state.blocks);
+            }
         }
     }
 
@@ -295,7 +297,9 @@ impl Detector {
         let threshold_scale = state.listener.threshold_scale();
         let variance = measurement.variance;
         let unforeseen = is_full
-            .then(|| (self.falls).unforeseen(&state.blocks, variance, state.orbit.is_certain()))
+            .then(|| {
+                (self.falls).unforeseen(&state.blocks, variance, state.orbit.learnt.is_certain)
+            })
             .flatten();
         let home = state.levitation.mean;
         if is_full && (self.phase_machine).is_lifted(state.blocks.newest_without_orbit(), home) {
@@ -416,7 +420,7 @@ impl Detector {
         }
         let variance = state.levitation.variance;
         let (_, is_full) = self.watch(state, measurement, (variance, false));
-        let (noise, orbits) = (measurement.variance, state.orbit.is_certain());
+        let (noise, orbits) = (measurement.variance, state.orbit.learnt.is_certain);
         let Some(pending) = &mut state.pending else {
             return false;
         };
@@ -467,7 +471,7 @@ impl Detector {
     ) {
         // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
         let learnt = state.levitation.learnt_variance();
-        let wavering = state.rotor.contact.wavering();
+        let wavering = state.rotor.contact.lift.wavering();
         let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
         let measurement = measurement.map(|measurement| Measurement {
             variance: measurement.variance.max(shown),
@@ -485,7 +489,7 @@ impl Detector {
             whose,
             writer,
         ) {
-            state.ends.lift_one();
+            state.ends.lifts = true;
         }
     }
 

@@ -49,7 +49,8 @@ pub(crate) struct Ends {
     variance: f32,
     /// In a lift-off, with x of h and y of e as the way from the wall: sums of 2 x y and x^2 - y^2.
     lean: [f32; 2],
-    lifts: bool,
+    /// One end has lifted off.
+    pub(crate) lifts: bool,
     /// Each end's own, while they are apart.
     alone: [PhaseState; PLANES],
     pub(crate) are_alone: bool,
@@ -309,11 +310,6 @@ impl Ends {
         self.learnt.count = 0;
         self.learnt.apart = 0;
         self.learnt.together = 0;
-    }
-
-    /// One end has lifted off.
-    pub(crate) fn lift_one(&mut self) {
-        self.lifts = true;
     }
 
     /// Whether the ends have just moved apart.

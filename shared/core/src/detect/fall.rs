@@ -114,15 +114,11 @@ impl FallTest {
             *total = sum(*total, part);
         }
         blocks.taken += 1;
-        self.end(blocks)
+        self.advance(blocks)
     }
 
-    /// Without a position.
-    pub(crate) fn skip(&self, blocks: &mut Blocks) {
-        self.end(blocks);
-    }
-
-    fn end(&self, blocks: &mut Blocks) -> bool {
+    /// To the next sample, with a position or without; true where a block with one is full.
+    pub(crate) fn advance(&self, blocks: &mut Blocks) -> bool {
         blocks.since_wall = blocks.since_wall.saturating_add(1);
         blocks.samples += 1;
         if blocks.samples < self.stride {

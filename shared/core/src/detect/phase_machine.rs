@@ -8,6 +8,7 @@ use crate::detect::estimate::{Estimate, Place};
 use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
+use crate::detect::lift_off::LiftOff;
 use crate::detect::measurement::Measurement;
 use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
@@ -141,7 +142,7 @@ impl PhaseMachine {
             self.flight.end_contact(&mut phase_state.flight, None);
             self.flight.begin_contact(&mut phase_state.flight);
         }
-        phase_state.contact.learn_anew();
+        phase_state.contact.lift = LiftOff::default();
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
@@ -358,7 +359,7 @@ impl PhaseMachine {
                 EventKind::Sliding => phase_state.phase = Phase::Sliding,
                 EventKind::Rolling => phase_state.phase = Phase::Rolling,
                 EventKind::LiftOff => {
-                    let wall = Some(phase_state.contact.wall());
+                    let wall = Some(phase_state.contact.lift.lately);
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
                     self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {

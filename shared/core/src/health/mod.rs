@@ -357,6 +357,6 @@ impl HealthState {
             put(f32::from(it.condition as u8));
             it.words().into_iter().for_each(&mut put);
         }
-        self.planes.pairing.words().into_iter().for_each(put);
+        self.planes.pairing.half.into_iter().for_each(put);
     }
 }

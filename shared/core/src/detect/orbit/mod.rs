@@ -61,7 +61,7 @@ pub(crate) struct LearntOrbit {
     count: u32,
     orbit: Option<Orbit>,
     /// Whether the orbit has shown what it explains: it is on trial before.
-    is_certain: bool,
+    pub(crate) is_certain: bool,
     /// Of one axis about trend and orbit, m^2.
     variance: f32,
 }
@@ -265,11 +265,6 @@ impl OrbitState {
     pub(crate) fn forget(&mut self) {
         self.begin_anew();
         self.learnt.alone = TrendObserver::default();
-    }
-
-    /// Whether there is an orbit for certain.
-    pub(crate) fn is_certain(&self) -> bool {
-        self.learnt.is_certain
     }
 
     /// Whether there is no orbit on trial.
