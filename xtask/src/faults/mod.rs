@@ -103,20 +103,14 @@ impl Bench {
     /// Whether `test`, which passes without the fault, fails with it; then the time that it runs, s.
     fn finds(&mut self, test: &Test, fault: &Fault) -> anyhow::Result<Option<f64>> {
         if !self.passing.contains(test) {
-            let (passes, _) = self.run(test)?;
+            let (passes, _) = test.run(&self.tree.folder, &self.target)?;
             ensure!(passes, "{} fails without a fault", test.text());
             self.passing.insert(test.clone());
         }
         let _planted = self.tree.plant(fault)?;
-        let tried = self
-            .run(test)
-            .with_context(|| format!("with the fault \"{}\"", fault.title()));
-        let (passes, seconds) = tried?;
+        let tried = test.run(&self.tree.folder, &self.target);
+        let (passes, seconds) =
+            tried.with_context(|| format!("with the fault \"{}\"", fault.title()))?;
         Ok((!passes).then_some(seconds))
-    }
-
-    fn run(&self, test: &Test) -> anyhow::Result<(bool, f64)> {
-        let (passes, time) = test.run(&self.tree.folder, &self.target)?;
-        Ok((passes, time.as_secs_f64()))
     }
 }

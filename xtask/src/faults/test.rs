@@ -87,8 +87,8 @@ impl Test {
         Ok(program)
     }
 
-    /// Builds and runs it: whether it passes, and how long it ran.
-    pub fn run(&self, tree: &Path, target: &Path) -> anyhow::Result<(bool, Duration)> {
+    /// Builds and runs it: whether it passes, and how long it ran, s.
+    pub fn run(&self, tree: &Path, target: &Path) -> anyhow::Result<(bool, f64)> {
         let (executable, folder) = self.build(tree, target)?;
         let begun = Instant::now();
         let mut child = Command::new(&executable)
@@ -105,12 +105,12 @@ impl Test {
         loop {
             let taken = begun.elapsed();
             if let Some(status) = child.try_wait()? {
-                return Ok((status.success(), taken));
+                return Ok((status.success(), taken.as_secs_f64()));
             }
             if taken > LONGEST {
                 child.kill()?;
                 child.wait()?;
-                return Ok((false, taken));
+                return Ok((false, taken.as_secs_f64()));
             }
             thread::sleep(POLL);
         }

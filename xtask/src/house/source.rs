@@ -10,7 +10,7 @@ use syn::visit::{self, Visit};
 use crate::files;
 
 /// A file of a crate.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Source {
     /// Its file.
     pub path: PathBuf,
@@ -46,20 +46,18 @@ impl Source {
     }
 
     fn parse(root: &Path, path: &Path, text: &str) -> anyhow::Result<Self> {
-        let file = syn::parse_file(text)?;
-        let mut found = Found::default();
-        found.visit_file(&file);
-        Ok(Self {
+        let mut source = Self {
             path: path.to_owned(),
             module: module_of(root, path),
-            lines: text.lines().count() - found.test_lines,
-            functions: found.functions,
-            types: found.types,
-            imports: found.imports,
-            test_modules: (found.test_modules.into_iter())
-                .map(|it| [module_of(root, path), vec![it]].concat())
-                .collect(),
-        })
+            lines: text.lines().count(),
+            ..Self::default()
+        };
+        source.visit_file(&syn::parse_file(text)?);
+        Ok(source)
+    }
+
+    fn function(&mut self, name: &syn::Ident, all: Span) {
+        self.functions.push((name.to_string(), lines(all)));
     }
 }
 
@@ -77,21 +75,6 @@ fn module_of(root: &Path, path: &Path) -> Vec<String> {
     module
 }
 
-#[derive(Default)]
-struct Found {
-    test_lines: usize,
-    functions: Vec<(String, usize)>,
-    types: Vec<String>,
-    imports: Vec<Vec<String>>,
-    test_modules: Vec<String>,
-}
-
-impl Found {
-    fn function(&mut self, name: &syn::Ident, all: Span) {
-        self.functions.push((name.to_string(), lines(all)));
-    }
-}
-
 fn lines(span: Span) -> usize {
     span.end().line - span.start().line + 1
 }
@@ -104,7 +87,7 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-impl<'a> Visit<'a> for Found {
+impl<'a> Visit<'a> for Source {
     fn visit_item(&mut self, item: &'a syn::Item) {
         let (attributes, name) = match item {
             syn::Item::Mod(it) => (&it.attrs, None),
@@ -119,14 +102,15 @@ impl<'a> Visit<'a> for Found {
             _ => return visit::visit_item(self, item),
         };
         if is_test(attributes) {
-            self.test_lines += lines(item.span());
+            self.lines -= lines(item.span());
             if let syn::Item::Mod(syn::ItemMod {
                 ident,
                 content: None,
                 ..
             }) = item
             {
-                self.test_modules.push(ident.to_string());
+                let module = [self.module.clone(), vec![ident.to_string()]];
+                self.test_modules.push(module.concat());
             }
             return;
         }
@@ -141,7 +125,7 @@ impl<'a> Visit<'a> for Found {
 
     fn visit_impl_item_fn(&mut self, item: &'a syn::ImplItemFn) {
         if is_test(&item.attrs) {
-            self.test_lines += lines(item.span());
+            self.lines -= lines(item.span());
             return;
         }
         self.function(&item.sig.ident, item.span());

@@ -82,7 +82,7 @@ pub(crate) enum FallVerdict {
 }
 
 /// A polynomial through blocks, at the end of the last one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Cubic {
     /// m, m/s, m/s^2; the last is the change of the acceleration over half of the blocks.
     place: [f32; 2],
@@ -275,15 +275,7 @@ impl FallTest {
         let (path, passed) = path.map_or((StraightWay::default(), 0.0), |(path, passed)| {
             (*path, passed - 0.5 * (stride - 1.0))
         });
-        let mut fit = Cubic {
-            place: [0.0; 2],
-            speed: [0.0; 2],
-            acceleration: [0.0; 2],
-            change: [0.0; 2],
-            place_error: 0.0,
-            error: 0.0,
-            change_error: 0.0,
-        };
+        let mut fit = Cubic::default();
         for axis in 0..2 {
             let (b, c, d) = (
                 first[axis] * by_first,
