@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
+use object::{Object, ObjectSection, ObjectSymbol};
 
 use crate::image_check;
 use crate::machine::Machine;
@@ -177,13 +177,7 @@ pub fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
     let stack = file.symbols().find(|it| it.name() == Ok("_stack_start"));
     let stack = stack.context("the image has no stack")?.address();
     let (mut flash, mut ram) = (0, 0);
-    for section in file.sections() {
-        let SectionFlags::Elf { sh_flags } = section.flags() else {
-            continue;
-        };
-        if sh_flags & u64::from(elf::SHF_ALLOC) == 0 {
-            continue;
-        }
+    for section in file.sections().filter(image_check::is_loaded) {
         let in_ram = section.address() >= RAM_START;
         ensure!(
             !in_ram || section.size() == 0 || section.address() >= stack,
