@@ -17,8 +17,10 @@ const LONGEST: Duration = Duration::from_secs(120);
 const POLL: Duration = Duration::from_millis(5);
 
 /// Package, one target, and names of tests.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug)]
 pub struct Test {
+    /// As it stands in the list.
+    pub text: String,
     package: String,
     target: Vec<String>,
     names: Vec<String>,
@@ -36,20 +38,11 @@ impl Test {
         };
         let (target, names) = rest.split_at(target);
         Ok(Self {
+            text: text.to_owned(),
             package: package.clone(),
             target: target.to_vec(),
             names: names.to_vec(),
         })
-    }
-
-    /// As it stands in the list.
-    pub fn text(&self) -> String {
-        let words = [
-            std::slice::from_ref(&self.package),
-            &self.target,
-            &self.names,
-        ];
-        words.concat().join(" ")
     }
 
     /// Builds it from the sources in `tree`: its executable and its package's folder.
@@ -77,12 +70,12 @@ impl Test {
         ensure!(
             built.status.success(),
             "{} does not build:\n{errors}",
-            self.text()
+            self.text
         );
         let messages = String::from_utf8_lossy(&built.stdout);
         let mut programs = messages.lines().filter_map(test_program);
         let (Some(program), None) = (programs.next(), programs.next()) else {
-            bail!("{}: cargo must build one test program for it", self.text());
+            bail!("{}: cargo must build one test program for it", self.text);
         };
         Ok(program)
     }
@@ -139,7 +132,9 @@ mod tests {
             "core --test golden",
             "core --test log a_name another",
         ] {
-            assert_eq!(Test::parse(text).unwrap().text(), text);
+            let test = Test::parse(text).unwrap();
+            let words = [&[test.package][..], &test.target, &test.names].concat();
+            assert_eq!(words.join(" "), text);
         }
         for text in ["", "core", "core --test", "core name"] {
             assert!(Test::parse(text).is_err(), "{text}");
