@@ -5,15 +5,16 @@ use std::env::{
     consts::{DLL_PREFIX, DLL_SUFFIX},
 };
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, elf};
+use object::{Object, ObjectSection, ObjectSymbol};
 
 use crate::image_check;
 use crate::machine::Machine;
 use crate::toolchain::{TARGET, default_cargo, run};
-use crate::workspace;
+use crate::{files, workspace};
 
 /// An image: its package, name and profile.
 struct Image {
@@ -46,7 +47,8 @@ const IMAGES: [Image; 6] = [
 const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
 /// The emulator's plugin that models cycles.
 const PLUGIN: &str = "touchdown-cycles";
-const FLASH_START: u64 = 0x0800_0000;
+/// Program flash: below lies the code that the linker left out, above is RAM.
+pub const FLASH: Range<u64> = 0x0800_0000..0x0810_0000;
 const RAM_START: u64 = 0x2000_0000;
 
 const fn image(package: &'static str, name: &'static str, profile: &'static str) -> Image {
@@ -152,11 +154,11 @@ fn target_directory() -> PathBuf {
 
 /// What an image holds from the flash's first address on.
 pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let file = object::File::parse(&*bytes)?;
     let mut content = vec![];
     for section in file.sections() {
-        let Some(at) = section.address().checked_sub(FLASH_START) else {
+        let Some(at) = section.address().checked_sub(FLASH.start) else {
             continue;
         };
         if section.address() < RAM_START && section.kind() != object::SectionKind::Metadata {
@@ -170,18 +172,12 @@ pub fn flash_content(image: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// Flash and RAM that an image takes, bytes.
 pub fn size(image: &Path) -> anyhow::Result<(u64, u64)> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let file = object::File::parse(&*bytes)?;
     let stack = file.symbols().find(|it| it.name() == Ok("_stack_start"));
     let stack = stack.context("the image has no stack")?.address();
     let (mut flash, mut ram) = (0, 0);
-    for section in file.sections() {
-        let SectionFlags::Elf { sh_flags } = section.flags() else {
-            continue;
-        };
-        if sh_flags & u64::from(elf::SHF_ALLOC) == 0 {
-            continue;
-        }
+    for section in file.sections().filter(image_check::is_loaded) {
         let in_ram = section.address() >= RAM_START;
         ensure!(
             !in_ram || section.size() == 0 || section.address() >= stack,

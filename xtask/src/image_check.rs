@@ -9,18 +9,26 @@ use object::elf::{FileHeader32, PT_LOAD, SHF_ALLOC};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{LittleEndian, Object, ObjectSection, SectionFlags};
 
+use crate::files;
+
 /// Where the image keeps it.
 const SECTION: &str = ".image_check";
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Writes it, where the image has a place for it.
 pub fn write(image: &Path) -> anyhow::Result<()> {
-    let mut elf = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let mut elf = files::bytes(image)?;
     let Some((at, check)) = check(&elf)? else {
         return Ok(());
     };
     elf[at..at + check.len()].copy_from_slice(&check);
     fs::write(image, elf).with_context(|| format!("cannot write {}", image.display()))
+}
+
+/// Whether it has a place in the chip's memory.
+pub fn is_loaded<'a>(section: &impl ObjectSection<'a>) -> bool {
+    let allocated = u64::from(SHF_ALLOC);
+    matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & allocated != 0)
 }
 
 /// Offset in the file, and what belongs there.
@@ -31,14 +39,10 @@ fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
     };
     let (at, size) = section.file_range().context("the check has no bytes")?;
     let (mut numbers, mut contents) = (vec![], vec![]);
-    for section in file.sections().filter(|it| it.name() != Ok(SECTION)) {
-        let SectionFlags::Elf { sh_flags } = section.flags() else {
-            continue;
-        };
+    let others = file.sections().filter(|it| it.name() != Ok(SECTION));
+    for section in others.filter(is_loaded) {
         let held = section.file_range().filter(|&(_, size)| size > 0);
-        let Some((offset, size)) = held.filter(|_| sh_flags & u64::from(SHF_ALLOC) != 0) else {
-            continue;
-        };
+        let Some((offset, size)) = held else { continue };
         let start = programmed_at(elf, offset)?;
         for number in [start, u32::try_from(size)?] {
             numbers.extend(number.to_le_bytes());

@@ -3,6 +3,7 @@
 mod budget;
 mod faults;
 mod figures;
+mod files;
 mod firmware;
 mod flash;
 mod golden;

@@ -71,6 +71,16 @@ pub fn run(cargo: &mut Command, failure: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What a command prints; where it fails, so does this, and says what it told.
+pub fn output(command: &mut Command) -> anyhow::Result<String> {
+    let output = command.output();
+    let output = output.with_context(|| format!("cannot start {command:?}"))?;
+    let error = String::from_utf8_lossy(&output.stderr);
+    let status = output.status;
+    ensure!(status.success(), "{command:?} failed ({status})\n{error}");
+    String::from_utf8(output.stdout).with_context(|| format!("{command:?}"))
+}
+
 fn debian_cargo(command: &str) -> Command {
     let mut cargo = Command::new("/usr/bin/cargo");
     // rustup's cargo left these for its own compiler.

@@ -231,10 +231,7 @@ impl<W: Write> Iterator for SampleSource<'_, W> {
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
         self.faults.inject(&mut sample, time);
-        let [sensed, _] = self
-            .sensing
-            .convert(&sample, self.scene.sensors.fitted())
-            .planes;
+        let [sensed, _] = self.sensing.planes(&sample);
         let sensed = sensed.map(|plane| plane.map(f64::from));
         self.analyser.take(time, sensed);
         self.trace.push(TracePoint {

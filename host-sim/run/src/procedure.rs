@@ -33,7 +33,7 @@ impl Procedure {
         sample: &Sample,
     ) -> Option<usize> {
         let clearance = f64::from(config.detector.machine.clearance);
-        let planes = sensing.convert(sample, config.fitted).planes;
+        let planes = sensing.planes(sample);
         let distances = planes.into_iter().flatten();
         let distances = distances.map(|[x, y]| f64::from(x).hypot(f64::from(y)));
         let distance = distances.reduce(f64::max)?;

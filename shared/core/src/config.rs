@@ -10,8 +10,7 @@ pub const NEAREST_WALL: f32 = 0.38;
 pub(crate) const MOST_INSTANTS: usize = 32;
 
 /// The machine, as far as the detector needs it; SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MachineConfig {
     /// Rotor mass, kg; for impulses and loads only.
     pub mass: f32,
@@ -33,9 +32,8 @@ pub struct MachineConfig {
 }
 
 /// Thresholds and times, SI; `docs/know/detector.md` derives each. The defaults suit the rig of the source paper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Tuning {
     /// Probability with which one instant of a test's bank declares something in one sample of white
     /// noise, 1e-15 to 0.01. Every likelihood ratio is compared with the logarithm of its inverse.
@@ -100,8 +98,7 @@ impl Default for Tuning {
 }
 
 /// All that the detector is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DetectorConfig {
     /// Samples per second, Hz.
     pub sample_rate: f32,
@@ -149,19 +146,25 @@ impl Tuning {
         if !(1e-15..=0.01).contains(&self.false_alarm) {
             return Err(ConfigError::OutOfRange("false_alarm", "1e-15 to 0.01"));
         }
-        for (name, value) in [
-            ("arming_time", self.arming_time),
-            ("release_horizon", self.release_horizon),
-            ("impact_horizon", self.impact_horizon),
-            ("confirm_travel", self.confirm_travel),
-            ("catch_time", self.catch_time),
-            ("wall_tolerance", self.wall_tolerance),
-            ("flight_error", self.flight_error),
-            ("tilt_error", self.tilt_error),
-            ("contact_error", self.contact_error),
-            ("still_time", self.still_time),
+        let time = (10.0, "10 s or less");
+        let part = (0.5, "0.5 or less");
+        let any = (f32::INFINITY, "");
+        for (name, value, (most, rule)) in [
+            ("arming_time", self.arming_time, time),
+            ("release_horizon", self.release_horizon, time),
+            ("impact_horizon", self.impact_horizon, time),
+            ("confirm_travel", self.confirm_travel, part),
+            ("catch_time", self.catch_time, time),
+            ("wall_tolerance", self.wall_tolerance, part),
+            ("flight_error", self.flight_error, any),
+            ("tilt_error", self.tilt_error, any),
+            ("contact_error", self.contact_error, any),
+            ("still_time", self.still_time, time),
         ] {
             positive(name, value)?;
+            if value > most {
+                return Err(ConfigError::OutOfRange(name, rule));
+            }
         }
         for (name, instants) in [
             ("release_instants", self.release_instants),
@@ -171,27 +174,13 @@ impl Tuning {
                 return Err(ConfigError::OutOfRange(name, "4 to 32"));
             }
         }
-        not_negative("friction_error", self.friction_error)?;
-        not_negative("restitution_error", self.restitution_error)?;
         for (name, part) in [
             ("friction_error", self.friction_error),
             ("restitution_error", self.restitution_error),
-            ("confirm_travel", self.confirm_travel),
-            ("wall_tolerance", self.wall_tolerance),
         ] {
+            not_negative(name, part)?;
             if part > 0.5 {
                 return Err(ConfigError::OutOfRange(name, "0.5 or less"));
-            }
-        }
-        for (name, value) in [
-            ("arming_time", self.arming_time),
-            ("release_horizon", self.release_horizon),
-            ("impact_horizon", self.impact_horizon),
-            ("catch_time", self.catch_time),
-            ("still_time", self.still_time),
-        ] {
-            if value > 10.0 {
-                return Err(ConfigError::OutOfRange(name, "10 s or less"));
             }
         }
         Ok(())

@@ -18,18 +18,11 @@ impl Moment {
     }
 
     /// Samples from `earlier` to here.
-    pub const fn since(self, earlier: Self) -> f32 {
+    pub fn since(self, earlier: Self) -> f32 {
         // Spans of more than a few hours of samples saturate; none is compared that is so long.
         let span = self.0.saturating_sub(earlier.0);
-        let bound = i32::MAX as i64;
-        let span = if span > bound {
-            bound
-        } else if span < -bound {
-            -bound
-        } else {
-            span
-        };
-        span as i32 as f32 / 256.0
+        let bound = i64::from(i32::MAX);
+        span.clamp(-bound, bound) as i32 as f32 / 256.0
     }
 
     /// Samples and their fraction since sample 0.
@@ -41,8 +34,8 @@ impl Moment {
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum EventKind {
     /// The rotor is unsupported.
@@ -150,8 +143,8 @@ pub enum Notice {
 
 /// What can be ordered over the link. The order of variants and fields is its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[strum(serialize_all = "lowercase")]
+#[derive(serde::Serialize, serde::Deserialize)]
 pub enum Act {
     /// Clear what is latched.
     Clear,
@@ -215,8 +208,8 @@ pub struct Outlook {
 /// Which limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum Level {
     /// The lower one, which is told.

@@ -5,8 +5,8 @@ use crate::sample::CHANNELS;
 /// What is wrong with a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::FromRepr, strum::Display)]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum FaultKind {
     /// A few samples without a value.
@@ -58,8 +58,8 @@ pub struct Fault {
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, strum::FromRepr, strum::Display,
 )]
 #[repr(u8)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Condition {
     /// Nothing is known against it.

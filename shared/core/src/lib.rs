@@ -14,7 +14,6 @@ pub mod fault;
 pub mod forecast;
 pub mod guard;
 pub mod health;
-#[cfg(feature = "serde")]
 pub mod learnt;
 pub mod monitor;
 pub mod phase;

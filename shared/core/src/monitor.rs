@@ -19,8 +19,7 @@ use crate::touch::{TouchState, Touches};
 use touchdown_rotor::error::ConfigError;
 
 /// All that the monitor is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MonitorConfig {
     /// Bit i is set if channel i is fitted.
     pub fitted: u8,
@@ -73,7 +72,6 @@ pub struct MonitorState {
     inner_ring: Option<Speed>,
     pub(crate) detector: DetectorState,
     pub(crate) spin: SpinState,
-    #[cfg(feature = "serde")]
     pub(crate) levitated: Option<bool>,
     severity: SeverityState,
 }
@@ -103,7 +101,7 @@ impl Monitor {
             detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
             health: Health::new(&config.detector, &config.sensing, config.fitted),
             spin: SpinCheck::new(&config.detector),
-            severeness: SeverityModel::try_new(&config.detector)?,
+            severeness: SeverityModel::new(&config.detector),
             touches: Touches::new(
                 config.detector.machine.clearance,
                 config.detector.sample_rate,
@@ -192,10 +190,7 @@ impl Monitor {
         let spin = &mut state.spin;
         let (is_unused, spin_fault) = self.spin.update(spin, sample.spin, state.samples);
         state.faults += u64::from(is_unused);
-        #[cfg(feature = "serde")]
-        {
-            state.levitated = sample.levitated;
-        }
+        state.levitated = sample.levitated;
         let spin = state.spin.believed;
         let retainer = self.retainer(state, sample);
         state.samples += 1;

@@ -2,8 +2,8 @@
 
 /// Phase of the rotor, or of one end of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[strum(serialize_all = "lowercase")]
+#[derive(serde::Serialize, serde::Deserialize)]
 pub enum Phase {
     /// Switched on, not judged yet.
     #[default]

@@ -6,8 +6,7 @@ pub const CHANNELS: usize = 4;
 pub const TACHOMETERS: usize = 2;
 
 /// What a pulse channel's counter and capture timer show at a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Edges {
     /// Edges so far, modulo 2^16, whichever way it turns.
     pub count: u16,
@@ -16,8 +15,7 @@ pub struct Edges {
 }
 
 /// What one tick gets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// Converter codes, in the order of [`CHANNELS`]; meaningless where `valid` has no bit.
     pub counts: [u16; CHANNELS],

@@ -10,8 +10,7 @@ use touchdown_rotor::scales::positive;
 pub const PLANES: usize = 2;
 
 /// How counts relate to displacement; the same for all channels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SensingConfig {
     /// Displacement of one count, m.
     pub resolution: f32,
@@ -35,8 +34,7 @@ impl SensingConfig {
 }
 
 /// What a commissioning check found of the sensors.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Calibration {
     /// Day of the check, as the number 20261231.
     pub date: u32,
@@ -45,8 +43,7 @@ pub struct Calibration {
 }
 
 /// Errors of a plane's two channels against `resolution`, `zero_count` and right angles; by default none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PlaneCalibration {
     /// What each channel reads at the retainer's centre, m.
     pub zero: [f32; 2],
@@ -202,22 +199,6 @@ impl Sensing {
         };
         let [a, b] = &self.planes;
         [plane(a, 0b0011, ax, ay), plane(b, 0b1100, bx, by)]
-    }
-
-    /// Converts one sample. Channels of `fitted` (one bit each) that are invalid, at 0 or at full
-    /// scale come out as unusable.
-    pub fn convert(&self, sample: &Sample, fitted: u8) -> Reading {
-        let mut reading = Reading::default();
-        let mut counts = [None; CHANNELS];
-        for (index, (slot, count)) in counts.iter_mut().zip(sample.counts).enumerate() {
-            let usable = sample.is_valid(index) && count > 0 && count < self.full_scale;
-            *slot = usable.then_some(f32::from(count));
-            if !usable {
-                reading.unusable |= fitted & (1 << index);
-            }
-        }
-        reading.planes = self.place(counts);
-        reading
     }
 
     /// Positions of the planes, m, from their channels' counts, whole or not.

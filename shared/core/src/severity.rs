@@ -5,7 +5,6 @@
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::Exposure;
 use crate::event::{Event, EventKind, Moment, Notice};
-use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::sqrt;
 
 /// Speed that the velocity index is measured in where there is no gravity, m/s.
@@ -16,8 +15,7 @@ const WELL_KNOWN: f32 = 0.05;
 const FOLLOWED: f32 = 0.3;
 
 /// What the last drop has done so far; SI.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Severity {
     /// Impacts that were declared.
     pub impacts: u16,
@@ -60,15 +58,14 @@ pub(crate) struct SeverityState {
 
 impl SeverityModel {
     /// `config` must be valid.
-    pub(crate) fn try_new(config: &DetectorConfig) -> Result<Self, ConfigError> {
-        config.validate()?;
+    pub(crate) fn new(config: &DetectorConfig) -> Self {
         let machine = config.machine;
         let unit = sqrt(machine.gravity * machine.clearance);
-        Ok(Self {
+        Self {
             machine,
             period: 1.0 / config.sample_rate,
             unit: if unit > 0.0 { unit } else { DRIFT },
-        })
+        }
     }
 
     /// After a tick that gave `notices`.

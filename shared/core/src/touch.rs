@@ -2,7 +2,7 @@
 
 use crate::event::{Notice, Notices, Plane, Touch};
 use crate::sensing::PLANES;
-use touchdown_rotor::real::sqrt;
+use crate::vector::length;
 
 /// Part of the clearance beyond which a plane is at the wall, and within which it is clear of it.
 const AT_WALL: f32 = 0.8;
@@ -91,10 +91,10 @@ impl Touches {
     /// Takes a plane's place, m; whether it is far from the wall.
     #[inline]
     fn see(&self, it: &mut PlaneTouch, place: Option<[f32; 2]>) -> bool {
-        let Some([x, y]) = place else {
+        let Some(place) = place else {
             return true;
         };
-        let distance = sqrt(x * x + y * y) * self.per_clearance;
+        let distance = length(place) * self.per_clearance;
         if distance < CLEAR && it.is_clear() {
             (it.distance, it.age) = (distance, 0);
             return true;

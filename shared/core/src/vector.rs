@@ -4,12 +4,17 @@ use touchdown_rotor::real::sqrt;
 
 /// Unit vector from the centre and distance, m.
 pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
-    let radius = sqrt(x * x + y * y);
+    let radius = length([x, y]);
     if radius > 0.0 {
         ([x / radius, y / radius], radius)
     } else {
         ([0.0, -1.0], 0.0)
     }
+}
+
+/// Its length, m, m/s or m/s^2.
+pub(crate) fn length([x, y]: [f32; 2]) -> f32 {
+    sqrt(x * x + y * y)
 }
 
 /// Square of the distance, m^2.

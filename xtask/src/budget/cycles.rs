@@ -84,7 +84,7 @@ pub struct Modelled {
     /// Of them found by a search; the others are the image's own.
     streams_of_corpus: usize,
     /// Greatest of any tick in those of the corpus.
-    corpus_instructions_worst: Option<u32>,
+    corpus_instructions_worst: Option<u64>,
     ticks: usize,
     /// Mean and greatest of each part, as modelled.
     parts: Vec<PartModelled>,
@@ -111,7 +111,7 @@ impl Modelled {
 
     /// The worst of a part, as modelled, and of any tick in the corpus, in instructions.
     #[cfg(test)]
-    pub fn worst_of(&self, part: &str) -> (u64, u32) {
+    pub fn worst_of(&self, part: &str) -> (u64, u64) {
         let mut parts = self.parts.iter().filter(|it| it.part == part);
         let of_part = parts.next().map_or(0, |it| it.worst_modelled);
         (of_part, self.corpus_instructions_worst.unwrap_or(0))
@@ -139,7 +139,7 @@ struct AtRate {
 /// A stretch between two readings of the counter.
 #[derive(Clone, Copy, Debug)]
 struct CountedWindow {
-    instructions: u32,
+    instructions: u64,
     cycles: Cycles,
 }
 
@@ -161,7 +161,7 @@ pub struct Player {
 /// The worst tick of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorstTick {
-    instructions: u32,
+    instructions: u64,
     pub modelled: u64,
 }
 
@@ -209,10 +209,8 @@ impl Player {
         ];
         let table = ticks::count_in(&folder, &self.image, Some(&plugin.join(",")))?;
         let bytes = fs::read(&out).context("the plugin wrote nothing")?;
-        Ok((
-            table,
-            bytes.chunks_exact(WINDOW_BYTES).map(window).collect(),
-        ))
+        let (windows, _) = bytes.as_chunks();
+        Ok((table, windows.iter().map(window).collect()))
     }
 
     /// Of each stream.
@@ -257,15 +255,15 @@ pub fn count(image: &Path, corpus: &[Stream]) -> anyhow::Result<(Table, Modelled
     Ok((table, modelled))
 }
 
-fn window(bytes: &[u8]) -> CountedWindow {
-    let number = |k: usize| u32::from_le_bytes(bytes[4 * k..4 * k + 4].try_into().expect("four"));
-    let [lower, modelled, upper] = [1, 2, 3].map(|k| number(k).into());
+fn window(bytes: &[u8; WINDOW_BYTES]) -> CountedWindow {
+    let (words, _) = bytes.as_chunks();
+    let number = |k: usize| u64::from(u32::from_le_bytes(words[k]));
     CountedWindow {
         instructions: number(0),
         cycles: Cycles {
-            lower,
-            modelled,
-            upper,
+            lower: number(1),
+            modelled: number(2),
+            upper: number(3),
         },
     }
 }
@@ -332,10 +330,7 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
         typical_modelled: mean(typical().flat_map(|it| it.part(k))).modelled,
         worst_modelled: worst(streams.iter().flat_map(|it| it.part(k))).modelled,
     };
-    let queues: Vec<_> = RATES
-        .into_iter()
-        .map(|rate| at_rate(&interrupts, rate, RING))
-        .collect();
+    let queues: Vec<_> = RATES.map(|rate| at_rate(&interrupts, rate)).into();
     let spans = interrupts.iter().flat_map(|it| it.windows(SPAN));
     let mean_10_ms = spans.map(|it| it.iter().sum::<u64>() / SPAN as u64).max();
     Modelled {
@@ -368,16 +363,16 @@ impl PlayedStream<'_> {
 }
 
 /// Each stream by itself.
-fn at_rate(streams: &[Vec<u64>], rate: u64, places: usize) -> AtRate {
+fn at_rate(streams: &[Vec<u64>], rate: u64) -> AtRate {
     let period = CLOCK / rate;
-    let queues = streams.iter().map(|it| queue::simulate(it, period, places));
+    let queues = streams.iter().map(|it| queue::simulate(it, period, RING));
     let all = queues.fold(Queue::default(), |a, b| Queue {
         lost: a.lost + b.lost,
         latency_worst: a.latency_worst.max(b.latency_worst),
     });
     AtRate {
         samples_per_s: rate,
-        places,
+        places: RING,
         samples_lost: all.lost,
         latency_worst_us: all.latency_worst.div_ceil(CLOCK / 1_000_000),
     }
@@ -429,7 +424,7 @@ mod tests {
 
     fn window_of(modelled: u64) -> CountedWindow {
         CountedWindow {
-            instructions: modelled as u32,
+            instructions: modelled,
             cycles: Cycles {
                 lower: modelled - 1,
                 modelled,

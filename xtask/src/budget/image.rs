@@ -1,13 +1,13 @@
 //! What an image's symbols and code say: what the tick can reach, and the stack.
 
 use std::fmt;
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use super::calls::{self, Function, Graph, Region};
+use crate::files;
 
 /// Names of what a panic needs.
 const PANICS: [&str; 2] = ["rust_begin_unwind", "panicking"];
@@ -26,12 +26,8 @@ pub struct Reached {
 
 /// Reads the symbols of the image.
 pub fn look(image: &Path) -> anyhow::Result<Reached> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
-    reached(&bytes)
-}
-
-fn reached(elf: &[u8]) -> anyhow::Result<Reached> {
-    let file = object::File::parse(elf)?;
+    let elf = files::bytes(image)?;
+    let file = object::File::parse(&*elf)?;
     let mut found = Reached::default();
     let (mut functions, mut has_panic) = (0, false);
     for symbol in file.symbols().filter(|it| it.kind() == SymbolKind::Text) {
@@ -45,7 +41,7 @@ fn reached(elf: &[u8]) -> anyhow::Result<Reached> {
     // A stripped image would pass whatever is in it.
     ensure!(functions > 0, "the image has no symbols");
     if has_panic {
-        let graph = graph(elf)?;
+        let graph = graph(&elf)?;
         found.panics = graph
             .callers(is_panic)
             .into_iter()
@@ -111,7 +107,7 @@ impl fmt::Display for Stack {
 
 /// Adds up the deepest chains.
 pub fn stack(image: &Path) -> anyhow::Result<Stack> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let graph = graph(&bytes)?;
     ensure!(graph.knows_frames(), "the image tells no stack sizes");
     let deepest = |name: &str| {

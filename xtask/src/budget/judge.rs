@@ -2,14 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
-use std::path::Path;
 
-use anyhow::Context;
 use serde::Deserialize;
 
 use super::cycles::Modelled;
 use super::{Budget, Instructions};
+use crate::{files, workspace};
 
 /// What fails the check, and what is aimed at.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -25,58 +23,40 @@ pub struct Limits {
     #[serde(default)]
     cycles: BTreeMap<String, u64>,
     /// Worst of each part.
-    parts: BTreeMap<String, u32>,
+    parts: BTreeMap<String, u64>,
     #[serde(default)]
     goals: BTreeMap<String, u64>,
 }
 
-impl Limits {
-    /// Of this file.
-    pub fn read(file: &Path) -> anyhow::Result<Self> {
-        let text =
-            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-        toml::from_str(&text).with_context(|| format!("{}", file.display()))
-    }
+/// Those in force.
+pub fn limits() -> anyhow::Result<Limits> {
+    files::toml(&workspace().join("firmware/budget.toml"))
 }
 
 /// Name, measured and limit, where there is a number to compare.
 fn rows(budget: &Budget, limits: &Limits) -> Vec<(String, u64, Option<u64>)> {
     let (tick, limit) = (budget.tick, limits.tick);
-    let mut rows = vec![
-        (
-            "tick_typical",
-            tick.instructions_typical.into(),
-            limit.instructions_typical.into(),
-        ),
-        (
-            "tick_worst",
-            tick.instructions_worst.into(),
-            limit.instructions_worst.into(),
-        ),
+    let (typical, worst) = (tick.instructions_typical, tick.instructions_worst);
+    let soft_float = budget.soft_float_symbols;
+    let rows = [
+        ("tick_typical", typical, limit.instructions_typical),
+        ("tick_worst", worst, limit.instructions_worst),
         ("flash_bytes", budget.flash_bytes, limits.flash_bytes),
         ("ram_bytes", budget.ram_bytes, limits.ram_bytes),
         ("stack_bytes", budget.stack_bytes, limits.stack_bytes),
-        (
-            "soft_float_symbols",
-            budget.soft_float_symbols,
-            limits.soft_float_symbols,
-        ),
-    ]
-    .into_iter()
-    .map(|(name, measured, limit): (&str, u64, u64)| (name.to_owned(), measured, Some(limit)))
-    .collect::<Vec<_>>();
+        ("soft_float_symbols", soft_float, limits.soft_float_symbols),
+    ];
+    let rows = rows.map(|(name, measured, limit)| (name.to_owned(), measured, Some(limit)));
+    let mut rows = Vec::from(rows);
     rows.extend(budget.parts.iter().map(|part| {
-        let limit = limits.parts.get(&part.part).copied().map(u64::from);
-        let worst = part.instructions.instructions_worst.into();
+        let limit = limits.parts.get(&part.part).copied();
+        let worst = part.instructions.instructions_worst;
         (part.part.clone(), worst, limit)
     }));
     let cycles = budget.cycles.iter().flat_map(Modelled::limited);
     rows.extend(cycles.map(|(name, it)| {
-        (
-            format!("cycles_{name}"),
-            it,
-            limits.cycles.get(name).copied(),
-        )
+        let limit = limits.cycles.get(name).copied();
+        (format!("cycles_{name}"), it, limit)
     }));
     rows
 }
@@ -207,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_limits_in_force_can_be_read() {
-        Limits::read(&crate::workspace().join("firmware/budget.toml")).unwrap();
+        limits().unwrap();
     }
 
     #[test]

@@ -19,10 +19,8 @@ use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
 use crate::firmware::{self, Extra};
-use crate::workspace;
 
 use self::cycles::Modelled;
-use self::judge::Limits;
 pub use self::kept::FILE as MEASURED;
 
 /// Measured.
@@ -62,9 +60,9 @@ pub struct Module {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Instructions {
     /// Mean while the rotor floats on its orbit.
-    instructions_typical: u32,
+    instructions_typical: u64,
     /// Greatest that was met in any stream.
-    instructions_worst: u32,
+    instructions_worst: u64,
 }
 
 /// A part of the tick.
@@ -122,7 +120,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     if keep {
         kept::write(&budget)?;
     }
-    let limits = Limits::read(&workspace().join("firmware/budget.toml"))?;
+    let limits = judge::limits()?;
     print!("{}", judge::table(&budget, &limits));
     let breaches = judge::breaches(&budget, &limits);
     ensure!(

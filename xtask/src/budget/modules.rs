@@ -1,23 +1,20 @@
 //! Where an image's code comes from: bytes by module, from its line table, which knows what was inlined.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
-use anyhow::Context;
 use gimli::{Dwarf, EndianSlice, LittleEndian, SectionId};
 use object::{Object, ObjectSection};
 
 use super::Module;
+use crate::files;
+use crate::firmware::FLASH;
 
 type Slice<'a> = EndianSlice<'a, LittleEndian>;
 
-/// Program flash: below lies the code that the linker left out, above is RAM.
-const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0810_0000;
-
 /// Bytes of code by module, the largest first.
 pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
-    let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
+    let bytes = files::bytes(image)?;
     let file = object::File::parse(&*bytes)?;
     let section = |id: SectionId| {
         let section = file.section_by_name(id.name());

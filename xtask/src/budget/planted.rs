@@ -2,7 +2,7 @@
 //! the clean ones keep to their limits is what `cargo xtask budget` requires. No symbol tells of a loop without end: it is found
 //! where a stream of the corpus enters it.
 
-use super::judge::{Limits, breaches};
+use super::judge::{breaches, limits};
 use super::{Budget, cycles, image, stream};
 use crate::firmware::{PLANTED, images};
 
@@ -14,8 +14,7 @@ fn planted_panics_f64_divisions_and_a_loop_without_end_break_the_budget() {
         assert!(built, "{}: `cargo xtask test` builds it", file.display());
         file
     };
-    let file = crate::workspace().join("firmware/budget.toml");
-    let mut limits = Limits::read(&file).expect("limits");
+    let mut limits = limits().expect("limits");
     let clean = image::look(&images().join("touchdown-tick")).expect("symbols");
     assert_eq!(clean.panics, [""; 0]);
     limits.soft_float_symbols = clean.soft_float.len() as u64;

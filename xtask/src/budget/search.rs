@@ -10,6 +10,7 @@ use anyhow::{Context, ensure};
 use super::cycles::{Player, WorstTick};
 use super::stream::{self, Chance, FILE, Stream};
 use crate::firmware::{self, Extra};
+use crate::toolchain::output;
 use crate::workspace;
 
 /// Worst streams that are kept, each of another random one.
@@ -90,8 +91,11 @@ fn report(found: &[Found]) {
 /// What the corpus says of itself.
 fn head(found: &[Found], count: usize, seed: u64, at_random: WorstTick) -> anyhow::Result<String> {
     let plain = worst(found, Stream::is_plain).map_or("none".into(), |it| it.to_string());
-    let commit = output("git", &["rev-parse", "--short", "HEAD"])?;
-    let (date, played) = (output("date", &["-u", "+%F"])?, found.len());
+    let mut git = Command::new("git");
+    git.args(["rev-parse", "--short", "HEAD"]);
+    let commit = output(git.current_dir(workspace()))?;
+    let date = output(Command::new("date").args(["-u", "+%F"]))?;
+    let (commit, date, played) = (commit.trim(), date.trim(), found.len());
     Ok(format!(
         "The worst streams that were found for the tick, by its modelled cycles; each of another random stream.\n\
          Written by cargo xtask budget --search {count} --seed {seed} after {played} streams, {date} at {commit}.\n\
@@ -99,13 +103,4 @@ fn head(found: &[Found], count: usize, seed: u64, at_random: WorstTick) -> anyho
          Worst of the random half: {at_random}.\n\
          Worst without tachometers, 16 instants at most: {plain}."
     ))
-}
-
-fn output(program: &str, arguments: &[&str]) -> anyhow::Result<String> {
-    let mut command = Command::new(program);
-    let command = command.args(arguments).current_dir(workspace());
-    let output = command
-        .output()
-        .with_context(|| format!("cannot start {program}"))?;
-    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
 
 use anyhow::{Context, ensure};
 use serde::Deserialize;
 
-use crate::workspace;
+use crate::{files, workspace};
 
 /// Streams that a search found worst, from the workspace on.
 pub const FILE: &str = "firmware/corpus.toml";
@@ -142,8 +141,7 @@ fn parse(text: &str) -> anyhow::Result<Vec<Stream>> {
 
 /// Streams of the corpus that is kept.
 pub fn read() -> anyhow::Result<Vec<Stream>> {
-    let text = fs::read_to_string(workspace().join(FILE)).context(FILE)?;
-    parse(&text).context(FILE)
+    parse(&files::text(&workspace().join(FILE))?).context(FILE)
 }
 
 /// A corpus, after the lines of its `head`; with each stream a remark.

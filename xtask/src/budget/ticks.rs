@@ -23,7 +23,7 @@ struct Row {
     scene: String,
     calls: u64,
     sum: u64,
-    worst: u32,
+    worst: u64,
 }
 
 /// What the image counted.
@@ -126,7 +126,7 @@ impl Table {
     }
 
     /// The greatest count of a whole tick in a stream.
-    pub fn worst_in(&self, scene: &str) -> Option<u32> {
+    pub fn worst_in(&self, scene: &str) -> Option<u64> {
         let mut rows = self.rows.iter();
         let row = rows.find(|row| row.part == WHOLE && row.scene == scene)?;
         Some(row.worst)
@@ -136,7 +136,7 @@ impl Table {
         let rows = || self.rows.iter().filter(|row| row.part == part);
         let typical = rows().find(|row| row.scene == TYPICAL)?;
         Some(Instructions {
-            instructions_typical: (typical.sum / typical.calls.max(1)) as u32,
+            instructions_typical: typical.sum / typical.calls.max(1),
             instructions_worst: rows().map(|row| row.worst).max()?,
         })
     }

@@ -1,10 +1,11 @@
 //! The list of planted faults: `xtask/faults`.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use serde::Deserialize;
+
+use crate::files;
 
 /// A change of one place in the sources.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -36,21 +37,9 @@ struct Area {
 
 /// All lists of `folder`, in the order of their names.
 pub fn read(folder: &Path) -> anyhow::Result<Vec<Fault>> {
-    let entries =
-        fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut files = Vec::new();
-    for entry in entries {
-        let file = entry?.path();
-        if file.extension().is_some_and(|end| end == "toml") {
-            files.push(file);
-        }
-    }
-    files.sort();
     let mut faults = Vec::new();
-    for file in files {
-        let text =
-            fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
-        let area: Area = toml::from_str(&text).with_context(|| format!("{}", file.display()))?;
+    for file in files::below(folder, "toml")? {
+        let area: Area = files::toml(&file)?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         faults.extend(area.fault.into_iter().map(|fault| Fault {
             area: name.clone().into_owned(),
@@ -81,9 +70,7 @@ impl Fault {
 
     /// That it can be planted in the sources of `tree`.
     pub fn check(&self, tree: &Path) -> anyhow::Result<()> {
-        let file = tree.join(&self.file);
-        let text =
-            fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let text = files::text(&tree.join(&self.file))?;
         self.planted(&text).map(|_| ())
     }
 }

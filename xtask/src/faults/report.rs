@@ -1,8 +1,5 @@
 //! What came of the faults.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
-
 use super::list::Fault;
 
 /// A fault, and what came of it.
@@ -17,8 +14,6 @@ pub struct Trial<'a> {
 pub struct Found {
     /// The test.
     pub by: String,
-    /// Whether that is a golden one.
-    pub golden: bool,
     /// Time that it ran, s, without the build.
     pub seconds: f64,
 }
@@ -33,45 +28,6 @@ impl Trial<'_> {
         };
         format!("{}: {verdict}", self.fault.title())
     }
-}
-
-/// By area, in Markdown.
-pub fn table(trials: &[Trial<'_>]) -> String {
-    let mut areas = BTreeMap::<&str, [u32; 5]>::new();
-    for trial in trials {
-        let golden = trial.found.as_ref().map(|it| it.golden);
-        let is_equivalent = trial.fault.equivalent.is_some();
-        let seen = [
-            true,
-            golden == Some(true),
-            golden == Some(false),
-            golden.is_none() && is_equivalent,
-            golden.is_none() && !is_equivalent,
-        ];
-        for name in [trial.fault.area.as_str(), "~ all"] {
-            let row = areas.entry(name).or_default();
-            row.iter_mut()
-                .zip(seen)
-                .for_each(|(count, is_it)| *count += u32::from(is_it));
-        }
-    }
-    let mut table = String::from(
-        "\n| area | planted | found by golden streams | by another test | equivalent | survived |\n\
-         |---|---:|---:|---:|---:|---:|\n",
-    );
-    for (name, row) in areas {
-        let cells = row.map(|count| count.to_string()).join(" | ");
-        // A write to a string does not fail.
-        let _ = writeln!(table, "| {} | {cells} |", name.trim_start_matches("~ "));
-    }
-    let golden = trials.iter().filter_map(|it| it.found.as_ref());
-    let seconds = golden.filter(|it| it.golden).map(|it| it.seconds);
-    let longest = seconds.fold(0.0, f64::max);
-    let _ = writeln!(
-        table,
-        "\nLongest run of a golden test that found one: {longest:.1} s"
-    );
-    table
 }
 
 /// Faults that no test finds and that have no reason, and those whose reason is wrong.
@@ -104,7 +60,6 @@ mod tests {
             };
             let found = Found {
                 by: "a test".into(),
-                golden: true,
                 seconds: 1.0,
             };
             let trial = Trial {

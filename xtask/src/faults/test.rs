@@ -17,8 +17,10 @@ const LONGEST: Duration = Duration::from_secs(120);
 const POLL: Duration = Duration::from_millis(5);
 
 /// Package, one target, and names of tests.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug)]
 pub struct Test {
+    /// As it stands in the list.
+    pub text: String,
     package: String,
     target: Vec<String>,
     names: Vec<String>,
@@ -36,24 +38,15 @@ impl Test {
         };
         let (target, names) = rest.split_at(target);
         Ok(Self {
+            text: text.to_owned(),
             package: package.clone(),
             target: target.to_vec(),
             names: names.to_vec(),
         })
     }
 
-    /// As it stands in the list.
-    pub fn text(&self) -> String {
-        let words = [
-            std::slice::from_ref(&self.package),
-            &self.target,
-            &self.names,
-        ];
-        words.concat().join(" ")
-    }
-
-    /// Builds it from the sources in `tree`.
-    pub fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<Program> {
+    /// Builds it from the sources in `tree`: its executable and its package's folder.
+    fn build(&self, tree: &Path, target: &Path) -> anyhow::Result<(PathBuf, PathBuf)> {
         // As all tests are built, where the target is one package's: crates from elsewhere are there already.
         let package = ["-p", &self.package];
         let is_library = self.target.len() == 1;
@@ -77,54 +70,40 @@ impl Test {
         ensure!(
             built.status.success(),
             "{} does not build:\n{errors}",
-            self.text()
+            self.text
         );
         let messages = String::from_utf8_lossy(&built.stdout);
         let mut programs = messages.lines().filter_map(test_program);
-        let (Some((executable, folder)), None) = (programs.next(), programs.next()) else {
-            bail!("{}: cargo must build one test program for it", self.text());
+        let (Some(program), None) = (programs.next(), programs.next()) else {
+            bail!("{}: cargo must build one test program for it", self.text);
         };
-        Ok(Program {
-            executable,
-            folder,
-            tree: tree.to_owned(),
-            names: self.names.clone(),
-        })
+        Ok(program)
     }
-}
 
-/// A test that is built.
-pub struct Program {
-    executable: PathBuf,
-    folder: PathBuf,
-    tree: PathBuf,
-    names: Vec<String>,
-}
-
-impl Program {
-    /// Whether it passes, and how long that takes.
-    pub fn run(&self) -> anyhow::Result<(bool, Duration)> {
+    /// Builds and runs it: whether it passes, and how long it ran, s.
+    pub fn run(&self, tree: &Path, target: &Path) -> anyhow::Result<(bool, f64)> {
+        let (executable, folder) = self.build(tree, target)?;
         let begun = Instant::now();
-        let mut child = Command::new(&self.executable)
+        let mut child = Command::new(&executable)
             .args(&self.names)
-            .current_dir(&self.folder)
-            .env("CARGO_MANIFEST_DIR", &self.folder)
+            .current_dir(&folder)
+            .env("CARGO_MANIFEST_DIR", &folder)
             // Where expect-test looks for its files; it must not write them.
-            .env("CARGO_WORKSPACE_DIR", &self.tree)
+            .env("CARGO_WORKSPACE_DIR", tree)
             .env_remove("UPDATE_EXPECT")
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
-            .with_context(|| format!("cannot start {}", self.executable.display()))?;
+            .with_context(|| format!("cannot start {}", executable.display()))?;
         loop {
             let taken = begun.elapsed();
             if let Some(status) = child.try_wait()? {
-                return Ok((status.success(), taken));
+                return Ok((status.success(), taken.as_secs_f64()));
             }
             if taken > LONGEST {
                 child.kill()?;
                 child.wait()?;
-                return Ok((false, taken));
+                return Ok((false, taken.as_secs_f64()));
             }
             thread::sleep(POLL);
         }
@@ -153,7 +132,9 @@ mod tests {
             "core --test golden",
             "core --test log a_name another",
         ] {
-            assert_eq!(Test::parse(text).unwrap().text(), text);
+            let test = Test::parse(text).unwrap();
+            let words = [&[test.package][..], &test.target, &test.names].concat();
+            assert_eq!(words.join(" "), text);
         }
         for text in ["", "core", "core --test", "core name"] {
             assert!(Test::parse(text).is_err(), "{text}");

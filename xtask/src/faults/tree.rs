@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use super::list::Fault;
+use crate::files;
 
 /// Of the sources' folders, what is none of them.
 const LEFT_OUT: [&str; 2] = ["target", ".git"];
@@ -30,8 +31,7 @@ impl Tree {
     /// With `fault` in it, until what is returned is dropped.
     pub fn plant(&self, fault: &Fault) -> anyhow::Result<Planted> {
         let file = self.folder.join(&fault.file);
-        let clean =
-            fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let clean = files::text(&file)?;
         fs::write(&file, fault.planted(&clean)?)?;
         Ok(Planted { file, clean })
     }

@@ -14,7 +14,7 @@ use anyhow::{Context, bail, ensure};
 
 use self::blocks::Document;
 use self::sources::Sources;
-use crate::workspace;
+use crate::{files, workspace};
 
 /// For people, after the options.
 pub const HELP: &str = "\
@@ -78,23 +78,11 @@ pub fn run(check: bool, program: Option<PathBuf>) -> anyhow::Result<()> {
 
 /// README.md and all pages of docs/.
 fn read_documents() -> anyhow::Result<Vec<Document>> {
-    let mut files = vec![workspace().join("README.md")];
-    let mut folders = vec![workspace().join("docs")];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|end| end == "md") {
-                files.push(path);
-            }
-        }
-    }
-    files.sort();
+    let mut files = files::below(&workspace().join("docs"), "md")?;
+    files.insert(0, workspace().join("README.md"));
     let read = |file: &PathBuf| {
-        let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
         let name = file.strip_prefix(workspace())?.display().to_string();
-        Document::parse(name, text)
+        Document::parse(name, files::text(file)?)
     };
     files.iter().map(read).collect()
 }
@@ -102,11 +90,10 @@ fn read_documents() -> anyhow::Result<Vec<Document>> {
 /// By the name of their table.
 fn read_templates(folder: &Path) -> anyhow::Result<BTreeMap<String, String>> {
     let mut templates = BTreeMap::new();
-    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let file = entry?.path();
+    for file in files::below(folder, "md")? {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         if name != "README" {
-            templates.insert(name.into_owned(), fs::read_to_string(&file)?);
+            templates.insert(name.into_owned(), files::text(&file)?);
         }
     }
     Ok(templates)

@@ -36,19 +36,8 @@ pub fn printed<const N: usize>(
     let folder = workspace().join("target/figures");
     fs::create_dir_all(&folder).context("cannot make a folder to run in")?;
     let print = |arguments: &[&str]| {
-        let name = arguments.join(" ");
-        let output = Command::new(&program)
-            .args(arguments)
-            .current_dir(&folder)
-            .output();
-        let output = output.with_context(|| format!("cannot start {}", program.display()))?;
-        let error = String::from_utf8_lossy(&output.stderr);
-        ensure!(
-            output.status.success(),
-            "touchdown {name}: {}\n{error}",
-            output.status
-        );
-        String::from_utf8(output.stdout).with_context(|| format!("touchdown {name}"))
+        let mut program = Command::new(&program);
+        toolchain::output(program.args(arguments).current_dir(&folder))
     };
     let texts = thread::scope(|scope| {
         arguments

@@ -1,7 +1,6 @@
 //! What a template may ask for: `xtask/figures/README.md`.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
@@ -10,9 +9,7 @@ use serde_json::{Value, json};
 
 use super::blocks::{Block, Document};
 use super::{number, program};
-use crate::budget;
-use crate::faults;
-use crate::workspace;
+use crate::{budget, faults, files, workspace};
 
 type Map<V> = BTreeMap<String, V>;
 
@@ -101,8 +98,7 @@ fn refused(error: anyhow::Error) -> Error {
 }
 
 fn read(file: &str) -> anyhow::Result<String> {
-    let text = fs::read_to_string(workspace().join(file));
-    text.with_context(|| format!("cannot read {file}"))
+    files::text(&workspace().join(file))
 }
 
 /// Rows of a list by what they have as `name`.

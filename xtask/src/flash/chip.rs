@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use anyhow::{Context, ensure};
 
+use crate::firmware::FLASH;
+
 /// Main flash of an STM32F405xG or F407xG: RM0090, flash module organization: 4 sectors of 16 Kbytes, one of
 /// 64, 7 of 128.
-const FLASH_START: u64 = 0x0800_0000;
 const SECTOR_KIB: [u64; 12] = [16, 16, 16, 16, 64, 128, 128, 128, 128, 128, 128, 128];
 /// SRAM1 and SRAM2: RM0090, embedded SRAM.
 const RAM: Range<u64> = 0x2000_0000..0x2002_0000;
@@ -32,7 +33,7 @@ impl Chip {
         );
         let ram = stack.start..data.end;
         ensure!(
-            flash.start == FLASH_START && sectors().any(|it| it.end == flash.end),
+            flash.start == FLASH.start && sectors().any(|it| it.end == flash.end),
             "memory.x: FLASH {} is not a row of the chip's sectors",
             shown(&flash)
         );
@@ -47,7 +48,7 @@ impl Chip {
 
 /// The chip's sectors.
 pub fn sectors() -> impl Iterator<Item = Range<u64>> {
-    SECTOR_KIB.iter().scan(FLASH_START, |at, kib| {
+    SECTOR_KIB.iter().scan(FLASH.start, |at, kib| {
         let start = *at;
         *at += kib << 10;
         Some(start..*at)

@@ -64,16 +64,8 @@ pub fn check(elf: &[u8], chip: &Chip) -> anyhow::Result<Layout> {
         programmed.push(load);
     }
     let vectors = vectors.context("nothing lies at the start of the flash: no vector table")?;
-    let word = |at: usize| {
-        let bytes = [
-            vectors[at],
-            vectors[at + 1],
-            vectors[at + 2],
-            vectors[at + 3],
-        ];
-        u64::from(u32::from_le_bytes(bytes))
-    };
-    let (stack, reset) = (word(0), word(4));
+    let words = u64::from_le_bytes(*vectors);
+    let (stack, reset) = (words & 0xffff_ffff, words >> 32);
     ensure!(
         stack % 8 == 0 && chip.ram.start < stack && stack <= chip.ram.end,
         "the stack begins at {stack:#010x}, which is not in RAM"

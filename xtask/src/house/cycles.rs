@@ -73,13 +73,9 @@ mod tests {
     fn source(module: &str, imports: &[&str]) -> Source {
         let names = |path: &str| path.split("::").map(str::to_owned).collect();
         Source {
-            path: module.into(),
             module: names(module),
-            lines: 1,
-            functions: Vec::new(),
-            types: Vec::new(),
             imports: imports.iter().map(|it| names(it)).collect(),
-            test_modules: Vec::new(),
+            ..Source::default()
         }
     }
 

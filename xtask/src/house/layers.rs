@@ -1,9 +1,8 @@
 //! Which crates of the workspace there are, and which of one another they use.
 
-use anyhow::{Context, ensure};
 use serde::Deserialize;
 
-use crate::toolchain::default_cargo;
+use crate::toolchain::{default_cargo, output};
 use crate::workspace;
 
 /// A crate of the workspace.
@@ -37,17 +36,9 @@ struct Dependency {
 
 /// All crates of the workspace, as cargo sees them.
 pub fn members() -> anyhow::Result<Vec<Member>> {
-    let output = default_cargo()
-        .args(["metadata", "--no-deps", "--format-version", "1", "--locked"])
-        .current_dir(workspace())
-        .output()
-        .context("cannot start cargo")?;
-    ensure!(
-        output.status.success(),
-        "cargo metadata failed: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let metadata: Metadata = serde_json::from_slice(&output.stdout)?;
+    let mut cargo = default_cargo();
+    cargo.args(["metadata", "--no-deps", "--format-version", "1", "--locked"]);
+    let metadata: Metadata = serde_json::from_str(&output(cargo.current_dir(workspace()))?)?;
     let members = metadata.packages.iter().map(member);
     Ok(members.collect())
 }

@@ -6,7 +6,6 @@ mod rebuild;
 mod source;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
@@ -15,7 +14,7 @@ use serde::Deserialize;
 use self::cycles::cycles;
 use self::layers::{beyond, members};
 use self::source::Source;
-use crate::workspace;
+use crate::{files, workspace};
 
 /// How many of the longest functions and of the names that occur twice are shown.
 const SHOWN: usize = 12;
@@ -54,9 +53,7 @@ struct Crate {
 
 /// Prints the figures; an error names each that is above its limit. `rebuild` also builds.
 pub fn run(rebuild: bool) -> anyhow::Result<()> {
-    let path = workspace().join("house.toml");
-    let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    let budget: Budget = toml::from_str(&text).with_context(|| path.display().to_string())?;
+    let budget: Budget = files::toml(&workspace().join("house.toml"))?;
     let mut broken = Vec::new();
     let mut strays = Vec::new();
     let mut all = Vec::new();
@@ -120,7 +117,7 @@ pub fn run(rebuild: bool) -> anyhow::Result<()> {
     }
     println!("\ntype names in most files");
     for (name, files) in names.iter().take(SHOWN) {
-        println!("{:>6}  {name}", files.len());
+        println!("{files:>6}  {name}");
     }
     broken.extend(strays);
     ensure!(
@@ -147,15 +144,13 @@ fn longest(sources: &[Source]) -> Vec<(usize, &str, &Path)> {
     all
 }
 
-/// Type names that more than one file defines, and those files; most files first.
-fn shared_names(sources: &[Source]) -> Vec<(&str, Vec<&Path>)> {
-    let mut files: BTreeMap<&str, Vec<&Path>> = BTreeMap::new();
-    for source in sources {
-        for name in &source.types {
-            files.entry(name).or_default().push(&source.path);
-        }
+/// Type names that more than one file defines, and how many do; most files first.
+fn shared_names(sources: &[Source]) -> Vec<(&str, usize)> {
+    let mut files = BTreeMap::<&str, usize>::new();
+    for name in sources.iter().flat_map(|source| &source.types) {
+        *files.entry(name).or_default() += 1;
     }
-    let mut shared: Vec<_> = files.into_iter().filter(|(_, it)| it.len() > 1).collect();
-    shared.sort_by_key(|(_, files)| std::cmp::Reverse(files.len()));
+    let mut shared: Vec<_> = files.into_iter().filter(|(_, it)| *it > 1).collect();
+    shared.sort_by_key(|(_, files)| std::cmp::Reverse(*files));
     shared
 }

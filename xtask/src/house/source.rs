@@ -1,6 +1,5 @@
 //! What one source file has: lines, functions, type names and imports, without its tests.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -8,8 +7,10 @@ use proc_macro2::Span;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 
+use crate::files;
+
 /// A file of a crate.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Source {
     /// Its file.
     pub path: PathBuf,
@@ -30,50 +31,34 @@ pub struct Source {
 impl Source {
     /// Every file of the crate whose sources are in `folder`.
     pub fn of_crate(folder: &Path) -> anyhow::Result<Vec<Self>> {
-        let mut sources = Vec::new();
-        collect(folder, folder, &mut sources)?;
+        let files = files::below(folder, "rs")?;
+        let read = |file: &PathBuf| {
+            let source = Self::parse(folder, file, &files::text(file)?);
+            source.with_context(|| file.display().to_string())
+        };
+        let mut sources = files.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
         let of_tests: Vec<_> = sources
             .iter()
             .flat_map(|it| it.test_modules.clone())
             .collect();
         sources.retain(|it| !of_tests.iter().any(|test| it.module.starts_with(test)));
-        sources.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(sources)
     }
 
-    fn read(root: &Path, path: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        Self::parse(root, path, &text).with_context(|| path.display().to_string())
-    }
-
     fn parse(root: &Path, path: &Path, text: &str) -> anyhow::Result<Self> {
-        let file = syn::parse_file(text)?;
-        let mut found = Found::default();
-        found.visit_file(&file);
-        Ok(Self {
+        let mut source = Self {
             path: path.to_owned(),
             module: module_of(root, path),
-            lines: text.lines().count() - found.test_lines,
-            functions: found.functions,
-            types: found.types,
-            imports: found.imports,
-            test_modules: (found.test_modules.into_iter())
-                .map(|it| [module_of(root, path), vec![it]].concat())
-                .collect(),
-        })
+            lines: text.lines().count(),
+            ..Self::default()
+        };
+        source.visit_file(&syn::parse_file(text)?);
+        Ok(source)
     }
-}
 
-fn collect(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> anyhow::Result<()> {
-    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let path = entry?.path();
-        if path.is_dir() {
-            collect(root, &path, sources)?;
-        } else if path.extension().is_some_and(|it| it == "rs") {
-            sources.push(Source::read(root, &path)?);
-        }
+    fn function(&mut self, name: &syn::Ident, all: Span) {
+        self.functions.push((name.to_string(), lines(all)));
     }
-    Ok(())
 }
 
 fn module_of(root: &Path, path: &Path) -> Vec<String> {
@@ -90,21 +75,6 @@ fn module_of(root: &Path, path: &Path) -> Vec<String> {
     module
 }
 
-#[derive(Default)]
-struct Found {
-    test_lines: usize,
-    functions: Vec<(String, usize)>,
-    types: Vec<String>,
-    imports: Vec<Vec<String>>,
-    test_modules: Vec<String>,
-}
-
-impl Found {
-    fn function(&mut self, name: &syn::Ident, all: Span) {
-        self.functions.push((name.to_string(), lines(all)));
-    }
-}
-
 fn lines(span: Span) -> usize {
     span.end().line - span.start().line + 1
 }
@@ -117,7 +87,7 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-impl<'a> Visit<'a> for Found {
+impl<'a> Visit<'a> for Source {
     fn visit_item(&mut self, item: &'a syn::Item) {
         let (attributes, name) = match item {
             syn::Item::Mod(it) => (&it.attrs, None),
@@ -132,14 +102,15 @@ impl<'a> Visit<'a> for Found {
             _ => return visit::visit_item(self, item),
         };
         if is_test(attributes) {
-            self.test_lines += lines(item.span());
+            self.lines -= lines(item.span());
             if let syn::Item::Mod(syn::ItemMod {
                 ident,
                 content: None,
                 ..
             }) = item
             {
-                self.test_modules.push(ident.to_string());
+                let module = [self.module.clone(), vec![ident.to_string()]];
+                self.test_modules.push(module.concat());
             }
             return;
         }
@@ -154,7 +125,7 @@ impl<'a> Visit<'a> for Found {
 
     fn visit_impl_item_fn(&mut self, item: &'a syn::ImplItemFn) {
         if is_test(&item.attrs) {
-            self.test_lines += lines(item.span());
+            self.lines -= lines(item.span());
             return;
         }
         self.function(&item.sig.ident, item.span());

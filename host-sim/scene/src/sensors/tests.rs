@@ -40,10 +40,10 @@ proptest! {
         let config = SensorsConfig { mounting_angle: mounting, bits, ..quiet() };
         let position = [radius * angle.cos(), radius * angle.sin()];
         let sample = read_once(&config, &at(position));
-        let reading = Sensing::try_new(&config.sensing()).unwrap().convert(&sample, config.fitted());
+        let planes = Sensing::try_new(&config.sensing()).unwrap().planes(&sample);
         // Half a count on both axes, and the single precision of the core.
         let bound = 0.5 * config.resolution() * 2_f64.sqrt() + 1e-9;
-        for plane in reading.planes {
+        for plane in planes {
             let [x, y] = plane.unwrap().map(f64::from);
             prop_assert!((x - position[0]).hypot(y - position[1]) <= bound);
         }
@@ -56,7 +56,12 @@ fn out_of_range_saturates() {
     assert_eq!(sample.counts, [4095, 0, 4095, 0]);
     let config = quiet();
     let sensing = Sensing::try_new(&config.sensing()).unwrap();
-    assert_eq!(sensing.convert(&sample, config.fitted()).unusable, 0b1111);
+    for channel in 0..4 {
+        let mut one = read_once(&config, &at([0.0; 2]));
+        assert!(sensing.planes(&one)[channel / 2].is_some());
+        one.counts[channel] = sample.counts[channel];
+        assert!(sensing.planes(&one)[channel / 2].is_none(), "{channel}");
+    }
 }
 
 #[test]

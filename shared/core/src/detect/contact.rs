@@ -8,10 +8,11 @@ use crate::detect::lift_off::{LiftOff, MEMORY};
 use crate::detect::measurement::Measurement;
 use crate::detect::retainer_wall::RetainerWall;
 use crate::detect::signals::{Retainer, Signals};
-use crate::detect::slip::{Kind, Slip, Verdict};
+use crate::detect::slip::{Finding, Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::track::Pull;
 use crate::detect::wall::{Cusum, WallAngle, WallFilter, WallTrack};
+use crate::event::EventKind;
 use crate::vector::direction;
 use touchdown_rotor::real::sqrt;
 
@@ -44,29 +45,19 @@ pub(crate) struct ContactTest {
     pub(crate) nearest: f32,
 }
 
-/// What the contact is known to have become.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Regime {
-    #[default]
-    Unknown,
-    Rest,
-    Pendulum,
-    ForwardWhirl,
-    BackwardWhirl,
-}
-
 /// A contact under way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Touching {
     /// Angle and rate.
     pub(crate) track: WallTrack,
-    lift: LiftOff,
+    pub(crate) lift: LiftOff,
     still: Still,
     /// Sliding or rolling, once known.
-    pub(crate) kind: Option<Kind>,
-    regime: Regime,
+    pub(crate) kind: Option<EventKind>,
+    /// Rest, pendulum or whirl, once known.
+    regime: Option<EventKind>,
     /// Samples since the contact began.
-    age: u32,
+    pub(crate) age: u32,
     /// Farthest angle turned in the present direction, rad, samples since, and the direction.
     turning: Turning,
     /// Slip that friction cannot have used up yet, m/s.
@@ -110,14 +101,6 @@ impl Turning {
         }
         (angle - self.angle).abs() > clear
     }
-}
-
-/// What a sample showed. Ages in samples.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Finding {
-    Kind(Kind, f32),
-    Regime(Regime, f32),
-    LiftOff(f32),
 }
 
 /// What a tick can find in a contact: kind and regime are told apart.
@@ -184,7 +167,7 @@ impl ContactTest {
         let sample = measurement.map(|measurement| (measurement.position, measurement.variance));
         self.filter.take(&mut state.track, sample, slip);
         if let Some(age) = measurement.and_then(|it| self.lift_off(state, wall, it)) {
-            return [Some(Finding::LiftOff(age)), None];
+            return [Some((EventKind::LiftOff, age)), None];
         }
         let as_fixed = matches!(signals.retainer, Retainer::Fixed) || state.kind.is_none();
         let kind = self.kind(state, spin.filter(|_| as_fixed).map(|_| slip));
@@ -228,24 +211,24 @@ impl ContactTest {
         let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
         let taken = per_impulse * normal_acceleration.max(0.0) * self.period;
         state.slip_left -= taken;
-        let (found, age) = match slip {
+        let found = match slip {
             _ if state.slip.is_some() => self.by_slip(state, taken),
             Some(slip) if slip.abs() > SLIP_RESOLUTION => {
                 state.slow = 0;
-                (Some(Kind::Sliding), 0.0)
+                Some((EventKind::Sliding, 0.0))
             }
             Some(_) => {
                 state.slow = state.slow.saturating_add(1);
                 let long = state.slow > self.still_samples / 10;
                 // Friction had to take the rest off first.
                 let age = state.slow as f32 - SLIP_RESOLUTION / taken;
-                (long.then_some(Kind::Rolling), age.max(0.0))
+                long.then_some((EventKind::Rolling, age.max(0.0)))
             }
-            None if state.slip_left > 0.0 => (Some(Kind::Sliding), 0.0),
-            None if state.too_fast && state.kind.is_some() => (None, 0.0),
+            None if state.slip_left > 0.0 => Some((EventKind::Sliding, 0.0)),
+            None if state.too_fast && state.kind.is_some() => None,
             None => self.by_likelihood(state),
         };
-        let found = found.filter(|kind| state.kind != Some(*kind))?;
+        let (found, age) = found.filter(|(kind, _)| state.kind != Some(*kind))?;
         // The first verdict dates from the start of the contact.
         let age = if state.kind.is_none() {
             state.age as f32
@@ -255,7 +238,7 @@ impl ContactTest {
         state.kind = Some(found);
         state.track.for_rolling = Cusum::default();
         state.track.for_sliding = Cusum::default();
-        Some(Finding::Kind(found, age))
+        Some((found, age))
     }
 
     /// Acceleration with which the wall presses, m/s^2.
@@ -263,32 +246,30 @@ impl ContactTest {
         self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
     }
 
-    fn by_slip(&self, state: &mut Touching, taken: f32) -> (Option<Kind>, f32) {
+    fn by_slip(&self, state: &mut Touching, taken: f32) -> Option<Finding> {
         let slip = state.slip.as_ref();
-        match slip.and_then(|slip| state.verdict.take(slip, taken, SLIP_RESOLUTION)) {
-            Some((kind, age)) => (Some(kind), age),
-            // Without friction or pressing there is no time to wait for.
-            None if state.kind.is_none() && state.age > self.still_samples => {
-                (Some(Kind::Rolling), 0.0)
-            }
-            None => (None, 0.0),
+        let found = slip.and_then(|slip| state.verdict.take(slip, taken, SLIP_RESOLUTION));
+        // Without friction or pressing there is no time to wait for.
+        found.or_else(|| self.settles(state))
+    }
+
+    fn by_likelihood(&self, state: &Touching) -> Option<Finding> {
+        let rolling = &state.track.for_rolling;
+        let sliding = &state.track.for_sliding;
+        if rolling.sum > self.threshold {
+            Some((EventKind::Rolling, rolling.age as f32))
+        } else if sliding.sum > self.threshold {
+            Some((EventKind::Sliding, sliding.age as f32))
+        } else {
+            // Where nothing moves enough to tell, and no slip is certain, there is none.
+            self.settles(state)
         }
     }
 
-    fn by_likelihood(&self, state: &Touching) -> (Option<Kind>, f32) {
-        let rolling = &state.track.for_rolling;
-        let sliding = &state.track.for_sliding;
-        // Where nothing moves enough to tell, and no slip is certain, there is none.
-        let settle = state.kind.is_none() && state.age > self.still_samples;
-        if rolling.sum > self.threshold {
-            (Some(Kind::Rolling), rolling.age as f32)
-        } else if sliding.sum > self.threshold {
-            (Some(Kind::Sliding), sliding.age as f32)
-        } else if settle {
-            (Some(Kind::Rolling), 0.0)
-        } else {
-            (None, 0.0)
-        }
+    /// What has shown no slip for long rolls.
+    fn settles(&self, state: &Touching) -> Option<Finding> {
+        let is_long = state.kind.is_none() && state.age > self.still_samples;
+        is_long.then_some((EventKind::Rolling, 0.0))
     }
 
     /// Whether it is bound to go round: it has the energy to pass the highest place against the pull with the wall still
@@ -327,50 +308,33 @@ impl ContactTest {
             let way = if has_turned { swing.turned } else { swing.rate };
             let with_spin = way * surface >= 0.0;
             let whirl = if with_spin {
-                Regime::ForwardWhirl
+                EventKind::ForwardWhirl
             } else {
-                Regime::BackwardWhirl
+                EventKind::BackwardWhirl
             };
             (whirl, state.age as f32)
         } else if turned_back && swing.cos >= lowest {
-            (Regime::Pendulum, state.turning.age as f32)
+            (EventKind::Pendulum, state.turning.age as f32)
         } else if block.is_some_and(|b| {
             b.variance < 2.0 * measurement.variance && b.moved * b.moved < measurement.variance
         }) {
-            (Regime::Rest, self.still_samples as f32)
+            (EventKind::Rest, self.still_samples as f32)
         } else {
             return None;
         };
-        if found == state.regime {
-            return None;
-        }
-        state.regime = found;
-        Some(Finding::Regime(found, age))
+        let is_new = state.regime != Some(found);
+        state.regime = Some(found);
+        is_new.then_some((found, age))
     }
 }
 
 impl Touching {
-    /// Radius at which the wall has lately been, m.
-    pub(crate) fn wall(&self) -> f32 {
-        self.lift.lately
-    }
-
-    /// Mean square of the distance by which the sensors waver about the wall, m^2, once it is known.
-    pub(crate) fn wavering(&self) -> Option<f32> {
-        self.lift.wavering()
-    }
-
     /// As it goes on at one end of the rotor alone, where the sensors show all by `way` (m) elsewhere.
     pub(crate) fn at_one_end(&self, way: [f32; 2]) -> Self {
         let mut it = *self;
         let [x, y] = self.outward();
         it.lift = it.lift.at_one_end(way[0] * x + way[1] * y);
         it
-    }
-
-    /// Where the wall is must be learnt anew.
-    pub(crate) fn learn_anew(&mut self) {
-        self.lift = LiftOff::default();
     }
 
     /// Unit vector from the centre to the contact.
@@ -389,19 +353,17 @@ impl Touching {
         }
     }
 
-    /// Samples since it began.
-    pub(crate) fn age(&self) -> u32 {
-        self.age
-    }
-
     /// Whether it is known to go round.
     pub(crate) fn whirls(&self) -> bool {
-        matches!(self.regime, Regime::ForwardWhirl | Regime::BackwardWhirl)
+        matches!(
+            self.regime,
+            Some(EventKind::ForwardWhirl | EventKind::BackwardWhirl)
+        )
     }
 
     /// Whether it is known to lie still.
     pub(crate) fn rests(&self) -> bool {
-        self.regime == Regime::Rest
+        self.regime == Some(EventKind::Rest)
     }
 
     /// Distance from the wall, m, while it may be lifting off.
@@ -411,7 +373,7 @@ impl Touching {
 
     /// The estimate of the likelier hypothesis.
     pub(crate) fn swing(&self) -> &WallAngle {
-        if self.kind == Some(Kind::Rolling) {
+        if self.kind == Some(EventKind::Rolling) {
             &self.track.roll
         } else {
             &self.track.slide
@@ -484,10 +446,7 @@ mod tests {
         let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
         let pull = Pull {
             acceleration: [0.0, -MACHINE.gravity],
-            error: 0.0,
-            stiffness: 0.0,
-            stiffness_variance: 0.0,
-            is_shown: false,
+            ..Pull::default()
         };
         let signals = Signals::default();
         let whirl = (1..2_000).find(|&k| {
@@ -499,7 +458,7 @@ mod tests {
                 Some(&now),
                 &signals,
             );
-            let is_whirl = |it: &Finding| matches!(it, Finding::Regime(Regime::BackwardWhirl, _));
+            let is_whirl = |it: &Finding| it.0 == EventKind::BackwardWhirl;
             found.iter().flatten().any(is_whirl)
         });
         turns(whirl.expect("it is told")).abs()

@@ -1,10 +1,8 @@
 //! The detector: learns while the rotor floats, finds the release, and follows from there on the rotor
 //! as a whole or, where they move apart, its ends.
 
-#[cfg(feature = "serde")]
 mod learnt;
 
-#[cfg(feature = "serde")]
 pub(crate) use self::learnt::Afloat;
 use crate::config::DetectorConfig;
 use crate::detect::contact::Touching;
@@ -117,7 +115,6 @@ impl Detector {
     ) {
         let sample = state.sample;
         state.sample += 1;
-        let mut next_number = state.next_number;
         let mut writer = EventWriter {
             sample,
             plane: match reading.planes {
@@ -126,7 +123,7 @@ impl Detector {
                 _ => Plane::Both,
             },
             motion: Motion::Cylindrical,
-            next_number: &mut next_number,
+            next_number: state.next_number,
             notices,
         };
         for (channel, found) in (0..).zip(&reading.found) {
@@ -156,7 +153,7 @@ impl Detector {
             _ if planes == reading.planes => state.ends.lose_sight(),
             _ => {}
         }
-        if state.ends.are_alone() {
+        if state.ends.are_alone {
             self.apart(state, measurement.as_ref(), &planes, signals, &mut writer);
         } else {
             self.together(state, measurement.as_ref(), signals, &mut writer);
@@ -164,7 +161,7 @@ impl Detector {
                 self.part(state, &planes, &mut writer);
             }
         }
-        state.next_number = next_number;
+        state.next_number = writer.next_number;
     }
 
     /// The planes' positions, m: none where a rotor that floats cannot be.
@@ -189,17 +186,23 @@ impl Detector {
             return None;
         };
         state.noise.take(position, planes);
-        state.noise.is_known().then(|| Measurement {
+        let is_known = state.noise.is_known();
+        is_known.then(|| self.measured(state, position, planes))
+    }
+
+    /// The mean position, m, of so many planes.
+    fn measured(&self, state: &DetectorState, position: [f32; 2], planes: u8) -> Measurement {
+        Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
             variance: state.noise.variance(planes, self.resolution),
             spin: state.spin.unwrap_or(self.config.machine.spin),
-        })
+        }
     }
 
     /// The rotor for a forecast, `spin` (rad/s) as measured: after an impact or in contact, while its ends move as one.
     pub(crate) fn estimate(&self, state: &DetectorState, spin: Option<f32>) -> Option<Estimate> {
-        if state.ends.are_alone() {
+        if state.ends.are_alone {
             return None;
         }
         let at = Moment::of_sample(state.sample.saturating_sub(1));
@@ -221,13 +224,7 @@ impl Detector {
         state: &DetectorState,
         planes: &PlanePositions,
     ) -> [Option<Measurement>; PLANES] {
-        let measurement = |position| Measurement {
-            now: Moment::of_sample(state.sample.saturating_sub(1)),
-            position,
-            variance: state.noise.variance(1, self.resolution),
-            spin: state.spin.unwrap_or(self.config.machine.spin),
-        };
-        planes.map(|position| position.map(measurement))
+        planes.map(|plane| plane.map(|position| self.measured(state, position, 1)))
     }
 
     /// The rotor as a whole.
@@ -251,9 +248,11 @@ impl Detector {
             }
             (Phase::FreeFall | Phase::Impact, None) => {
                 self.phase_machine.skip(&mut state.rotor);
-                self.falls.skip(&mut state.blocks);
+                self.falls.advance(&mut state.blocks);
             }
-            (Phase::Starting | Phase::Levitated, None) => self.falls.skip(&mut state.blocks),
+            (Phase::Starting | Phase::Levitated, None) => {
+                self.falls.advance(&mut state.blocks);
+            }
         }
     }
 
@@ -293,12 +292,14 @@ impl Detector {
     ) {
         let before = state.levitation.variance;
         let (released, is_full) = self.watch(state, measurement, (before, true));
-        let is_armed = state.levitation.is_armed();
+        let is_armed = state.levitation.is_armed;
         self.listen(state, measurement);
         let threshold_scale = state.listener.threshold_scale();
         let variance = measurement.variance;
         let unforeseen = is_full
-            .then(|| (self.falls).unforeseen(&state.blocks, variance, state.orbit.is_certain()))
+            .then(|| {
+                (self.falls).unforeseen(&state.blocks, variance, state.orbit.learnt.is_certain)
+            })
             .flatten();
         let home = state.levitation.mean;
         if is_full && (self.phase_machine).is_lifted(state.blocks.newest_without_orbit(), home) {
@@ -331,7 +332,7 @@ impl Detector {
                 since: measurement.now.later(-age),
                 declared: measurement.now,
                 paths,
-                back: 0,
+                ..Pending::default()
             });
         }
         if unforeseen.is_some() || signals.levitated == Some(false) {
@@ -342,7 +343,7 @@ impl Detector {
     /// How loud the impact test is, with the orbit taken off that ends with the levitation.
     fn listen(&self, state: &mut DetectorState, measurement: &Measurement) {
         let is_known = self.learning.has_position(&state.levitation) && state.orbit.is_settled();
-        if is_known && !state.listener.is_known() {
+        if is_known && !state.listener.is_known {
             let measurement = Measurement {
                 position: less(measurement.position, state.orbit.ending()),
                 ..*measurement
@@ -419,7 +420,7 @@ impl Detector {
         }
         let variance = state.levitation.variance;
         let (_, is_full) = self.watch(state, measurement, (variance, false));
-        let (noise, orbits) = (measurement.variance, state.orbit.is_certain());
+        let (noise, orbits) = (measurement.variance, state.orbit.learnt.is_certain);
         let Some(pending) = &mut state.pending else {
             return false;
         };
@@ -470,7 +471,7 @@ impl Detector {
     ) {
         // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
         let learnt = state.levitation.learnt_variance();
-        let wavering = state.rotor.contact.wavering();
+        let wavering = state.rotor.contact.lift.wavering();
         let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
         let measurement = measurement.map(|measurement| Measurement {
             variance: measurement.variance.max(shown),
@@ -488,7 +489,7 @@ impl Detector {
             whose,
             writer,
         ) {
-            state.ends.lift_one();
+            state.ends.lifts = true;
         }
     }
 
@@ -511,7 +512,7 @@ impl Detector {
                         && !self.phase_machine.is_lifted(position, centre)
                         && Ends::is_off(position, centre, variance)
                 });
-                if far == [false; PLANES] || !state.levitation.is_armed() {
+                if far == [false; PLANES] || !state.levitation.is_armed {
                     return;
                 }
                 let number = writer.declare_at(far, EventKind::FreeFall);
@@ -519,8 +520,7 @@ impl Detector {
                     number,
                     since: ends[0].now,
                     declared: ends[0].now,
-                    paths: Default::default(),
-                    back: 0,
+                    ..Pending::default()
                 });
                 writer.resolve(&mut state.pending, true);
                 self.phase_machine
@@ -571,7 +571,7 @@ impl DetectorState {
         if let Some(origin) = &mut self.origin {
             *origin = sum(*origin, way);
         }
-        if !self.ends.are_alone() {
+        if !self.ends.are_alone {
             let track = &mut self.rotor.flight.track;
             track.position = sum(track.position, way);
             self.rotor.flight.wall.shift(way);
@@ -622,7 +622,7 @@ impl DetectorState {
 
     /// Whether noise and position have been learnt.
     pub fn is_armed(&self) -> bool {
-        self.levitation.is_armed()
+        self.levitation.is_armed
     }
 
     /// Hands out the words that every tick's outcome depends on.

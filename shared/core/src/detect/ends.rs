@@ -3,11 +3,6 @@
 //! With a and b the positions of the planes, h = (a + b)/2 is what the ends share and e = (a - b)/2
 //! how far they are from it. Both have the same noise.
 
-#[cfg(feature = "serde")]
-mod learnt;
-
-#[cfg(feature = "serde")]
-pub(crate) use self::learnt::Together;
 use crate::config::{DetectorConfig, Tuning};
 use crate::detect::contact::Touching;
 use crate::detect::event_writer::EventWriter;
@@ -47,24 +42,32 @@ pub(crate) struct EndsTest {
 /// What is known of the ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ends {
+    pub(crate) learnt: LearntEnds,
+    /// h and e now, m.
+    now: [[f32; 2]; 2],
+    /// Of one axis of one plane, m^2.
+    variance: f32,
+    /// In a lift-off, with x of h and y of e as the way from the wall: sums of 2 x y and x^2 - y^2.
+    lean: [f32; 2],
+    /// One end has lifted off.
+    pub(crate) lifts: bool,
+    /// Each end's own, while they are apart.
+    alone: [PhaseState; PLANES],
+    pub(crate) are_alone: bool,
+}
+
+/// What outlasts a tick of the ends of a rotor that floats as one.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct LearntEnds {
     /// e while floating.
     levitation: Levitation,
-    /// h and e now and on average, m, and the power of what they move, m^2.
-    now: [[f32; 2]; 2],
+    /// h and e on average, m, and the power of what they move, m^2.
     mean: [[f32; 2]; 2],
     count: u32,
     power: [f32; 2],
-    /// Of one axis of one plane, m^2.
-    variance: f32,
     /// Samples in a row that the ends have been apart, and together.
     apart: u32,
     together: u32,
-    /// In a lift-off, with x of h and y of e as the way from the wall: sums of 2 x y and x^2 - y^2.
-    lean: [f32; 2],
-    lifts: bool,
-    /// Each end's own, while they are apart.
-    alone: [PhaseState; PLANES],
-    are_alone: bool,
 }
 
 impl EndsTest {
@@ -101,9 +104,10 @@ impl EndsTest {
         let now = [half(1.0), half(-1.0)];
         ends.now = now;
         ends.variance = variance;
-        ends.count = (ends.count + 1).min(self.mean_samples);
-        let gain = 1.0 / ends.count as f32;
-        for ((now, mean), power) in now.iter().zip(&mut ends.mean).zip(&mut ends.power) {
+        let learnt = &mut ends.learnt;
+        learnt.count = (learnt.count + 1).min(self.mean_samples);
+        let gain = 1.0 / learnt.count as f32;
+        for ((now, mean), power) in now.iter().zip(&mut learnt.mean).zip(&mut learnt.power) {
             for (now, mean) in now.iter().zip(mean.iter_mut()) {
                 *mean += gain * (now - *mean);
             }
@@ -111,15 +115,15 @@ impl EndsTest {
         }
         let [_, e] = now;
         if floats {
-            self.learning.take(&mut ends.levitation, e);
+            self.learning.take(&mut learnt.levitation, e);
         }
-        let sure = APART * APART * ends.levitation.learnt_variance().max(0.5 * ends.variance);
+        let sure = APART * APART * learnt.levitation.learnt_variance().max(0.5 * variance);
         if square(e, [0.0; 2]) > self.tolerance.max(sure) {
-            ends.apart = ends.apart.saturating_add(1);
-            ends.together = 0;
+            learnt.apart = learnt.apart.saturating_add(1);
+            learnt.together = 0;
         } else {
-            ends.apart = 0;
-            ends.together = ends.together.saturating_add(1);
+            learnt.apart = 0;
+            learnt.together = learnt.together.saturating_add(1);
         }
     }
 
@@ -131,14 +135,14 @@ impl EndsTest {
         fixes: [&Measurement; PLANES],
         threshold_scale: f32,
     ) {
-        let [_, e] = ends.mean;
+        let [_, e] = ends.learnt.mean;
         let ways = [e, e.map(|it| -it)];
         for ((phase_state, measurement), way) in ends.alone.iter_mut().zip(fixes).zip(ways) {
             self.phase_machine
                 .part(phase_state, rotor, measurement, way, threshold_scale);
         }
         ends.are_alone = true;
-        ends.together = 0;
+        ends.learnt.together = 0;
         ends.lifts = false;
     }
 
@@ -215,13 +219,13 @@ impl EndsTest {
         let joined = match fixes {
             [Some(_), None] => a,
             [None, Some(_)] => b,
-            _ if a.phase == b.phase && ends.together >= self.mean_samples => a,
+            _ if a.phase == b.phase && ends.learnt.together >= self.mean_samples => a,
             _ if a.phase == Phase::Levitated && b.phase == Phase::Levitated => a,
             _ => return None,
         };
         self.phase_machine.both(joined);
         ends.are_alone = false;
-        ends.apart = 0;
+        ends.learnt.apart = 0;
         Some(joined)
     }
 }
@@ -229,8 +233,8 @@ impl EndsTest {
 impl Ends {
     /// Where each end floats, m, and its variance on one axis, m^2.
     pub(crate) fn homes(&self, levitation: &Levitation) -> ([[f32; 2]; PLANES], f32) {
-        let ([x, y], [u, v]) = (levitation.mean, self.levitation.mean);
-        let variance = levitation.variance + self.levitation.variance;
+        let ([x, y], [u, v]) = (levitation.mean, self.learnt.levitation.mean);
+        let variance = levitation.variance + self.learnt.levitation.variance;
         ([[x + u, y + v], [x - u, y - v]], variance)
     }
 
@@ -242,26 +246,17 @@ impl Ends {
 
     /// Forgets all.
     pub(crate) fn forget(&mut self) {
-        self.levitation = Levitation::default();
-        self.mean = [[0.0; 2]; 2];
-        self.count = 0;
-        self.power = [0.0; 2];
+        self.learnt = LearntEnds::default();
         self.variance = 0.0;
-        self.together = 0;
         self.lean = [0.0; 2];
         self.lifts = false;
-        self.unite();
+        self.are_alone = false;
     }
 
     /// The rotor moves as one again.
     pub(crate) fn unite(&mut self) {
         self.are_alone = false;
-        self.apart = 0;
-    }
-
-    /// Whether each end has a ladder of its own.
-    pub(crate) fn are_alone(&self) -> bool {
-        self.are_alone
+        self.learnt.apart = 0;
     }
 
     /// Each end's phase, while they are apart.
@@ -277,7 +272,7 @@ impl Ends {
 
     /// How the rotor moves.
     pub(crate) fn motion(&self) -> Motion {
-        let [shared, opposed] = self.power;
+        let [shared, opposed] = self.learnt.power;
         if opposed > ABOVE_NOISE * self.variance && opposed > DOMINANT * shared {
             Motion::Conical
         } else {
@@ -289,12 +284,12 @@ impl Ends {
     /// that of e, y is x or -x for one end and 0 for both: the log likelihood of the first exceeds that of
     /// the second by (2 |x y| - x^2 + y^2)/(4 sigma^2), whatever the way.
     pub(crate) fn lifting(&mut self, contact: &Touching) -> Lifting {
-        let Some(x) = contact.lifting().filter(|_| self.count > 0) else {
+        let Some(x) = contact.lifting().filter(|_| self.learnt.count > 0) else {
             self.lean = [0.0; 2];
             return Lifting::Both;
         };
         let outward = contact.outward();
-        let ([_, e], [_, mean]) = (self.now, self.mean);
+        let ([_, e], [_, mean]) = (self.now, self.learnt.mean);
         let y = (e[0] - mean[0]) * outward[0] + (e[1] - mean[1]) * outward[1];
         self.lean[0] += 2.0 * x * y;
         self.lean[1] += x * x - y * y;
@@ -312,18 +307,13 @@ impl Ends {
 
     /// Only one plane is seen, or none.
     pub(crate) fn lose_sight(&mut self) {
-        self.count = 0;
-        self.apart = 0;
-        self.together = 0;
-    }
-
-    /// One end has lifted off.
-    pub(crate) fn lift_one(&mut self) {
-        self.lifts = true;
+        self.learnt.count = 0;
+        self.learnt.apart = 0;
+        self.learnt.together = 0;
     }
 
     /// Whether the ends have just moved apart.
     pub(crate) fn have_parted(&self) -> bool {
-        self.lifts || self.apart >= IN_A_ROW
+        self.lifts || self.learnt.apart >= IN_A_ROW
     }
 }

@@ -8,6 +8,7 @@
 use crate::config::DetectorConfig;
 use crate::detect::pending::{Pending, StraightWay};
 use crate::event::Moment;
+use crate::vector::{length, sum};
 use touchdown_rotor::real::sqrt;
 
 /// Length of a block, s.
@@ -81,7 +82,7 @@ pub(crate) enum FallVerdict {
 }
 
 /// A polynomial through blocks, at the end of the last one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Cubic {
     /// m, m/s, m/s^2; the last is the change of the acceleration over half of the blocks.
     place: [f32; 2],
@@ -109,20 +110,15 @@ impl FallTest {
 
     /// Takes a position (m), as it is and without the orbit; true where a block is full.
     pub(crate) fn take(&self, blocks: &mut Blocks, parts: [[f32; 2]; 2]) -> bool {
-        for (sum, [x, y]) in blocks.sum.iter_mut().zip(parts) {
-            sum[0] += x;
-            sum[1] += y;
+        for (total, part) in blocks.sum.iter_mut().zip(parts) {
+            *total = sum(*total, part);
         }
         blocks.taken += 1;
-        self.end(blocks)
+        self.advance(blocks)
     }
 
-    /// Without a position.
-    pub(crate) fn skip(&self, blocks: &mut Blocks) {
-        self.end(blocks);
-    }
-
-    fn end(&self, blocks: &mut Blocks) -> bool {
+    /// To the next sample, with a position or without; true where a block with one is full.
+    pub(crate) fn advance(&self, blocks: &mut Blocks) -> bool {
         blocks.since_wall = blocks.since_wall.saturating_add(1);
         blocks.samples += 1;
         if blocks.samples < self.stride {
@@ -279,15 +275,7 @@ impl FallTest {
         let (path, passed) = path.map_or((StraightWay::default(), 0.0), |(path, passed)| {
             (*path, passed - 0.5 * (stride - 1.0))
         });
-        let mut fit = Cubic {
-            place: [0.0; 2],
-            speed: [0.0; 2],
-            acceleration: [0.0; 2],
-            change: [0.0; 2],
-            place_error: 0.0,
-            error: 0.0,
-            change_error: 0.0,
-        };
+        let mut fit = Cubic::default();
         for axis in 0..2 {
             let (b, c, d) = (
                 first[axis] * by_first,
@@ -346,8 +334,4 @@ impl Blocks {
             ..Self::default()
         };
     }
-}
-
-fn length([x, y]: [f32; 2]) -> f32 {
-    sqrt(x * x + y * y)
 }

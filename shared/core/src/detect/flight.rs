@@ -9,7 +9,7 @@ use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::{Bounce, Series};
 use crate::detect::track::{Ballistic, Jump, Pull, Track};
 use crate::event::Moment;
-use crate::vector::{direction, less, square, sum};
+use crate::vector::{direction, length, less, square, sum};
 use core::f32::consts::TAU;
 use touchdown_rotor::real::{root, sqrt};
 
@@ -140,25 +140,20 @@ impl Airborne {
         self.gives = other.gives;
         self.is_rigid = other.is_rigid;
         self.lies = other.lies;
-        self.restart(other.bank.threshold_scale());
+        self.restart(other.bank.threshold_scale);
     }
 }
 
 /// How loud the impact test is while the rotor floats.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct NoiseFloor {
     level: f32,
     count: f32,
-    is_known: bool,
+    /// Whether enough has been heard.
+    pub(crate) is_known: bool,
 }
 
 impl NoiseFloor {
-    /// Whether enough has been heard.
-    pub(crate) fn is_known(&self) -> bool {
-        self.is_known
-    }
-
     /// Listens anew, unless enough has been heard.
     pub(crate) fn interrupt(&mut self) {
         if !self.is_known {
@@ -266,7 +261,7 @@ impl FlightTest {
         flight.is_rigid &= wall.is_some();
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         // What it has been from the release on, it is after a lift-off.
-        let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale());
+        let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale);
         flight.restart(threshold_scale.max(heard));
     }
 
@@ -343,7 +338,7 @@ impl FlightTest {
             self.turning(measurement, threshold_scale),
         );
         flight.series = both.series.anew();
-        (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale()));
+        (flight.bank).begin(threshold_scale.max(both.bank.threshold_scale));
     }
 
     /// Takes the next sample of a floating rotor: runout, unbalance or hum look like jumps, and how
@@ -354,21 +349,13 @@ impl FlightTest {
         flight: &mut Airborne,
         measurement: &Measurement,
     ) {
-        let Measurement {
-            position, variance, ..
-        } = *measurement;
+        let (position, variance) = (measurement.position, measurement.variance);
         if listener.count == 0.0 {
             flight.track = Track::new(
                 position,
                 variance,
                 ([0.0; 2], UNKNOWN_SPEED),
-                Pull {
-                    acceleration: [0.0; 2],
-                    error: 0.0,
-                    stiffness: 0.0,
-                    stiffness_variance: 0.0,
-                    is_shown: false,
-                },
+                Pull::default(),
                 [0.0; 2],
             );
             flight.bank.begin(0.0);
@@ -463,7 +450,7 @@ impl FlightTest {
         } else {
             out.min(flight.wall.surely_beyond(here, &self.told))
         };
-        let noise = measurement.variance * flight.bank.threshold_scale();
+        let noise = measurement.variance * flight.bank.threshold_scale;
         match touch.look(out, sqrt(noise), gone) {
             TouchStage::GivesWay => {
                 flight.gives = true;
@@ -495,7 +482,7 @@ impl FlightTest {
         let touch = flight.touch.as_mut()?;
         let stage = touch.follow(
             radius - flight.wall.distance(n) - flight.wall.beyond(touch.place),
-            sqrt(variance * flight.bank.threshold_scale()),
+            sqrt(variance * flight.bank.threshold_scale),
             (speed, track.speed_error()),
             bounce.normal_acceleration * self.period,
         );
@@ -550,8 +537,7 @@ impl FlightTest {
     /// the one before, which takes it inward and along the wall by no more than its speed.
     fn is_possible(&self, track: &Track, measurement: &Measurement) -> bool {
         let noise = self.certain * track.spread(measurement.variance);
-        let [u, v] = track.velocity;
-        let speed = sqrt(u * u + v * v) + FASTER * track.speed_error();
+        let speed = length(track.velocity) + FASTER * track.speed_error();
         let kick = KICK * self.period * speed;
         let [x, y] = track.seen();
         let ([nx, ny], _) = direction([x, y]);
@@ -563,7 +549,7 @@ impl FlightTest {
     /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
     /// well, it does not.
     fn relaunch(&self, flight: &mut Airborne, measurement: &Measurement) {
-        if flight.bank.threshold_scale() > 1.0 {
+        if flight.bank.threshold_scale > 1.0 {
             return;
         }
         let (Some(after), Some(last)) =
@@ -616,13 +602,13 @@ impl FlightTest {
         let mut age = stretch * jump.dated;
         let mut least = self.min_detectable_speed(
             bounce.normal_acceleration,
-            measurement.variance * flight.bank.threshold_scale(),
+            measurement.variance * flight.bank.threshold_scale,
         );
         let mut launch_speed = 0.0;
         let mut foreseen = false;
         if let Some(last) = flight.series.last() {
             let flown = bounce.at.since(last.at) * self.period;
-            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch()) {
+            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch) {
                 return None;
             }
             let [u, v] = [before[0] - pull[0] * flown, before[1] - pull[1] * flown];
@@ -638,7 +624,7 @@ impl FlightTest {
                 if foreseen {
                     age = next.age(measurement.now, age);
                     bounce.at = measurement.now.later(-age);
-                    bounce.normal_speed = next.speed();
+                    bounce.normal_speed = next.speed;
                     least *= FAINTER;
                 }
             }
@@ -671,14 +657,13 @@ impl FlightTest {
     /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
     fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
         let squares = last.along * last.along + launch * launch;
-        let [a, b] = last.pull;
-        let back = squares / self.machine.clearance + sqrt(a * a + b * b);
+        let back = squares / self.machine.clearance + length(last.pull);
         if back > 0.0 { 2.0 * launch / back } else { 0.0 }
     }
 
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
-        let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale());
+        let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale);
         let ([x, y], _) = self.outward(flight, track.seen());
         let [u, v] = track.velocity;
         let along = v * x - u * y;
@@ -715,7 +700,7 @@ impl FlightTest {
         }
         flight.near_wall += 1;
         let at_wall = flight.near_wall as f32 * self.period;
-        if let Some(end) = flight.series.end() {
+        if let Some(end) = flight.series.end {
             let over = measurement.now.since(end) * self.period;
             if over < SERIES_MARGIN {
                 return None;
@@ -842,7 +827,7 @@ mod tests {
         let contact = |away: core::ops::Range<u64>| {
             let mut flight = Airborne::default();
             flight.series.take(bounce, 0.0, &MACHINE, test.period);
-            let end = flight.series.end().expect("the wall presses").samples();
+            let end = flight.series.end.expect("the wall presses").samples();
             assert!((1_080.0..1_085.0).contains(&end), "{end}");
             (1_000..1_105).find(|&sample| {
                 let y = if away.contains(&sample) { -2e-4 } else { -3e-4 };

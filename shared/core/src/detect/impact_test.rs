@@ -51,7 +51,7 @@ pub(crate) struct JumpBank {
     /// Largest statistic of the last sample.
     pub(crate) statistic: f32,
     /// Factor on the threshold: how much louder than white noise the sensors are.
-    threshold_scale: f32,
+    pub(crate) threshold_scale: f32,
 }
 
 impl JumpBank {
@@ -59,11 +59,6 @@ impl JumpBank {
     pub(crate) fn begin(&mut self, threshold_scale: f32) {
         self.threshold_scale = threshold_scale;
         self.restart();
-    }
-
-    /// Factor on the threshold.
-    pub(crate) fn threshold_scale(&self) -> f32 {
-        self.threshold_scale
     }
 
     /// A jump where no wall is: the sensors, or other forces, are louder than was known.

@@ -14,12 +14,12 @@ pub(crate) struct Learning {
 }
 
 /// What has been learnt.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Levitation {
     count: u32,
     gain: f32,
-    armed: bool,
+    /// Whether enough has been learnt.
+    pub(crate) is_armed: bool,
     /// m.
     pub(crate) mean: [f32; 2],
     /// Of one axis, m^2.
@@ -53,7 +53,7 @@ impl Learning {
             let square = 0.5 * (dx * dx + dy * dy);
             state.variance += gain * (square - state.variance);
         }
-        state.armed = state.count >= self.arming_samples;
+        state.is_armed = state.count >= self.arming_samples;
     }
 }
 
@@ -65,12 +65,7 @@ impl Levitation {
 
     /// Variance of one axis while floating, m^2; 0 before it has been learnt.
     pub(crate) fn learnt_variance(&self) -> f32 {
-        if self.armed { self.variance } else { 0.0 }
-    }
-
-    /// Whether enough has been learnt.
-    pub(crate) fn is_armed(&self) -> bool {
-        self.armed
+        if self.is_armed { self.variance } else { 0.0 }
     }
 }
 
@@ -83,10 +78,10 @@ mod tests {
         let learning = Learning::new(&Tuning::default(), 20_000.0);
         let mut state = Levitation::default();
         for k in 1..=2_800 {
-            assert!(!state.is_armed(), "{k}");
+            assert!(!state.is_armed, "{k}");
             learning.take(&mut state, [1e-6 * (k % 2) as f32, 0.0]);
         }
-        assert!(state.is_armed());
+        assert!(state.is_armed);
         assert!((state.mean[0] - 0.5e-6).abs() < 1e-9);
     }
 }

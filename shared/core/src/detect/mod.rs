@@ -56,7 +56,6 @@ mod wall;
 
 pub use crate::config::{DetectorConfig, MachineConfig, Tuning};
 pub use crate::phase::Phase;
-#[cfg(feature = "serde")]
 pub(crate) use detector::Afloat;
 pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};

@@ -24,7 +24,7 @@ pub(crate) struct NextImpact {
     /// Samples from there to it.
     flight: f32,
     /// Into the wall, m/s.
-    speed: f32,
+    pub(crate) speed: f32,
     /// Of the series.
     end: Option<Moment>,
 }
@@ -40,7 +40,7 @@ impl NextImpact {
         period: f32,
     ) -> Option<Self> {
         let last = series.last()?;
-        let launch = series.launch();
+        let launch = series.launch;
         // The wall bends towards the rotor.
         let bend = launch * launch / machine.clearance;
         let (first, then) = (last.normal_acceleration + bend, normal_acceleration + bend);
@@ -49,7 +49,7 @@ impl NextImpact {
             last: last.at,
             flight: 6.0 * launch / (early * period),
             speed: launch * (first + 2.0 * then) / early,
-            end: series.end(),
+            end: series.end,
         })
     }
 
@@ -65,11 +65,6 @@ impl NextImpact {
     pub(crate) fn is_weak(&self, seen: &Bounce, min_detectable_speed: f32) -> bool {
         seen.normal_speed.min(self.speed) < min_detectable_speed
             && self.end.is_none_or(|end| end.since(seen.at) > 0.0)
-    }
-
-    /// Speed into the wall, m/s.
-    pub(crate) fn speed(&self) -> f32 {
-        self.speed
     }
 
     /// Samples since, where it seems to be `seen` samples old.

@@ -11,8 +11,7 @@ pub(crate) const WARM_UP: u32 = 32;
 const CLIP: f32 = 25.0;
 
 /// Running estimate of the variance of one axis of one plane.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Noise {
     last: [[f32; 2]; 3],
     filled: u8,

@@ -12,7 +12,7 @@ pub(crate) struct StraightWay {
 }
 
 /// A declared fall that is neither confirmed nor withdrawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pending {
     pub(crate) number: u16,
     /// Its onset.

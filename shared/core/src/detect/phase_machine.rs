@@ -3,20 +3,19 @@
 //! The rotor as a whole has one; so has each end while the two move apart.
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::contact::{ContactTest, Finding, Regime, Touching};
+use crate::detect::contact::{ContactTest, Touching};
 use crate::detect::estimate::{Estimate, Place};
 use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
+use crate::detect::lift_off::LiftOff;
 use crate::detect::measurement::Measurement;
 use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
-use crate::detect::slip::Kind;
 use crate::detect::still::Still;
 use crate::event::{EventKind, Moment};
 use crate::phase::Phase;
-use crate::vector::{direction, square};
-use touchdown_rotor::real::sqrt;
+use crate::vector::{direction, length, square};
 
 /// Part of gravity's way that is less than any fall goes, whatever forces are left.
 const FALLS: f32 = 0.5;
@@ -143,7 +142,7 @@ impl PhaseMachine {
             self.flight.end_contact(&mut phase_state.flight, None);
             self.flight.begin_contact(&mut phase_state.flight);
         }
-        phase_state.contact.learn_anew();
+        phase_state.contact.lift = LiftOff::default();
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
@@ -175,7 +174,7 @@ impl PhaseMachine {
                 // Against a ring that turns, or where it rolls, the slip is known and not the spin.
                 if let Some(slip) = &contact.slip {
                     estimate.spin = (slip.speed - speed) / radius;
-                } else if contact.kind == Some(Kind::Rolling) {
+                } else if contact.kind == Some(EventKind::Rolling) {
                     estimate.spin = -speed / radius;
                 }
                 estimate.speed_error = contact.track.rate_spread() * machine.clearance;
@@ -190,10 +189,9 @@ impl PhaseMachine {
     pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
         let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
         let clearance = self.machine.clearance;
-        let [u, v] = track.velocity;
         let mut strain = Exposure {
             is_released: phase_state.phase >= Phase::FreeFall,
-            speed: sqrt(u * u + v * v),
+            speed: length(track.velocity),
             speed_error: track.speed_error(),
             restitution: phase_state.flight.series.restitution(&self.machine),
             ahead: phase_state.flight.series.yet_to_come(&self.machine),
@@ -203,7 +201,7 @@ impl PhaseMachine {
             let rate = contact.swing().rate;
             strain.speed = clearance * rate.abs();
             strain.speed_error = clearance * contact.track.rate_spread();
-            strain.contact_age = Some(contact.age());
+            strain.contact_age = Some(contact.age);
             strain.whirl = contact.whirls().then_some(rate);
         }
         strain
@@ -353,36 +351,23 @@ impl PhaseMachine {
             signals,
         );
         let lifting = whose(&phase_state.contact);
-        if matches!(findings, [Some(Finding::LiftOff(_)), _]) && lifting != Lifting::Both {
+        if matches!(findings, [Some((EventKind::LiftOff, _)), _]) && lifting != Lifting::Both {
             return lifting == Lifting::Unclear;
         }
-        for finding in findings.into_iter().flatten() {
-            let (kind, age) = match finding {
-                Finding::Kind(Kind::Sliding, age) => {
-                    phase_state.phase = Phase::Sliding;
-                    (EventKind::Sliding, age)
-                }
-                Finding::Kind(Kind::Rolling, age) => {
-                    phase_state.phase = Phase::Rolling;
-                    (EventKind::Rolling, age)
-                }
-                Finding::Regime(regime, age) => match regime {
-                    Regime::Unknown => continue,
-                    Regime::Rest => (EventKind::Rest, age),
-                    Regime::Pendulum => (EventKind::Pendulum, age),
-                    Regime::ForwardWhirl => (EventKind::ForwardWhirl, age),
-                    Regime::BackwardWhirl => (EventKind::BackwardWhirl, age),
-                },
-                Finding::LiftOff(age) => {
-                    let wall = Some(phase_state.contact.wall());
+        for (kind, age) in findings.into_iter().flatten() {
+            match kind {
+                EventKind::Sliding => phase_state.phase = Phase::Sliding,
+                EventKind::Rolling => phase_state.phase = Phase::Rolling,
+                EventKind::LiftOff => {
+                    let wall = Some(phase_state.contact.lift.lately);
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
                     self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {
                         self.fly(phase_state, measurement, wall, threshold_scale);
                     }
-                    (EventKind::LiftOff, age)
                 }
-            };
+                _ => {}
+            }
             writer.declare(kind, age, 0.0);
         }
         true
@@ -431,8 +416,7 @@ mod tests {
             number: 0,
             since: Moment::of_sample(1_000),
             declared: Moment::of_sample(1_010),
-            paths: Default::default(),
-            back: 0,
+            ..Pending::default()
         };
         let way = 0.5 * MACHINE.gravity * 0.005 * 0.005;
         let fell = |part: f32| {

@@ -39,22 +39,20 @@ pub(crate) struct Release {
     memory: f32,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Candidate {
     sum: [f32; 2],
     energy: f32,
 }
 
 /// The bank.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ReleaseBank {
     /// The newest first; used or not.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[serde(skip)]
     pub(crate) candidates: [Candidate; MOST_INSTANTS],
     /// Mean of the statistic by age, in steps from one instant to the next, m^2.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[serde(skip)]
     pub(crate) levels: [f32; MOST_INSTANTS],
     /// How many of them there are so far.
     live: usize,

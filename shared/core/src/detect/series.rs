@@ -96,9 +96,10 @@ pub(crate) struct Series {
     /// Sum of the impulses along the normal, per mass, m/s.
     impulse: f32,
     last: Option<Bounce>,
-    ends: Option<Moment>,
-    /// Speed with which the rotor left the wall at the last impact.
-    launch: f32,
+    /// End of the series; `None` where the wall does not press on, or the series does not end.
+    pub(crate) end: Option<Moment>,
+    /// Speed with which the rotor left the wall at the last impact; it comes back with that.
+    pub(crate) launch: f32,
     /// Whether its velocity along the wall is still that which followed from the impact.
     assumed: bool,
 }
@@ -119,7 +120,7 @@ impl Series {
     pub(crate) fn yet_to_come(&self, machine: &MachineConfig) -> f32 {
         let restitution = self.restitution(machine);
         match &self.last {
-            Some(last) if self.ends.is_some() && restitution < 1.0 => {
+            Some(last) if self.end.is_some() && restitution < 1.0 => {
                 last.normal_speed * restitution / (1.0 - restitution)
             }
             _ => 0.0,
@@ -130,7 +131,7 @@ impl Series {
     pub(crate) fn anew(&self) -> Self {
         Self {
             last: None,
-            ends: None,
+            end: None,
             ..*self
         }
     }
@@ -165,7 +166,7 @@ impl Series {
         last.normal_acceleration =
             last.along * last.along / machine.clearance + pull[0] * x + pull[1] * y;
         let rest = last.rest(self.launch, restitution, machine);
-        self.ends = rest.map(|time| last.at.later(time / period));
+        self.end = rest.map(|time| last.at.later(time / period));
     }
 
     /// The touch of the last impact ends with this velocity, m/s.
@@ -184,11 +185,6 @@ impl Series {
         self.launch = -(u * x + v * y);
         let pull = last.pull;
         self.relaunch(velocity, pull, machine, period);
-    }
-
-    /// Speed with which the rotor left the wall at the last impact; it comes back with that.
-    pub(crate) fn launch(&self) -> f32 {
-        self.launch
     }
 
     /// The last impact.
@@ -227,14 +223,9 @@ impl Series {
         let restitution = self.restitution(machine);
         self.launch = restitution * bounce.normal_speed;
         let rest = bounce.rest(self.launch, restitution, machine);
-        self.ends = rest.map(|time| bounce.at.later(time / period));
+        self.end = rest.map(|time| bounce.at.later(time / period));
         self.impulse += (1.0 + restitution) * bounce.normal_speed;
         self.last = Some(bounce);
-    }
-
-    /// End of the series; `None` where the wall does not press on, or the series does not end.
-    pub(crate) fn end(&self) -> Option<Moment> {
-        self.ends
     }
 
     /// Slip, m/s, that friction cannot have used up in the impacts so far, from a nominal one.
@@ -284,7 +275,7 @@ pub(crate) mod tests {
         };
         let mut series = Series::default();
         series.take(bounce(782.062, 0.076_720), 0.0, &smooth, PERIOD);
-        let end = series.end().expect("the wall presses");
+        let end = series.end.expect("the wall presses");
         assert!((end.samples() - 7038.56).abs() < 0.2, "{end:?}");
     }
 

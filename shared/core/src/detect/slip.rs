@@ -1,11 +1,9 @@
 //! What the slip measured with an inner ring that turns says: sliding or rolling.
 
-/// Sliding or rolling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Sliding,
-    Rolling,
-}
+use crate::event::EventKind;
+
+/// What a sample showed, and samples since.
+pub(crate) type Finding = (EventKind, f32);
 
 /// Slip of the rotor's surface on the wall, counter-clockwise positive: v_t + r omega - R W.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,15 +26,15 @@ impl Verdict {
     /// Beyond error and `resolution` (m/s) it slides; where it has been within them for longer than
     /// friction needs to carry a slip from one end of that band to the other, it rolls. With the verdict:
     /// samples since.
-    pub(crate) fn take(&mut self, slip: &Slip, taken: f32, resolution: f32) -> Option<(Kind, f32)> {
+    pub(crate) fn take(&mut self, slip: &Slip, taken: f32, resolution: f32) -> Option<Finding> {
         let band = slip.error + resolution;
         if slip.speed.abs() > band {
             *self = Self::default();
-            return Some((Kind::Sliding, 0.0));
+            return Some((EventKind::Sliding, 0.0));
         }
         self.ended += taken;
         self.age += 1.0;
-        (self.ended > 2.0 * band).then_some((Kind::Rolling, self.age))
+        (self.ended > 2.0 * band).then_some((EventKind::Rolling, self.age))
     }
 }
 
@@ -51,7 +49,10 @@ mod tests {
             speed: slip,
             error: 0.01,
         };
-        (1..1000).find(|_| matches!(verdict.take(&slip, 1e-3, 0.02), Some((Kind::Rolling, _))))
+        (1..1000).find(|_| {
+            let found = verdict.take(&slip, 1e-3, 0.02);
+            matches!(found, Some((EventKind::Rolling, _)))
+        })
     }
 
     #[test]
@@ -68,7 +69,7 @@ mod tests {
         for k in 0..200 {
             let speed = if k % 50 == 49 { 0.04 } else { 0.0 };
             let found = verdict.take(&Slip { speed, error: 0.01 }, 1e-3, 0.02);
-            assert!(!matches!(found, Some((Kind::Rolling, _))), "{k}");
+            assert!(!matches!(found, Some((EventKind::Rolling, _))), "{k}");
         }
     }
 }

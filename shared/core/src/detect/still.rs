@@ -1,6 +1,6 @@
 //! Stillness: whether the rotor keeps its place over a stretch of time.
 
-use touchdown_rotor::real::sqrt;
+use crate::vector::{length, less, square, sum};
 
 /// Collects blocks of samples.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,32 +28,25 @@ pub(crate) struct Block {
 }
 
 impl Still {
-    /// Takes a position, m; every `length` samples a block.
-    pub(crate) fn take(&mut self, position: [f32; 2], length: u32) -> Option<Block> {
+    /// Takes a position, m; a block has so many `samples`.
+    pub(crate) fn take(&mut self, position: [f32; 2], samples: u32) -> Option<Block> {
         if self.count == 0 {
             self.origin = position;
             self.sum = [0.0; 2];
             self.square = 0.0;
             self.farthest[0] = 0.0;
         }
-        let [x, y] = position;
-        self.farthest[0] = self.farthest[0].max(x * x + y * y);
-        let dx = position[0] - self.origin[0];
-        let dy = position[1] - self.origin[1];
-        self.sum[0] += dx;
-        self.sum[1] += dy;
-        self.square += dx * dx + dy * dy;
+        self.farthest[0] = self.farthest[0].max(square(position, [0.0; 2]));
+        self.sum = sum(self.sum, less(position, self.origin));
+        self.square += square(position, self.origin);
         self.count += 1;
-        if self.count < length {
+        if self.count < samples {
             return None;
         }
         let scale = 1.0 / self.count as f32;
         let [mx, my] = self.sum.map(|sum| sum * scale);
-        let mean = [self.origin[0] + mx, self.origin[1] + my];
-        let moved = self.last.map_or(f32::INFINITY, |[x, y]| {
-            let (dx, dy) = (mean[0] - x, mean[1] - y);
-            sqrt(dx * dx + dy * dy)
-        });
+        let mean = sum(self.origin, [mx, my]);
+        let way = self.last.map(|last| length(less(mean, last)));
         let [now, before] = self.farthest;
         let farthest = if self.last.is_some() {
             now.max(before)
@@ -66,7 +59,7 @@ impl Still {
         Some(Block {
             mean,
             variance: (0.5 * (self.square * scale - mx * mx - my * my)).max(0.0),
-            moved,
+            moved: way.unwrap_or(f32::INFINITY),
             farthest,
         })
     }

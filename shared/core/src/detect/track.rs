@@ -1,7 +1,7 @@
 //! Path in flight: a Kalman filter on complex numbers x + i y. Its states are position, velocity and acceleration of the
 //! centre of mass, and the offset of the shaft's centre, which unbalance lets circle around it.
 
-use crate::vector::{conjugate, less, product, sum};
+use crate::vector::{conjugate, less, product, square, sum};
 use touchdown_rotor::real::{sin_cos, sqrt};
 
 /// Coefficients.
@@ -57,7 +57,7 @@ pub(crate) struct Track {
 }
 
 /// What acts on the rotor in flight.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pull {
     /// m/s^2.
     pub(crate) acceleration: [f32; 2],
@@ -208,23 +208,15 @@ impl Track {
     pub(crate) fn new(
         position: [f32; 2],
         variance: f32,
-        velocity: ([f32; 2], f32),
+        (velocity, spread): ([f32; 2], f32),
         pull: Pull,
         [spin, angle]: [f32; 2],
     ) -> Self {
-        let (
-            (velocity, spread),
-            Pull {
-                acceleration,
-                error,
-                ..
-            },
-        ) = (velocity, pull);
         let offset = if spin == 0.0 { 0.0 } else { BALANCE / spin };
         let (sin, cos) = sin_cos(angle);
         let mut track = Self {
             velocity,
-            acceleration,
+            acceleration: pull.acceleration,
             spin,
             turn: [cos, sin],
             variances: [0.0, 0.0, 0.0, offset * offset],
@@ -234,7 +226,7 @@ impl Track {
             is_shown: pull.is_shown,
             ..Self::default()
         };
-        track.go_on_at(position, variance, spread, error);
+        track.go_on_at(position, variance, spread, pull.error);
         track
     }
 
@@ -346,18 +338,6 @@ impl Track {
         [self.position[0] - u * time, self.position[1] - v * time]
     }
 
-    fn add(&mut self, part: [f32; 3], [x, y]: [f32; 2]) {
-        let states = [
-            &mut self.position,
-            &mut self.velocity,
-            &mut self.acceleration,
-        ];
-        for ([of_x, of_y], part) in states.into_iter().zip(part) {
-            *of_x += part * x;
-            *of_y += part * y;
-        }
-    }
-
     /// Standard deviation of a position (m) of this variance (m^2) from the foreseen one, on each axis.
     pub(crate) fn spread(&self, variance: f32) -> f32 {
         let [pp, _, _, oo] = self.variances;
@@ -382,13 +362,8 @@ impl Track {
 
     /// The acceleration is another one.
     pub(crate) fn accelerate(&mut self, pull: Pull) {
-        let Pull {
-            acceleration,
-            error,
-            ..
-        } = pull;
-        self.acceleration = acceleration;
-        self.variances[2] = error * error;
+        self.acceleration = pull.acceleration;
+        self.variances[2] = pull.error * pull.error;
         let [pv, ..] = self.covariances;
         self.covariances = [pv, [0.0; 2], [0.0; 2]];
         self.with_offset[2] = [0.0; 2];
@@ -396,22 +371,18 @@ impl Track {
 
     /// Takes a velocity jump in, `since` seconds ago: the rotor has gone elsewhere since, where magnets pull otherwise.
     pub(crate) fn shift(&mut self, jump: &Jump, since: f32) {
-        let Jump {
-            change,
-            variance,
-            effect,
-            ..
-        } = *jump;
-        self.add(effect, change);
-        self.acceleration = later(self.acceleration, change, self.applied * since);
-        let [u, v] = change;
-        let misplaced = (u * u + v * v) * jump.timing * jump.timing;
+        let (change, effect) = (jump.change, jump.effect);
         let [p, v, a] = effect;
+        self.position = later(self.position, change, p);
+        self.velocity = later(self.velocity, change, v);
+        self.acceleration = later(self.acceleration, change, a);
+        self.acceleration = later(self.acceleration, change, self.applied * since);
+        let misplaced = square(change, [0.0; 2]) * jump.timing * jump.timing;
         for (own, part) in self.variances.iter_mut().zip(effect) {
-            *own += part * part * variance;
+            *own += part * part * jump.variance;
         }
         for ([covariance, _], product) in self.covariances.iter_mut().zip([p * v, p * a, v * a]) {
-            *covariance += product * variance;
+            *covariance += product * jump.variance;
         }
         self.variances[0] += misplaced;
         self.by_stiffness = [[0.0; 2]; 4];

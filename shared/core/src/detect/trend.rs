@@ -11,8 +11,7 @@ const GROWTH: f32 = 2.5;
 const FIRST: f32 = 8.0;
 
 /// The estimate.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct TrendObserver {
     /// m.
     pub(crate) position: [f32; 2],

@@ -50,6 +50,7 @@ struct Forecast {
 /// A forecast under way, and the last one made.
 #[derive(Clone, Debug, Default)]
 struct ForecastState {
+    /// From which it starts, while it is under way.
     estimate: Option<Estimate>,
     point: usize,
     run: Option<Run>,
@@ -98,14 +99,6 @@ impl Forecast {
     /// through the clearance gives.
     fn is_known(&self, error: f32) -> bool {
         error < WELL_KNOWN * self.scales.speed
-    }
-
-    /// Starts a forecast from `estimate`; one under way is dropped.
-    fn start(&self, state: &mut ForecastState, estimate: &Estimate) {
-        state.estimate = Some(*estimate);
-        state.point = 0;
-        state.run = None;
-        state.tally = Tally::default();
     }
 
     /// A slice of the work, after the tick of `sample`: bounded by `forecast_changes`. The outlook, where
@@ -182,9 +175,12 @@ impl Tally {
 }
 
 impl ForecastState {
-    /// Whether a forecast is under way.
-    fn is_busy(&self) -> bool {
-        self.estimate.is_some()
+    /// Starts a forecast from `estimate`; one under way is dropped.
+    fn start(&mut self, estimate: &Estimate) {
+        self.estimate = Some(*estimate);
+        self.point = 0;
+        self.run = None;
+        self.tally = Tally::default();
     }
 
     /// Of the next piece of work, in flights.
@@ -195,11 +191,6 @@ impl ForecastState {
             (None, None) => true,
         };
         if flies { 1 } else { STRETCH }
-    }
-
-    /// The last outlook.
-    fn last(&self) -> Option<&Outlook> {
-        self.last.as_ref()
     }
 
     /// The last outlook, if it says something new: the first of an episode, and where a probability has
@@ -215,15 +206,5 @@ impl ForecastState {
             self.told = Some(now);
         }
         is_new.then_some(outlook)
-    }
-
-    /// Words that show any difference in what was worked out.
-    fn words(&self) -> [f32; 5] {
-        let (forward, backward, left) = self.last.as_ref().map_or((0.0, 0.0, 0.0), |it| {
-            let left = it.onset.map_or(0.0, |onset| onset.time_left);
-            (it.probability_forward, it.probability_backward, left)
-        });
-        let reached = self.run.as_ref().map_or(0.0, Run::reached);
-        [forward, backward, left, self.point as f32, reached]
     }
 }

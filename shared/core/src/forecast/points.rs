@@ -3,6 +3,7 @@
 
 use crate::forecast::run::{Fate, Leg, Run};
 use crate::forecast::{Estimate, Forecast, Place};
+use crate::vector::length;
 use touchdown_rotor::Start;
 use touchdown_rotor::real::{Poly32, sqrt};
 
@@ -70,11 +71,11 @@ impl Forecast {
 }
 
 /// Noise may show a rotor beyond the wall.
-fn inside([x, y]: [f32; 2]) -> [f32; 2] {
-    let radius = sqrt(x * x + y * y);
+fn inside(position: [f32; 2]) -> [f32; 2] {
+    let radius = length(position);
     if radius > 1.0 {
-        [x / radius, y / radius]
+        position.map(|it| it / radius)
     } else {
-        [x, y]
+        position
     }
 }

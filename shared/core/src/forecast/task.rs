@@ -3,7 +3,7 @@
 use crate::config::DetectorConfig;
 use crate::detect::Estimate;
 use crate::event::{Notice, Outlook};
-use crate::forecast::{Forecast, ForecastState};
+use crate::forecast::{Forecast, ForecastState, Run};
 use touchdown_rotor::error::ConfigError;
 
 /// What the tick hands over.
@@ -37,7 +37,7 @@ impl ForecastTask {
 
     /// Whether it waits for an estimate to start from.
     pub fn wants_input(&self) -> bool {
-        !self.state.is_busy()
+        self.state.estimate.is_none()
     }
 
     /// A slice of the work: once after each tick, or as often as there is time. Bounded; cannot fail. What lies
@@ -52,11 +52,11 @@ impl ForecastTask {
             state.estimate = None;
             return None;
         }
-        if !state.is_busy()
+        if state.estimate.is_none()
             && let Some(estimate) = &forecast_input.estimate
             && self.forecast.is_known(estimate.speed_error)
         {
-            self.forecast.start(state, estimate);
+            state.start(estimate);
         }
         self.forecast.work(state, forecast_input.sample)?;
         state.news().map(Notice::Outlook)
@@ -64,11 +64,17 @@ impl ForecastTask {
 
     /// The last forecast of this episode.
     pub fn last(&self) -> Option<&Outlook> {
-        self.state.last()
+        self.state.last.as_ref()
     }
 
     /// Words that show any difference in what was worked out.
     pub(crate) fn words(&self) -> [f32; 5] {
-        self.state.words()
+        let (forward, backward, left) = self.last().map_or((0.0, 0.0, 0.0), |it| {
+            let left = it.onset.map_or(0.0, |onset| onset.time_left);
+            (it.probability_forward, it.probability_backward, left)
+        });
+        let ForecastState { run, point, .. } = &self.state;
+        let reached = run.as_ref().map_or(0.0, Run::reached);
+        [forward, backward, left, *point as f32, reached]
     }
 }

@@ -28,9 +28,8 @@ const LOST_TIME: f32 = 1e-3;
 const OFF_SAMPLES: u32 = 3;
 
 /// Limits, as parts of the told clearance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct GuardConfig {
     /// Distance that is told, and within which levitation is proven.
     pub alert: f32,

@@ -50,8 +50,7 @@ pub(crate) struct Watch {
 }
 
 /// What is known of a channel.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ChannelMonitorState {
     position: f32,
     velocity: f32,
@@ -305,15 +304,9 @@ impl Watch {
             it.acceleration = 0.0;
             return ((it.seen >= WARM_UP).then_some(it.position), None);
         }
-        let found = |kind| {
-            Some(Found {
-                kind,
-                age: u32::from(HELD),
-            })
-        };
         if it.cause != FaultKind::Spike {
             it.condition = Condition::Lost;
-            return (None, found(it.cause));
+            return (None, found(it.cause, HELD));
         }
         if !it.is_still {
             // It was motion.
@@ -323,12 +316,12 @@ impl Watch {
         it.latched = true;
         if spare {
             it.condition = Condition::Lost;
-            return (None, found(FaultKind::Shift));
+            return (None, found(FaultKind::Shift, HELD));
         }
         it.condition = it.condition.max(Condition::Suspect);
         it.shift += value - it.position;
         it.bad = 0;
-        (Some(it.position), found(FaultKind::Shift))
+        (Some(it.position), found(FaultKind::Shift, HELD))
     }
 
     fn sound(&self, it: &mut ChannelMonitorState, floats: bool) -> (Option<f32>, Option<Found>) {
@@ -340,14 +333,7 @@ impl Watch {
                 return (None, None);
             }
             it.condition = Condition::Lost;
-            let age = u32::from(it.repeats);
-            return (
-                None,
-                Some(Found {
-                    kind: FaultKind::Stuck,
-                    age,
-                }),
-            );
+            return (None, found(FaultKind::Stuck, it.repeats));
         }
         if it.condition == Condition::Lost {
             it.sound = it.sound.saturating_add(u16::from(it.repeats == 0));
@@ -358,24 +344,21 @@ impl Watch {
             it.restart();
             return (Some(value), None);
         }
-        let mut found = None;
+        let mut ended = None;
         if it.bad > 0 {
             let kind = match it.cause {
                 FaultKind::Missing => FaultKind::Dropped,
                 FaultKind::Saturated => FaultKind::Saturated,
                 _ => FaultKind::Spike,
             };
-            found = (it.seen >= WARM_UP).then_some(Found {
-                kind,
-                age: u32::from(it.bad),
-            });
+            ended = found(kind, it.bad).filter(|_| it.seen >= WARM_UP);
             it.bad = 0;
         }
         if it.seen == 0 {
             it.restart();
         }
         self.follow(it, it.innovation);
-        (Some(value), found)
+        (Some(value), ended)
     }
 
     #[inline]
@@ -472,6 +455,11 @@ impl ChannelMonitorState {
     pub(crate) fn words(&self) -> [f32; 4] {
         [self.position, self.velocity, self.variance, self.shift]
     }
+}
+
+fn found(kind: FaultKind, samples: u16) -> Option<Found> {
+    let age = u32::from(samples);
+    Some(Found { kind, age })
 }
 
 /// Repeats of a count that noise does not give: the likeliest count of noise s has the probability

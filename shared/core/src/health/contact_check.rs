@@ -3,7 +3,7 @@
 //! Whatever a rotor does, its mean over some swings is not beyond the wall; and of one that lies or swings on the
 //! wall it is at the bottom.
 
-use touchdown_rotor::real::sqrt;
+use crate::vector::{length, less, sum};
 
 /// Times the tolerance of the wall that it may seem beyond it.
 const BEYOND: f32 = 3.0;
@@ -26,8 +26,7 @@ pub(crate) struct ContactCheck {
 }
 
 /// What has been seen of it.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCheckState {
     looks: u16,
     /// All the time.
@@ -82,17 +81,14 @@ impl ContactCheck {
                 *far = far.max(place.abs());
             }
         }
-        let [x, y] = [position[0] - it.first[0], position[1] - it.first[1]];
-        it.sum[0] += x;
-        it.sum[1] += y;
+        it.sum = sum(it.sum, less(position, it.first));
         it.touches &= touches;
         it.looks += 1;
         if it.looks < self.looks {
             return None;
         }
         let count = f32::from(it.looks);
-        let [x, y] = it.sum.map(|sum| sum / count);
-        let mean = [x + it.first[0], y + it.first[1]];
+        let mean = sum(it.sum.map(|sum| sum / count), it.first);
         rest(mean, [it.first, it.place]);
         let (touches, far) = (it.touches, it.far);
         *it = ContactCheckState::default();
@@ -101,7 +97,7 @@ impl ContactCheck {
     }
 
     fn judge(&self, [x, y]: [f32; 2], far: [f32; 2], touches: bool) -> Option<Place> {
-        let radius = sqrt(x * x + y * y);
+        let radius = length([x, y]);
         if radius > self.beyond {
             return Some(Place::Beyond(u8::from(y.abs() > x.abs())));
         }

@@ -66,8 +66,7 @@ pub struct HealthState {
 }
 
 /// What is known of the planes.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PlanesState {
     pairing: PlaneOffsetState,
     floating: [OrbitSenseState; PLANES],
@@ -358,6 +357,6 @@ impl HealthState {
             put(f32::from(it.condition as u8));
             it.words().into_iter().for_each(&mut put);
         }
-        self.planes.pairing.words().into_iter().for_each(put);
+        self.planes.pairing.half.into_iter().for_each(put);
     }
 }

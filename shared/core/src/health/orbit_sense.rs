@@ -19,8 +19,7 @@ pub(crate) struct OrbitSense {
 }
 
 /// What is known of a plane.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct OrbitSenseState {
     place: [f32; 2],
     home: Option<[f32; 2]>,

@@ -14,11 +14,10 @@ pub(crate) struct PlaneOffset {
 }
 
 /// What is known of the two.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PlaneOffsetState {
     /// Half the difference, a - b, m.
-    half: [f32; 2],
+    pub(crate) half: [f32; 2],
     seen: [bool; PLANES],
 }
 
@@ -73,11 +72,6 @@ impl PlaneOffsetState {
     pub(crate) fn axis(&self) -> usize {
         let [x, y] = self.half;
         usize::from(y.abs() > x.abs())
-    }
-
-    /// What the next tick goes on from.
-    pub(crate) fn words(&self) -> [f32; 2] {
-        self.half
     }
 }
 

@@ -6,6 +6,7 @@
 
 use crate::config::MachineConfig;
 use crate::sample::count_in_a_row;
+use crate::vector::{length, less};
 use touchdown_rotor::real::sqrt;
 
 /// Part of the clearance by which the wall may seem off. The check's own errors, 2 % of zero and of gain at 95 %, add up
@@ -54,10 +55,8 @@ impl WallCheck {
 
     /// Takes a mean place, and those at the beginning and the end of what it was taken over, m.
     pub(crate) fn rest(&self, it: &mut WallCheckState, mean: [f32; 2], ends: [[f32; 2]; 2]) {
-        let far = |[x, y]: [f32; 2]| sqrt(x * x + y * y) * self.per_clearance;
-        let is_still = ends
-            .iter()
-            .all(|[x, y]| far([x - mean[0], y - mean[1]]) < STILL);
+        let far = |way: [f32; 2]| length(way) * self.per_clearance;
+        let is_still = ends.iter().all(|end| far(less(*end, mean)) < STILL);
         let distance = far(mean);
         let aside = (mean[0] * self.per_clearance).abs();
         let is_elsewhere = (distance - 1.0).abs() > OFF || aside > self.aside + OFF;

@@ -36,8 +36,7 @@ pub(super) struct Edge {
 }
 
 /// Two mean speeds.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Trend {
     /// In the latest stretch, rad/s.
     rate: f32,

@@ -4,7 +4,6 @@
 //! drives it.
 
 mod channel;
-#[cfg(feature = "serde")]
 pub(crate) mod learnt;
 
 use crate::event::Moment;
@@ -14,8 +13,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::{not_negative, positive};
 
 /// The sensors and what they look at; SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TachometersConfig {
     /// Edges in a turn of the inner ring and of the cage, 1 or more; `None` where that sensor is not
     /// fitted.

@@ -51,8 +51,7 @@ pub(super) struct Follow {
 }
 
 /// The orbit.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Orbit {
     /// Cosine and sine of theta, and of its change in a sample.
     angle: [f32; 2],
@@ -76,8 +75,7 @@ pub(super) struct Orbit {
 }
 
 /// Covariance of the fit, over the noise: rows of the upper triangle.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Fit([f32; 6]);
 
 /// Cosine and sine of k theta.

@@ -3,13 +3,9 @@
 //! noise.
 
 mod follow;
-#[cfg(feature = "serde")]
-mod learnt;
 mod search;
 
 use self::follow::{Follow, Orbit};
-#[cfg(feature = "serde")]
-pub(crate) use self::learnt::Followed;
 use self::search::{Search, Searching};
 use crate::config::DetectorConfig;
 use crate::detect::pending::StraightWay;
@@ -52,14 +48,20 @@ pub(crate) struct Orbiting {
 /// What is known of trend and orbit.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct OrbitState {
-    count: u32,
+    pub(crate) learnt: LearntOrbit,
     searching: Searching,
-    orbit: Option<Orbit>,
-    /// Whether the orbit has shown what it explains: it is on trial before.
-    is_certain: bool,
+}
+
+/// The trend, and the orbit that is followed, if there is one.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct LearntOrbit {
     /// Alone, and beside the orbit.
     alone: TrendObserver,
     beside: TrendObserver,
+    count: u32,
+    orbit: Option<Orbit>,
+    /// Whether the orbit has shown what it explains: it is on trial before.
+    pub(crate) is_certain: bool,
     /// Of one axis about trend and orbit, m^2.
     variance: f32,
 }
@@ -91,9 +93,9 @@ impl Orbiting {
 
     /// To the next sample, whatever the rotor does; `spin` as measured, rad/s.
     pub(crate) fn advance(&self, state: &mut OrbitState, spin: Option<f32>) {
-        state.alone.advance();
-        state.beside.advance();
-        if let Some(orbit) = &mut state.orbit {
+        state.learnt.alone.advance();
+        state.learnt.beside.advance();
+        if let Some(orbit) = &mut state.learnt.orbit {
             self.follow.advance(orbit, spin);
         }
     }
@@ -107,25 +109,25 @@ impl Orbiting {
         (variance, noise): (f32, f32),
         floats: bool,
     ) -> Residual {
-        if !state.alone.is_known() {
-            state.alone = TrendObserver::at(position);
+        if !state.learnt.alone.is_known() {
+            state.learnt.alone = TrendObserver::at(position);
         }
-        let was_certain = state.is_certain;
-        let alone = less(position, state.alone.position);
-        state.alone.take(alone, self.trend_memory);
+        let was_certain = state.learnt.is_certain;
+        let alone = less(position, state.learnt.alone.position);
+        state.learnt.alone.take(alone, self.trend_memory);
         let (mut way, mut parts) = (alone, [position; 2]);
-        if let Some(orbit) = &mut state.orbit
+        if let Some(orbit) = &mut state.learnt.orbit
             && orbit.is_fitted()
         {
             let waves = orbit.waves();
             let without = less(position, orbit.place(&waves));
-            let beside = less(without, state.beside.position);
+            let beside = less(without, state.learnt.beside.position);
             if was_certain {
                 way = beside;
                 parts = [sum(without, orbit.fundamental()), without];
             }
             let memory = orbit.memory(self.trend_memory);
-            state.beside.take(beside, memory);
+            state.learnt.beside.take(beside, memory);
             if floats {
                 self.follow.learn(orbit, &waves, beside, memory);
                 self.judge(state, beside, (variance, noise));
@@ -135,7 +137,7 @@ impl Orbiting {
         }
         Residual {
             way,
-            first: state.is_certain != was_certain,
+            first: state.learnt.is_certain != was_certain,
             parts,
         }
     }
@@ -148,42 +150,44 @@ impl Orbiting {
 
     /// Searches for an orbit, and fits it.
     fn seek(&self, state: &mut OrbitState, position: [f32; 2], noise: f32) {
-        state.count = state.count.saturating_add(1);
-        if let Some(orbit) = &mut state.orbit {
+        state.learnt.count = state.learnt.count.saturating_add(1);
+        if let Some(orbit) = &mut state.learnt.orbit {
             if let Some(centre) = self.follow.begin(orbit, position) {
-                state.beside = TrendObserver::at(centre);
+                state.learnt.beside = TrendObserver::at(centre);
             }
             return;
         }
         self.search.take(&mut state.searching, position);
-        if state.count >= self.search_samples {
+        if state.learnt.count >= self.search_samples {
             let rate = self.search.rate(&state.searching, noise);
             let rate = rate.filter(|rate| *rate > self.slowest);
             state.begin_anew();
-            state.orbit = rate.map(|rate| self.follow.start(rate, state.alone.position));
+            state.learnt.orbit =
+                rate.map(|rate| self.follow.start(rate, state.learnt.alone.position));
         }
     }
 
     /// Whether the orbit explains enough of how the rotor moves.
     fn judge(&self, state: &mut OrbitState, [x, y]: [f32; 2], (variance, noise): (f32, f32)) {
-        state.count = state.count.saturating_add(1);
-        let turn = state.orbit.as_ref().map_or(0.0, Orbit::turn);
-        let is_slow = (state.orbit.as_ref()).is_some_and(|it| it.rate < self.slowest);
+        let learnt = &mut state.learnt;
+        learnt.count = learnt.count.saturating_add(1);
+        let turn = learnt.orbit.as_ref().map_or(0.0, Orbit::turn);
+        let is_slow = (learnt.orbit.as_ref()).is_some_and(|it| it.rate < self.slowest);
         let trial = self.fit_samples.max((TRIAL * turn) as u32);
         let memory = self.samples.max(turn as u32);
-        let gain = 1.0 / state.count.min(memory) as f32;
+        let gain = 1.0 / learnt.count.min(memory) as f32;
         let mut square = 0.5 * (x * x + y * y);
-        if state.is_certain && square > CLIP * state.variance {
-            square = CLIP * state.variance;
+        if learnt.is_certain && square > CLIP * learnt.variance {
+            square = CLIP * learnt.variance;
         }
-        state.variance += gain * (square - state.variance);
-        if state.count == trial / 2 {
+        learnt.variance += gain * (square - learnt.variance);
+        if learnt.count == trial / 2 {
             // What the fit did not know yet is no noise.
-            state.variance = 0.0;
+            learnt.variance = 0.0;
         }
-        if state.is_certain || state.count >= trial {
-            state.is_certain = !is_slow && state.variance <= MOST_LEFT * variance + noise;
-            if !state.is_certain {
+        if learnt.is_certain || learnt.count >= trial {
+            learnt.is_certain = !is_slow && learnt.variance <= MOST_LEFT * variance + noise;
+            if !learnt.is_certain {
                 state.begin_anew();
             }
         }
@@ -191,16 +195,28 @@ impl Orbiting {
 }
 
 impl OrbitState {
+    /// Without a search under way: that begins anew.
+    pub(crate) fn learnt(&self) -> LearntOrbit {
+        if self.learnt.orbit.is_some() {
+            return self.learnt;
+        }
+        LearntOrbit {
+            alone: self.learnt.alone,
+            ..LearntOrbit::default()
+        }
+    }
+
     /// The orbit, once it is certain.
     fn certain(&self) -> Option<&Orbit> {
-        self.orbit.as_ref().filter(|_| self.is_certain)
+        let learnt = &self.learnt;
+        learnt.orbit.as_ref().filter(|_| learnt.is_certain)
     }
 
     fn trend(&self) -> &TrendObserver {
-        if self.is_certain {
-            &self.beside
+        if self.learnt.is_certain {
+            &self.learnt.beside
         } else {
-            &self.alone
+            &self.learnt.alone
         }
     }
 
@@ -228,9 +244,9 @@ impl OrbitState {
 
     /// What is measured has moved by `way`, m: a search begins again.
     pub(crate) fn shift(&mut self, way: [f32; 2]) {
-        self.alone.position = sum(self.alone.position, way);
-        self.beside.position = sum(self.beside.position, way);
-        match &mut self.orbit {
+        self.learnt.alone.position = sum(self.learnt.alone.position, way);
+        self.learnt.beside.position = sum(self.learnt.beside.position, way);
+        match &mut self.learnt.orbit {
             Some(orbit) => orbit.shift(way),
             None => self.begin_anew(),
         }
@@ -238,27 +254,22 @@ impl OrbitState {
 
     /// Looks for an orbit anew.
     fn begin_anew(&mut self) {
-        self.count = 0;
+        self.learnt.count = 0;
         self.searching.forget();
-        self.orbit = None;
-        self.is_certain = false;
-        self.variance = 0.0;
+        self.learnt.orbit = None;
+        self.learnt.is_certain = false;
+        self.learnt.variance = 0.0;
     }
 
     /// Forgets all.
     pub(crate) fn forget(&mut self) {
         self.begin_anew();
-        self.alone = TrendObserver::default();
-    }
-
-    /// Whether there is an orbit for certain.
-    pub(crate) fn is_certain(&self) -> bool {
-        self.is_certain
+        self.learnt.alone = TrendObserver::default();
     }
 
     /// Whether there is no orbit on trial.
     pub(crate) fn is_settled(&self) -> bool {
-        self.orbit.is_none() || self.is_certain
+        self.learnt.orbit.is_none() || self.learnt.is_certain
     }
 
     /// What of the present position ends with the levitation, m.
