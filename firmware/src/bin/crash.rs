@@ -9,6 +9,7 @@ mod image {
     use semihosting::experimental::env;
     use stm32f4::stm32f405::{Interrupt, NVIC, interrupt};
     use touchdown_firmware::board::f405;
+    use touchdown_firmware::board::silicon::Chip as _;
 
     /// Exit status: 0 told of a crash, 2 nothing to do.
     #[entry]
@@ -57,7 +58,7 @@ mod image {
         }
     }
 
-    touchdown_firmware::last_acts!(f405::drop_outputs);
+    touchdown_firmware::last_acts!(f405::F405::drop_outputs);
 
     #[interrupt]
     fn ADC() {}

@@ -6,25 +6,27 @@ mod image {
     use cortex_m_rt::{entry, exception};
     use defmt_rtt as _;
     use stm32g4::stm32g474::interrupt;
-    use touchdown_firmware::{board::g474, memory::Memory};
+    use touchdown_firmware::board::g474::{G474, TASKS, start};
+    use touchdown_firmware::board::silicon::{self, Chip as _};
+    use touchdown_firmware::memory::Memory;
 
     #[entry]
     fn main() -> ! {
         static mut MEMORY: Memory = Memory::empty();
-        g474::main(MEMORY)
+        silicon::run(start(MEMORY))
     }
 
     #[interrupt]
     fn EXTI0() {
-        g474::on_converted();
+        TASKS.on_converted();
     }
 
     #[exception]
     fn PendSV() {
-        g474::on_waiting();
+        TASKS.on_waiting();
     }
 
-    touchdown_firmware::last_acts!(g474::drop_outputs);
+    touchdown_firmware::last_acts!(G474::drop_outputs);
 }
 
 #[cfg(not(target_os = "none"))]

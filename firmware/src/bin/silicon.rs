@@ -6,25 +6,27 @@ mod image {
     use cortex_m_rt::{entry, exception};
     use defmt_rtt as _;
     use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::{board::f405, memory::Memory};
+    use touchdown_firmware::board::f405::{F405, TASKS, start};
+    use touchdown_firmware::board::silicon::{self, Chip as _};
+    use touchdown_firmware::memory::Memory;
 
     #[entry]
     fn main() -> ! {
         static mut MEMORY: Memory = Memory::empty();
-        f405::main(MEMORY)
+        silicon::run(start(MEMORY))
     }
 
     #[interrupt]
     fn ADC() {
-        f405::on_converted();
+        TASKS.on_converted();
     }
 
     #[exception]
     fn PendSV() {
-        f405::on_waiting();
+        TASKS.on_waiting();
     }
 
-    touchdown_firmware::last_acts!(f405::drop_outputs);
+    touchdown_firmware::last_acts!(F405::drop_outputs);
 }
 
 #[cfg(not(target_os = "none"))]

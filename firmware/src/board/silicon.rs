@@ -78,6 +78,11 @@ pub trait Chip: Sized + 'static {
     /// What interrupts and main loop share.
     fn tasks() -> &'static ChipTasks<Self>;
 
+    /// Takes the current off the outputs.
+    fn drop_outputs() {
+        Self::Pins::drop_now();
+    }
+
     /// A word of the noise source; none where it fails.
     fn word(&self) -> Option<u32>;
 

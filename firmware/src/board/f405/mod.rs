@@ -22,7 +22,7 @@ use self::converter::Converter;
 use self::inputs::PinInputs;
 use self::line::Port;
 use self::outputs::{IndependentWatchdog, OutputPins};
-use self::remote::F405;
+pub use self::remote::F405;
 use super::bus::Bus;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
@@ -41,27 +41,12 @@ const ABILITIES: Abilities = Abilities {
 };
 
 /// What the converters' interrupt, PendSV and the main loop share.
-static TASKS: ChipTasks<F405> = ChipTasks::new();
+pub static TASKS: ChipTasks<F405> = ChipTasks::new();
 
-/// The converters have a sample.
-pub fn on_converted() {
-    TASKS.on_converted();
-}
-
-/// PendSV: samples wait.
-pub fn on_waiting() {
-    TASKS.on_waiting();
-}
-
-/// Starts sampling, and the main loop.
-pub fn main(memory: &'static mut Memory) -> ! {
-    silicon::run(start(memory))
-}
-
-/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
+/// Brings everything up, for [`silicon::run`]. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> {
+pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> {
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -96,7 +81,7 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> 
     Some((below, ChipPlatform::new(below_tick, line, log)))
 }
 
-/// The outputs' pins and the watchdog alone, as [`main`] sets them up: for the image that stops on purpose.
+/// The outputs' pins and the watchdog alone, as [`start`] sets them up: for the image that stops on purpose.
 /// What the program before this one left, if it crashed; it is cleared.
 pub fn rehearse() -> Option<Crash> {
     let left = record::read();
@@ -111,9 +96,4 @@ pub fn rehearse() -> Option<Crash> {
         IndependentWatchdog::new(chip.IWDG, chip.DBGMCU).start();
     }
     left
-}
-
-/// Takes the current off the outputs.
-pub fn drop_outputs() {
-    OutputPins::drop_now();
 }

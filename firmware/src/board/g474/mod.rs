@@ -19,11 +19,11 @@ use self::converter::ExternalConverter;
 use self::inputs::TimerInputs;
 use self::line::ChannelPort;
 use self::outputs::{IndependentWatchdog, OutputPort};
-use self::remote::G474;
+pub use self::remote::G474;
 use self::spi::Wait;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
-use super::silicon::{self, ChipTasks, OutputRegisters as _};
+use super::silicon::{self, ChipTasks};
 use super::{Abilities, SAMPLE_RATE_HZ, default_settings};
 use crate::journal;
 use crate::main_loop::MainLoop;
@@ -37,22 +37,7 @@ const ABILITIES: Abilities = Abilities {
 };
 
 /// What the interrupt at the fall of BUSY, PendSV and the main loop share.
-static TASKS: ChipTasks<G474> = ChipTasks::new();
-
-/// BUSY fell: the converter has a sample.
-pub fn on_converted() {
-    TASKS.on_converted();
-}
-
-/// PendSV: samples wait.
-pub fn on_waiting() {
-    TASKS.on_waiting();
-}
-
-/// Starts sampling, and the main loop.
-pub fn main(memory: &'static mut Memory) -> ! {
-    silicon::run(start(memory))
-}
+pub static TASKS: ChipTasks<G474> = ChipTasks::new();
 
 /// The rig by 16 bit over +-1000 um, where nothing is stored: there is never current.
 fn fallback() -> Settings {
@@ -63,10 +48,10 @@ fn fallback() -> Settings {
     settings
 }
 
-/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
+/// Brings everything up, for [`silicon::run`]. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> {
+pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> {
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -102,9 +87,4 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
     TASKS.start_sampling(&mut core, Interrupt::EXTI0, converter, inputs, intake);
     let below_tick = G474::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
-}
-
-/// Takes the current off the outputs.
-pub fn drop_outputs() {
-    OutputPort::drop_now();
 }
