@@ -6,7 +6,6 @@
 
 mod files;
 mod line;
-mod name;
 mod nor;
 mod remote;
 mod settings;
@@ -67,6 +66,8 @@ enum End {
     Restart = 7,
 }
 
+/// The name of a file of the desktop.
+type Name = heapless::CString<256>;
 /// The drop log in a file.
 pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
