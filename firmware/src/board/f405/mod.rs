@@ -10,7 +10,6 @@ mod inputs;
 mod line;
 mod outputs;
 mod remote;
-mod store;
 
 use defmt::info;
 use stm32f4::stm32f405::{FLASH, Interrupt, Peripherals};
