@@ -16,7 +16,6 @@ use stm32f4::stm32f405::{FLASH, Interrupt, Peripherals};
 use touchdown_protocol::controller::Outputs;
 
 use self::chip::{Spi1, Wait};
-use self::clocks::APB2_HZ;
 use self::converter::Converter;
 use self::inputs::PinInputs;
 use self::line::Port;
@@ -26,7 +25,7 @@ use super::bus::Bus;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
 use super::silicon::{self, ChipTasks, OutputRegisters as _, Watchdog as _};
-use super::{Abilities, BAUD, SAMPLE_RATE_HZ, default_settings, record};
+use super::{Abilities, SAMPLE_RATE_HZ, default_settings, record};
 use crate::crash::Crash;
 use crate::journal;
 use crate::main_loop::MainLoop;
@@ -65,9 +64,7 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405
         &chip.GPIOA,
         rcc,
     );
-    remote::wire(&chip.GPIOB, rcc);
-    let port = Port::new(chip.USART1, chip.DMA2, (APB2_HZ / BAUD) as u16, rcc);
-    let line = Line::new(port);
+    let line = Line::new(Port::new(chip.USART1, chip.DMA2, &chip.GPIOB, rcc));
     let spi = Spi1::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, rcc);
     let log = silicon::mount::<F405>(Bus(spi), Wait {});
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);

@@ -23,13 +23,6 @@ impl OutputPins {
         });
         outputs
     }
-
-    /// Whether the service input is on.
-    pub fn service() -> bool {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.idr().read().idr4().bit_is_set()
-    }
 }
 
 impl OutputRegisters for OutputPins {
@@ -74,14 +67,9 @@ impl IndependentWatchdog {
         Self { watchdog, debug }
     }
 
-    /// Whether it has bitten since power was applied or [`Self::forget`] was called.
+    /// Whether it has bitten since power was applied or it was forgotten.
     pub fn has_bitten(rcc: &RCC) -> bool {
         rcc.csr().read().wdgrstf().bit_is_set()
-    }
-
-    /// Forgets that it has bitten.
-    pub fn forget(rcc: &RCC) {
-        rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 

@@ -1,6 +1,6 @@
-//! The link's pins, and what the main loop has of the chip.
+//! What the main loop has of the chip.
 
-use stm32f4::stm32f405::{FLASH, GPIOB, RCC, RNG};
+use stm32f4::stm32f405::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
 use super::chip::{Spi1, Wait};
@@ -16,17 +16,6 @@ use crate::board::{Abilities, slots};
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
-
-/// PB6 sends, PB7 receives: USART1.
-pub fn wire(pins: &GPIOB, rcc: &RCC) {
-    rcc.ahb1enr().modify(|_, w| w.gpioben().enabled());
-    rcc.apb2enr().modify(|_, w| w.usart1en().enabled());
-    pins.afrl().modify(|_, w| w.afrl6().af7().afrl7().af7());
-    // A line that is not there reads as idle.
-    pins.pupdr().modify(|_, w| w.pupdr7().pull_up());
-    pins.moder()
-        .modify(|_, w| w.moder6().alternate().moder7().alternate());
-}
 
 /// The stored configuration, the noise source and what tells why it was reset.
 pub struct F405 {
@@ -73,7 +62,7 @@ impl Chip for F405 {
     }
 
     fn forget_reset(&self) {
-        IndependentWatchdog::forget(&self.rcc);
+        self.rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 

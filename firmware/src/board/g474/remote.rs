@@ -65,7 +65,7 @@ impl Chip for G474 {
     }
 
     fn forget_reset(&self) {
-        IndependentWatchdog::forget(&self.rcc);
+        self.rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 
