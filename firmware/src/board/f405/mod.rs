@@ -15,7 +15,7 @@ use defmt::info;
 use stm32f4::stm32f405::{FLASH, Interrupt, Peripherals};
 use touchdown_protocol::controller::Outputs;
 
-use self::chip::{Spi1, Wait};
+use self::chip::Spi1;
 use self::converter::Converter;
 use self::inputs::PinInputs;
 use self::line::Port;
@@ -66,7 +66,7 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405
     );
     let line = Line::new(Port::new(chip.USART1, chip.DMA2, &chip.GPIOB, rcc));
     let spi = Spi1::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, rcc);
-    let log = silicon::mount::<F405>(Bus(spi), Wait {});
+    let log = silicon::mount::<F405>(Bus(spi));
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);
     let found = (block, &settings, found);
     let (intake, below) = TASKS.start_tick(memory, found, (pins, watchdog), log.as_ref())?;

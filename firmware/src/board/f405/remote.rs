@@ -3,7 +3,7 @@
 use stm32f4::stm32f405::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
-use super::chip::{Spi1, Wait};
+use super::chip::Spi1;
 use super::clocks::CORE_HZ;
 use super::converter::Converter;
 use super::inputs::PinInputs;
@@ -39,7 +39,6 @@ impl Chip for F405 {
     type Source = Converter;
     type Inputs = PinInputs;
     type Spi = Spi1;
-    type Wait = Wait;
     type Port = Port;
     const MHZ: u32 = CORE_HZ / 1_000_000;
     const ABILITIES: Abilities = ABILITIES;

@@ -20,7 +20,6 @@ use self::inputs::TimerInputs;
 use self::line::ChannelPort;
 use self::outputs::{IndependentWatchdog, OutputPort};
 pub use self::remote::G474;
-use self::spi::Wait;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
 use super::silicon::{self, ChipTasks};
@@ -71,7 +70,7 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474
     )
     .ok()?;
     let bus = spi::flash(chip.SPI3, &chip.GPIOA, &chip.GPIOB, rcc);
-    let log = silicon::mount::<G474>(bus, Wait {});
+    let log = silicon::mount::<G474>(bus);
     let line = Line::new(ChannelPort::new(
         chip.USART1,
         chip.DMA1,

@@ -8,7 +8,7 @@ use super::converter::ExternalConverter;
 use super::inputs::TimerInputs;
 use super::line::ChannelPort;
 use super::outputs::{IndependentWatchdog, OutputPort};
-use super::spi::{SelectedSpi, Wait};
+use super::spi::SelectedSpi;
 use super::{ABILITIES, TASKS};
 use crate::board::silicon::{Chip, ChipTasks};
 use crate::board::slots::ConfigFlash;
@@ -42,7 +42,6 @@ impl Chip for G474 {
     type Source = ExternalConverter;
     type Inputs = TimerInputs;
     type Spi = SelectedSpi;
-    type Wait = Wait;
     type Port = ChannelPort;
     const MHZ: u32 = CORE_HZ / 1_000_000;
     const ABILITIES: Abilities = ABILITIES;
