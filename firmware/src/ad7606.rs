@@ -30,23 +30,14 @@ pub struct Ad7606<S, B, R> {
     reset: R,
 }
 
-/// A sample that did not come; its channels are invalid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoSample {
-    /// A pin or the SPI failed.
-    Bus,
-    /// BUSY did not go low in time.
-    Stuck,
-}
-
 impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
-    /// Resets the converter.
-    pub fn try_new(spi: S, busy: B, reset: R, delay: &mut impl DelayNs) -> Result<Self, NoSample> {
+    /// Resets the converter; `None` where its pin fails.
+    pub fn try_new(spi: S, busy: B, reset: R, delay: &mut impl DelayNs) -> Option<Self> {
         let mut adc = Self { spi, busy, reset };
-        adc.reset.set_high().map_err(|_| NoSample::Bus)?;
+        adc.reset.set_high().ok()?;
         delay.delay_ns(RESET_NS);
-        adc.reset.set_low().map_err(|_| NoSample::Bus)?;
-        Ok(adc)
+        adc.reset.set_low().ok()?;
+        Some(adc)
     }
 
     /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample without valid channels.
@@ -54,31 +45,32 @@ impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
         let codes = self.codes(delay);
         Sample {
             counts: codes.unwrap_or([0; CHANNELS]),
-            valid: if codes.is_ok() { 0b1111 } else { 0 },
+            valid: if codes.is_some() { 0b1111 } else { 0 },
             spin: None,
             levitated: None,
             edges: [None; TACHOMETERS],
         }
     }
 
-    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count.
-    fn codes(&mut self, delay: &mut impl DelayNs) -> Result<[u16; CHANNELS], NoSample> {
+    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count. `None` where a pin or the SPI fails, or BUSY
+    /// does not go low in time.
+    fn codes(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
         let mut reads = 0;
-        while self.busy.is_high().map_err(|_| NoSample::Bus)? {
+        while self.busy.is_high().ok()? {
             reads += 1;
             if reads > READS {
-                return Err(NoSample::Stuck);
+                return None;
             }
             delay.delay_ns(100);
         }
         let mut bytes = [0; 2 * CHANNELS];
-        self.spi.read(&mut bytes).map_err(|_| NoSample::Bus)?;
+        self.spi.read(&mut bytes).ok()?;
         let mut codes = [0; CHANNELS];
         for (code, &[high, low]) in codes.iter_mut().zip(bytes.as_chunks().0) {
             // Two's complement on the line, V1 first.
             *code = u16::from_be_bytes([high, low]) ^ 0x8000;
         }
-        Ok(codes)
+        Some(codes)
     }
 
     /// Gives the parts back.

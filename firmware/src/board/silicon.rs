@@ -71,8 +71,14 @@ pub trait Chip: Sized + 'static {
     type Port: LineRegisters;
     /// Of its core.
     const MHZ: u32;
-    /// What a configuration has to fit.
-    const ABILITIES: Abilities;
+    /// Highest count of the converter.
+    const FULL_SCALE: u16;
+    /// What a configuration has to fit. No pin takes the pulses of ring and cage.
+    const ABILITIES: Abilities = Abilities {
+        sample_rate: SAMPLE_RATE_HZ as f32,
+        full_scale: Self::FULL_SCALE,
+        tachometers: false,
+    };
 
     /// What interrupts and main loop share.
     fn tasks() -> &'static ChipTasks<Self>;

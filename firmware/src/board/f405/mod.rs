@@ -24,19 +24,12 @@ pub use self::remote::F405;
 use super::bus::Bus;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
-use super::silicon::{self, ChipTasks, OutputRegisters as _, Watchdog as _};
-use super::{Abilities, SAMPLE_RATE_HZ, default_settings, record};
+use super::silicon::{self, Chip as _, ChipTasks, OutputRegisters as _, Watchdog as _};
+use super::{default_settings, record};
 use crate::crash::Crash;
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
-
-/// 12 bit; no pin takes the pulses of ring and cage.
-const ABILITIES: Abilities = Abilities {
-    sample_rate: SAMPLE_RATE_HZ as f32,
-    full_scale: 4_095,
-    tachometers: false,
-};
 
 /// What the converters' interrupt, PendSV and the main loop share.
 pub static TASKS: ChipTasks<F405> = ChipTasks::new();
@@ -54,7 +47,7 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405
     clocks::start(rcc, &chip.FLASH);
     let has_bitten = IndependentWatchdog::has_bitten(rcc);
     let (block, settings, found) =
-        silicon::check::<FLASH>(default_settings(), &ABILITIES, has_bitten);
+        silicon::check::<FLASH>(default_settings(), &F405::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
     let converter = Converter::new(
         (chip.ADC1, chip.ADC2),

@@ -3,16 +3,15 @@
 use stm32f4::stm32f405::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
+use super::TASKS;
 use super::chip::Spi1;
 use super::clocks::CORE_HZ;
 use super::converter::Converter;
 use super::inputs::PinInputs;
 use super::line::Port;
 use super::outputs::{IndependentWatchdog, OutputPins};
-use super::{ABILITIES, TASKS};
 use crate::board::silicon::{Chip, ChipTasks};
-use crate::board::slots::ConfigFlash;
-use crate::board::{Abilities, slots};
+use crate::board::slots::{self, ConfigFlash};
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
@@ -41,7 +40,7 @@ impl Chip for F405 {
     type Spi = Spi1;
     type Port = Port;
     const MHZ: u32 = CORE_HZ / 1_000_000;
-    const ABILITIES: Abilities = ABILITIES;
+    const FULL_SCALE: u16 = 4_095;
 
     fn tasks() -> &'static ChipTasks<Self> {
         &TASKS

@@ -11,7 +11,7 @@ use touchdown_core::sample::Sample;
 
 use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
-use crate::ad7606::{Ad7606, NoSample};
+use crate::ad7606::Ad7606;
 use crate::board::SAMPLE_RATE_HZ;
 use crate::board::bus::Bus;
 use crate::platform::SampleSource;
@@ -70,7 +70,7 @@ impl ExternalConverter {
         (convst, pins): (&GPIOA, &GPIOB),
         (edges, routes): (EXTI, &SYSCFG),
         rcc: &RCC,
-    ) -> Result<Self, NoSample> {
+    ) -> Option<Self> {
         rcc.ahb2enr()
             .modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
         rcc.apb1enr1()
@@ -100,7 +100,7 @@ impl ExternalConverter {
         edges.ftsr1().modify(|_, w| w.ft0().set_bit());
         edges.imr1().modify(|_, w| w.im0().set_bit());
         let adc = Ad7606::try_new(bus, PortBPin, PortBPin, &mut Wait {})?;
-        Ok(Self {
+        Some(Self {
             adc,
             timer,
             number,

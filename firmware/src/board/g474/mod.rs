@@ -21,19 +21,12 @@ use self::line::ChannelPort;
 use self::outputs::{IndependentWatchdog, OutputPort};
 pub use self::remote::G474;
 use super::chip_platform::ChipPlatform;
+use super::default_settings;
 use super::line::Line;
-use super::silicon::{self, ChipTasks};
-use super::{Abilities, SAMPLE_RATE_HZ, default_settings};
+use super::silicon::{self, Chip as _, ChipTasks};
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
-
-/// 16 bit; no pin takes the pulses of ring and cage.
-const ABILITIES: Abilities = Abilities {
-    sample_rate: SAMPLE_RATE_HZ as f32,
-    full_scale: 65_535,
-    tachometers: false,
-};
 
 /// What the interrupt at the fall of BUSY, PendSV and the main loop share.
 pub static TASKS: ChipTasks<G474> = ChipTasks::new();
@@ -43,7 +36,7 @@ fn fallback() -> Settings {
     let mut settings = default_settings();
     let sensing = &mut settings.monitor.sensing;
     (sensing.resolution, sensing.zero_count) = (2_000e-6 / 65_536.0, 32_768.0);
-    sensing.full_scale = ABILITIES.full_scale;
+    sensing.full_scale = G474::FULL_SCALE;
     settings
 }
 
@@ -59,7 +52,8 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474
     info!("touchdown {=str} on stm32g474", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH, &chip.PWR);
     let has_bitten = IndependentWatchdog::has_bitten(rcc);
-    let (block, settings, found) = silicon::check::<FLASH>(fallback(), &ABILITIES, has_bitten);
+    let (block, settings, found) =
+        silicon::check::<FLASH>(fallback(), &G474::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
     let converter = ExternalConverter::try_new(
         spi::converter(chip.SPI1, &chip.GPIOA, rcc),
@@ -67,8 +61,7 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474
         (&chip.GPIOA, &chip.GPIOB),
         (chip.EXTI, &chip.SYSCFG),
         rcc,
-    )
-    .ok()?;
+    )?;
     let bus = spi::flash(chip.SPI3, &chip.GPIOA, &chip.GPIOB, rcc);
     let log = silicon::mount::<G474>(bus);
     let line = Line::new(ChannelPort::new(

@@ -3,16 +3,15 @@
 use stm32g4::stm32g474::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
+use super::TASKS;
 use super::clocks::CORE_HZ;
 use super::converter::ExternalConverter;
 use super::inputs::TimerInputs;
 use super::line::ChannelPort;
 use super::outputs::{IndependentWatchdog, OutputPort};
 use super::spi::SelectedSpi;
-use super::{ABILITIES, TASKS};
 use crate::board::silicon::{Chip, ChipTasks};
-use crate::board::slots::ConfigFlash;
-use crate::board::{Abilities, slots};
+use crate::board::slots::{self, ConfigFlash};
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 10_000;
@@ -44,7 +43,7 @@ impl Chip for G474 {
     type Spi = SelectedSpi;
     type Port = ChannelPort;
     const MHZ: u32 = CORE_HZ / 1_000_000;
-    const ABILITIES: Abilities = ABILITIES;
+    const FULL_SCALE: u16 = 65_535;
 
     fn tasks() -> &'static ChipTasks<Self> {
         &TASKS
