@@ -5,7 +5,7 @@
 use cortex_m_rt::{entry, exception};
 use defmt_rtt as _;
 use stm32g4::stm32g474::interrupt;
-use touchdown_firmware::board::g474::{G474, TASKS, start};
+use touchdown_firmware::board::g474::{G474, start};
 use touchdown_firmware::board::silicon::{self, Chip as _};
 use touchdown_firmware::memory::Memory;
 
@@ -17,12 +17,12 @@ fn main() -> ! {
 
 #[interrupt]
 fn EXTI0() {
-    TASKS.on_converted();
+    G474::tasks().on_converted();
 }
 
 #[exception]
 fn PendSV() {
-    TASKS.on_waiting();
+    G474::tasks().on_waiting();
 }
 
 touchdown_firmware::last_acts!(G474::drop_outputs);

@@ -5,7 +5,7 @@
 use cortex_m_rt::{entry, exception};
 use defmt_rtt as _;
 use stm32f4::stm32f405::interrupt;
-use touchdown_firmware::board::f405::{F405, TASKS, start};
+use touchdown_firmware::board::f405::{F405, start};
 use touchdown_firmware::board::silicon::{self, Chip as _};
 use touchdown_firmware::memory::Memory;
 
@@ -17,12 +17,12 @@ fn main() -> ! {
 
 #[interrupt]
 fn ADC() {
-    TASKS.on_converted();
+    F405::tasks().on_converted();
 }
 
 #[exception]
 fn PendSV() {
-    TASKS.on_waiting();
+    F405::tasks().on_waiting();
 }
 
 touchdown_firmware::last_acts!(F405::drop_outputs);

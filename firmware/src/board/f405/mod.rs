@@ -24,15 +24,12 @@ pub use self::remote::F405;
 use super::bus::Bus;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
-use super::silicon::{self, Chip as _, ChipTasks, OutputRegisters as _, Watchdog as _};
+use super::silicon::{self, Chip as _, OutputRegisters as _, Watchdog as _};
 use super::{default_settings, record};
 use crate::crash::Crash;
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
-
-/// What the converters' interrupt, PendSV and the main loop share.
-pub static TASKS: ChipTasks<F405> = ChipTasks::new();
 
 /// Brings everything up, for [`silicon::run`]. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
@@ -45,7 +42,8 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405
     let pins = OutputPins::new(chip.GPIOC, rcc);
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH);
-    let has_bitten = IndependentWatchdog::has_bitten(rcc);
+    // Since power was applied, or an order to clear was obeyed.
+    let has_bitten = rcc.csr().read().wdgrstf().bit_is_set();
     let (block, settings, found) =
         silicon::check::<FLASH>(default_settings(), &F405::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
@@ -61,11 +59,12 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405
     let spi = Spi1::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, rcc);
     let log = silicon::mount::<F405>(Bus(spi));
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);
+    let tasks = F405::tasks();
     let found = (block, &settings, found);
-    let (intake, below) = TASKS.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
+    let (intake, below) = tasks.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
     converter.start();
     let inputs = PinInputs::wired(&settings, chip.GPIOB, chip.TIM4, rcc);
-    TASKS.start_sampling(&mut core, Interrupt::ADC, converter, inputs, intake);
+    tasks.start_sampling(&mut core, Interrupt::ADC, converter, inputs, intake);
     let below_tick = F405::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
 }

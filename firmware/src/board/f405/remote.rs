@@ -3,7 +3,6 @@
 use stm32f4::stm32f405::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
-use super::TASKS;
 use super::chip::Spi1;
 use super::clocks::CORE_HZ;
 use super::converter::Converter;
@@ -43,6 +42,7 @@ impl Chip for F405 {
     const FULL_SCALE: u16 = 4_095;
 
     fn tasks() -> &'static ChipTasks<Self> {
+        static TASKS: ChipTasks<F405> = ChipTasks::new();
         &TASKS
     }
 

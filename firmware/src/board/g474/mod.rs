@@ -23,13 +23,10 @@ pub use self::remote::G474;
 use super::chip_platform::ChipPlatform;
 use super::default_settings;
 use super::line::Line;
-use super::silicon::{self, Chip as _, ChipTasks};
+use super::silicon::{self, Chip as _};
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
-
-/// What the interrupt at the fall of BUSY, PendSV and the main loop share.
-pub static TASKS: ChipTasks<G474> = ChipTasks::new();
 
 /// The rig by 16 bit over +-1000 um, where nothing is stored: there is never current.
 fn fallback() -> Settings {
@@ -51,7 +48,8 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474
     let pins = OutputPort::new(chip.GPIOC, rcc);
     info!("touchdown {=str} on stm32g474", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH, &chip.PWR);
-    let has_bitten = IndependentWatchdog::has_bitten(rcc);
+    // Since power was applied, or an order to clear was obeyed.
+    let has_bitten = rcc.csr().read().iwdgrstf().bit_is_set();
     let (block, settings, found) =
         silicon::check::<FLASH>(fallback(), &G474::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
@@ -72,11 +70,12 @@ pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474
         rcc,
     ));
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);
+    let tasks = G474::tasks();
     let found = (block, &settings, found);
-    let (intake, below) = TASKS.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
+    let (intake, below) = tasks.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
     converter.start();
     let inputs = TimerInputs::wired(&settings, chip.GPIOB, chip.TIM4, rcc);
-    TASKS.start_sampling(&mut core, Interrupt::EXTI0, converter, inputs, intake);
+    tasks.start_sampling(&mut core, Interrupt::EXTI0, converter, inputs, intake);
     let below_tick = G474::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
 }

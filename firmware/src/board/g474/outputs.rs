@@ -64,11 +64,6 @@ impl IndependentWatchdog {
     pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
         Self { watchdog, debug }
     }
-
-    /// Whether it has bitten since power was applied or it was forgotten.
-    pub fn has_bitten(rcc: &RCC) -> bool {
-        rcc.csr().read().iwdgrstf().bit_is_set()
-    }
 }
 
 impl Watchdog for IndependentWatchdog {

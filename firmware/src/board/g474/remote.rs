@@ -3,7 +3,6 @@
 use stm32g4::stm32g474::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
-use super::TASKS;
 use super::clocks::CORE_HZ;
 use super::converter::ExternalConverter;
 use super::inputs::TimerInputs;
@@ -46,6 +45,7 @@ impl Chip for G474 {
     const FULL_SCALE: u16 = 65_535;
 
     fn tasks() -> &'static ChipTasks<Self> {
+        static TASKS: ChipTasks<G474> = ChipTasks::new();
         &TASKS
     }
 
