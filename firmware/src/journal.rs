@@ -3,7 +3,7 @@
 use defmt::{Str, error, info, intern, warn};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_protocol::controller::{Fault, Faults, Outputs, Shown};
+use touchdown_protocol::controller::{Cause, Fault, Faults, Shown};
 
 use crate::crash::Crash;
 use crate::platform::JournalEntry;
@@ -66,20 +66,15 @@ fn notice(notice: &Notice) {
 }
 
 fn shown(shown: Shown) {
-    let Outputs {
-        run,
-        no_brake,
-        permit,
-        ready,
-    } = shown.outputs;
+    let outputs = shown.outputs;
     info!(
         "outputs: run {=bool}, no brake {=bool}, permit {=bool}, ready {=bool}; mode {=u8}, cause {=u8}",
-        run,
-        no_brake,
-        permit,
-        ready,
+        outputs.run,
+        outputs.no_brake,
+        outputs.permit,
+        outputs.ready,
         shown.mode as u8,
-        shown.cause.map_or(0, |it| 1 + it as u8)
+        Cause::byte_of(shown.cause)
     );
 }
 
