@@ -72,9 +72,4 @@ impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
         }
         Some(codes)
     }
-
-    /// Gives the parts back.
-    pub fn release(self) -> (S, B, R) {
-        (self.spi, self.busy, self.reset)
-    }
 }

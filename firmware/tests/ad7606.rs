@@ -30,10 +30,9 @@ fn sample(busy: &[State], bytes: Option<[u8; 8]>) -> touchdown_core::sample::Sam
     let busy: Vec<_> = busy.iter().map(|it| Level::get(*it)).collect();
     let reset = levels(&[State::High, State::Low]);
     let mut delay = NoopDelay::new();
-    let (spi, busy, reset) = (Spi::new(&spi), Pin::new(&busy), Pin::new(&reset));
-    let mut adc = Ad7606::try_new(spi, busy, reset, &mut delay).unwrap();
+    let (mut spi, mut busy, mut reset) = (Spi::new(&spi), Pin::new(&busy), Pin::new(&reset));
+    let mut adc = Ad7606::try_new(spi.clone(), busy.clone(), reset.clone(), &mut delay).unwrap();
     let sample = adc.take(&mut delay);
-    let (mut spi, mut busy, mut reset) = adc.release();
     spi.done();
     busy.done();
     reset.done();
