@@ -205,7 +205,7 @@ impl<'m> Recorder<'m> {
             pulses: &mut memory.pulses,
             learnt: learnt.map(|places| places.each_mut().map(nothing_learnt)),
             plan: Plan::new(config, identity),
-            captures: [const { Capture::EMPTY }; BUFFERS],
+            captures: Default::default(),
             tick: 0,
             skip: 0,
             recording: Some(0),
@@ -261,7 +261,7 @@ impl<'m> Recorder<'m> {
             .filter(|it| it.is_known());
         let block = capture.fetch(counts, pulses, first, &self.plan);
         if capture.is_fetched() {
-            *capture = Capture::EMPTY;
+            capture.clear();
             learnt.iter_mut().for_each(|it| it.forget());
             // Where samples had nowhere to go, they have now.
             self.recording.get_or_insert(at);
