@@ -188,7 +188,7 @@ pub struct ChipTasks<C: Chip> {
 
 impl<C: Chip> ChipTasks<C> {
     /// Nothing in its place yet.
-    pub const fn new() -> Self {
+    pub const fn empty() -> Self {
         Self {
             sampling: Held::new(),
             tick: Held::new(),

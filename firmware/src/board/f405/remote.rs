@@ -42,7 +42,7 @@ impl Chip for F405 {
     const FULL_SCALE: u16 = 4_095;
 
     fn tasks() -> &'static ChipTasks<Self> {
-        static TASKS: ChipTasks<F405> = ChipTasks::new();
+        static TASKS: ChipTasks<F405> = ChipTasks::empty();
         &TASKS
     }
 

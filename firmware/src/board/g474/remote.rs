@@ -45,7 +45,7 @@ impl Chip for G474 {
     const FULL_SCALE: u16 = 65_535;
 
     fn tasks() -> &'static ChipTasks<Self> {
-        static TASKS: ChipTasks<G474> = ChipTasks::new();
+        static TASKS: ChipTasks<G474> = ChipTasks::empty();
         &TASKS
     }
 
