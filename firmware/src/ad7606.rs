@@ -4,76 +4,40 @@
 //! Sources: [DS] Analog Devices, AD7606/AD7606-6/AD7606-4, Rev. C, timing specifications, as its figures are
 //! known; held against what others build by it: [L] Linux, drivers/iio/adc/ad7606.c; [G] GSI,
 //! bel_projects, modules/ad7606/ad7606.vhd. Where they differ the safer one is kept. SPI mode 2 (clock
-//! idles high, data are taken on its falling edge: DS page 28), chip select by the device. The conversion must be
-//! over before the data are read; nothing here waits for longer than [`LONGEST_CONVERSION_NS`].
+//! idles high, data are taken on its falling edge: DS page 28), chip select by the device. A timer starts the conversion by
+//! CONVST, so that software jitter does not reach the sampling instant. It must be over before the data are read; nothing
+//! here waits for longer than [`LONGEST_CONVERSION_NS`].
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
-use embedded_hal::spi::{MODE_2, Mode, SpiDevice};
+use embedded_hal::spi::SpiDevice;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 
-/// How the SPI must be set up.
-pub const SPI_MODE: Mode = MODE_2;
 /// Fastest clock at 3.3 V, Hz: f_SCLK. G: 14.5 MHz, which is DS's for VDRIVE above 2.7 V; its 17 MHz are for above
 /// 3.3 V, which a supply of 3.3 V is not.
 pub const FASTEST_CLOCK_HZ: u32 = 14_500_000;
 /// Shortest RESET pulse, ns: t_RESET. L: 100; DS and G: 50.
 pub const RESET_NS: u32 = 100;
-/// Shortest CONVST pulse, low or high, ns: t_2, t_3. DS and G: 25.
-pub const CONVST_NS: u32 = 25;
-/// From CONVST to BUSY, ns: t_1. DS only; the others wait for BUSY itself.
-pub const BUSY_NS: u32 = 45;
 /// Longest conversion without oversampling, ns: t_CONV. DS only: 4 us typical, 4.15 us at most.
 pub const LONGEST_CONVERSION_NS: u32 = 4_150;
 /// Reads of BUSY, 100 ns apart, before the converter is given up.
 const READS: u32 = LONGEST_CONVERSION_NS.div_ceil(100);
 
 /// The converter.
-pub struct Ad7606<S, C, B, R> {
+pub struct Ad7606<S, B, R> {
     spi: S,
-    convst: C,
     busy: B,
     reset: R,
 }
 
-/// A sample that did not come; its channels are invalid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoSample {
-    /// A pin or the SPI failed.
-    Bus,
-    /// BUSY did not go low in time.
-    Stuck,
-}
-
-impl<S: SpiDevice, C: OutputPin, B: InputPin, R: OutputPin> Ad7606<S, C, B, R> {
-    /// Resets the converter.
-    pub fn try_new(
-        spi: S,
-        convst: C,
-        busy: B,
-        reset: R,
-        delay: &mut impl DelayNs,
-    ) -> Result<Self, NoSample> {
-        let mut adc = Self {
-            spi,
-            convst,
-            busy,
-            reset,
-        };
-        adc.convst.set_high().map_err(|_| NoSample::Bus)?;
-        adc.reset.set_high().map_err(|_| NoSample::Bus)?;
+impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
+    /// Resets the converter; `None` where its pin fails.
+    pub fn try_new(spi: S, busy: B, reset: R, delay: &mut impl DelayNs) -> Option<Self> {
+        let mut adc = Self { spi, busy, reset };
+        adc.reset.set_high().ok()?;
         delay.delay_ns(RESET_NS);
-        adc.reset.set_low().map_err(|_| NoSample::Bus)?;
-        Ok(adc)
-    }
-
-    /// Samples all channels now.
-    pub fn start(&mut self, delay: &mut impl DelayNs) -> Result<(), NoSample> {
-        self.convst.set_low().map_err(|_| NoSample::Bus)?;
-        delay.delay_ns(CONVST_NS);
-        self.convst.set_high().map_err(|_| NoSample::Bus)?;
-        delay.delay_ns(BUSY_NS);
-        Ok(())
+        adc.reset.set_low().ok()?;
+        Some(adc)
     }
 
     /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample without valid channels.
@@ -81,35 +45,31 @@ impl<S: SpiDevice, C: OutputPin, B: InputPin, R: OutputPin> Ad7606<S, C, B, R> {
         let codes = self.codes(delay);
         Sample {
             counts: codes.unwrap_or([0; CHANNELS]),
-            valid: if codes.is_ok() { 0b1111 } else { 0 },
+            valid: if codes.is_some() { 0b1111 } else { 0 },
             spin: None,
             levitated: None,
             edges: [None; TACHOMETERS],
         }
     }
 
-    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count.
-    fn codes(&mut self, delay: &mut impl DelayNs) -> Result<[u16; CHANNELS], NoSample> {
+    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count. `None` where a pin or the SPI fails, or BUSY
+    /// does not go low in time.
+    fn codes(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
         let mut reads = 0;
-        while self.busy.is_high().map_err(|_| NoSample::Bus)? {
+        while self.busy.is_high().ok()? {
             reads += 1;
             if reads > READS {
-                return Err(NoSample::Stuck);
+                return None;
             }
             delay.delay_ns(100);
         }
         let mut bytes = [0; 2 * CHANNELS];
-        self.spi.read(&mut bytes).map_err(|_| NoSample::Bus)?;
+        self.spi.read(&mut bytes).ok()?;
         let mut codes = [0; CHANNELS];
         for (code, &[high, low]) in codes.iter_mut().zip(bytes.as_chunks().0) {
             // Two's complement on the line, V1 first.
             *code = u16::from_be_bytes([high, low]) ^ 0x8000;
         }
-        Ok(codes)
-    }
-
-    /// Gives the parts back.
-    pub fn release(self) -> (S, C, B, R) {
-        (self.spi, self.convst, self.busy, self.reset)
+        Some(codes)
     }
 }

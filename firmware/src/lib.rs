@@ -12,6 +12,7 @@ pub mod board;
 pub mod crash;
 pub mod drop_log;
 pub mod intake;
+#[cfg(target_os = "none")]
 mod journal;
 pub mod lift_interlock;
 pub mod main_loop;
@@ -21,6 +22,7 @@ pub mod outgoing;
 pub mod outputs;
 pub mod overrun;
 pub mod platform;
+#[cfg(target_os = "none")]
 pub mod power_on;
 pub mod recorder;
 pub mod safety;

@@ -22,11 +22,6 @@ pub struct Speed {
     /// Spin times the ticks between two captures, rad.
     scale: f32,
     longest: u32,
-}
-
-/// What it carries.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SpeedState {
     /// Ticks, counted on from the timer's.
     now: u32,
     timer: u16,
@@ -41,31 +36,33 @@ impl Speed {
         Self {
             scale: timer_hz * if forward { step } else { -step },
             longest: (LONGEST * timer_hz) as u32,
+            now: 0,
+            timer: 0,
+            last: None,
+            spin: None,
         }
     }
 
     /// Takes the timer and what it captured since the last sample; the spin, rad/s. To be called more
     /// than once a turn of the timer.
-    pub fn take(&self, state: &mut SpeedState, timer: u16, captured: Option<u16>) -> Option<f32> {
-        let gone = timer.wrapping_sub(state.timer);
-        state.now = state.now.wrapping_add(u32::from(gone));
-        state.timer = timer;
+    pub fn take(&mut self, timer: u16, captured: Option<u16>) -> Option<f32> {
+        let gone = timer.wrapping_sub(self.timer);
+        self.now = self.now.wrapping_add(u32::from(gone));
+        self.timer = timer;
         if let Some(captured) = captured {
-            let edge = state
+            let edge = self
                 .now
                 .wrapping_sub(u32::from(timer.wrapping_sub(captured)));
-            let way = state.last.map(|last| edge.wrapping_sub(last));
+            let way = self.last.map(|last| edge.wrapping_sub(last));
             let way = way.filter(|&way| (1..=self.longest).contains(&way));
-            state.spin = way.map(|way| self.scale / way as f32);
-            state.last = Some(edge);
+            self.spin = way.map(|way| self.scale / way as f32);
+            self.last = Some(edge);
         }
-        if state
-            .last
-            .is_some_and(|last| state.now.wrapping_sub(last) > self.longest)
-        {
-            (state.last, state.spin) = (None, None);
+        let is_old = |last| self.now.wrapping_sub(last) > self.longest;
+        if self.last.is_some_and(is_old) {
+            (self.last, self.spin) = (None, None);
         }
-        state.spin
+        self.spin
     }
 }
 
@@ -77,13 +74,12 @@ mod tests {
 
     /// Runs 2 s of samples at 20 kHz with a pulse every `period` ticks, the last one at `stop` ticks.
     fn run(period: u32, stop: u32) -> Vec<Option<f32>> {
-        let speed = Speed::new(1.0, false, HZ);
-        let mut state = SpeedState::default();
+        let mut speed = Speed::new(1.0, false, HZ);
         let sample = |index: u32| {
             let now = 525 * index;
             let edge = now / period * period;
             let captured = (edge > 0 && edge <= stop && edge + 525 > now).then_some(edge as u16);
-            speed.take(&mut state, now as u16, captured)
+            speed.take(now as u16, captured)
         };
         (1..40_000).map(sample).collect()
     }

@@ -91,11 +91,6 @@ impl<S: SpiDevice, D: DelayNs> W25q<S, D> {
         Ok(self.status()? & BUSY != 0)
     }
 
-    /// Gives bus and delay back.
-    pub fn release(self) -> (S, D) {
-        (self.spi, self.delay)
-    }
-
     fn command(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Error<S::Error>> {
         self.spi.transaction(operations).map_err(Error::Spi)
     }

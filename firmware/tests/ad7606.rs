@@ -11,9 +11,7 @@ use embedded_hal::spi::{self, Operation, SpiDevice};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock as Spi, Transaction};
-use touchdown_firmware::ad7606::{
-    Ad7606, BUSY_NS, CONVST_NS, FASTEST_CLOCK_HZ, LONGEST_CONVERSION_NS, RESET_NS,
-};
+use touchdown_firmware::ad7606::{Ad7606, FASTEST_CLOCK_HZ, LONGEST_CONVERSION_NS, RESET_NS};
 use touchdown_firmware::board::SAMPLE_RATE_HZ;
 
 fn levels(states: &[State]) -> Vec<Level> {
@@ -29,22 +27,13 @@ fn sample(busy: &[State], bytes: Option<[u8; 8]>) -> touchdown_core::sample::Sam
             Transaction::transaction_end(),
         ]
     });
-    let convst = levels(&[State::High, State::Low, State::High]);
     let busy: Vec<_> = busy.iter().map(|it| Level::get(*it)).collect();
     let reset = levels(&[State::High, State::Low]);
     let mut delay = NoopDelay::new();
-    let (spi, convst, busy, reset) = (
-        Spi::new(&spi),
-        Pin::new(&convst),
-        Pin::new(&busy),
-        Pin::new(&reset),
-    );
-    let mut adc = Ad7606::try_new(spi, convst, busy, reset, &mut delay).unwrap();
-    adc.start(&mut delay).unwrap();
+    let (mut spi, mut busy, mut reset) = (Spi::new(&spi), Pin::new(&busy), Pin::new(&reset));
+    let mut adc = Ad7606::try_new(spi.clone(), busy.clone(), reset.clone(), &mut delay).unwrap();
     let sample = adc.take(&mut delay);
-    let (mut spi, mut convst, mut busy, mut reset) = adc.release();
     spi.done();
-    convst.done();
     busy.done();
     reset.done();
     sample
@@ -69,43 +58,21 @@ fn converter_that_stays_busy_gives_no_valid_channel_and_does_not_block() {
 struct Converter {
     now: u32,
     conversion: u32,
-    levels: [bool; 2],
-    /// When each pin rose and fell last.
-    rose: [u32; 2],
-    fell: [u32; 2],
+    /// When the timer started the conversion.
+    started: u32,
+    /// When RESET rose, while it is high.
+    reset: Option<u32>,
     reads: u32,
 }
 
-const CONVST: usize = 0;
-const RESET: usize = 1;
-
 impl Converter {
-    fn set(&mut self, pin: usize, high: bool) {
-        let now = self.now;
-        // How long the level lasted that ends here.
-        match (pin, self.levels[pin], high) {
-            (CONVST, false, true) => assert!(now - self.fell[CONVST] >= 25, "CONVST low"),
-            (CONVST, true, false) => assert!(now - self.rose[CONVST] >= 25, "CONVST high"),
-            (RESET, true, false) => assert!(now - self.rose[RESET] >= 100, "RESET high"),
-            _ => {}
-        }
-        self.levels[pin] = high;
-        if high {
-            self.rose[pin] = now;
-        } else {
-            self.fell[pin] = now;
-        }
-    }
-
     fn is_busy(&self) -> bool {
-        let since = self.now - self.rose[CONVST];
-        assert!(since >= 45, "BUSY is not valid yet");
-        since < self.conversion
+        self.now - self.started < self.conversion
     }
 }
 
 #[derive(Clone)]
-struct Wire(Rc<RefCell<Converter>>, usize);
+struct Wire(Rc<RefCell<Converter>>);
 
 impl ErrorType for Wire {
     type Error = Infallible;
@@ -113,12 +80,15 @@ impl ErrorType for Wire {
 
 impl OutputPin for Wire {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().set(self.1, false);
+        let mut converter = self.0.borrow_mut();
+        let rose = converter.reset.take().expect("RESET was high");
+        assert!(converter.now - rose >= 100, "RESET high");
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().set(self.1, true);
+        let mut converter = self.0.borrow_mut();
+        converter.reset = Some(converter.now);
         Ok(())
     }
 }
@@ -159,14 +129,14 @@ fn samples(conversion: u32) -> (u32, u32) {
         now: 1_000,
         ..Converter::default()
     }));
-    let wire = |pin| Wire(Rc::clone(&converter), pin);
-    let mut delay = wire(0);
-    let mut adc =
-        Ad7606::try_new(wire(0), wire(CONVST), wire(0), wire(RESET), &mut delay).expect("resets");
+    let wire = || Wire(Rc::clone(&converter));
+    let mut delay = wire();
+    let mut adc = Ad7606::try_new(wire(), wire(), wire(), &mut delay).expect("resets");
+    assert_eq!(converter.borrow().reset, None);
     let mut longest = 0;
     for _ in 0..3 {
         let before = converter.borrow().now;
-        adc.start(&mut delay).expect("starts");
+        converter.borrow_mut().started = before;
         adc.take(&mut delay);
         longest = longest.max(converter.borrow().now - before);
     }
@@ -177,10 +147,9 @@ fn samples(conversion: u32) -> (u32, u32) {
 /// The sources' figures stand here again, so that one that is changed in the driver must be changed twice.
 #[test]
 fn the_driver_keeps_the_times_of_its_sources() {
-    assert_eq!((RESET_NS, CONVST_NS, BUSY_NS), (100, 25, 45));
     assert_eq!(
-        (LONGEST_CONVERSION_NS, FASTEST_CLOCK_HZ),
-        (4_150, 14_500_000)
+        (RESET_NS, LONGEST_CONVERSION_NS, FASTEST_CLOCK_HZ),
+        (100, 4_150, 14_500_000)
     );
     for conversion in [50, 3_450, 4_000, 4_150] {
         let (reads, longest) = samples(conversion);

@@ -34,22 +34,19 @@ fn status(value: u8) -> Vec<Step> {
     exchange(&[0x05], &[value])
 }
 
-/// W25Q64JV: EFh 40h 17h, 8 MiB.
-fn started(steps: &[Vec<Step>]) -> W25q<Mock<u8>, NoDelay> {
+/// W25Q64JV: EFh 40h 17h, 8 MiB; and its bus, which tells whether all steps were done.
+fn started(steps: &[Vec<Step>]) -> (W25q<Mock<u8>, NoDelay>, Mock<u8>) {
     let mut all = [status(READY), exchange(&[0x9f], &[0xef, 0x40, 0x17])].concat();
     all.extend(steps.concat());
-    W25q::try_new(Mock::new(&all), NoDelay).unwrap()
-}
-
-fn done(flash: W25q<Mock<u8>, NoDelay>) {
-    flash.release().0.done();
+    let spi = Mock::new(&all);
+    (W25q::try_new(spi.clone(), NoDelay).unwrap(), spi)
 }
 
 #[test]
 fn the_part_is_asked_for() {
-    let flash = started(&[]);
+    let (flash, mut spi) = started(&[]);
     assert_eq!(flash.capacity(), 8 << 20);
-    done(flash);
+    spi.done();
     for id in [[0xff; 3], [0; 3], [0xef, 0x40, 0x19], [0xc2, 0x20, 0x17]] {
         let steps = [status(READY), exchange(&[0x9f], &id)].concat();
         let mut spi = Mock::new(&steps);
@@ -61,7 +58,7 @@ fn the_part_is_asked_for() {
 
 #[test]
 fn a_program_stops_at_the_end_of_a_page() {
-    let mut flash = started(&[
+    let (mut flash, mut spi) = started(&[
         status(READY),
         send(&[&[0x06]]),
         status(ENABLED),
@@ -74,12 +71,12 @@ fn a_program_stops_at_the_end_of_a_page() {
         send(&[&[0x02, 0x01, 0x03, 0x00], &[3]]),
     ]);
     flash.write(0x0001_02fe, &[1, 2, 3]).unwrap();
-    done(flash);
+    spi.done();
 }
 
 #[test]
 fn an_erase_takes_whole_sectors() {
-    let mut flash = started(&[
+    let (mut flash, mut spi) = started(&[
         status(READY),
         send(&[&[0x06]]),
         status(ENABLED),
@@ -90,12 +87,12 @@ fn an_erase_takes_whole_sectors() {
     assert_eq!(unaligned, Err(Error::Range(NorFlashErrorKind::NotAligned)));
     let beyond = flash.erase(8 << 20, (8 << 20) + 0x1000);
     assert_eq!(beyond, Err(Error::Range(NorFlashErrorKind::OutOfBounds)));
-    done(flash);
+    spi.done();
 }
 
 #[test]
 fn a_read_waits_for_the_last_change() {
-    let mut flash = started(&[
+    let (mut flash, mut spi) = started(&[
         status(BUSY),
         status(BUSY),
         status(READY),
@@ -105,18 +102,18 @@ fn a_read_waits_for_the_last_change() {
     assert_eq!(flash.is_busy(), Ok(true));
     flash.read(0x12_3456, &mut bytes).unwrap();
     assert_eq!(bytes, [7, 8]);
-    done(flash);
+    spi.done();
 }
 
 #[test]
 fn a_protected_or_stuck_chip_is_reported() {
-    let mut flash = started(&[status(READY), send(&[&[0x06]]), status(READY)]);
+    let (mut flash, mut spi) = started(&[status(READY), send(&[&[0x06]]), status(READY)]);
     assert_eq!(flash.write(0, &[0]), Err(Error::Protected));
-    done(flash);
+    spi.done();
     let steps: Vec<_> = (0..5_000).map(|_| status(BUSY)).collect();
-    let mut flash = started(&steps);
+    let (mut flash, mut spi) = started(&steps);
     assert_eq!(flash.write(0, &[0]), Err(Error::Busy));
-    done(flash);
+    spi.done();
 }
 
 #[test]

@@ -34,14 +34,17 @@ const FASTEST: &str = "release";
 /// All images that run.
 const IMAGES: [Image; 6] = [
     Image {
-        arguments: &["--no-default-features", "--features", "g474"],
+        arguments: &["--features", "g474"],
         ..image(FIRMWARE, "touchdown-g474", PROFILE)
     },
     image(FIRMWARE, "touchdown-firmware", PROFILE),
     image(FIRMWARE, "touchdown-qemu", PROFILE),
     image(FIRMWARE, "touchdown-crash", PROFILE),
     image(FIRMWARE, "touchdown-count-tick", PROFILE),
-    image("touchdown-count", "touchdown-count", FASTEST),
+    Image {
+        arguments: &["--features", "image"],
+        ..image("touchdown-count", "touchdown-count", FASTEST)
+    },
 ];
 /// The budget looks at it; without a stack, as it is never run.
 const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
@@ -56,7 +59,7 @@ const fn image(package: &'static str, name: &'static str, profile: &'static str)
         package,
         name,
         profile,
-        arguments: &[],
+        arguments: &["--features", "f405"],
     }
 }
 

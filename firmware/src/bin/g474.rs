@@ -1,36 +1,28 @@
-#![cfg_attr(target_os = "none", no_std, no_main)]
-//! The image for an STM32G474; on the desktop it says how to build itself.
+#![no_std]
+#![no_main]
+//! The image for an STM32G474.
 
-#[cfg(target_os = "none")]
-mod image {
-    use cortex_m_rt::{entry, exception};
-    use defmt_rtt as _;
-    use stm32g4::stm32g474::interrupt;
-    use touchdown_firmware::{board::g474, memory::Memory};
+use cortex_m_rt::{entry, exception};
+use defmt_rtt as _;
+use stm32g4::stm32g474::interrupt;
+use touchdown_firmware::board::g474::{G474, start};
+use touchdown_firmware::board::silicon::{self, Chip as _};
+use touchdown_firmware::memory::Memory;
 
-    #[entry]
-    fn main() -> ! {
-        static mut MEMORY: Memory = Memory::empty();
-        g474::main(MEMORY)
-    }
-
-    #[interrupt]
-    fn EXTI0() {
-        g474::on_converted();
-    }
-
-    #[exception]
-    fn PendSV() {
-        g474::on_waiting();
-    }
-
-    touchdown_firmware::last_acts!(g474::drop_outputs);
+#[entry]
+fn main() -> ! {
+    static mut MEMORY: Memory = Memory::empty();
+    silicon::run(start(MEMORY))
 }
 
-#[cfg(not(target_os = "none"))]
-fn main() {
-    println!(
-        "touchdown-g474 is an image for the STM32G474.\n\
-         Build it:  cargo xtask firmware touchdown-g474"
-    );
+#[interrupt]
+fn EXTI0() {
+    G474::tasks().on_converted();
 }
+
+#[exception]
+fn PendSV() {
+    G474::tasks().on_waiting();
+}
+
+touchdown_firmware::last_acts!(G474::drop_outputs);

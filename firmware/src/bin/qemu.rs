@@ -1,42 +1,31 @@
-#![cfg_attr(target_os = "none", no_std, no_main)]
-//! The image for the emulator; on the desktop it says how to build itself.
+#![no_std]
+#![no_main]
+//! The image for the emulator, QEMU's netduinoplus2 (STM32F405).
 
-#[cfg(target_os = "none")]
-mod image {
-    use cortex_m_rt::{ExceptionFrame, entry, exception};
-    use defmt_semihosting as _;
-    use panic_probe as _;
-    use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::board::qemu::{self, Memory};
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use defmt_semihosting as _;
+use panic_probe as _;
+use stm32f4::stm32f405::interrupt;
+use touchdown_firmware::board::qemu::{self, Memory};
 
-    #[entry]
-    fn main() -> ! {
-        static mut MEMORY: Memory = Memory::empty();
-        qemu::main(MEMORY)
-    }
-
-    #[interrupt]
-    fn TIM2() {
-        qemu::on_timer();
-    }
-
-    #[exception]
-    fn PendSV() {
-        qemu::on_waiting();
-    }
-
-    // The runtime asks for an unsafe function; there is nothing unsafe in it.
-    #[exception]
-    unsafe fn HardFault(_: &ExceptionFrame) -> ! {
-        qemu::abort()
-    }
+#[entry]
+fn main() -> ! {
+    static mut MEMORY: Memory = Memory::empty();
+    qemu::main(MEMORY)
 }
 
-#[cfg(not(target_os = "none"))]
-fn main() {
-    println!(
-        "touchdown-qemu is an image for QEMU's netduinoplus2 (STM32F405).\n\
-         Build it:  cargo xtask firmware\n\
-         Use it:    touchdown drop --on qemu"
-    );
+#[interrupt]
+fn TIM2() {
+    qemu::on_timer();
+}
+
+#[exception]
+fn PendSV() {
+    qemu::on_waiting();
+}
+
+// It would else spin for ever. The runtime asks for an unsafe function; there is nothing unsafe in it.
+#[exception]
+unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+    semihosting::process::abort()
 }

@@ -1,37 +1,28 @@
-#![cfg_attr(target_os = "none", no_std, no_main)]
-//! The image for silicon; on the desktop it says how to build and flash itself.
+#![no_std]
+#![no_main]
+//! The image for an STM32F405.
 
-#[cfg(target_os = "none")]
-mod image {
-    use cortex_m_rt::{entry, exception};
-    use defmt_rtt as _;
-    use stm32f4::stm32f405::interrupt;
-    use touchdown_firmware::{board::f405, memory::Memory};
+use cortex_m_rt::{entry, exception};
+use defmt_rtt as _;
+use stm32f4::stm32f405::interrupt;
+use touchdown_firmware::board::f405::{F405, start};
+use touchdown_firmware::board::silicon::{self, Chip as _};
+use touchdown_firmware::memory::Memory;
 
-    #[entry]
-    fn main() -> ! {
-        static mut MEMORY: Memory = Memory::empty();
-        f405::main(MEMORY)
-    }
-
-    #[interrupt]
-    fn ADC() {
-        f405::on_converted();
-    }
-
-    #[exception]
-    fn PendSV() {
-        f405::on_waiting();
-    }
-
-    touchdown_firmware::last_acts!(f405::drop_outputs);
+#[entry]
+fn main() -> ! {
+    static mut MEMORY: Memory = Memory::empty();
+    silicon::run(start(MEMORY))
 }
 
-#[cfg(not(target_os = "none"))]
-fn main() {
-    println!(
-        "touchdown-firmware is an image for the STM32F405.\n\
-         Build it:  cargo xtask firmware\n\
-         Flash it:  cargo xtask flash"
-    );
+#[interrupt]
+fn ADC() {
+    F405::tasks().on_converted();
 }
+
+#[exception]
+fn PendSV() {
+    F405::tasks().on_waiting();
+}
+
+touchdown_firmware::last_acts!(F405::drop_outputs);

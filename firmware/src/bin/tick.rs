@@ -1,207 +1,200 @@
-#![cfg_attr(target_os = "none", no_std, no_main)]
+#![no_std]
+#![no_main]
 //! What interrupts and link can reach: sampling, tick and main loop, with recorder, drop log and flash driver, over registers of no
 //! chip. Linked to be looked at, never run. A panic handler or soft-float f64 among its symbols is reachable: `cargo xtask budget`.
 
-#[cfg(target_os = "none")]
-mod image {
-    use core::convert::Infallible;
-    use core::panic::PanicInfo;
+use core::convert::Infallible;
+use core::panic::PanicInfo;
 
-    use embedded_hal::delay::DelayNs;
-    use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
-    use touchdown_core::event::Notice;
-    use touchdown_core::sample::Sample;
-    use touchdown_firmware::board::{Abilities, Board};
-    use touchdown_firmware::drop_log::DropLog;
-    use touchdown_firmware::intake::Intake;
-    use touchdown_firmware::main_loop::MainLoop;
-    use touchdown_firmware::platform::Platform;
-    use touchdown_firmware::tick::TickTask;
-    use touchdown_firmware::w25q::W25q;
-    use touchdown_protocol::controller::Shown;
-    use touchdown_protocol::link::{Frame, Refusal};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use touchdown_core::event::Notice;
+use touchdown_core::sample::Sample;
+use touchdown_firmware::board::{Abilities, Board};
+use touchdown_firmware::drop_log::DropLog;
+use touchdown_firmware::intake::Intake;
+use touchdown_firmware::main_loop::MainLoop;
+use touchdown_firmware::platform::Platform;
+use touchdown_firmware::tick::TickTask;
+use touchdown_firmware::w25q::W25q;
+use touchdown_protocol::controller::Shown;
+use touchdown_protocol::link::{Frame, Refusal};
 
-    /// Registers that notices and outputs go to.
-    struct Bare(&'static [u8]);
+/// Registers that notices and outputs go to.
+struct Bare(&'static [u8]);
 
-    const REGISTER: *mut u8 = 0x4000_0000 as *mut u8;
+const REGISTER: *mut u8 = 0x4000_0000 as *mut u8;
 
-    fn read() -> u8 {
-        // SAFETY: never run.
-        unsafe { REGISTER.read_volatile() }
+fn read() -> u8 {
+    // SAFETY: never run.
+    unsafe { REGISTER.read_volatile() }
+}
+
+fn write(byte: u8) {
+    // SAFETY: never run.
+    unsafe { REGISTER.write_volatile(byte) }
+}
+
+impl Board for Bare {
+    fn report(&mut self, notice: &Notice) {
+        write(matches!(notice, Notice::Declared(_)) as u8);
     }
 
-    fn write(byte: u8) {
-        // SAFETY: never run.
-        unsafe { REGISTER.write_volatile(byte) }
+    fn drive(&mut self, shown: Shown) {
+        let outputs = shown.outputs;
+        #[cfg(feature = "plants")]
+        plants::in_tick(self.0, outputs.bits());
+        write(outputs.bits());
     }
 
-    impl Board for Bare {
-        fn report(&mut self, notice: &Notice) {
-            write(matches!(notice, Notice::Declared(_)) as u8);
-        }
-
-        fn drive(&mut self, shown: Shown) {
-            let outputs = shown.outputs;
-            #[cfg(feature = "plants")]
-            plants::in_tick(self.0, outputs.bits());
-            write(outputs.bits());
-        }
-
-        fn config(&self) -> &[u8] {
-            self.0
-        }
-
-        fn feed(&mut self) {
-            write(0);
-        }
+    fn config(&self) -> &[u8] {
+        self.0
     }
 
-    /// A panic each, where the index is too large. The tick reaches the first, an order that the link's parser took the
-    /// second, and the flash driver the third, from what it is to write.
-    #[cfg(feature = "plants")]
-    mod plants {
-        /// And f64 in software.
-        #[inline(never)]
-        pub fn in_tick(bytes: &[u8], index: u8) {
-            let byte = bytes[usize::from(index)];
-            let quotient = f64::from(byte) / f64::from(index) + f64::from(byte) * 1e-3;
-            super::write((quotient as u64 ^ quotient.to_bits()) as u8);
-        }
-
-        #[inline(never)]
-        pub fn behind_link(block: &[u8]) {
-            super::write(block[usize::from(super::read()) + 40]);
-        }
-
-        #[inline(never)]
-        pub fn in_flash(bytes: &[u8]) {
-            super::write(bytes[usize::from(super::read())] ^ 1);
-        }
-    }
-
-    /// Registers of flash.
-    struct BareSpi;
-
-    impl ErrorType for BareSpi {
-        type Error = Infallible;
-    }
-
-    impl SpiDevice for BareSpi {
-        fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-            for operation in operations {
-                match operation {
-                    Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = read()),
-                    Operation::Write(bytes) => {
-                        #[cfg(feature = "plants")]
-                        plants::in_flash(bytes);
-                        bytes.iter().for_each(|it| write(*it));
-                    }
-                    _ => {}
-                }
-            }
-            Ok(())
-        }
-    }
-
-    impl DelayNs for BareSpi {
-        fn delay_ns(&mut self, _: u32) {
-            write(0);
-        }
-    }
-
-    struct BarePlatform {
-        tick: TickTask<'static, Bare>,
-        log: Option<DropLog<W25q<BareSpi, BareSpi>, 42>>,
-    }
-
-    impl Platform for BarePlatform {
-        type Board = Bare;
-        type Log = DropLog<W25q<BareSpi, BareSpi>, 42>;
-
-        fn abilities(&self) -> Abilities {
-            Abilities {
-                sample_rate: f32::from(read()),
-                full_scale: 4_095,
-                tachometers: false,
-            }
-        }
-
-        fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Bare>) -> T) -> T {
-            act(&mut self.tick)
-        }
-
-        fn receive(&mut self) -> Option<u8> {
-            // Any byte: without the 0 that ends a frame no parser would be linked.
-            (read() > 0).then(read)
-        }
-
-        fn send(&mut self, frame: &Frame) -> bool {
-            frame.iter().for_each(|it| write(*it));
-            true
-        }
-
-        fn is_idle(&mut self) -> bool {
-            read() > 0
-        }
-
-        fn is_sent(&mut self) -> bool {
-            read() > 0
-        }
-
-        fn log(&mut self) -> &mut Option<Self::Log> {
-            &mut self.log
-        }
-
-        fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
-            #[cfg(feature = "plants")]
-            plants::behind_link(block);
-            block.iter().for_each(|it| write(*it));
-            Ok(())
-        }
-
-        fn age_us(&mut self) -> u32 {
-            read().into()
-        }
-
-        fn unknown(&mut self) -> u64 {
-            read().into()
-        }
-
-        fn forget_reset(&mut self) {
-            write(0);
-        }
-
-        fn reset(&mut self) {
-            write(0);
-        }
-    }
-
-    /// All the linker keeps hangs on this.
-    #[unsafe(no_mangle)]
-    extern "C" fn _start(
-        intake: &mut Intake<'static>,
-        platform: &mut BarePlatform,
-        main_loop: &mut MainLoop,
-        sample: &Sample,
-        lost: u32,
-    ) {
-        if intake.take((*sample).into(), lost) {
-            write(0);
-        }
-        while platform.tick.step() {}
-        main_loop.turn(platform);
-    }
-
-    #[panic_handler]
-    fn panic(_: &PanicInfo) -> ! {
-        loop {
-            write(1);
-        }
+    fn feed(&mut self) {
+        write(0);
     }
 }
 
-#[cfg(not(target_os = "none"))]
-fn main() {
-    println!("touchdown-tick is never run: cargo xtask budget looks at it");
+/// A panic each, where the index is too large. The tick reaches the first, an order that the link's parser took the
+/// second, and the flash driver the third, from what it is to write.
+#[cfg(feature = "plants")]
+mod plants {
+    /// And f64 in software.
+    #[inline(never)]
+    pub fn in_tick(bytes: &[u8], index: u8) {
+        let byte = bytes[usize::from(index)];
+        let quotient = f64::from(byte) / f64::from(index) + f64::from(byte) * 1e-3;
+        super::write((quotient as u64 ^ quotient.to_bits()) as u8);
+    }
+
+    #[inline(never)]
+    pub fn behind_link(block: &[u8]) {
+        super::write(block[usize::from(super::read()) + 40]);
+    }
+
+    #[inline(never)]
+    pub fn in_flash(bytes: &[u8]) {
+        super::write(bytes[usize::from(super::read())] ^ 1);
+    }
+}
+
+/// Registers of flash.
+struct BareSpi;
+
+impl ErrorType for BareSpi {
+    type Error = Infallible;
+}
+
+impl SpiDevice for BareSpi {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        for operation in operations {
+            match operation {
+                Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = read()),
+                Operation::Write(bytes) => {
+                    #[cfg(feature = "plants")]
+                    plants::in_flash(bytes);
+                    bytes.iter().for_each(|it| write(*it));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+impl DelayNs for BareSpi {
+    fn delay_ns(&mut self, _: u32) {
+        write(0);
+    }
+}
+
+struct BarePlatform {
+    tick: TickTask<'static, Bare>,
+    log: Option<DropLog<W25q<BareSpi, BareSpi>, 42>>,
+}
+
+impl Platform for BarePlatform {
+    type Board = Bare;
+    type Log = DropLog<W25q<BareSpi, BareSpi>, 42>;
+
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            sample_rate: f32::from(read()),
+            full_scale: 4_095,
+            tachometers: false,
+        }
+    }
+
+    fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Bare>) -> T) -> T {
+        act(&mut self.tick)
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        // Any byte: without the 0 that ends a frame no parser would be linked.
+        (read() > 0).then(read)
+    }
+
+    fn send(&mut self, frame: &Frame) -> bool {
+        frame.iter().for_each(|it| write(*it));
+        true
+    }
+
+    fn is_idle(&mut self) -> bool {
+        read() > 0
+    }
+
+    fn is_sent(&mut self) -> bool {
+        read() > 0
+    }
+
+    fn log(&mut self) -> &mut Option<Self::Log> {
+        &mut self.log
+    }
+
+    fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
+        #[cfg(feature = "plants")]
+        plants::behind_link(block);
+        block.iter().for_each(|it| write(*it));
+        Ok(())
+    }
+
+    fn age_us(&mut self) -> u32 {
+        read().into()
+    }
+
+    fn unknown(&mut self) -> u64 {
+        read().into()
+    }
+
+    fn forget_reset(&mut self) {
+        write(0);
+    }
+
+    fn reset(&mut self) {
+        write(0);
+    }
+}
+
+/// All the linker keeps hangs on this.
+#[unsafe(no_mangle)]
+extern "C" fn _start(
+    intake: &mut Intake<'static>,
+    platform: &mut BarePlatform,
+    main_loop: &mut MainLoop,
+    sample: &Sample,
+    lost: u32,
+) {
+    if intake.take((*sample).into(), lost) {
+        write(0);
+    }
+    while platform.tick.step() {}
+    main_loop.turn(platform);
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo) -> ! {
+    loop {
+        write(1);
+    }
 }

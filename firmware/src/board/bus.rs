@@ -7,14 +7,14 @@ use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 
 /// Registers of an SPI with a device on it.
 pub trait SpiRegisters {
+    /// Waits.
+    type Wait: DelayNs + Default;
+
     /// Selects the device, or lets it go once the bus is idle.
     fn select(&mut self, is_on: bool);
 
     /// Sends a byte; the one that comes meanwhile.
     fn exchange(&mut self, byte: u8) -> u8;
-
-    /// Waits.
-    fn wait_ns(&mut self, time: u32);
 }
 
 /// The device.
@@ -50,7 +50,7 @@ impl<R: SpiRegisters> SpiDevice for Bus<R> {
                         .iter_mut()
                         .for_each(|it| *it = registers.exchange(*it));
                 }
-                Operation::DelayNs(time) => registers.wait_ns(*time),
+                Operation::DelayNs(time) => R::Wait::default().delay_ns(*time),
             }
         }
         registers.select(false);
@@ -59,7 +59,7 @@ impl<R: SpiRegisters> SpiDevice for Bus<R> {
 }
 
 /// Waits by counting cycles of a core at so many MHz.
-#[derive(Clone, Copy)]
+#[derive(Default)]
 pub struct CycleDelay<const MHZ: u32>;
 
 impl<const MHZ: u32> DelayNs for CycleDelay<MHZ> {

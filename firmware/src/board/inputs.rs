@@ -2,7 +2,7 @@
 
 use touchdown_protocol::config_block::Settings;
 
-use crate::speed::{Speed, SpeedState, pulses_a_capture};
+use crate::speed::{Speed, pulses_a_capture};
 
 /// Registers of these inputs.
 pub trait InputRegisters {
@@ -21,7 +21,6 @@ pub trait InputRegisters {
 pub struct Inputs<R> {
     registers: R,
     speed: Option<Speed>,
-    state: SpeedState,
     levitation: bool,
 }
 
@@ -43,16 +42,15 @@ impl<R: InputRegisters> Inputs<R> {
                 let turns = f32::from(every) / f32::from(pulses.max(1));
                 Speed::new(turns, spin >= 0.0, hz as f32)
             }),
-            state: SpeedState::default(),
             levitation: wiring.levitation,
         }
     }
 
     /// Spin, rad/s, where it is known.
     pub fn spin(&mut self) -> Option<f32> {
-        let speed = self.speed.as_ref()?;
+        let speed = self.speed.as_mut()?;
         let (captured, now) = self.registers.capture();
-        speed.take(&mut self.state, now, captured)
+        speed.take(now, captured)
     }
 
     /// Whether levitation is commanded on, where that is wired.

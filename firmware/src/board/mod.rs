@@ -21,7 +21,7 @@ pub mod qemu;
 #[cfg(target_os = "none")]
 pub mod record;
 #[cfg(target_os = "none")]
-mod silicon;
+pub mod silicon;
 #[cfg(target_os = "none")]
 mod slots;
 

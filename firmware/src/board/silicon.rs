@@ -32,7 +32,8 @@ use crate::tick::TickTask;
 use crate::w25q::W25q;
 
 /// The drop log in a W25Q of 2 MiB.
-pub type ChipLog<C> = DropLog<W25q<Bus<<C as Chip>::Spi>, <C as Chip>::Wait>, LOG_SLOTS>;
+pub type ChipLog<C> = DropLog<W25q<Bus<<C as Chip>::Spi>, Wait<C>>, LOG_SLOTS>;
+type Wait<C> = <<C as Chip>::Spi as SpiRegisters>::Wait;
 const LOG_SLOTS: usize = 42;
 
 /// Pins of the outputs.
@@ -66,17 +67,26 @@ pub trait Chip: Sized + 'static {
     type Inputs: InputRegisters;
     /// SPI of the log's flash.
     type Spi: SpiRegisters;
-    /// Waits.
-    type Wait: DelayNs + Copy;
     /// The line.
     type Port: LineRegisters;
     /// Of its core.
     const MHZ: u32;
-    /// What a configuration has to fit.
-    const ABILITIES: Abilities;
+    /// Highest count of the converter.
+    const FULL_SCALE: u16;
+    /// What a configuration has to fit. No pin takes the pulses of ring and cage.
+    const ABILITIES: Abilities = Abilities {
+        sample_rate: SAMPLE_RATE_HZ as f32,
+        full_scale: Self::FULL_SCALE,
+        tachometers: false,
+    };
 
     /// What interrupts and main loop share.
     fn tasks() -> &'static ChipTasks<Self>;
+
+    /// Takes the current off the outputs.
+    fn drop_outputs() {
+        Self::Pins::drop_now();
+    }
 
     /// A word of the noise source; none where it fails.
     fn word(&self) -> Option<u32>;
@@ -155,7 +165,8 @@ pub fn check<F: ConfigFlash>(
 }
 
 /// The log in the chip, where one answers: without it the monitor works all the same.
-pub fn mount<C: Chip>(bus: Bus<C::Spi>, mut wait: C::Wait) -> Option<ChipLog<C>> {
+pub fn mount<C: Chip>(bus: Bus<C::Spi>) -> Option<ChipLog<C>> {
+    let mut wait = Wait::<C>::default();
     // Data sheet W25Q64JV, power-up timing.
     wait.delay_ms(5);
     let chip = W25q::try_new(bus, wait).ok();
@@ -177,7 +188,7 @@ pub struct ChipTasks<C: Chip> {
 
 impl<C: Chip> ChipTasks<C> {
     /// Nothing in its place yet.
-    pub const fn new() -> Self {
+    pub const fn empty() -> Self {
         Self {
             sampling: Held::new(),
             tick: Held::new(),

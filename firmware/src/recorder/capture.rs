@@ -43,7 +43,7 @@ struct Trigger {
 }
 
 /// How far the store has come.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Fetched {
     blocks: u16,
     headers: u8,
@@ -55,7 +55,7 @@ struct Fetched {
 }
 
 /// A buffer's state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Capture {
     /// Place of the first sample in the ring.
     first: usize,
@@ -63,45 +63,27 @@ pub(super) struct Capture {
     /// Samples since the last mark; the first sample is at the mark before, or at none.
     fresh: usize,
     /// Which of the two snapshots is that of the first sample.
-    oldest: usize,
+    pub(super) oldest: usize,
     /// Tick of the last sample.
-    newest: u64,
+    pub(super) newest: u64,
     pulses: Pulses,
     trigger: Option<Trigger>,
     closing: Option<Closed>,
     notices: Vec<[u8; NOTICE_BYTES], NOTICES>,
     notices_lost: u32,
-    touched: bool,
+    /// Whether the retainer was touched.
+    pub(super) touched: bool,
     fastest: f32,
     severity: Option<Severity>,
     fetched: Fetched,
 }
 
 impl Capture {
-    pub(super) const EMPTY: Self = Self {
-        first: 0,
-        held: 0,
-        fresh: 0,
-        oldest: 0,
-        newest: 0,
-        pulses: Pulses::EMPTY,
-        trigger: None,
-        closing: None,
-        notices: Vec::new(),
-        notices_lost: 0,
-        touched: false,
-        fastest: 0.0,
-        severity: None,
-        fetched: Fetched {
-            blocks: 0,
-            headers: 0,
-            learnt: 0,
-            samples: 0,
-            notices: 0,
-            severity: false,
-            endings: 0,
-        },
-    };
+    /// Holds no episode any more. A frame of its own: a new state takes two kilobytes.
+    #[inline(never)]
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
 
     /// Whether it holds no episode.
     pub(super) fn is_idle(&self) -> bool {
@@ -118,19 +100,9 @@ impl Capture {
         self.fetched.endings == COPIES
     }
 
-    /// Whether the retainer was touched.
-    pub(super) fn has_touched(&self) -> bool {
-        self.touched
-    }
-
     /// Tick of the trigger.
     pub(super) fn trigger(&self) -> u64 {
         self.trigger.map_or(0, |it| it.tick)
-    }
-
-    /// Tick of the last sample.
-    pub(super) fn newest(&self) -> u64 {
-        self.newest
     }
 
     /// The last samples, every `step`-th, oldest first.
@@ -189,11 +161,6 @@ impl Capture {
         } else {
             1 - self.oldest
         })
-    }
-
-    /// Which snapshot is that of the first sample.
-    pub(super) fn oldest(&self) -> usize {
-        self.oldest
     }
 
     /// Begins an episode, or goes on with one that has ended but is still being recorded. Whether a contact
@@ -273,25 +240,25 @@ impl Capture {
             return None;
         }
         self.fetched.headers += 1;
-        let config = &plan.config;
+        let sensing = &plan.sensing;
         let recorded = (self.held as u64).saturating_sub(1) * u64::from(plan.decimation);
         let header = Header {
             firmware: plan.identity.firmware,
             config_hash: plan.identity.config_hash,
             boot: plan.identity.boot,
-            sample_rate: config.sample_rate,
+            sample_rate: plan.sample_rate,
             decimation: plan.decimation,
-            fitted: config.fitted,
+            fitted: plan.fitted,
             trigger_kind: trigger.kind,
             trigger: trigger.tick,
             first: self.newest - recorded.min(self.newest),
             planned: trigger.planned as u32,
-            resolution: config.sensing.resolution,
-            zero_count: config.sensing.zero_count,
-            full_scale: config.sensing.full_scale,
+            resolution: sensing.resolution,
+            zero_count: sensing.zero_count,
+            full_scale: sensing.full_scale,
             pulsed: plan.pulsed,
-            mounting_angle: config.sensing.mounting_angle,
-            calibration: config.sensing.calibration,
+            mounting_angle: sensing.mounting_angle,
+            calibration: sensing.calibration,
         };
         Some(Block::of(Kind::Header, &header.encode()))
     }

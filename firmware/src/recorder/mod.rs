@@ -98,7 +98,9 @@ impl Identity {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plan {
     identity: Identity,
-    config: Scaling,
+    fitted: u8,
+    sample_rate: f32,
+    sensing: SensingConfig,
     decimation: u16,
     /// Pulse channels that are recorded, bit i: where every tick's sample is.
     pulsed: u8,
@@ -108,13 +110,6 @@ pub(crate) struct Plan {
     longest: u64,
     /// Speed of a fall through the clearance under standard gravity, however the rotor lies, m/s.
     fall_speed: f32,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Scaling {
-    fitted: u8,
-    sample_rate: f32,
-    sensing: SensingConfig,
 }
 
 impl Plan {
@@ -128,11 +123,9 @@ impl Plan {
         let before = samples(BEFORE).clamp(1, CAPACITY / 4);
         Self {
             identity,
-            config: Scaling {
-                fitted: config.fitted,
-                sample_rate: rate,
-                sensing: config.sensing,
-            },
+            fitted: config.fitted,
+            sample_rate: rate,
+            sensing: config.sensing,
             decimation,
             pulsed: if decimation == 1 { pulsed(config) } else { 0 },
             before,
@@ -212,7 +205,7 @@ impl<'m> Recorder<'m> {
             pulses: &mut memory.pulses,
             learnt: learnt.map(|places| places.each_mut().map(nothing_learnt)),
             plan: Plan::new(config, identity),
-            captures: [const { Capture::EMPTY }; BUFFERS],
+            captures: Default::default(),
             tick: 0,
             skip: 0,
             recording: Some(0),
@@ -263,12 +256,12 @@ impl<'m> Recorder<'m> {
         let pulses = self.pulses.get(at)?;
         let learnt = self.learnt.get_mut(at)?;
         let first = learnt
-            .get(capture.oldest())
+            .get(capture.oldest)
             .map(|it| &**it)
             .filter(|it| it.is_known());
         let block = capture.fetch(counts, pulses, first, &self.plan);
         if capture.is_fetched() {
-            *capture = Capture::EMPTY;
+            capture.clear();
             learnt.iter_mut().for_each(|it| it.forget());
             // Where samples had nowhere to go, they have now.
             self.recording.get_or_insert(at);
@@ -306,7 +299,7 @@ impl<'m> Recorder<'m> {
     pub fn recent(&self, step: u16) -> Recent {
         let counts = self.recording.and_then(|at| {
             let (capture, buffer) = (self.captures.get(at)?, self.counts.get(at)?);
-            Some((capture.newest(), capture.recent(buffer, step)))
+            Some((capture.newest, capture.recent(buffer, step)))
         });
         let step = u32::from(step) * u32::from(self.plan.decimation);
         counts.map_or(Recent::default(), |(newest, samples)| {
@@ -381,7 +374,7 @@ impl<'m> Recorder<'m> {
         let mut untouched = true;
         if let Some(capture) = self.open() {
             capture.note(notice);
-            untouched = !capture.has_touched();
+            untouched = !capture.touched;
         }
         if levitated {
             self.end(Closing::Levitated);

@@ -15,7 +15,7 @@ const SPAN: usize = 1_000;
 pub(super) type Ring = [[u8; PULSE_BYTES]; ROOM];
 
 /// A buffer's state, apart from its room.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pulses {
     /// Place of the oldest pulse in the room.
     first: usize,
@@ -36,19 +36,6 @@ pub(super) struct Pulses {
 }
 
 impl Pulses {
-    pub(super) const EMPTY: Self = Self {
-        first: 0,
-        held: 0,
-        fresh: 0,
-        gone: 0,
-        from: 0,
-        before: [None; 2],
-        marked: [None; 2],
-        shown: [None; 2],
-        end: None,
-        blocks: 0,
-    };
-
     /// Takes what the channels show at sample `number`. Where a history has no room, it begins anew; an episode's
     /// pulses end.
     #[inline(never)]

@@ -199,11 +199,8 @@ pub fn encode_record(record: &Record) -> [u8; NOTICE_BYTES] {
             put(16, &ordered.sample.to_le_bytes());
         }
         Record::Switching(Switching { sample, shown }) => {
-            let cause = shown.cause.map_or(0, |it| 1 + it as u8);
-            put(
-                0,
-                &[SWITCHING, shown.outputs.bits(), shown.mode as u8, cause],
-            );
+            let (outputs, cause) = (shown.outputs.bits(), Cause::byte_of(shown.cause));
+            put(0, &[SWITCHING, outputs, shown.mode as u8, cause]);
             put(16, &sample.to_le_bytes());
         }
         Record::Severity(it) => {
@@ -332,9 +329,6 @@ fn fault(code: u8, channel: u8) -> Option<Option<Fault>> {
 }
 
 fn conditions(codes: [u8; CHANNELS]) -> Option<[Condition; CHANNELS]> {
-    let mut conditions = [Condition::Ok; CHANNELS];
-    for (condition, code) in conditions.iter_mut().zip(codes) {
-        *condition = Condition::from_repr(code)?;
-    }
-    Some(conditions)
+    let [a, b, c, d] = codes.map(Condition::from_repr);
+    Some([a?, b?, c?, d?])
 }

@@ -241,20 +241,14 @@ impl Scene {
 
     /// The configuration of the monitor.
     pub(super) fn config(&self) -> MonitorConfig {
-        MonitorConfig {
-            tachometers: self.ring.then_some(TachometersConfig {
-                marks: [Some(12), None],
-                cage_ratio: 0.4,
-                bore_radius: 24e-3,
-                edge_error: 0.01,
-                window: 0.005,
-            }),
-            ..self.of_instants()
-        }
-    }
-
-    fn of_instants(&self) -> MonitorConfig {
         let mut config = default_config();
+        config.tachometers = self.ring.then_some(TachometersConfig {
+            marks: [Some(12), None],
+            cage_ratio: 0.4,
+            bore_radius: 24e-3,
+            edge_error: 0.01,
+            window: 0.005,
+        });
         if let Some(instants) = self.instants {
             config.detector.tuning.release_instants = instants;
             config.detector.tuning.impact_instants = instants;

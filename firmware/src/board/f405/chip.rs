@@ -1,13 +1,9 @@
 //! The W25Q flash chip on SPI1, polled: the one on the Feather STM32F405.
 
-use embedded_hal::delay::DelayNs;
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
 use crate::board::bus::{CycleDelay, SpiRegisters};
-
-/// Waits by counting cycles.
-pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// PB3 clock, PB4 in, PB5 out, PA15 chip select.
 pub struct Spi1 {
@@ -48,6 +44,8 @@ impl Spi1 {
 }
 
 impl SpiRegisters for Spi1 {
+    type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
+
     fn select(&mut self, is_on: bool) {
         while self.spi.sr().read().bsy().bit_is_set() {}
         self.select
@@ -60,9 +58,5 @@ impl SpiRegisters for Spi1 {
         self.spi.dr().write(|w| w.dr().set(byte.into()));
         while self.spi.sr().read().rxne().bit_is_clear() {}
         self.spi.dr().read().dr().bits() as u8
-    }
-
-    fn wait_ns(&mut self, time: u32) {
-        Wait {}.delay_ns(time);
     }
 }

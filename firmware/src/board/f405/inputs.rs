@@ -1,10 +1,9 @@
-//! The speed pulse and "levitation on".
+//! The speed pulse, "levitation on" and the service input.
 
-use stm32f4::stm32f405::{GPIOB, RCC, TIM4};
+use stm32f4::stm32f405::{GPIOB, GPIOC, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
-use super::outputs::OutputPins;
 use crate::board::inputs::{InputRegisters, Inputs};
 
 /// The timer counts every eighth tick: one turn of it takes 6.2 ms.
@@ -56,6 +55,8 @@ impl InputRegisters for PinInputs {
     }
 
     fn service(&self) -> bool {
-        OutputPins::service()
+        // SAFETY: a read of a register that reading does not change; `OutputPins` has set up the port.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
     }
 }

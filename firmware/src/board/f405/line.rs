@@ -1,7 +1,9 @@
-//! USART1 by DMA2.
+//! USART1 by DMA2: PB6 sends, PB7 receives.
 
-use stm32f4::stm32f405::{DMA2, RCC, USART1};
+use stm32f4::stm32f405::{DMA2, GPIOB, RCC, USART1};
 
+use super::clocks::APB2_HZ;
+use crate::board::BAUD;
 use crate::board::line::{LineRegisters, RING_BYTES};
 
 /// RM0090, DMA2 request mapping: USART1_RX is channel 4 of stream 2, USART1_TX channel 4 of stream 7.
@@ -18,11 +20,20 @@ pub struct Port {
 }
 
 impl Port {
-    /// Takes a USART whose clock and pins are up; `divider` is its clock over the baud rate.
-    pub fn new(usart: USART1, dma: DMA2, divider: u16, rcc: &RCC) -> Self {
-        rcc.ahb1enr().modify(|_, w| w.dma2en().enabled());
+    /// Sets it up.
+    pub fn new(usart: USART1, dma: DMA2, pins: &GPIOB, rcc: &RCC) -> Self {
+        rcc.ahb1enr()
+            .modify(|_, w| w.gpioben().enabled().dma2en().enabled());
+        rcc.apb2enr().modify(|_, w| w.usart1en().enabled());
+        pins.afrl().modify(|_, w| w.afrl6().af7().afrl7().af7());
+        // A line that is not there reads as idle.
+        pins.pupdr().modify(|_, w| w.pupdr7().pull_up());
+        pins.moder()
+            .modify(|_, w| w.moder6().alternate().moder7().alternate());
         // SAFETY: any value of 16 bits from 16 on is a divider: RM0090, USART_BRR.
-        usart.brr().write(|w| unsafe { w.bits(divider) });
+        usart
+            .brr()
+            .write(|w| unsafe { w.bits((APB2_HZ / BAUD) as u16) });
         usart.cr3().write(|w| w.dmar().set_bit().dmat().set_bit());
         usart
             .cr1()

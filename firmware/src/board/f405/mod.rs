@@ -10,58 +10,31 @@ mod inputs;
 mod line;
 mod outputs;
 mod remote;
-mod store;
 
 use defmt::info;
 use stm32f4::stm32f405::{FLASH, Interrupt, Peripherals};
 use touchdown_protocol::controller::Outputs;
 
-use self::chip::{Spi1, Wait};
-use self::clocks::APB2_HZ;
+use self::chip::Spi1;
 use self::converter::Converter;
 use self::inputs::PinInputs;
 use self::line::Port;
 use self::outputs::{IndependentWatchdog, OutputPins};
-use self::remote::F405;
+pub use self::remote::F405;
 use super::bus::Bus;
 use super::chip_platform::ChipPlatform;
 use super::line::Line;
-use super::silicon::{self, ChipTasks, OutputRegisters as _, Watchdog as _};
-use super::{Abilities, BAUD, SAMPLE_RATE_HZ, default_settings, record};
+use super::silicon::{self, Chip as _, OutputRegisters as _, Watchdog as _};
+use super::{default_settings, record};
 use crate::crash::Crash;
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
 
-/// 12 bit; no pin takes the pulses of ring and cage.
-const ABILITIES: Abilities = Abilities {
-    sample_rate: SAMPLE_RATE_HZ as f32,
-    full_scale: 4_095,
-    tachometers: false,
-};
-
-/// What the converters' interrupt, PendSV and the main loop share.
-static TASKS: ChipTasks<F405> = ChipTasks::new();
-
-/// The converters have a sample.
-pub fn on_converted() {
-    TASKS.on_converted();
-}
-
-/// PendSV: samples wait.
-pub fn on_waiting() {
-    TASKS.on_waiting();
-}
-
-/// Starts sampling, and the main loop.
-pub fn main(memory: &'static mut Memory) -> ! {
-    silicon::run(start(memory))
-}
-
-/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
+/// Brings everything up, for [`silicon::run`]. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> {
+pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> {
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -69,9 +42,10 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> 
     let pins = OutputPins::new(chip.GPIOC, rcc);
     info!("touchdown {=str} on stm32f405", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH);
-    let has_bitten = IndependentWatchdog::has_bitten(rcc);
+    // Since power was applied, or an order to clear was obeyed.
+    let has_bitten = rcc.csr().read().wdgrstf().bit_is_set();
     let (block, settings, found) =
-        silicon::check::<FLASH>(default_settings(), &ABILITIES, has_bitten);
+        silicon::check::<FLASH>(default_settings(), &F405::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
     let converter = Converter::new(
         (chip.ADC1, chip.ADC2),
@@ -81,22 +55,21 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<F405>)> 
         &chip.GPIOA,
         rcc,
     );
-    remote::wire(&chip.GPIOB, rcc);
-    let port = Port::new(chip.USART1, chip.DMA2, (APB2_HZ / BAUD) as u16, rcc);
-    let line = Line::new(port);
+    let line = Line::new(Port::new(chip.USART1, chip.DMA2, &chip.GPIOB, rcc));
     let spi = Spi1::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, rcc);
-    let log = silicon::mount::<F405>(Bus(spi), Wait {});
+    let log = silicon::mount::<F405>(Bus(spi));
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);
+    let tasks = F405::tasks();
     let found = (block, &settings, found);
-    let (intake, below) = TASKS.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
+    let (intake, below) = tasks.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
     converter.start();
     let inputs = PinInputs::wired(&settings, chip.GPIOB, chip.TIM4, rcc);
-    TASKS.start_sampling(&mut core, Interrupt::ADC, converter, inputs, intake);
+    tasks.start_sampling(&mut core, Interrupt::ADC, converter, inputs, intake);
     let below_tick = F405::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
 }
 
-/// The outputs' pins and the watchdog alone, as [`main`] sets them up: for the image that stops on purpose.
+/// The outputs' pins and the watchdog alone, as [`start`] sets them up: for the image that stops on purpose.
 /// What the program before this one left, if it crashed; it is cleared.
 pub fn rehearse() -> Option<Crash> {
     let left = record::read();
@@ -111,9 +84,4 @@ pub fn rehearse() -> Option<Crash> {
         IndependentWatchdog::new(chip.IWDG, chip.DBGMCU).start();
     }
     left
-}
-
-/// Takes the current off the outputs.
-pub fn drop_outputs() {
-    OutputPins::drop_now();
 }

@@ -23,13 +23,6 @@ impl OutputPins {
         });
         outputs
     }
-
-    /// Whether the service input is on.
-    pub fn service() -> bool {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.idr().read().idr4().bit_is_set()
-    }
 }
 
 impl OutputRegisters for OutputPins {
@@ -72,16 +65,6 @@ impl IndependentWatchdog {
     /// Not started.
     pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
         Self { watchdog, debug }
-    }
-
-    /// Whether it has bitten since power was applied or [`Self::forget`] was called.
-    pub fn has_bitten(rcc: &RCC) -> bool {
-        rcc.csr().read().wdgrstf().bit_is_set()
-    }
-
-    /// Forgets that it has bitten.
-    pub fn forget(rcc: &RCC) {
-        rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 

@@ -1,31 +1,19 @@
-//! The link's pins, and what the main loop has of the chip.
+//! What the main loop has of the chip.
 
-use stm32f4::stm32f405::{FLASH, GPIOB, RCC, RNG};
+use stm32f4::stm32f405::{FLASH, RCC, RNG};
 use touchdown_protocol::link::Refusal;
 
-use super::chip::{Spi1, Wait};
+use super::chip::Spi1;
 use super::clocks::CORE_HZ;
 use super::converter::Converter;
 use super::inputs::PinInputs;
 use super::line::Port;
 use super::outputs::{IndependentWatchdog, OutputPins};
-use super::{ABILITIES, TASKS};
 use crate::board::silicon::{Chip, ChipTasks};
-use crate::board::{Abilities, slots};
+use crate::board::slots::{self, ConfigFlash};
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 1_000;
-
-/// PB6 sends, PB7 receives: USART1.
-pub fn wire(pins: &GPIOB, rcc: &RCC) {
-    rcc.ahb1enr().modify(|_, w| w.gpioben().enabled());
-    rcc.apb2enr().modify(|_, w| w.usart1en().enabled());
-    pins.afrl().modify(|_, w| w.afrl6().af7().afrl7().af7());
-    // A line that is not there reads as idle.
-    pins.pupdr().modify(|_, w| w.pupdr7().pull_up());
-    pins.moder()
-        .modify(|_, w| w.moder6().alternate().moder7().alternate());
-}
 
 /// The stored configuration, the noise source and what tells why it was reset.
 pub struct F405 {
@@ -49,12 +37,12 @@ impl Chip for F405 {
     type Source = Converter;
     type Inputs = PinInputs;
     type Spi = Spi1;
-    type Wait = Wait;
     type Port = Port;
     const MHZ: u32 = CORE_HZ / 1_000_000;
-    const ABILITIES: Abilities = ABILITIES;
+    const FULL_SCALE: u16 = 4_095;
 
     fn tasks() -> &'static ChipTasks<Self> {
+        static TASKS: ChipTasks<F405> = ChipTasks::empty();
         &TASKS
     }
 
@@ -72,6 +60,35 @@ impl Chip for F405 {
     }
 
     fn forget_reset(&self) {
-        IndependentWatchdog::forget(&self.rcc);
+        self.rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    }
+}
+
+impl ConfigFlash for FLASH {
+    // Sector 11, 128 Kbytes, of which an erase takes 2 s: RM0090, flash module organization. memory.x leaves it out.
+    const START: usize = 0x080e_0000;
+    const BYTES: usize = 128 * 1024;
+
+    fn unlock(&self) {
+        // RM0090, unlocking the flash control register.
+        for key in [0x4567_0123, 0xcdef_89ab] {
+            self.keyr().write(|w| w.key().set(key));
+        }
+    }
+
+    fn program(&self, address: usize, bytes: [u8; 8]) {
+        for (index, word) in bytes.as_chunks().0.iter().enumerate() {
+            // One word at a time, 16 us.
+            self.cr().write(|w| w.pg().set_bit().psize().psize32());
+            // SAFETY: an erased word of this sector, aligned, programming enabled.
+            unsafe {
+                ((address + 4 * index) as *mut u32).write_volatile(u32::from_le_bytes(*word))
+            };
+            while self.sr().read().bsy().bit_is_set() {}
+        }
+    }
+
+    fn lock(&self) {
+        self.cr().write(|w| w.lock().set_bit());
     }
 }

@@ -11,7 +11,7 @@ use touchdown_core::sample::Sample;
 
 use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
-use crate::ad7606::{Ad7606, NoSample};
+use crate::ad7606::Ad7606;
 use crate::board::SAMPLE_RATE_HZ;
 use crate::board::bus::Bus;
 use crate::platform::SampleSource;
@@ -19,25 +19,8 @@ use crate::platform::SampleSource;
 /// Cycles for which CONVST is low before it rises: 0.4 us.
 const LOW: u32 = 64;
 
-/// CONVST: the timer moves it.
-pub struct ByTimer;
-
 /// BUSY and RESET.
 pub struct PortBPin;
-
-impl ErrorType for ByTimer {
-    type Error = Infallible;
-}
-
-impl OutputPin for ByTimer {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
 
 impl ErrorType for PortBPin {
     type Error = Infallible;
@@ -73,7 +56,7 @@ impl OutputPin for PortBPin {
 
 /// Timer and converter.
 pub struct ExternalConverter {
-    adc: Ad7606<Bus<SelectedSpi>, ByTimer, PortBPin, PortBPin>,
+    adc: Ad7606<Bus<SelectedSpi>, PortBPin, PortBPin>,
     timer: TIM2,
     number: TIM3,
     edges: EXTI,
@@ -87,7 +70,7 @@ impl ExternalConverter {
         (convst, pins): (&GPIOA, &GPIOB),
         (edges, routes): (EXTI, &SYSCFG),
         rcc: &RCC,
-    ) -> Result<Self, NoSample> {
+    ) -> Option<Self> {
         rcc.ahb2enr()
             .modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
         rcc.apb1enr1()
@@ -116,8 +99,8 @@ impl ExternalConverter {
         }
         edges.ftsr1().modify(|_, w| w.ft0().set_bit());
         edges.imr1().modify(|_, w| w.im0().set_bit());
-        let adc = Ad7606::try_new(bus, ByTimer, PortBPin, PortBPin, &mut Wait {})?;
-        Ok(Self {
+        let adc = Ad7606::try_new(bus, PortBPin, PortBPin, &mut Wait {})?;
+        Some(Self {
             adc,
             timer,
             number,

@@ -1,10 +1,9 @@
 //! The speed pulse, "levitation on" and the service input.
 
-use stm32g4::stm32g474::{GPIOB, RCC, TIM4};
+use stm32g4::stm32g474::{GPIOB, GPIOC, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::CORE_HZ;
-use super::outputs::OutputPort;
 use crate::board::inputs::{InputRegisters, Inputs};
 
 /// The timer counts every sixteenth tick: one turn of it takes 6.2 ms.
@@ -62,6 +61,8 @@ impl InputRegisters for TimerInputs {
     }
 
     fn service(&self) -> bool {
-        OutputPort::service()
+        // SAFETY: a read of a register that reading does not change; `OutputPort` has set up the port.
+        let pins = unsafe { &*GPIOC::ptr() };
+        pins.idr().read().idr4().bit_is_set()
     }
 }

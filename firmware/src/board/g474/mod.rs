@@ -19,54 +19,28 @@ use self::converter::ExternalConverter;
 use self::inputs::TimerInputs;
 use self::line::ChannelPort;
 use self::outputs::{IndependentWatchdog, OutputPort};
-use self::remote::G474;
-use self::spi::Wait;
+pub use self::remote::G474;
 use super::chip_platform::ChipPlatform;
+use super::default_settings;
 use super::line::Line;
-use super::silicon::{self, ChipTasks, OutputRegisters as _};
-use super::{Abilities, SAMPLE_RATE_HZ, default_settings};
+use super::silicon::{self, Chip as _};
 use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory::Memory;
-
-/// 16 bit; no pin takes the pulses of ring and cage.
-const ABILITIES: Abilities = Abilities {
-    sample_rate: SAMPLE_RATE_HZ as f32,
-    full_scale: 65_535,
-    tachometers: false,
-};
-
-/// What the interrupt at the fall of BUSY, PendSV and the main loop share.
-static TASKS: ChipTasks<G474> = ChipTasks::new();
-
-/// BUSY fell: the converter has a sample.
-pub fn on_converted() {
-    TASKS.on_converted();
-}
-
-/// PendSV: samples wait.
-pub fn on_waiting() {
-    TASKS.on_waiting();
-}
-
-/// Starts sampling, and the main loop.
-pub fn main(memory: &'static mut Memory) -> ! {
-    silicon::run(start(memory))
-}
 
 /// The rig by 16 bit over +-1000 um, where nothing is stored: there is never current.
 fn fallback() -> Settings {
     let mut settings = default_settings();
     let sensing = &mut settings.monitor.sensing;
     (sensing.resolution, sensing.zero_count) = (2_000e-6 / 65_536.0, 32_768.0);
-    sensing.full_scale = ABILITIES.full_scale;
+    sensing.full_scale = G474::FULL_SCALE;
     settings
 }
 
-/// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before
+/// Brings everything up, for [`silicon::run`]. A frame of its own: what is put in its place here is gone from the stack before
 /// the first interrupt.
 #[inline(never)]
-fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> {
+pub fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> {
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
@@ -74,8 +48,10 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
     let pins = OutputPort::new(chip.GPIOC, rcc);
     info!("touchdown {=str} on stm32g474", env!("CARGO_PKG_VERSION"));
     clocks::start(rcc, &chip.FLASH, &chip.PWR);
-    let has_bitten = IndependentWatchdog::has_bitten(rcc);
-    let (block, settings, found) = silicon::check::<FLASH>(fallback(), &ABILITIES, has_bitten);
+    // Since power was applied, or an order to clear was obeyed.
+    let has_bitten = rcc.csr().read().iwdgrstf().bit_is_set();
+    let (block, settings, found) =
+        silicon::check::<FLASH>(fallback(), &G474::ABILITIES, has_bitten);
     journal::config(&settings.monitor);
     let converter = ExternalConverter::try_new(
         spi::converter(chip.SPI1, &chip.GPIOA, rcc),
@@ -83,10 +59,9 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
         (&chip.GPIOA, &chip.GPIOB),
         (chip.EXTI, &chip.SYSCFG),
         rcc,
-    )
-    .ok()?;
+    )?;
     let bus = spi::flash(chip.SPI3, &chip.GPIOA, &chip.GPIOB, rcc);
-    let log = silicon::mount::<G474>(bus, Wait {});
+    let log = silicon::mount::<G474>(bus);
     let line = Line::new(ChannelPort::new(
         chip.USART1,
         chip.DMA1,
@@ -95,16 +70,12 @@ fn start(memory: &'static mut Memory) -> Option<(MainLoop, ChipPlatform<G474>)> 
         rcc,
     ));
     let watchdog = IndependentWatchdog::new(chip.IWDG, chip.DBGMCU);
+    let tasks = G474::tasks();
     let found = (block, &settings, found);
-    let (intake, below) = TASKS.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
+    let (intake, below) = tasks.start_tick(memory, found, (pins, watchdog), log.as_ref())?;
     converter.start();
     let inputs = TimerInputs::wired(&settings, chip.GPIOB, chip.TIM4, rcc);
-    TASKS.start_sampling(&mut core, Interrupt::EXTI0, converter, inputs, intake);
+    tasks.start_sampling(&mut core, Interrupt::EXTI0, converter, inputs, intake);
     let below_tick = G474::new(chip.FLASH, chip.RCC, chip.RNG);
     Some((below, ChipPlatform::new(below_tick, line, log)))
-}
-
-/// Takes the current off the outputs.
-pub fn drop_outputs() {
-    OutputPort::drop_now();
 }

@@ -28,13 +28,6 @@ impl OutputPort {
         }
         outputs
     }
-
-    /// Whether the service input is on.
-    pub fn service() -> bool {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.idr().read().idr4().bit_is_set()
-    }
 }
 
 impl OutputRegisters for OutputPort {
@@ -70,16 +63,6 @@ impl IndependentWatchdog {
     /// Not started.
     pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
         Self { watchdog, debug }
-    }
-
-    /// Whether it has bitten since power was applied or [`Self::forget`] was called.
-    pub fn has_bitten(rcc: &RCC) -> bool {
-        rcc.csr().read().iwdgrstf().bit_is_set()
-    }
-
-    /// Forgets it.
-    pub fn forget(rcc: &RCC) {
-        rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 

@@ -8,11 +8,9 @@ use super::converter::ExternalConverter;
 use super::inputs::TimerInputs;
 use super::line::ChannelPort;
 use super::outputs::{IndependentWatchdog, OutputPort};
-use super::spi::{SelectedSpi, Wait};
-use super::{ABILITIES, TASKS};
+use super::spi::SelectedSpi;
 use crate::board::silicon::{Chip, ChipTasks};
-use crate::board::slots::ConfigFlash;
-use crate::board::{Abilities, slots};
+use crate::board::slots::{self, ConfigFlash};
 
 /// Looks at the noise source, far more than a word takes.
 const WORD_POLLS: u32 = 10_000;
@@ -42,12 +40,12 @@ impl Chip for G474 {
     type Source = ExternalConverter;
     type Inputs = TimerInputs;
     type Spi = SelectedSpi;
-    type Wait = Wait;
     type Port = ChannelPort;
     const MHZ: u32 = CORE_HZ / 1_000_000;
-    const ABILITIES: Abilities = ABILITIES;
+    const FULL_SCALE: u16 = 65_535;
 
     fn tasks() -> &'static ChipTasks<Self> {
+        static TASKS: ChipTasks<G474> = ChipTasks::empty();
         &TASKS
     }
 
@@ -65,7 +63,7 @@ impl Chip for G474 {
     }
 
     fn forget_reset(&self) {
-        IndependentWatchdog::forget(&self.rcc);
+        self.rcc.csr().modify(|_, w| w.rmvf().set_bit());
     }
 }
 

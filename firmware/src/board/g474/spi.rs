@@ -1,6 +1,5 @@
 //! SPI1 with the AD7606, and SPI3 with the W25Q of the drop log, polled.
 
-use embedded_hal::delay::DelayNs;
 use stm32g4::stm32g474::{GPIOA, GPIOB, RCC, SPI1, SPI3, gpioa, spi1};
 
 use super::clocks::CORE_HZ;
@@ -78,6 +77,8 @@ impl SelectedSpi {
 }
 
 impl SpiRegisters for SelectedSpi {
+    type Wait = Wait;
+
     fn select(&mut self, is_on: bool) {
         while self.registers().sr().read().bsy().bit_is_set() {}
         // SAFETY: a single write to a register that only sets and resets.
@@ -95,9 +96,5 @@ impl SpiRegisters for SelectedSpi {
         registers.dr8().write(|w| unsafe { w.bits(byte) });
         while registers.sr().read().rxne().bit_is_clear() {}
         registers.dr8().read().bits()
-    }
-
-    fn wait_ns(&mut self, time: u32) {
-        Wait {}.delay_ns(time);
     }
 }

@@ -2,13 +2,12 @@
 
 use semihosting::experimental::env;
 use semihosting::fs::File;
-use semihosting::io::{Read, Write};
+use semihosting::io::{Read as _, Write as _};
 use touchdown_protocol::wire::{self, Played, Record, ReplayHead};
 
-use super::Failure;
-use super::name::Name;
 use super::nor::NorFile;
-use super::settings::SettingsFile;
+use super::settings::{SettingsFile, fill};
+use super::{Failure, Name};
 use crate::intake::Incoming;
 
 const COMMAND_LINE_BYTES: usize = 512;
@@ -33,7 +32,7 @@ impl Files {
     pub fn open() -> Result<Self, Failure> {
         let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
         let mut names = &arguments;
-        let mut next = || Name::new(names.next()?.ok()?);
+        let mut next = || Name::from_bytes_truncating_at_nul(names.next()?.ok()?.as_bytes()).ok();
         let (Some(replay), Some(answer), log, settings, None) =
             (next(), next(), next(), next(), next())
         else {
@@ -42,7 +41,7 @@ impl Files {
         Ok(Self {
             replay: Replay::open(&replay)?,
             answer: Answer::create(&answer)?,
-            log: log.map(|name| NorFile::open(name.get())).transpose()?,
+            log: log.map(|name| NorFile::open(&name)).transpose()?,
             settings: settings.map(SettingsFile),
         })
     }
@@ -60,7 +59,7 @@ pub struct Replay {
 impl Replay {
     fn open(name: &Name) -> Result<Self, Failure> {
         Ok(Self {
-            file: File::open(name.get()).map_err(|_| Failure::Replay)?,
+            file: File::open(name).map_err(|_| Failure::Replay)?,
             block: [[0; wire::SAMPLE_BYTES]; BLOCK_SAMPLES],
             records: 0,
             at: 0,
@@ -107,14 +106,8 @@ impl Replay {
 
     /// Fills the block as far as the file goes; how many records it has.
     fn read(&mut self) -> Result<usize, Failure> {
-        let bytes = self.block.as_flattened_mut();
-        let mut filled = 0;
-        while let Some(space) = bytes.get_mut(filled..).filter(|space| !space.is_empty()) {
-            match self.file.read(space).map_err(|_| Failure::Replay)? {
-                0 => break,
-                read => filled += read,
-            }
-        }
+        let filled = fill(&mut self.file, self.block.as_flattened_mut());
+        let filled = filled.map_err(|_| Failure::Replay)?;
         if filled % wire::SAMPLE_BYTES != 0 {
             return Err(Failure::Replay);
         }
@@ -127,7 +120,7 @@ pub struct Answer(File);
 
 impl Answer {
     fn create(name: &Name) -> Result<Self, Failure> {
-        let mut file = File::create(name.get()).map_err(|_| Failure::Answer)?;
+        let mut file = File::create(name).map_err(|_| Failure::Answer)?;
         file.write_all(&wire::ANSWER_MAGIC)
             .map_err(|_| Failure::Answer)?;
         Ok(Self(file))

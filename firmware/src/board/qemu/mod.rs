@@ -6,7 +6,6 @@
 
 mod files;
 mod line;
-mod name;
 mod nor;
 mod remote;
 mod settings;
@@ -15,6 +14,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::SCB;
 use defmt::{Debug2Format, Display2Format, error, info};
+use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
@@ -67,6 +67,8 @@ enum End {
     Restart = 7,
 }
 
+/// The name of a file of the desktop.
+type Name = heapless::CString<256>;
 /// The drop log in a file.
 pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
@@ -150,7 +152,7 @@ impl Sampling {
         let next = if is_free && !IS_OVER.load(Ordering::Relaxed) {
             self.replay
                 .next()
-                .unwrap_or_else(|failure| end(failure as i32))
+                .unwrap_or_else(|failure| exit(failure as i32))
         } else {
             self.wire.step(None);
             return;
@@ -184,18 +186,9 @@ pub fn main(memory: &'static mut Memory) -> ! {
         Ok((mut below, mut emulator)) => below.run(&mut emulator),
         Err(failure) => {
             error!("failed: {}", Debug2Format(&failure));
-            end(failure as i32)
+            exit(failure as i32)
         }
     }
-}
-
-fn end(status: i32) -> ! {
-    semihosting::process::exit(status)
-}
-
-/// Ends the emulator after a fault of the core, which would else spin for ever.
-pub fn abort() -> ! {
-    semihosting::process::abort()
 }
 
 /// Brings everything up. A frame of its own: what is put in its place here is gone from the stack before the first

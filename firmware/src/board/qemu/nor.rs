@@ -26,18 +26,15 @@ pub struct NorFile {
 impl NorFile {
     /// A file that is there, or a new one, all erased.
     pub fn open(name: &CStr) -> Result<Self, Failure> {
-        let there = File::options().read(true).write(true).open(name);
+        let open = || File::options().read(true).write(true).open(name);
+        let there = open();
         let is_new = there.is_err();
-        let file = match there {
-            Ok(file) => file,
-            Err(_) => {
-                File::create(name).map_err(|_| Failure::Log)?;
-                let again = File::options().read(true).write(true).open(name);
-                again.map_err(|_| Failure::Log)?
-            }
-        };
+        let file = there.or_else(|_| {
+            drop(File::create(name)?);
+            open()
+        });
         let mut flash = Self {
-            file,
+            file: file.map_err(|_| Failure::Log)?,
             failed: false,
         };
         if is_new {

@@ -5,6 +5,7 @@ use core::time::Duration;
 
 use defmt::info;
 use semihosting::experimental::time::Instant;
+use semihosting::process::exit;
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::Fingerprint;
 use touchdown_protocol::link::{Frame, Refusal};
@@ -12,7 +13,7 @@ use touchdown_protocol::wire::Record;
 
 use super::line::Line;
 use super::settings::SettingsFile;
-use super::{DONE, Emulated, End, Failure, FileLog, IS_OVER, TICK, end};
+use super::{DONE, Emulated, End, Failure, FileLog, IS_OVER, TICK};
 use crate::board::{Abilities, BLOCK_SAMPLES};
 use crate::journal;
 use crate::platform::{JournalEntry, Platform};
@@ -136,7 +137,7 @@ impl Platform for EmulatorPlatform {
     }
 
     fn reset(&mut self) {
-        end(End::Restart as i32)
+        exit(End::Restart as i32)
     }
 
     fn after_slice(&mut self, forecast: &ForecastTask) {
@@ -154,10 +155,10 @@ impl Platform for EmulatorPlatform {
     fn done(&mut self, samples: u64) {
         DONE.store(samples as u32, Ordering::Release);
         if self.hold(|tick| tick.desk.board.failed) {
-            end(Failure::Answer as i32);
+            exit(Failure::Answer as i32);
         }
         if self.log.as_mut().is_some_and(|it| it.flash().has_failed()) {
-            end(Failure::Log as i32);
+            exit(Failure::Log as i32);
         }
         let is_over = self.is_over();
         if !core::mem::replace(&mut self.was_over, is_over) {
@@ -167,7 +168,7 @@ impl Platform for EmulatorPlatform {
             self.summarise(fingerprint);
         }
         if !self.stays() && self.is_sent() {
-            end(End::Done as i32);
+            exit(End::Done as i32);
         }
     }
 }

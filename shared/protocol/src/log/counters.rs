@@ -41,20 +41,17 @@ impl Counters {
     /// trip is `latched` is a drop.
     pub fn count(&mut self, sequence: u32, ending: Option<&Ending>, latched: Option<Cause>) {
         self.episodes = self.episodes.max(sequence);
-        if ending.is_none_or(|it| it.landing) {
-            self.uncleared = self.uncleared.or(latched);
+        if ending.is_some_and(|it| !it.landing) {
+            return;
         }
+        self.uncleared = self.uncleared.or(latched);
+        self.landings = self.landings.saturating_add(1);
         match ending {
-            Some(ending) if ending.landing => {
-                self.landings = self.landings.saturating_add(1);
+            Some(ending) => {
                 let index = ending.index.min(GREATEST_INDEX);
                 self.weight = self.weight.saturating_add((index * 1e3) as u64);
             }
-            Some(_) => {}
-            None => {
-                self.landings = self.landings.saturating_add(1);
-                self.unweighed = self.unweighed.saturating_add(1);
-            }
+            None => self.unweighed = self.unweighed.saturating_add(1),
         }
     }
 
