@@ -42,8 +42,7 @@ pub(super) fn page(plan: &Plan, points: &[Point], found: Option<&Found>) -> Stri
     let start = match plan.start {
         Some(start) => format!(
             "Starts anywhere within {} of the clearance, with up to {} mm/s in any direction.",
-            start.within,
-            1e3 * start.speed
+            start.within, start.speed_mm_s
         ),
         None => "Starts as in the scene.".to_owned(),
     };
