@@ -5,7 +5,7 @@ use touchdown_models::Compliance;
 use touchdown_rotor::error::ConfigError;
 
 use crate::limits::extreme::{Extreme, STEPS};
-use crate::limits::press::{Press, Pressed};
+use crate::limits::press::Press;
 use crate::limits::row::{Row, Worst};
 use touchdown_run::model::with_model;
 use touchdown_scene::scales::{compliance, fastest_impact};
@@ -29,8 +29,8 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
     }
     refused.push(REFUSED * limit);
 
-    let (mut pressed, mut energy) = (Pressed::default(), Worst::default());
-    let (mut drawn, mut accepted) = (0.0, 0);
+    let (mut energy, mut accepted) = (Worst::default(), 0);
+    let (mut drawn, mut deepest, mut not_finite) = (0.0, 0.0_f64, 0);
     for &scheme in Fidelity::Hertz.schemes() {
         let at = |step| {
             let mut scene = compliant(extreme, precision, step);
@@ -50,7 +50,8 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
                 energy.take(seen.energy_gain, limit);
                 drawn = f64::max(drawn, seen.drawn);
             }
-            pressed = pressed.worst(seen);
+            deepest = deepest.max(seen.depth);
+            not_finite = not_finite.max(seen.not_finite);
         }
         for &step in &refused {
             let scene = at(step);
@@ -82,13 +83,13 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
         ));
         rows.push(row(
             "deepest compression",
-            pressed.depth,
+            deepest,
             1.0,
             "of what the speed allows",
         ));
         rows.push(row(
             "steps with NaN or infinity",
-            f64::from(pressed.not_finite),
+            f64::from(not_finite),
             0.0,
             "steps",
         ));

@@ -34,21 +34,6 @@ pub struct Pressed {
     pub not_finite: u32,
 }
 
-impl Pressed {
-    /// The worse of both.
-    pub fn worst(self, other: Self) -> Self {
-        Self {
-            depth: self.depth.max(other.depth),
-            energy_gain: self.energy_gain.max(other.energy_gain),
-            translation: self.translation.max(other.translation),
-            half_steps: self.half_steps.max(other.half_steps),
-            drawn: self.drawn.max(other.drawn),
-            rounding: self.rounding.max(other.rounding),
-            not_finite: self.not_finite.max(other.not_finite),
-        }
-    }
-}
-
 /// Watches the scene's model, of this stiffness, over the scene's duration.
 pub struct Press<'a> {
     /// The scene.
@@ -66,16 +51,7 @@ impl Use for Press<'_> {
         self,
         subject: &Subject<R, M>,
     ) -> Result<Pressed, ConfigError> {
-        let (
-            scene,
-            Subject {
-                model,
-                start,
-                spin,
-                scales,
-                ..
-            },
-        ) = (self.scene, subject);
+        let (scene, model, scales) = (self.scene, &subject.model, &subject.scales);
         let n = match scene.materials.contact {
             Contact::Point => 1.5,
             Contact::Line { .. } | Contact::LinePower { .. } => 1.0,
@@ -95,7 +71,7 @@ impl Use for Press<'_> {
         let epsilon = R::EPSILON.to_f64();
 
         let mut seen = Pressed::default();
-        let mut state = model.start(start, *spin, |_| {})?;
+        let mut state = model.start(&subject.start, subject.spin, |_| {})?;
         let begun = model.kinematics(&state);
         let first = begun.spin;
         let (beta, spun) = (inertia(scene), first.to_f64());

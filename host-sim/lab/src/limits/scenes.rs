@@ -6,7 +6,7 @@ use super::epsilon;
 use crate::limits::extreme::Extreme;
 use crate::limits::row::{Row, Worst};
 use crate::limits::truth::Truth;
-use crate::limits::watch::{ROUNDED, Watch, Watched};
+use crate::limits::watch::{ROUNDED, Watch, most};
 use touchdown_run::model::{simulate, with_model};
 use touchdown_scene::Precision;
 
@@ -23,16 +23,12 @@ pub fn rows(
     truth: &Truth,
     precision: Precision,
 ) -> Result<Vec<Row>, ConfigError> {
-    let mut watched = Watched {
-        outside: -1.0,
-        ..Watched::default()
-    };
+    let mut runs = Vec::new();
     let mut impacts = (0.0_f64, 0);
     let mut contact = Worst::default();
     for &step in extreme.steps {
         let scene = extreme.at(precision, step);
         let seen = with_model(&scene, Watch(&scene))?;
-        watched = watched.worst(seen);
         let history = simulate(&scene)?;
         let (error, compared) = truth.impact_error(&history, precision);
         impacts = (impacts.0.max(error), compared);
@@ -44,15 +40,11 @@ pub fn rows(
             };
             contact.take(error, limit);
         }
+        runs.push(seen);
     }
     let row = |measure: &str, measured, limit, unit| {
-        Row::new(
-            format!("{}: {measure}", extreme.name),
-            precision,
-            measured,
-            limit,
-            unit,
-        )
+        let name = format!("{}: {measure}", extreme.name);
+        Row::new(name, precision, measured, limit, unit)
     };
     let mut rows = Vec::new();
     if impacts.1 > 0 {
@@ -71,27 +63,31 @@ pub fn rows(
             "T",
         ));
     }
+    let (spin, path) = (
+        most(&runs, |it| it.spin_rounding),
+        most(&runs, |it| it.path_rounding),
+    );
     rows.push(row(
         "energy gained",
-        watched.energy_gain,
-        super::rounding(precision) + watched.spin_rounding + watched.path_rounding,
+        most(&runs, |it| it.energy_gain),
+        super::rounding(precision) + spin + path,
         "m g rho0",
     ));
     rows.push(row(
         "farthest beyond the wall",
-        watched.outside.max(0.0),
+        most(&runs, |it| it.outside),
         ROUNDED * epsilon(precision),
         "rho0",
     ));
     rows.push(row(
         "steps with NaN or infinity",
-        f64::from(watched.not_finite),
+        most(&runs, |it| f64::from(it.not_finite)),
         0.0,
         "steps",
     ));
     rows.push(row(
         "most changes in a step",
-        f64::from(watched.changes),
+        most(&runs, |it| f64::from(it.changes)),
         MOST_CHANGES,
         "changes",
     ));
