@@ -96,7 +96,7 @@ fn judged(name: &str, score: &Score) -> [Row; 5] {
     let others = score.drops - whirls;
     let quantiles = |of: Option<Quantiles>| of.map(|it| [it[0], it[2], it[4]]);
     let said = |of: Option<Quantiles>, scale: f64| {
-        let [low, middle, high] = of.map_or([f64::NAN; 3], |it| [it[0], it[2], it[4]]);
+        let [low, middle, high] = quantiles(of).unwrap_or([f64::NAN; 3]);
         format!(
             "{:.2}, {:.2}, {:.2} (5, 50, 95 %)",
             scale * low,
