@@ -1,14 +1,13 @@
 //! Each extreme scene on rung `hertz`, in both schemes: steps that it refuses, and what holds at those
 //! that it takes.
 
-use touchdown_models::Compliance;
 use touchdown_rotor::error::ConfigError;
 
 use crate::limits::extreme::{Extreme, STEPS};
 use crate::limits::press::Press;
 use crate::limits::row::{Row, Worst};
 use touchdown_run::model::with_model;
-use touchdown_scene::scales::{compliance, fastest_impact};
+use touchdown_scene::scales::compliance;
 use touchdown_scene::{Fidelity, Precision, Scene, Scheme};
 
 /// Part of 2/omega_c that is still taken, and the part that no longer is.
@@ -31,6 +30,10 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
 
     let (mut energy, mut accepted) = (Worst::default(), 0);
     let (mut drawn, mut deepest, mut not_finite) = (0.0, 0.0_f64, 0);
+    let watched = |scene: &Scene| {
+        let stiff = &stiff;
+        with_model(scene, Press { scene, stiff })
+    };
     for &scheme in Fidelity::Hertz.schemes() {
         let at = |step| {
             let mut scene = compliant(extreme, precision, step);
@@ -38,8 +41,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
             scene
         };
         for &step in &taken {
-            let scene = at(step);
-            let seen = with_model(&scene, press(&scene, &stiff))?;
+            let seen = watched(&at(step))?;
             if step <= accurate {
                 let rounding = super::rounding(precision) + seen.rounding;
                 let late = match scheme {
@@ -54,8 +56,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
             not_finite = not_finite.max(seen.not_finite);
         }
         for &step in &refused {
-            let scene = at(step);
-            accepted += u32::from(with_model(&scene, press(&scene, &stiff)).is_ok());
+            accepted += u32::from(watched(&at(step)).is_ok());
         }
     }
     let row = |measure: &str, measured, limit, unit| {
@@ -95,14 +96,6 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
         ));
     }
     Ok(rows)
-}
-
-fn press<'a>(scene: &'a Scene, stiff: &'a Compliance<f64>) -> Press<'a> {
-    Press {
-        scene,
-        stiff,
-        fastest: fastest_impact(scene),
-    }
 }
 
 fn compliant(extreme: &Extreme, precision: Precision, step: f64) -> Scene {

@@ -6,9 +6,10 @@ use touchdown_rotor::{Change, Kinematics, Precision, Stepper, Touch};
 
 use crate::limits::watch::{ROUNDED, energy, inertia, is_finite};
 use touchdown_run::model::{Subject, Use};
+use touchdown_scene::scales::fastest_impact;
 use touchdown_scene::{Contact, Scene};
 
-/// Of the fastest impact expected: beyond it neither step nor stiffness was chosen for what comes. At
+/// Of the fastest impact that stiffness and longest step are made for: beyond it neither was chosen for what comes. At
 /// twice the speed the rate of a contact is 15 % higher.
 const EXPECTED: f64 = 2.0;
 
@@ -40,8 +41,6 @@ pub struct Press<'a> {
     pub scene: &'a Scene,
     /// Of its contact.
     pub stiff: &'a Compliance<f64>,
-    /// The fastest impact that stiffness and longest step are made for, m/s.
-    pub fastest: f64,
 }
 
 impl Use for Press<'_> {
@@ -80,7 +79,7 @@ impl Use for Press<'_> {
         let whole = |k: &Kinematics<R>| energy(scene, k, first) + stored(depth(k));
         // Height counts from the bottom.
         let all = whole(&begun) + 0.5 * beta * spun * spun + gravity;
-        let expected = EXPECTED * self.fastest / scales.speed;
+        let expected = EXPECTED * fastest_impact(scene) / scales.speed;
         let (mut fastest, mut slow_fastest) = (speed(&begun), speed(&begun));
         let (mut lowest, mut largest, mut impacts) = (f64::INFINITY, 0.0_f64, 0_u32);
         let steps = (scene.run.duration / scene.model.step).ceil();

@@ -72,11 +72,11 @@ impl Case {
                 // What is told has to be a restitution, too.
                 let scene = any_rig(MOST_RESTITUTION.min(1.0 / restitution), random)?;
                 let spin = sign * scene.rotor.spin;
-                let drop = dropped(plan, scene, spin, random);
-                Ok(drop.told(|monitor| {
-                    monitor.detector.machine.friction *= friction as f32;
-                    monitor.detector.machine.restitution *= restitution as f32;
-                }))
+                let mut drop = dropped(plan, scene, spin, random);
+                let told = &mut drop.monitor.detector.machine;
+                told.friction *= friction as f32;
+                told.restitution *= restitution as f32;
+                Ok(drop)
             }
             Self::Thrown(rate) => {
                 let mut scene = any_rig(MOST_RESTITUTION, random)?;

@@ -50,9 +50,9 @@ pub(super) fn drop(plan: &Plan, misled: f64, random: &mut ChaCha8Rng) -> Result<
         spin: scene.rotor.spin,
         ..Levitated::default()
     };
-    let told = told.monitor_config();
-    let drop = Drop::released(plan, scene, floats, velocity, LEAD, 0.0);
-    Ok(drop.told(|monitor| *monitor = told))
+    let mut drop = Drop::released(plan, scene, floats, velocity, LEAD, 0.0);
+    drop.monitor = told.monitor_config();
+    Ok(drop)
 }
 
 /// Drops to compare two targets with.

@@ -8,14 +8,13 @@ use touchdown_core::event::EventKind;
 use super::figure::Figure;
 use super::impact::dropped;
 use super::levitated::Levitated;
-use super::row::Row;
+use super::row::{Row, interval};
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
 use super::{Findings, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};
-use touchdown_base::wilson;
 use touchdown_scene::{Scene, Start};
 
 /// Part of the regimes that has to be told right.
@@ -224,10 +223,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     );
     let wrong: usize = all().map(|it| it.wrong_signs).sum();
     let told: usize = all().map(|it| it.told).sum();
-    let (_, upper) = match told {
-        0 => (0.0, 1.0),
-        _ => wilson::interval(wrong as u64, told as u64),
-    };
+    let (_, upper) = interval(share(wrong, told), told);
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
             .with("drops", all().count())

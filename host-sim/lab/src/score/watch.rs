@@ -23,7 +23,7 @@ use touchdown_truth::{TrueState, Truth};
 pub struct Drop {
     /// Of the machine, its sensors and its run.
     pub scene: Scene,
-    /// What the monitor is told.
+    /// What the monitor is told; it may be of another machine than the one that drops.
     pub monitor: MonitorConfig,
     floats: Option<Levitated>,
     /// Before the release.
@@ -68,12 +68,6 @@ impl Drop {
             levitated: 0,
             first: 0.0,
         }
-    }
-
-    /// The monitor is told of another machine than the one that drops.
-    pub fn told(mut self, change: impl FnOnce(&mut MonitorConfig)) -> Self {
-        change(&mut self.monitor);
-        self
     }
 
     /// Of sample `number`, s since the release.

@@ -46,21 +46,16 @@ impl Cost {
 
 /// The drawing as a part of a page.
 pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
-    let axes = Axes::of(&trade.rows, cost);
-    axes.chart().draw(
-        &html! {},
-        &axes.front(&trade.rows),
-        &axes.points(&trade.rows),
-    )
+    let plot = Plot::of(&trade.rows, cost);
+    plot.chart().draw(&html! {}, &plot.front(), &plot.points())
 }
 
 /// The drawing for this machine as a file of its own.
 pub fn svg(trade: &Trade) -> String {
-    let axes = Axes::of(&trade.rows, Cost::Here);
-    let points = html! { (axes.points(&trade.rows)) (key(&trade.rows)) };
-    axes.chart()
-        .file(WIDTH, &axes.front(&trade.rows), &points)
-        .into_string()
+    let plot = Plot::of(&trade.rows, Cost::Here);
+    let points = html! { (plot.points()) (key(&trade.rows)) };
+    let file = plot.chart().file(WIDTH, &plot.front(), &points);
+    file.into_string()
 }
 
 /// What the points mean, inside the drawing.
@@ -83,14 +78,15 @@ fn meanings(rows: &[Row]) -> Vec<(String, String)> {
     rungs.chain(formats).collect()
 }
 
-struct Axes {
+struct Plot<'a> {
+    rows: &'a [Row],
     of: Cost,
     cost: Axis,
     error: Axis,
 }
 
-impl Axes {
-    fn of(rows: &[Row], of: Cost) -> Self {
+impl<'a> Plot<'a> {
+    fn of(rows: &'a [Row], of: Cost) -> Self {
         let costs = rows.iter().filter_map(|row| of.of(row));
         let least = costs.clone().fold(f64::INFINITY, f64::min);
         let most = costs.fold(0.0, f64::max);
@@ -99,6 +95,7 @@ impl Axes {
             (f64::min(low, error), f64::max(high, error))
         });
         Self {
+            rows,
             of,
             cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label(), 8.0),
             error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
@@ -117,8 +114,8 @@ impl Axes {
     }
 
     /// Joins the front, which is about the cost here.
-    fn front(&self, rows: &[Row]) -> Markup {
-        let mut front: Vec<&Row> = rows.iter().filter(|row| row.pareto).collect();
+    fn front(&self) -> Markup {
+        let mut front: Vec<&Row> = self.rows.iter().filter(|row| row.pareto).collect();
         front.sort_by(|a, b| {
             a.pace
                 .seconds_per_simulated_second
@@ -135,8 +132,11 @@ impl Axes {
         pen.finish("front")
     }
 
-    fn points(&self, rows: &[Row]) -> Markup {
-        let known = rows.iter().filter_map(|row| Some((row, self.of.of(row)?)));
+    fn points(&self) -> Markup {
+        let known = self
+            .rows
+            .iter()
+            .filter_map(|row| Some((row, self.of.of(row)?)));
         html! {
             @for (row, cost) in known {
                 @let y = (1.0 - self.error.fraction(height(row.accuracy.worst))) * HEIGHT;
