@@ -56,14 +56,11 @@ pub fn find(plan: &Plan, limit: f64, folder: &Path) -> Result<(Plan, Results), F
     };
     let ends = [search.verdict(0)?, search.verdict(last)?];
     let (below, above) = match ends {
-        [Verdict::Above, Verdict::Below] => {
-            let [above, _] = search.bracket([0, last], |it| it == Verdict::Above)?;
-            let [_, below] = search.bracket([0, last], |it| it != Verdict::Below)?;
-            (Some(below), Some(above))
-        }
-        [Verdict::Below, Verdict::Above] => {
-            let [below, _] = search.bracket([0, last], |it| it == Verdict::Below)?;
-            let [_, above] = search.bracket([0, last], |it| it != Verdict::Above)?;
+        [Verdict::Above, Verdict::Below] | [Verdict::Below, Verdict::Above] => {
+            let [near, _] = search.bracket([0, last], |it| it == ends[0])?;
+            let [_, far] = search.bracket([0, last], |it| it != ends[1])?;
+            let is_rising = ends[0] == Verdict::Below;
+            let (below, above) = if is_rising { (near, far) } else { (far, near) };
             (Some(below), Some(above))
         }
         _ => {

@@ -63,33 +63,19 @@ pub fn rows(
             "T",
         ));
     }
-    let (spin, path) = (
-        most(&runs, |it| it.spin_rounding),
-        most(&runs, |it| it.path_rounding),
-    );
-    rows.push(row(
-        "energy gained",
-        most(&runs, |it| it.energy_gain),
-        super::rounding(precision) + spin + path,
-        "m g rho0",
-    ));
-    rows.push(row(
-        "farthest beyond the wall",
-        most(&runs, |it| it.outside),
-        ROUNDED * epsilon(precision),
-        "rho0",
-    ));
-    rows.push(row(
-        "steps with NaN or infinity",
-        most(&runs, |it| f64::from(it.not_finite)),
-        0.0,
-        "steps",
-    ));
-    rows.push(row(
-        "most changes in a step",
-        most(&runs, |it| f64::from(it.changes)),
-        MOST_CHANGES,
-        "changes",
-    ));
+    let gained = most(&runs, |it| it.energy_gain);
+    let spin = most(&runs, |it| it.spin_rounding);
+    let path = most(&runs, |it| it.path_rounding);
+    let rounding = super::rounding(precision) + spin + path;
+    let outside = most(&runs, |it| it.outside);
+    let not_finite = most(&runs, |it| f64::from(it.not_finite));
+    let changes = most(&runs, |it| f64::from(it.changes));
+    let rounded = ROUNDED * epsilon(precision);
+    rows.extend([
+        row("energy gained", gained, rounding, "m g rho0"),
+        row("farthest beyond the wall", outside, rounded, "rho0"),
+        row("steps with NaN or infinity", not_finite, 0.0, "steps"),
+        row("most changes in a step", changes, MOST_CHANGES, "changes"),
+    ]);
     Ok(rows)
 }

@@ -34,25 +34,18 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
         let name = format!("moreau: {}: {measure}", extreme.name);
         Row::new(name, precision, measured, limit, unit)
     };
+    let outside = most(&runs, |it| it.outside_path);
+    let not_finite = most(&runs, |it| f64::from(it.not_finite));
+    let changes = most(&runs, |it| f64::from(it.changes));
     Ok(vec![
         row("energy gained", energy.measured, energy.limit, "m g rho0"),
         row(
             "farthest beyond the wall",
-            most(&runs, |it| it.outside_path),
+            outside,
             1.0,
             "of half a step's path",
         ),
-        row(
-            "steps with NaN or infinity",
-            most(&runs, |it| f64::from(it.not_finite)),
-            0.0,
-            "steps",
-        ),
-        row(
-            "most changes in a step",
-            most(&runs, |it| f64::from(it.changes)),
-            MOST_CHANGES,
-            "changes",
-        ),
+        row("steps with NaN or infinity", not_finite, 0.0, "steps"),
+        row("most changes in a step", changes, MOST_CHANGES, "changes"),
     ])
 }
