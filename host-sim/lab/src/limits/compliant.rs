@@ -3,7 +3,7 @@
 
 use touchdown_rotor::error::ConfigError;
 
-use crate::limits::extreme::{Extreme, STEPS};
+use crate::limits::extreme::{Extreme, STEPS, at_step};
 use crate::limits::press::Press;
 use crate::limits::row::{Row, Worst};
 use touchdown_run::model::with_model;
@@ -99,7 +99,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
 }
 
 fn compliant(extreme: &Extreme, precision: Precision, step: f64) -> Scene {
-    let mut scene = extreme.at(precision, step);
+    let mut scene = at_step(&extreme.scene, precision, step);
     scene.model.rung = Fidelity::Hertz;
     scene
 }

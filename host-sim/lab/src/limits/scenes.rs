@@ -3,7 +3,7 @@
 use touchdown_rotor::error::ConfigError;
 
 use super::epsilon;
-use crate::limits::extreme::Extreme;
+use crate::limits::extreme::{Extreme, at_step};
 use crate::limits::row::{Row, Worst};
 use crate::limits::truth::Truth;
 use crate::limits::watch::{ROUNDED, Watch, most};
@@ -27,7 +27,7 @@ pub fn rows(
     let mut impacts = (0.0_f64, 0);
     let mut contact = Worst::default();
     for &step in extreme.steps {
-        let scene = extreme.at(precision, step);
+        let scene = at_step(&extreme.scene, precision, step);
         let seen = with_model(&scene, Watch(&scene))?;
         let history = simulate(&scene)?;
         let (error, compared) = truth.impact_error(&history, precision);

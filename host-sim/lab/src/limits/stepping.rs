@@ -3,7 +3,7 @@
 
 use touchdown_rotor::error::ConfigError;
 
-use crate::limits::extreme::Extreme;
+use crate::limits::extreme::{Extreme, at_step};
 use crate::limits::row::{Row, Worst};
 use crate::limits::watch::{Watch, most};
 use touchdown_run::model::with_model;
@@ -21,7 +21,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
     let mut runs = Vec::new();
     let mut energy = Worst::default();
     for &step in extreme.steps {
-        let mut scene = extreme.at(precision, step);
+        let mut scene = at_step(&extreme.scene, precision, step);
         scene.model.rung = Fidelity::Moreau;
         scene.model.scheme = Scheme::Midpoint;
         let seen = with_model(&scene, Watch(&scene))?;

@@ -16,6 +16,7 @@ use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};
 use touchdown_scene::{Scene, Start};
+use touchdown_truth::simulate;
 
 /// Part of the regimes that has to be told right.
 const RIGHT: f64 = 0.99;
@@ -151,7 +152,9 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let regime = watched.truth.regime;
     let end = drop.scene.run.duration;
-    let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
+    let mut shorter = drop.scene.clone();
+    shorter.run.duration = end - SETTLED;
+    let lasts = regime == simulate(&shorter).regime || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
     let events = &watched.detection.events;
     let signs: Vec<_> = events

@@ -9,7 +9,7 @@ use touchdown_rotor::error::ConfigError;
 use super::Plan;
 use super::levitated::Levitated;
 use touchdown_base::failure::Failure;
-use touchdown_base::history::{History, Impact, PhaseKind, Regime};
+use touchdown_base::history::{History, Impact, PhaseKind};
 use touchdown_run::detection::detection;
 use touchdown_run::monitor_run::MonitorOutput;
 use touchdown_run::outcome::Detection;
@@ -73,13 +73,6 @@ impl Drop {
     /// Of sample `number`, s since the release.
     fn time(&self, number: u64) -> f64 {
         (number as f64 - self.levitated as f64 + self.first) / self.scene.run.sample_rate
-    }
-
-    /// By the reference, of a run that ends then (s).
-    pub fn regime_at(&self, end: f64) -> Regime {
-        let mut scene = self.scene.clone();
-        scene.run.duration = end;
-        touchdown_truth::simulate(&scene).regime
     }
 
     /// Ends the run where the whirl gets faster than 1000 turns/s, twenty samples a turn: the rigid laws
