@@ -30,18 +30,15 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
 
     let (mut energy, mut accepted) = (Worst::default(), 0);
     let (mut drawn, mut deepest, mut not_finite) = (0.0, 0.0_f64, 0);
-    let watched = |scene: &Scene| {
-        let stiff = &stiff;
-        with_model(scene, Press { scene, stiff })
-    };
     for &scheme in Fidelity::Hertz.schemes() {
-        let at = |step| {
+        let watched = |step| {
             let mut scene = compliant(extreme, precision, step);
             scene.model.scheme = scheme;
-            scene
+            let (scene, stiff) = (&scene, &stiff);
+            with_model(scene, Press { scene, stiff })
         };
         for &step in &taken {
-            let seen = watched(&at(step))?;
+            let seen = watched(step)?;
             if step <= accurate {
                 let rounding = super::rounding(precision) + seen.rounding;
                 let late = match scheme {
@@ -56,7 +53,7 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
             not_finite = not_finite.max(seen.not_finite);
         }
         for &step in &refused {
-            accepted += u32::from(watched(&at(step)).is_ok());
+            accepted += u32::from(watched(step).is_ok());
         }
     }
     let row = |measure: &str, measured, limit, unit| {

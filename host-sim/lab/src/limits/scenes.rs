@@ -47,14 +47,8 @@ pub fn rows(
         Row::new(name, precision, measured, limit, unit)
     };
     let mut rows = Vec::new();
-    if impacts.1 > 0 {
-        rows.push(row(
-            "error of the first impacts",
-            impacts.0,
-            1.0,
-            "of target",
-        ));
-    }
+    let first = row("error of the first impacts", impacts.0, 1.0, "of target");
+    rows.extend((impacts.1 > 0).then_some(first));
     if contact.limit > 0.0 {
         rows.push(row(
             "time of permanent contact",
