@@ -1,8 +1,8 @@
 //! What a simulated drop did: impacts, phases, regime. Filled in the same way by the model under
 //! test and by the reference.
 
-use serde::Serialize;
-use strum::{EnumString, IntoStaticStr, VariantArray};
+use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 /// The rotor at one moment, SI; time since release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,7 +99,9 @@ pub struct Phase {
 }
 
 /// How the run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, IntoStaticStr, VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Regime {

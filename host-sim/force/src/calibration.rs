@@ -80,7 +80,8 @@ impl Calibration {
         };
         let transform = Transform::holding(calibration.longest());
         let response = calibration.response(&transform);
-        let Some((low, high)) = usable(&response, calibration.highest(&transform)) else {
+        let highest = (HIGHEST * transform.length as f64) as usize;
+        let Some((low, high)) = usable(&response, highest) else {
             let rule = "at no frequency do the hits stand clear of the acceleration's noise";
             return Err(InputError::at_line(&hits.file, hits.hits[0].line, rule));
         };
@@ -142,10 +143,6 @@ impl Calibration {
             variance,
             coherence,
         }
-    }
-
-    fn highest(&self, transform: &Transform) -> usize {
-        (HIGHEST * transform.length as f64) as usize
     }
 }
 

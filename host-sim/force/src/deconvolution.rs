@@ -48,7 +48,7 @@ pub struct Force {
 pub fn deconvolve(
     recording: &Recording,
     quiet: &[Quiet],
-    calibrations: &[&Calibration],
+    calibrations: &[Calibration],
     resolution: &Resolution,
 ) -> Force {
     let samples = recording.acceleration[0].len();
@@ -218,6 +218,7 @@ impl Search<'_> {
     }
 }
 
-fn product(a: &[f64], b: &[f64]) -> f64 {
+/// Sum of the products of two signals.
+pub fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

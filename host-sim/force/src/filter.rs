@@ -6,53 +6,30 @@ use std::f64::consts::PI;
 /// Of so many sections, each of second order.
 const SECTIONS: usize = 4;
 
-/// An anti-alias filter of eighth order.
-#[derive(Clone, Debug)]
-pub struct LowPass {
-    sections: [Section; SECTIONS],
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Section {
-    gain: f64,
-    back: [f64; 2],
-}
-
-impl LowPass {
-    /// Corner in Hz, below half of `rate` (Hz).
-    pub fn new(corner: f64, rate: f64) -> Self {
-        let k = (PI * corner / rate).tan();
-        let mut sections = [Section::default(); SECTIONS];
-        for (index, section) in sections.iter_mut().enumerate() {
-            let angle = PI * (2 * index + 1) as f64 / (4 * SECTIONS) as f64;
-            let damping = 2.0 * angle.sin();
-            let scale = 1.0 / (1.0 + damping * k + k * k);
-            *section = Section {
-                gain: k * k * scale,
-                back: [
-                    2.0 * (k * k - 1.0) * scale,
-                    (1.0 - damping * k + k * k) * scale,
-                ],
-            };
+/// What comes out of an anti-alias filter of eighth order, at rest before the first sample; its corner in Hz, below half
+/// of `rate` (Hz).
+pub fn low_pass(signal: &[f64], corner: f64, rate: f64) -> Vec<f64> {
+    let k = (PI * corner / rate).tan();
+    let mut signal = signal.to_vec();
+    for index in 0..SECTIONS {
+        let angle = PI * (2 * index + 1) as f64 / (4 * SECTIONS) as f64;
+        let damping = 2.0 * angle.sin();
+        let scale = 1.0 / (1.0 + damping * k + k * k);
+        let gain = k * k * scale;
+        let back = [
+            2.0 * (k * k - 1.0) * scale,
+            (1.0 - damping * k + k * k) * scale,
+        ];
+        let (mut first, mut second) = (0.0, 0.0);
+        for value in &mut signal {
+            let input = gain * *value;
+            let output = input + first;
+            first = 2.0 * input - back[0] * output + second;
+            second = input - back[1] * output;
+            *value = output;
         }
-        Self { sections }
     }
-
-    /// What comes out of the filter, at rest before the first sample.
-    pub fn run(&self, signal: &[f64]) -> Vec<f64> {
-        let mut signal = signal.to_vec();
-        for section in &self.sections {
-            let (mut first, mut second) = (0.0, 0.0);
-            for value in &mut signal {
-                let input = section.gain * *value;
-                let output = input + first;
-                first = 2.0 * input - section.back[0] * output + second;
-                second = input - section.back[1] * output;
-                *value = output;
-            }
-        }
-        signal
-    }
+    signal
 }
 
 #[cfg(test)]
@@ -66,7 +43,7 @@ mod tests {
         for frequency in [1e3, 15e3, 20e3, 25e3, 40e3] {
             let sine = |k: i32| (2.0 * PI * frequency * f64::from(k) / rate).sin();
             let signal: Vec<f64> = (0..20_000).map(sine).collect();
-            let out = LowPass::new(corner, rate).run(&signal);
+            let out = low_pass(&signal, corner, rate);
             let power: f64 = out[10_000..].iter().map(|it| it * it).sum();
             let gain = (power / 5_000.0).sqrt();
             let right = 1.0 / (1.0 + (frequency / corner).powi(16)).sqrt();

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rustfft::num_complex::Complex64;
 
-use super::filter::LowPass;
+use super::filter::low_pass;
 
 /// A mode of vibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +114,7 @@ impl Instrument {
         resolution: f64,
         noise: &mut ChaCha8Rng,
     ) -> Vec<f64> {
-        let filtered = LowPass::new(self.corner, self.rate()).run(signal);
+        let filtered = low_pass(signal, self.corner, self.rate());
         let samples = filtered.iter().step_by(self.steps as usize);
         samples
             .map(|value| {

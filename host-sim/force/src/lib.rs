@@ -83,10 +83,9 @@ pub fn measure(recording: &Recording, hits: &[Hits]) -> Result<Measurement, Inpu
         band.clone().map(|it| *it.start()).fold(0.0, f64::max),
         band.map(|it| *it.end()).fold(f64::INFINITY, f64::min),
     ];
-    let resolution = Resolution::new(band[1]);
+    let resolution = Resolution { highest: band[1] };
     let quiet = recording::quiet(recording)?;
-    let each: Vec<&Calibration> = calibrations.iter().collect();
-    let force = deconvolution::deconvolve(recording, &quiet, &each, &resolution);
+    let force = deconvolution::deconvolve(recording, &quiet, &calibrations, &resolution);
     let contacts = pulse::contacts(recording, &force, &resolution);
     Ok(Measurement {
         calibrations,

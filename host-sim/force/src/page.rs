@@ -52,7 +52,14 @@ pub fn page(recording: &Recording, measurement: &Measurement) -> String {
         }
         section {
             h2 { "Device" }
-            (legend(&[("free-fall", "band that is used")]))
+            ul.legend {
+                li {
+                    svg width="34" height="12" aria-hidden="true" {
+                        rect class="band free-fall" x="1" y="1" width="32" height="10" {}
+                    }
+                    "band that is used"
+                }
+            }
             (device(measurement))
             p.note { "Acceleration over force, from the known hits." }
         }
@@ -178,16 +185,7 @@ fn force_axis(low: f64, high: f64) -> Axis {
 fn legend(entries: &[(&str, &str)]) -> Markup {
     html! {
         ul.legend {
-            @for (class, name) in entries {
-                @if *class == "free-fall" {
-                    li {
-                        svg width="34" height="12" aria-hidden="true" {
-                            rect class="band free-fall" x="1" y="1" width="32" height="10" {}
-                        }
-                        (name)
-                    }
-                } @else { (key(class, name)) }
-            }
+            @for (class, name) in entries { (key(class, name)) }
         }
     }
 }

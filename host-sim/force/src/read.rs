@@ -26,13 +26,13 @@ pub fn recording(path: &Path) -> Result<Recording, InputError> {
             ["time_s", "ax_m_s2"] | ["time_s", "ax_m_s2", "ay_m_s2"]
         )
     })?;
-    let rows: Vec<&Row> = table.rows.iter().collect();
-    let clock = table.clock(&rows)?;
+    let rows = &table.rows;
+    let clock = table.clock(rows)?;
     let axes = 1..table.names.len();
     Ok(Recording {
         rate: table.rate(&clock)?,
         start: clock.first,
-        acceleration: axes.map(|column| columns(&rows, column)).collect(),
+        acceleration: axes.map(|column| columns(rows, column)).collect(),
         file: table.file,
     })
 }
@@ -50,8 +50,9 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
     };
     let numbered = table.names[0] == "hit";
     let first = usize::from(numbered);
-    let all: Vec<&Row> = table.rows.iter().collect();
-    let blocks = all.chunk_by(|a, b| !numbered || a.values[0] == b.values[0]);
+    let blocks = table
+        .rows
+        .chunk_by(|a, b| !numbered || a.values[0] == b.values[0]);
     let mut rate: Option<f64> = None;
     let mut hits = Vec::new();
     for rows in blocks {
@@ -93,7 +94,7 @@ pub fn same_rate(recording: &Recording, hits: &Hits) -> Result<(), InputError> {
     Err(InputError::at_line(&recording.file, 3, rule))
 }
 
-fn columns(rows: &[&Row], column: usize) -> Vec<f64> {
+fn columns(rows: &[Row], column: usize) -> Vec<f64> {
     rows.iter().map(|row| row.values[column]).collect()
 }
 
@@ -143,7 +144,7 @@ impl Table {
     }
 
     /// Follows the time of `rows`, of which there is one at least.
-    fn clock(&self, rows: &[&Row]) -> Result<Clock, InputError> {
+    fn clock(&self, rows: &[Row]) -> Result<Clock, InputError> {
         let mut clock = Clock::new(rows[0].stamp);
         rows.iter().for_each(|row| clock.learn(row.stamp));
         for row in &rows[1..] {

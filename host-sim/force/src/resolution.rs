@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// The fade begins at this part of the highest frequency.
 const FADE: f64 = 0.8;
 
-/// A low-pass with a raised cosine's edge.
+/// A low-pass with a raised cosine's edge, which passes nothing from `highest` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Hz.
@@ -14,11 +14,6 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Passes nothing from `highest` (Hz) on.
-    pub fn new(highest: f64) -> Self {
-        Self { highest }
-    }
-
     /// Part of a frequency (Hz) that passes.
     pub fn passes(&self, frequency: f64) -> f64 {
         let begin = FADE * self.highest;
@@ -58,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_answer_has_the_spectrum() {
-        let resolution = Resolution::new(8e3);
+        let resolution = Resolution { highest: 8e3 };
         let step = 1e-6;
         for frequency in [0.0, 3e3, 4.8e3, 5.6e3, 7.2e3, 9e3] {
             let part = |k: i32| {

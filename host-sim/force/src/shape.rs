@@ -3,6 +3,7 @@
 //! The pulse is that of [`Law`]. It is seen through the resolution of the recovered force, as that is, so a
 //! blunt edge does not lengthen it.
 
+use super::deconvolution::product;
 use super::law::Law;
 use super::resolution::Resolution;
 use super::simplex::least;
@@ -34,25 +35,20 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
     let before = (0..top).rev().find(low).unwrap_or(0);
     let after = (top..force.len()).find(low).unwrap_or(force.len());
     let width = (after - before) as f64 / rate;
-    let seen = Seen {
-        force,
-        rate,
-        resolution,
-    };
     // Time of the peak, width at half of it, exponent, damping.
     let place = |[time, wide, exponent, damping]: [f64; 4]| Trial {
         law: Law::new(exponent, damping),
         peak_time: top as f64 / rate + time * width,
         width: wide.abs().max(0.05) * width,
     };
-    let cost = |at| seen.match_with(&place(at)).1;
+    let cost = |at| matched(&place(at), force, rate, resolution).1;
     let searched = STARTS.map(|damping| {
         let at = least([0.0, 0.9, 1.4, damping], [0.1, 0.1, -0.2, 0.3], cost);
         (cost(at), at)
     });
     let best = searched.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let trial = place(best.map_or([0.0, 1.0, 1.5, 0.0], |it| it.1));
-    let (peak, rest) = seen.match_with(&trial);
+    let (peak, rest) = matched(&trial, force, rate, resolution);
     Fit {
         start: trial.peak_time + trial.width * trial.law.start,
         duration: trial.width * trial.law.duration,
@@ -64,12 +60,6 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
     }
 }
 
-struct Seen<'a> {
-    force: &'a [f64],
-    rate: f64,
-    resolution: &'a Resolution,
-}
-
 struct Trial {
     law: Law,
     /// s.
@@ -78,27 +68,22 @@ struct Trial {
     width: f64,
 }
 
-impl Seen<'_> {
-    /// The peak (N) with which the trial is nearest to the force, and the sum of squares that it leaves.
-    fn match_with(&self, trial: &Trial) -> (f64, f64) {
-        let part = trial.width * trial.law.duration / trial.law.force.len() as f64;
-        let points: Vec<(f64, f64)> = (trial.law.points())
-            .map(|(time, force)| (trial.peak_time + trial.width * time, part * force))
-            .collect();
-        let through = |k: usize| -> f64 {
-            let now = k as f64 / self.rate;
-            let answers = points.iter();
-            answers
-                .map(|(time, force)| force * self.resolution.answer(now - time))
-                .sum()
-        };
-        let shape: Vec<f64> = (0..self.force.len()).map(through).collect();
-        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let peak = product(&shape, self.force) / product(&shape, &shape).max(f64::MIN_POSITIVE);
-        let rest = shape
-            .iter()
-            .zip(self.force)
-            .map(|(shape, force)| force - peak * shape);
-        (peak, rest.map(|it| it * it).sum())
-    }
+/// The peak (N) with which the trial is nearest to the force, and the sum of squares that it leaves.
+fn matched(trial: &Trial, force: &[f64], rate: f64, resolution: &Resolution) -> (f64, f64) {
+    let part = trial.width * trial.law.duration / trial.law.force.len() as f64;
+    let points: Vec<(f64, f64)> = (trial.law.points())
+        .map(|(time, force)| (trial.peak_time + trial.width * time, part * force))
+        .collect();
+    let through = |k: usize| -> f64 {
+        let now = k as f64 / rate;
+        let answers = points.iter();
+        answers
+            .map(|(time, force)| force * resolution.answer(now - time))
+            .sum()
+    };
+    let shape: Vec<f64> = (0..force.len()).map(through).collect();
+    let peak = product(&shape, force) / product(&shape, &shape).max(f64::MIN_POSITIVE);
+    let rest = shape.iter().zip(force);
+    let rest = rest.map(|(shape, force)| force - peak * shape);
+    (peak, rest.map(|it| it * it).sum())
 }

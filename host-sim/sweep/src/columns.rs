@@ -28,7 +28,7 @@ pub(super) fn columns(plan: &Plan) -> Vec<String> {
     columns
 }
 
-/// The values of one drop; empty where there is none.
+/// The values of one drop.
 pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> {
     let mut cells = vec![record.index.to_string(), drawn.point.to_string()];
     cells.extend(plan.values(drawn.point).into_iter().map(text));
@@ -38,7 +38,11 @@ pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> 
     }
     cells.push(<&str>::from(record.regime).to_owned());
     cells.push(record.impacts.to_string());
-    let number = |value: f64| (!value.is_nan()).then(|| value.to_string());
-    cells.extend(record.values().map(|it| number(it).unwrap_or_default()));
+    cells.extend(record.values().map(cell));
     cells
+}
+
+/// Empty where there is no value.
+pub(super) fn cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), |it| it.to_string())
 }

@@ -38,10 +38,29 @@ impl Plan {
                 .collect(),
             start: self.start.map(|start| {
                 let place = in_disc(&mut random, start.within);
-                let speed = start.speed * random.random_range(0.0..=1.0);
+                let speed = start.speed_mm_s / 1e3 * random.random_range(0.0..=1.0);
                 (place, direction(&mut random).map(|part| speed * part))
             }),
         }
+    }
+}
+
+impl Plan {
+    /// The scene `table` with other values. Those that are valid each by itself need not be so together.
+    fn with<'a>(
+        &self,
+        table: &Table,
+        values: impl Iterator<Item = (&'a String, Value)>,
+    ) -> Result<(Table, Scene), Failure> {
+        let refused =
+            |rule: &str| InputError::of_file(&self.name, format!("a drop of this plan: {rule}"));
+        let mut table = table.clone();
+        for (key, value) in values {
+            set(&mut table, key, &value).map_err(|rule| refused(&rule))?;
+        }
+        let scene = Scene::parse("the scene", &table.to_string());
+        let scene = scene.map_err(|error| refused(error.rule()))?;
+        Ok((table, scene))
     }
 }
 
@@ -58,30 +77,23 @@ impl<'a> Scenes<'a> {
 
     /// The scene of a drop.
     pub fn of(&mut self, drawn: &Drawn) -> Result<Scene, Failure> {
-        if self
-            .last
-            .as_ref()
-            .is_none_or(|(point, ..)| *point != drawn.point)
-        {
-            let mut table = self.plan.base.clone();
-            let values = self.plan.values(drawn.point);
-            for ((key, _), value) in self.plan.listed.iter().zip(values) {
-                set(&mut table, key, value).map_err(|rule| self.refused(&rule))?;
+        let plan = self.plan;
+        let last = match self.last.take() {
+            Some(last) if last.0 == drawn.point => last,
+            _ => {
+                let listed = plan.listed.iter().zip(plan.values(drawn.point));
+                let keys = listed.map(|((key, _), value)| (key, value.clone()));
+                let (table, scene) = plan.with(&plan.base, keys)?;
+                (drawn.point, table, scene)
             }
-            let scene = self.parse(&table)?;
-            self.last = Some((drawn.point, table, scene));
-        }
-        let Some((_, table, scene)) = &self.last else {
-            return Err(self.refused("no scene"));
         };
+        let (_, table, scene) = self.last.insert(last);
         let mut scene = if drawn.values.is_empty() {
             scene.clone()
         } else {
-            let mut table = table.clone();
-            for ((key, _), value) in self.plan.drawn.iter().zip(&drawn.values) {
-                set(&mut table, key, &Value::Float(*value)).map_err(|rule| self.refused(&rule))?;
-            }
-            self.parse(&table)?
+            let values = plan.drawn.iter().zip(&drawn.values);
+            let keys = values.map(|((key, _), value)| (key, Value::Float(*value)));
+            plan.with(table, keys)?.1
         };
         if let Some((place, velocity)) = drawn.start {
             scene.start = Start::Free {
@@ -90,14 +102,5 @@ impl<'a> Scenes<'a> {
             };
         }
         Ok(scene)
-    }
-
-    fn parse(&self, table: &Table) -> Result<Scene, Failure> {
-        Scene::parse("the scene", &table.to_string()).map_err(|error| self.refused(error.rule()))
-    }
-
-    /// Values that are valid each by itself need not be so together.
-    fn refused(&self, rule: &str) -> Failure {
-        InputError::of_file(&self.plan.name, format!("a drop of this plan: {rule}")).into()
     }
 }

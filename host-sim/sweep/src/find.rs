@@ -4,12 +4,6 @@ use serde::Serialize;
 
 use super::parameter::short;
 
-/// What is looked for: where whirl is less probable than this.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Find {
-    pub(super) limit: f64,
-}
-
 /// What a search found along its axis, which it takes whirl to grow or to fall along.
 #[derive(Clone, Debug, Serialize)]
 pub struct Found {
@@ -22,17 +16,15 @@ pub struct Found {
     pub(super) confidence: f64,
 }
 
-impl Find {
-    /// From `whirl < LIMIT`.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let rule = || "find is \"whirl < P\", P between 0 and 1: its values are 0 to 1".to_owned();
-        let (what, limit) = text.split_once('<').ok_or_else(rule)?;
-        let limit: f64 = limit.trim().parse().map_err(|_| rule())?;
-        if what.trim() != "whirl" || !(limit > 0.0 && limit < 1.0) {
-            return Err(rule());
-        }
-        Ok(Self { limit })
+/// What is looked for, from `whirl < LIMIT`: where whirl is less probable than that.
+pub(super) fn limit(text: &str) -> Result<f64, String> {
+    let rule = || "find is \"whirl < P\", P between 0 and 1: its values are 0 to 1".to_owned();
+    let (what, limit) = text.split_once('<').ok_or_else(rule)?;
+    let limit: f64 = limit.trim().parse().map_err(|_| rule())?;
+    if what.trim() != "whirl" || !(limit > 0.0 && limit < 1.0) {
+        return Err(rule());
     }
+    Ok(limit)
 }
 
 impl Found {

@@ -18,7 +18,7 @@ mod search;
 mod summary;
 mod table;
 
-pub use find::{Find, Found};
+pub use find::Found;
 pub use part::Part;
 pub use plan::Plan;
 pub use results::{RESULTS, Results, found, write};

@@ -51,12 +51,9 @@ fn at(plan: &Plan, part: &[Point], others: usize) -> String {
 
 fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
     let places: Vec<f64> = values.iter().filter_map(as_number).collect();
-    let ends = places
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), it| {
-            (f64::min(lo, *it), f64::max(hi, *it))
-        });
-    let x = Axis::new(ends.0, ends.1, key, 8.0);
+    let low = places.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let x = Axis::new(low, high, key, 8.0);
     let y = Axis::new(
         0.0,
         100.0,

@@ -16,6 +16,7 @@ const SHOWN: usize = 1_000;
 
 pub(super) fn page(plan: &Plan, points: &[Point], found: Option<&Found>) -> String {
     let tenth = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1}"));
+    let percent = |share: f64| format!("{:.2}", 100.0 * share);
     let thousand = |value: Option<f64>| tenth(value.map(|it| 1e3 * it));
     let mut table = table("Points of the grid", &points[..points.len().min(SHOWN)]);
     for (index, (key, _)) in plan.listed.iter().enumerate() {
@@ -23,27 +24,18 @@ pub(super) fn page(plan: &Plan, points: &[Point], found: Option<&Found>) -> Stri
     }
     let table = table
         .number("Drops", |it| it.drops)
-        .number("Whirl, %", |it| {
-            format!("{:.2}", 100.0 * it.whirl_probability)
-        })
+        .number("Whirl, %", |it| percent(it.whirl_probability))
         .number("95 % interval", |it| {
-            format!(
-                "{:.2} to {:.2}",
-                100.0 * it.whirl_low,
-                100.0 * it.whirl_high
-            )
+            percent(it.whirl_low) + " to " + &percent(it.whirl_high)
         })
-        .number("Backward, %", |it| {
-            format!("{:.2}", 100.0 * it.backward_probability)
-        })
+        .number("Backward, %", |it| percent(it.backward_probability))
         .number("Starts after, ms", |it| thousand(it.whirl_start_median_s))
         .number("Impact, mm/s", |it| thousand(it.impact_speed_max_m_s))
         .number("Load at the end, N", |it| tenth(it.end_load_max_n));
     let start = match plan.start {
         Some(start) => format!(
             "Starts anywhere within {} of the clearance, with up to {} mm/s in any direction.",
-            start.within,
-            1e3 * start.speed
+            start.within, start.speed_mm_s
         ),
         None => "Starts as in the scene.".to_owned(),
     };

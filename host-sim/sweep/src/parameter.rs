@@ -74,21 +74,17 @@ impl ParameterTable {
         if range {
             return self.range();
         }
-        let pair = |[a, b]: [f64; 2]| (a, b);
         let drawn = match (self.uniform, self.log_uniform, self.normal) {
-            (Some(ends), ..) => {
-                let (lo, hi) = pair(ends);
+            (Some([lo, hi]), ..) => {
                 ordered(lo, hi)?;
                 Distribution::Uniform(lo, hi)
             }
-            (_, Some(ends), _) => {
-                let (lo, hi) = pair(ends);
+            (_, Some([lo, hi]), _) => {
                 ordered(lo, hi)?;
                 above_zero(lo)?;
                 Distribution::LogUniform(lo, hi)
             }
-            (_, _, Some(shape)) => {
-                let (mean, deviation) = pair(shape);
+            (_, _, Some([mean, deviation])) => {
                 if !(mean.is_finite() && deviation.is_finite() && deviation > 0.0) {
                     return Err("normal takes a mean and a standard deviation above 0".to_owned());
                 }

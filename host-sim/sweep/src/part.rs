@@ -139,11 +139,10 @@ impl PartReader {
 
 impl Origin {
     fn of(plan: &Plan) -> Self {
-        let [plan, scene] = plan.texts().map(str::to_owned);
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            plan,
-            scene,
+            plan: plan.text.clone(),
+            scene: plan.scene_text.clone(),
         }
     }
 }

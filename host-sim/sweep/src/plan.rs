@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use toml::{Spanned, Table, Value};
 
-use super::find::Find;
+use super::find::limit;
 use super::parameter::{Distribution, ParameterTable, Values, as_number};
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::Scene;
@@ -25,17 +25,9 @@ struct PlanFile {
     find: Option<Spanned<String>>,
     #[serde(default = "default_seed")]
     seed: u64,
-    start: Option<Spanned<StartTable>>,
+    start: Option<Spanned<RandomStart>>,
     #[serde(default)]
     parameter: Vec<ParameterTable>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StartTable {
-    within: f64,
-    #[serde(default)]
-    speed_mm_s: f64,
 }
 
 /// How far each drop is followed.
@@ -70,25 +62,27 @@ pub struct Plan {
     /// Drops a point of the grid.
     pub drops: u64,
     pub(super) until: Until,
-    /// What is looked for along the one axis of the grid.
-    pub find: Option<Find>,
+    /// What is looked for along the one axis of the grid: where whirl is less probable than this.
+    pub find: Option<f64>,
     pub(super) seed: u64,
     pub(super) start: Option<RandomStart>,
     pub(super) listed: Vec<(String, Vec<Value>)>,
     pub(super) drawn: Vec<(String, Distribution)>,
     /// The scene that the parameters change, and the text that it comes from.
     pub(super) base: Table,
-    scene_text: String,
-    text: String,
+    pub(super) scene_text: String,
+    pub(super) text: String,
 }
 
 /// Starts anywhere in the middle of the gap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
 pub(super) struct RandomStart {
     /// Radius of the disc, part of the clearance.
     pub within: f64,
-    /// Greatest speed, in any direction, m/s.
-    pub speed: f64,
+    /// Greatest speed, in any direction.
+    #[serde(default)]
+    pub speed_mm_s: f64,
 }
 
 impl Plan {
@@ -133,7 +127,7 @@ impl Plan {
             )
         })?;
         let find = match &file.find {
-            Some(rule) => Some(Find::parse(rule.get_ref()).map_err(|it| fail(rule.span(), it))?),
+            Some(rule) => Some(limit(rule.get_ref()).map_err(|it| fail(rule.span(), it))?),
             None => None,
         };
         let default = if find.is_some() { DROPS_TO_FIND } else { DROPS };
@@ -158,16 +152,13 @@ impl Plan {
             text: text.to_owned(),
         };
         if let Some(start) = &file.start {
-            let StartTable { within, speed_mm_s } = *start.get_ref();
+            let RandomStart { within, speed_mm_s } = *start.get_ref();
             if !(0.0..1.0).contains(&within) || !(0.0..=1e6).contains(&speed_mm_s) {
                 let rule =
                     "start: within is a part of the clearance, 0 to below 1; speed_mm_s 0 or more";
                 return Err(fail(start.span(), rule.to_owned()));
             }
-            plan.start = Some(RandomStart {
-                within,
-                speed: speed_mm_s / 1e3,
-            });
+            plan.start = Some(*start.get_ref());
         }
         for table in &file.parameter {
             let key = table.key.get_ref();
@@ -276,11 +267,6 @@ impl Plan {
             .collect();
         values.reverse();
         values
-    }
-
-    /// Texts of plan and scene.
-    pub(super) fn texts(&self) -> [&str; 2] {
-        [&self.text, &self.scene_text]
     }
 }
 

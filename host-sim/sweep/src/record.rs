@@ -1,12 +1,15 @@
 //! What a drop of a sweep came to.
 
+use std::f64::consts::TAU;
+
 use csv::StringRecord;
+use serde::Deserialize;
 
 use touchdown_base::history::{History, Regime};
 use touchdown_scene::Scene;
 
-/// One drop, SI; NaN where there is no such thing.
-#[derive(Clone, Copy, Debug)]
+/// One drop, SI: the first and the last columns of its row.
+#[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Record {
     /// Number of the drop.
     pub index: u64,
@@ -14,23 +17,23 @@ pub(super) struct Record {
     pub regime: Regime,
     pub impacts: u32,
     /// Start of the first permanent contact, s.
-    pub contact_start: f64,
+    pub contact_start: Option<f64>,
     /// Start of the contact in which the rotor whirls, s.
-    pub whirl_start: f64,
+    pub whirl_start: Option<f64>,
     /// Greatest speed into the wall, m/s.
-    pub impact_speed: f64,
+    pub impact_speed: Option<f64>,
     /// Greatest normal impulse, N s.
-    pub impulse: f64,
+    pub impulse: Option<f64>,
     /// Normal force at the end of the run, in permanent contact, N.
-    pub end_load: f64,
+    pub end_load: Option<f64>,
     /// Frequency of the whirl at the end of the run, counter-clockwise positive, 1/s.
-    pub whirl_frequency: f64,
+    pub whirl_frequency: Option<f64>,
 }
 
 impl Record {
     /// What `history` came to.
     pub fn of(index: u64, scene: &Scene, history: &History) -> Self {
-        let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NAN, f64::max);
+        let impacts = history.impacts.iter();
         let whirls = matches!(history.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
         let last_contact = history.contact_starts.last().copied();
         let end = &history.end;
@@ -45,60 +48,24 @@ impl Record {
             index,
             regime: history.regime,
             impacts: history.impacts.len() as u32,
-            contact_start: history.contact_starts.first().copied().unwrap_or(f64::NAN),
-            whirl_start: if whirls {
-                last_contact.unwrap_or(f64::NAN)
-            } else {
-                f64::NAN
-            },
-            impact_speed: greatest(&mut history.impacts.iter().map(|it| it.normal_speed)),
-            impulse: greatest(&mut history.impacts.iter().map(|it| it.normal_impulse)),
-            end_load: if in_contact {
-                scene.rotor.mass * pressing
-            } else {
-                f64::NAN
-            },
-            whirl_frequency: if whirls {
-                along / radius / std::f64::consts::TAU
-            } else {
-                f64::NAN
-            },
+            contact_start: history.contact_starts.first().copied(),
+            whirl_start: last_contact.filter(|_| whirls),
+            impact_speed: impacts.clone().map(|it| it.normal_speed).reduce(f64::max),
+            impulse: impacts.map(|it| it.normal_impulse).reduce(f64::max),
+            end_load: in_contact.then_some(scene.rotor.mass * pressing),
+            whirl_frequency: whirls.then_some(along / radius / TAU),
         }
     }
 
-    /// Without what only the end of the run shows.
-    pub fn without_end(self) -> Self {
-        Self {
-            end_load: f64::NAN,
-            whirl_frequency: f64::NAN,
-            ..self
-        }
-    }
-
-    /// From the end of a row of the table; `None` where that is none of it.
+    /// From a row of the table; `None` where that is none of it.
     pub fn of_row(row: &StringRecord) -> Option<Self> {
-        let mut cells = row.iter().skip(row.len().checked_sub(8)?);
-        let regime = cells.next()?;
-        let impacts = cells.next()?.parse().ok()?;
-        let mut next = || match cells.next()? {
-            "" => Some(f64::NAN),
-            text => text.parse().ok(),
-        };
-        Some(Self {
-            index: row.get(0)?.parse().ok()?,
-            regime: regime.parse().ok()?,
-            impacts,
-            contact_start: next()?,
-            whirl_start: next()?,
-            impact_speed: next()?,
-            impulse: next()?,
-            end_load: next()?,
-            whirl_frequency: next()?,
-        })
+        let last = row.iter().skip(row.len().checked_sub(8)?);
+        let own: StringRecord = row.iter().take(1).chain(last).collect();
+        own.deserialize(None).ok()
     }
 
     /// The numbers that follow the impacts.
-    pub fn values(&self) -> [f64; 6] {
+    pub fn values(&self) -> [Option<f64>; 6] {
         [
             self.contact_start,
             self.whirl_start,

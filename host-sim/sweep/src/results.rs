@@ -5,11 +5,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::json;
 
-use super::columns::columns;
+use super::columns::{cell, columns};
 use super::find::Found;
 use super::page::page;
-use super::parameter::{as_number, text};
+use super::parameter::text;
 use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
 use super::plan::{Plan, Until};
 use super::record::Record;
@@ -126,7 +127,7 @@ impl Results {
         found: Option<Found>,
         folder: &Path,
     ) -> Result<Self, Failure> {
-        let json = json(plan, &points, found.as_ref())?;
+        let json = results_json(plan, &points, found.as_ref())?;
         let mut outputs = Vec::new();
         for (name, text) in [
             ("points.csv", points_csv(plan, &points)?),
@@ -150,14 +151,8 @@ impl Results {
 pub(super) fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_json::Value> {
     let values = plan.values(point);
     (plan.listed.iter().zip(values))
-        .map(|((key, _), value)| {
-            let value = match value {
-                toml::Value::Integer(whole) => (*whole).into(),
-                toml::Value::Boolean(is) => (*is).into(),
-                value => as_number(value).map_or_else(|| text(value).into(), Into::into),
-            };
-            (key.clone(), value)
-        })
+        // Numbers, texts and booleans are always JSON.
+        .map(|((key, _), value)| (key.clone(), json!(value)))
         .collect()
 }
 
@@ -178,7 +173,6 @@ fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
     let keys = plan.listed.iter().map(|(key, _)| key.as_str());
     let head: Vec<_> = ["point"].into_iter().chain(keys).chain(measured).collect();
     table.write_record(head).map_err(failed)?;
-    let some = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for it in points {
         let mut row = vec![it.point.to_string()];
         row.extend(plan.values(it.point).into_iter().map(text));
@@ -188,10 +182,10 @@ fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
             it.whirl_low.to_string(),
             it.whirl_high.to_string(),
             it.backward_probability.to_string(),
-            some(it.whirl_start_median_s),
-            some(it.impact_speed_max_m_s),
-            some(it.impulse_max_n_s),
-            some(it.end_load_max_n),
+            cell(it.whirl_start_median_s),
+            cell(it.impact_speed_max_m_s),
+            cell(it.impulse_max_n_s),
+            cell(it.end_load_max_n),
         ]);
         table.write_record(row).map_err(failed)?;
     }
@@ -200,7 +194,7 @@ fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn json(plan: &Plan, points: &[Point], find: Option<&Found>) -> Result<String, Failure> {
+fn results_json(plan: &Plan, points: &[Point], find: Option<&Found>) -> Result<String, Failure> {
     let json = Json {
         title: &plan.title,
         drops: total(points),

@@ -85,10 +85,11 @@ impl Scenes<'_> {
         };
         let history = history
             .map_err(|error| InputError::of_file(&plan.name, format!("drop {index}: {error}")))?;
-        let record = Record::of(index, &scene, &history);
-        Ok(match plan.until {
-            Until::End => record,
-            Until::Verdict => record.without_end(),
-        })
+        let mut record = Record::of(index, &scene, &history);
+        if plan.until == Until::Verdict {
+            // What only the end of the run shows.
+            (record.end_load, record.whirl_frequency) = (None, None);
+        }
+        Ok(record)
     }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::draw::Scenes;
-use super::find::{Find, Found};
+use super::find::Found;
 use super::plan::Plan;
 use super::record::Record;
 use super::results::{Results, values};
@@ -43,27 +43,24 @@ struct Search<'a> {
     tried: BTreeMap<u64, (Verdict, Gathered)>,
 }
 
-/// Looks for what the plan asks: the plan of the values that were tried, and their results.
-pub fn find(plan: &Plan, find: Find, folder: &Path) -> Result<(Plan, Results), Failure> {
+/// Looks for where whirl is less probable than `limit`: the plan of the values that were tried, and their results.
+pub fn find(plan: &Plan, limit: f64, folder: &Path) -> Result<(Plan, Results), Failure> {
     let last = plan.points() - 1;
     // Both ends, and two bisections.
     let tests = 2 + 2 * u64::from(u64::BITS - last.leading_zeros());
     let mut search = Search {
         plan,
-        limit: find.limit,
+        limit,
         decisive: (tests as f64 / RISK).ln(),
         tried: BTreeMap::new(),
     };
     let ends = [search.verdict(0)?, search.verdict(last)?];
     let (below, above) = match ends {
-        [Verdict::Above, Verdict::Below] => {
-            let [above, _] = search.bracket([0, last], |it| it == Verdict::Above)?;
-            let [_, below] = search.bracket([0, last], |it| it != Verdict::Below)?;
-            (Some(below), Some(above))
-        }
-        [Verdict::Below, Verdict::Above] => {
-            let [below, _] = search.bracket([0, last], |it| it == Verdict::Below)?;
-            let [_, above] = search.bracket([0, last], |it| it != Verdict::Above)?;
+        [Verdict::Above, Verdict::Below] | [Verdict::Below, Verdict::Above] => {
+            let [near, _] = search.bracket([0, last], |it| it == ends[0])?;
+            let [_, far] = search.bracket([0, last], |it| it != ends[1])?;
+            let is_rising = ends[0] == Verdict::Below;
+            let (below, above) = if is_rising { (near, far) } else { (far, near) };
             (Some(below), Some(above))
         }
         _ => {

@@ -63,14 +63,10 @@ impl Gathered {
 
     pub fn take(&mut self, record: &Record) {
         self.counts[record.regime as usize] += 1;
-        if record.whirl_start.is_finite() {
-            self.whirl_starts.push(record.whirl_start);
-        }
+        self.whirl_starts.extend(record.whirl_start);
         let values = [record.impact_speed, record.impulse, record.end_load];
         for (greatest, value) in self.greatest.iter_mut().zip(values) {
-            if !value.is_nan() {
-                *greatest = Some(greatest.map_or(value, |it| it.max(value)));
-            }
+            *greatest = value.into_iter().chain(*greatest).reduce(f64::max);
         }
     }
 

@@ -5,6 +5,7 @@ use super::load;
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_lab::trade;
+use touchdown_page::json::text;
 
 /// Measures, says and writes the table.
 pub(super) fn table(args: &TradeArgs) -> Result<(), Failure> {
@@ -16,9 +17,9 @@ pub(super) fn table(args: &TradeArgs) -> Result<(), Failure> {
         .open()?;
     let scene = load(&args.scene)?;
     let trade = trade::run(&scene, args.drops.map(|it| it as usize));
-    out.json("--json", || trade::json(&trade))?;
+    out.json("--json", || text(&trade))?;
     out.put("--report", || trade::page(&trade))?;
     out.put("--svg", || trade::svg(&trade))?;
-    let text = trade::table(&trade, out.paint());
-    out.finish(&text)
+    let table = trade::table(&trade, out.paint());
+    out.finish(&table)
 }

@@ -3,6 +3,7 @@
 
 use touchdown_rotor::error::ConfigError;
 
+use crate::limits::extreme::free;
 use crate::limits::row::Row;
 use crate::limits::{PRECISIONS, refused};
 use touchdown_base::failure::Failure;
@@ -66,10 +67,7 @@ fn straight(rig: &Scene, gap: f64, restitution: f64) -> Scene {
     scene.retainer.restitution = restitution;
     scene.run.gravity = 0.0;
     scene.model.rung = Fidelity::Hertz;
-    scene.start = Start::Free {
-        position: [0.0; 2],
-        velocity: [0.0, -speed],
-    };
+    scene.start = free([0.0; 2], [0.0, -speed]);
     scene
 }
 

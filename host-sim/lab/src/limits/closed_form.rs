@@ -24,6 +24,21 @@ pub struct ClosedForm {
     pub unit: &'static str,
 }
 
+impl ClosedForm {
+    /// Of a scene whose first impact comes after `time`, T, whatever the step.
+    fn of_first_impact(name: &'static str, scene: Scene, time: f64, limits: [f64; 2]) -> Self {
+        let units = Units::of(&scene);
+        Self {
+            name,
+            scene,
+            steps: &STEPS,
+            error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - time)),
+            limits,
+            unit: "T",
+        }
+    }
+}
+
 /// Errors of times and speeds, f64 and f32: what is asked of the time of permanent contact.
 const EVENT: [f64; 2] = [1e-11, 1e-5];
 
@@ -49,15 +64,8 @@ pub fn closed_forms() -> Result<Vec<ClosedForm>, InputError> {
 fn fall_from_the_top(rig: &Scene) -> ClosedForm {
     let mut scene = rig.clone();
     scene.start = wall(std::f64::consts::PI, 0.0);
-    let units = Units::of(&scene);
-    ClosedForm {
-        name: "no normal speed where gravity pulls off the wall: first impact",
-        scene,
-        steps: &STEPS,
-        error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - 2.0)),
-        limits: EVENT,
-        unit: "T",
-    }
+    let name = "no normal speed where gravity pulls off the wall: first impact";
+    ClosedForm::of_first_impact(name, scene, 2.0, EVENT)
 }
 
 /// v^2 = -g rho0 cos phi: the wall force is zero at the start and falls. The flight lasts 4 v_y/g.
@@ -68,15 +76,9 @@ fn force_ends_where_it_starts(rig: &Scene) -> ClosedForm {
     let speed = (-angle.cos()).sqrt();
     scene.start = wall(angle, speed * units.speed);
     let flight = 4.0 * speed * angle.sin();
-    ClosedForm {
-        name: "no wall force at the start, and less to come: first impact",
-        scene,
-        steps: &STEPS,
-        error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - flight)),
-        // Rounding of the force decides which flight it is: the root of it is lost.
-        limits: [1e-7, 1e-3],
-        unit: "T",
-    }
+    let name = "no wall force at the start, and less to come: first impact";
+    // Rounding of the force decides which flight it is: the root of it is lost.
+    ClosedForm::of_first_impact(name, scene, flight, [1e-7, 1e-3])
 }
 
 /// A parabola that touches the wall from inside at the top right and bends away: no impact there. From
@@ -97,15 +99,9 @@ fn graze(rig: &Scene) -> ClosedForm {
     );
     let (square, cube) = (speed * speed + angle.cos(), -there[1]);
     let landing = before + 2.0 * ((cube * cube - square).sqrt() - cube);
-    ClosedForm {
-        name: "graze, where the path touches the wall and bends away: first impact",
-        scene,
-        steps: &STEPS,
-        error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - landing)),
-        // The root of what rounding takes off.
-        limits: [1e-6, 1e-5],
-        unit: "T",
-    }
+    let name = "graze, where the path touches the wall and bends away: first impact";
+    // The root of what rounding takes off.
+    ClosedForm::of_first_impact(name, scene, landing, [1e-6, 1e-5])
 }
 
 /// Released where rolling needs just the friction there is: it rolls, and keeps its energy.
@@ -257,15 +253,7 @@ fn denormals(rig: &Scene, (name, least): Denormal) -> ClosedForm {
     scene.retainer.friction = least;
     scene.retainer.restitution = least;
     scene.start = free([least, -least], [-least, least]);
-    let units = Units::of(&scene);
-    ClosedForm {
-        name,
-        scene,
-        steps: &STEPS,
-        error: Box::new(move |h| first(&h.impacts, |i| i.state.time / units.time - 2.0_f64.sqrt())),
-        limits: EVENT,
-        unit: "T",
-    }
+    ClosedForm::of_first_impact(name, scene, 2.0_f64.sqrt(), EVENT)
 }
 
 /// Size of an error of the first of `all`; without one there is no telling.

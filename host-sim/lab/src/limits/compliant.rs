@@ -1,14 +1,13 @@
 //! Each extreme scene on rung `hertz`, in both schemes: steps that it refuses, and what holds at those
 //! that it takes.
 
-use touchdown_models::Compliance;
 use touchdown_rotor::error::ConfigError;
 
-use crate::limits::extreme::{Extreme, STEPS};
-use crate::limits::press::{Press, Pressed};
+use crate::limits::extreme::{Extreme, STEPS, at_step};
+use crate::limits::press::Press;
 use crate::limits::row::{Row, Worst};
 use touchdown_run::model::with_model;
-use touchdown_scene::scales::{compliance, fastest_impact};
+use touchdown_scene::scales::compliance;
 use touchdown_scene::{Fidelity, Precision, Scene, Scheme};
 
 /// Part of 2/omega_c that is still taken, and the part that no longer is.
@@ -29,17 +28,17 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
     }
     refused.push(REFUSED * limit);
 
-    let (mut pressed, mut energy) = (Pressed::default(), Worst::default());
-    let (mut drawn, mut accepted) = (0.0, 0);
+    let (mut energy, mut accepted) = (Worst::default(), 0);
+    let (mut drawn, mut deepest, mut not_finite) = (0.0, 0.0_f64, 0);
     for &scheme in Fidelity::Hertz.schemes() {
-        let at = |step| {
+        let watched = |step| {
             let mut scene = compliant(extreme, precision, step);
             scene.model.scheme = scheme;
-            scene
+            let (scene, stiff) = (&scene, &stiff);
+            with_model(scene, Press { scene, stiff })
         };
         for &step in &taken {
-            let scene = at(step);
-            let seen = with_model(&scene, press(&scene, &stiff))?;
+            let seen = watched(step)?;
             if step <= accurate {
                 let rounding = super::rounding(precision) + seen.rounding;
                 let late = match scheme {
@@ -50,11 +49,11 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
                 energy.take(seen.energy_gain, limit);
                 drawn = f64::max(drawn, seen.drawn);
             }
-            pressed = pressed.worst(seen);
+            deepest = deepest.max(seen.depth);
+            not_finite = not_finite.max(seen.not_finite);
         }
         for &step in &refused {
-            let scene = at(step);
-            accepted += u32::from(with_model(&scene, press(&scene, &stiff)).is_ok());
+            accepted += u32::from(watched(step).is_ok());
         }
     }
     let row = |measure: &str, measured, limit, unit| {
@@ -82,13 +81,13 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
         ));
         rows.push(row(
             "deepest compression",
-            pressed.depth,
+            deepest,
             1.0,
             "of what the speed allows",
         ));
         rows.push(row(
             "steps with NaN or infinity",
-            f64::from(pressed.not_finite),
+            f64::from(not_finite),
             0.0,
             "steps",
         ));
@@ -96,16 +95,8 @@ pub fn rows(extreme: &Extreme, precision: Precision) -> Result<Vec<Row>, ConfigE
     Ok(rows)
 }
 
-fn press<'a>(scene: &'a Scene, stiff: &'a Compliance<f64>) -> Press<'a> {
-    Press {
-        scene,
-        stiff,
-        fastest: fastest_impact(scene),
-    }
-}
-
 fn compliant(extreme: &Extreme, precision: Precision, step: f64) -> Scene {
-    let mut scene = extreme.at(precision, step);
+    let mut scene = at_step(&extreme.scene, precision, step);
     scene.model.rung = Fidelity::Hertz;
     scene
 }

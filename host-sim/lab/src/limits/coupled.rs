@@ -3,7 +3,7 @@
 
 use touchdown_rotor::error::ConfigError;
 
-use super::extreme::STEPS;
+use super::extreme::{STEPS, at_step};
 use super::row::{Row, Worst};
 use super::{epsilon, refused};
 use crate::{limits::support, limits::two_plane};
@@ -109,9 +109,7 @@ fn of(name: &str, scene: &Scene, precision: Precision) -> Result<Vec<Row>, Confi
     let mut seen = Seen::default();
     let mut first = None;
     for step in STEPS {
-        let mut scene = scene.clone();
-        scene.model.precision = precision;
-        scene.model.step = step;
+        let scene = at_step(scene, precision, step);
         if let Some(ours) = look(&scene, &mut seen)? {
             let about = ours.state.time;
             let truth = *first.get_or_insert_with(|| first_impact(&scene, about));

@@ -21,14 +21,12 @@ pub struct Extreme {
     pub steps: &'static [f64],
 }
 
-impl Extreme {
-    /// The scene in numbers of this precision, with this step (s).
-    pub fn at(&self, precision: Precision, step: f64) -> Scene {
-        let mut scene = self.scene.clone();
-        scene.model.precision = precision;
-        scene.model.step = step;
-        scene
-    }
+/// `scene` in numbers of this precision, with this step (s).
+pub fn at_step(scene: &Scene, precision: Precision, step: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.model.precision = precision;
+    scene.model.step = step;
+    scene
 }
 
 type Change = fn(&mut Scene);

@@ -34,7 +34,7 @@ pub use row::{Row, all_hold};
 pub use table::table;
 
 use closed_form::ClosedForm;
-use extreme::Extreme;
+use extreme::{Extreme, at_step};
 use touchdown_base::failure::Failure;
 use touchdown_base::progress::Progress;
 use touchdown_page::json::text;
@@ -119,9 +119,7 @@ fn epsilon(precision: Precision) -> f64 {
 fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, ConfigError> {
     let mut worst = 0.0_f64;
     for &step in known.steps {
-        let mut scene = known.scene.clone();
-        scene.model.precision = precision;
-        scene.model.step = step;
+        let scene = at_step(&known.scene, precision, step);
         let error = (known.error)(&simulate(&scene)?);
         // NaN is the worst there is.
         worst = if error <= worst { worst } else { error };

@@ -6,9 +6,10 @@ use touchdown_rotor::{Change, Kinematics, Precision, Stepper, Touch};
 
 use crate::limits::watch::{ROUNDED, energy, inertia, is_finite};
 use touchdown_run::model::{Subject, Use};
+use touchdown_scene::scales::fastest_impact;
 use touchdown_scene::{Contact, Scene};
 
-/// Of the fastest impact expected: beyond it neither step nor stiffness was chosen for what comes. At
+/// Of the fastest impact that stiffness and longest step are made for: beyond it neither was chosen for what comes. At
 /// twice the speed the rate of a contact is 15 % higher.
 const EXPECTED: f64 = 2.0;
 
@@ -34,29 +35,12 @@ pub struct Pressed {
     pub not_finite: u32,
 }
 
-impl Pressed {
-    /// The worse of both.
-    pub fn worst(self, other: Self) -> Self {
-        Self {
-            depth: self.depth.max(other.depth),
-            energy_gain: self.energy_gain.max(other.energy_gain),
-            translation: self.translation.max(other.translation),
-            half_steps: self.half_steps.max(other.half_steps),
-            drawn: self.drawn.max(other.drawn),
-            rounding: self.rounding.max(other.rounding),
-            not_finite: self.not_finite.max(other.not_finite),
-        }
-    }
-}
-
 /// Watches the scene's model, of this stiffness, over the scene's duration.
 pub struct Press<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Of its contact.
     pub stiff: &'a Compliance<f64>,
-    /// The fastest impact that stiffness and longest step are made for, m/s.
-    pub fastest: f64,
 }
 
 impl Use for Press<'_> {
@@ -66,16 +50,7 @@ impl Use for Press<'_> {
         self,
         subject: &Subject<R, M>,
     ) -> Result<Pressed, ConfigError> {
-        let (
-            scene,
-            Subject {
-                model,
-                start,
-                spin,
-                scales,
-                ..
-            },
-        ) = (self.scene, subject);
+        let (scene, model, scales) = (self.scene, &subject.model, &subject.scales);
         let n = match scene.materials.contact {
             Contact::Point => 1.5,
             Contact::Line { .. } | Contact::LinePower { .. } => 1.0,
@@ -95,7 +70,7 @@ impl Use for Press<'_> {
         let epsilon = R::EPSILON.to_f64();
 
         let mut seen = Pressed::default();
-        let mut state = model.start(start, *spin, |_| {})?;
+        let mut state = model.start(&subject.start, subject.spin, |_| {})?;
         let begun = model.kinematics(&state);
         let first = begun.spin;
         let (beta, spun) = (inertia(scene), first.to_f64());
@@ -104,7 +79,7 @@ impl Use for Press<'_> {
         let whole = |k: &Kinematics<R>| energy(scene, k, first) + stored(depth(k));
         // Height counts from the bottom.
         let all = whole(&begun) + 0.5 * beta * spun * spun + gravity;
-        let expected = EXPECTED * self.fastest / scales.speed;
+        let expected = EXPECTED * fastest_impact(scene) / scales.speed;
         let (mut fastest, mut slow_fastest) = (speed(&begun), speed(&begun));
         let (mut lowest, mut largest, mut impacts) = (f64::INFINITY, 0.0_f64, 0_u32);
         let steps = (scene.run.duration / scene.model.step).ceil();

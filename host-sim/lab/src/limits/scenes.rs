@@ -3,10 +3,10 @@
 use touchdown_rotor::error::ConfigError;
 
 use super::epsilon;
-use crate::limits::extreme::Extreme;
+use crate::limits::extreme::{Extreme, at_step};
 use crate::limits::row::{Row, Worst};
 use crate::limits::truth::Truth;
-use crate::limits::watch::{ROUNDED, Watch, Watched};
+use crate::limits::watch::{ROUNDED, Watch, most};
 use touchdown_run::model::{simulate, with_model};
 use touchdown_scene::Precision;
 
@@ -23,16 +23,12 @@ pub fn rows(
     truth: &Truth,
     precision: Precision,
 ) -> Result<Vec<Row>, ConfigError> {
-    let mut watched = Watched {
-        outside: -1.0,
-        ..Watched::default()
-    };
+    let mut runs = Vec::new();
     let mut impacts = (0.0_f64, 0);
     let mut contact = Worst::default();
     for &step in extreme.steps {
-        let scene = extreme.at(precision, step);
+        let scene = at_step(&extreme.scene, precision, step);
         let seen = with_model(&scene, Watch(&scene))?;
-        watched = watched.worst(seen);
         let history = simulate(&scene)?;
         let (error, compared) = truth.impact_error(&history, precision);
         impacts = (impacts.0.max(error), compared);
@@ -44,25 +40,15 @@ pub fn rows(
             };
             contact.take(error, limit);
         }
+        runs.push(seen);
     }
     let row = |measure: &str, measured, limit, unit| {
-        Row::new(
-            format!("{}: {measure}", extreme.name),
-            precision,
-            measured,
-            limit,
-            unit,
-        )
+        let name = format!("{}: {measure}", extreme.name);
+        Row::new(name, precision, measured, limit, unit)
     };
     let mut rows = Vec::new();
-    if impacts.1 > 0 {
-        rows.push(row(
-            "error of the first impacts",
-            impacts.0,
-            1.0,
-            "of target",
-        ));
-    }
+    let first = row("error of the first impacts", impacts.0, 1.0, "of target");
+    rows.extend((impacts.1 > 0).then_some(first));
     if contact.limit > 0.0 {
         rows.push(row(
             "time of permanent contact",
@@ -71,29 +57,19 @@ pub fn rows(
             "T",
         ));
     }
-    rows.push(row(
-        "energy gained",
-        watched.energy_gain,
-        super::rounding(precision) + watched.spin_rounding + watched.path_rounding,
-        "m g rho0",
-    ));
-    rows.push(row(
-        "farthest beyond the wall",
-        watched.outside.max(0.0),
-        ROUNDED * epsilon(precision),
-        "rho0",
-    ));
-    rows.push(row(
-        "steps with NaN or infinity",
-        f64::from(watched.not_finite),
-        0.0,
-        "steps",
-    ));
-    rows.push(row(
-        "most changes in a step",
-        f64::from(watched.changes),
-        MOST_CHANGES,
-        "changes",
-    ));
+    let gained = most(&runs, |it| it.energy_gain);
+    let spin = most(&runs, |it| it.spin_rounding);
+    let path = most(&runs, |it| it.path_rounding);
+    let rounding = super::rounding(precision) + spin + path;
+    let outside = most(&runs, |it| it.outside);
+    let not_finite = most(&runs, |it| f64::from(it.not_finite));
+    let changes = most(&runs, |it| f64::from(it.changes));
+    let rounded = ROUNDED * epsilon(precision);
+    rows.extend([
+        row("energy gained", gained, rounding, "m g rho0"),
+        row("farthest beyond the wall", outside, rounded, "rho0"),
+        row("steps with NaN or infinity", not_finite, 0.0, "steps"),
+        row("most changes in a step", changes, MOST_CHANGES, "changes"),
+    ]);
     Ok(rows)
 }

@@ -1,7 +1,7 @@
 //! The extremes of a retainer that gives way or turns.
 
+use super::extreme::free;
 use touchdown_base::input_error::InputError;
-use touchdown_base::machine::Start;
 use touchdown_scene::{BallBearing, Model, Scene, Support};
 
 /// Longest part of a scene, s.
@@ -38,17 +38,11 @@ const EXTREMES: [(&str, Change); 19] = [
     }),
     ("no gravity", |s| {
         s.run.gravity = 0.0;
-        s.start = Start::Free {
-            position: [0.05e-3, 0.1e-3],
-            velocity: [0.02, -0.1],
-        };
+        s.start = free([0.05e-3, 0.1e-3], [0.02, -0.1]);
     }),
     ("gap of 20 um", |s| {
         s.retainer.clearance = 20e-6;
-        s.start = Start::Free {
-            position: [0.0; 2],
-            velocity: [0.0; 2],
-        };
+        s.start = free([0.0; 2], [0.0; 2]);
     }),
     ("inner ring without inertia", |s| turning(s, 1e-12)),
     ("inner ring of 1000 kg m^2", |s| turning(s, 1e3)),

@@ -3,6 +3,7 @@
 //! A path multiplies the rounding of what it starts from. By how much is found with the reference
 //! itself: each number of the scene is changed by a little, one after the other.
 
+use super::extreme::{free, wall};
 use touchdown_base::history::{History, Impact};
 use touchdown_base::machine::Start;
 use touchdown_scene::{Precision, Scene};
@@ -138,27 +139,17 @@ fn changed(scene: &Scene) -> Vec<Scene> {
                 // Inward, so that a start on the wall stays in the gap.
                 let mut position = position;
                 position[axis] -= CHANGE * unit.length * position[axis].signum();
-                all.push(with(&|s| s.start = Start::Free { position, velocity }));
+                all.push(with(&|s| s.start = free(position, velocity)));
             }
             for axis in 0..2 {
                 let mut velocity = velocity;
                 velocity[axis] += CHANGE * unit.speed.max(velocity[axis].abs());
-                all.push(with(&|s| s.start = Start::Free { position, velocity }));
+                all.push(with(&|s| s.start = free(position, velocity)));
             }
         }
         Start::Wall { angle, tangential } => {
-            all.push(with(&|s| {
-                s.start = Start::Wall {
-                    angle: angle + CHANGE,
-                    tangential,
-                };
-            }));
-            all.push(with(&|s| {
-                s.start = Start::Wall {
-                    angle,
-                    tangential: tangential * more,
-                };
-            }));
+            all.push(with(&|s| s.start = wall(angle + CHANGE, tangential)));
+            all.push(with(&|s| s.start = wall(angle, tangential * more)));
         }
     }
     all

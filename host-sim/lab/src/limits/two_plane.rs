@@ -1,7 +1,7 @@
 //! The extremes of a rotor that tilts.
 
 use touchdown_base::input_error::InputError;
-use touchdown_scene::{Magnet, Scene, TwoPlane};
+use touchdown_scene::{Magnet, Retainer, Scene, TwoPlane};
 
 /// Longest part of a scene, s.
 const LONGEST: f64 = 0.03;
@@ -15,7 +15,7 @@ const EXTREMES: [(&str, Change); 18] = [
     }),
     ("a thin disc", |s, it| {
         it.transverse_inertia = 0.5 * s.rotor.polar_inertia;
-        shorten(it, 0.1);
+        it.rings.iter_mut().for_each(|ring| ring.place *= 0.1);
     }),
     ("one end high, one low", |_, it| it.tilt = [0.0, 2.4e-3]),
     ("one end next to its wall", |_, it| {
@@ -32,9 +32,9 @@ const EXTREMES: [(&str, Change); 18] = [
     }),
     ("four rings of one gap", |_, it| {
         let ring = it.rings[0].clone();
-        it.rings = [-0.12, -0.04, 0.05, 0.12]
-            .map(|place| scene_ring(&ring, place))
-            .to_vec();
+        it.rings = vec![ring; 4];
+        let places = [-0.12, -0.04, 0.05, 0.12];
+        (it.rings.iter_mut().zip(places)).for_each(|(ring, place)| ring.place = place);
     }),
     ("restitution 0", |_, it| {
         each_ring(it, |r| r.restitution = 0.0)
@@ -67,22 +67,9 @@ const EXTREMES: [(&str, Change); 18] = [
     }),
 ];
 
-fn each_ring(machine: &mut TwoPlane, change: impl Fn(&mut touchdown_scene::Retainer)) {
+fn each_ring(machine: &mut TwoPlane, change: impl Fn(&mut Retainer)) {
     for ring in &mut machine.rings {
         change(&mut ring.retainer);
-    }
-}
-
-fn scene_ring(ring: &touchdown_scene::Ring, place: f64) -> touchdown_scene::Ring {
-    touchdown_scene::Ring {
-        place,
-        ..ring.clone()
-    }
-}
-
-fn shorten(machine: &mut TwoPlane, part: f64) {
-    for ring in &mut machine.rings {
-        ring.place *= part;
     }
 }
 

@@ -9,10 +9,10 @@ use touchdown_scene::{Fidelity, Scene};
 /// Of a place, in units of the last digit.
 pub const ROUNDED: f64 = 16.0;
 
-/// What was seen, worst of all steps.
+/// What was seen, worst of all steps of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watched {
-    /// Farthest beyond the wall, rho0; below 0 where it never got there.
+    /// Farthest beyond the wall, rho0.
     pub outside: f64,
     /// The same in parts of half a step's path, half of h (v + h) at the speed v after the step.
     pub outside_path: f64,
@@ -29,19 +29,9 @@ pub struct Watched {
     pub path_rounding: f64,
 }
 
-impl Watched {
-    /// The worse of both.
-    pub fn worst(self, other: Self) -> Self {
-        Self {
-            outside: self.outside.max(other.outside),
-            outside_path: self.outside_path.max(other.outside_path),
-            energy_gain: self.energy_gain.max(other.energy_gain),
-            spin_rounding: self.spin_rounding.max(other.spin_rounding),
-            not_finite: self.not_finite.max(other.not_finite),
-            changes: self.changes.max(other.changes),
-            path_rounding: self.path_rounding.max(other.path_rounding),
-        }
-    }
+/// Most of a number over several runs, 0 at least.
+pub fn most(runs: &[Watched], of: fn(&Watched) -> f64) -> f64 {
+    runs.iter().map(of).fold(0.0, f64::max)
 }
 
 /// Watches the scene's model over the scene's duration.
@@ -54,20 +44,11 @@ impl Use for Watch<'_> {
         self,
         subject: &Subject<R, M>,
     ) -> Result<Watched, ConfigError> {
-        let Subject {
-            model,
-            start,
-            spin,
-            scales,
-            ..
-        } = subject;
+        let (model, scales) = (&subject.model, &subject.scales);
         let step = self.0.model.step / scales.time;
         let rounded_in_a_step = u64::from(self.0.model.rung != Fidelity::Rigid);
-        let mut watched = Watched {
-            outside: -1.0,
-            ..Watched::default()
-        };
-        let mut state = model.start(start, *spin, |_| watched.changes += 1)?;
+        let mut watched = Watched::default();
+        let mut state = model.start(&subject.start, subject.spin, |_| watched.changes += 1)?;
         let first = model.kinematics(&state).spin;
         let mut lowest = energy(self.0, &model.kinematics(&state), first);
         let (mut fastest, mut in_all) = (0.0_f64, 1_u64);

@@ -34,48 +34,34 @@ pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     let by_force = (run.peak_force / whole.force(right_force)).powf(2.5) * steel;
     let time = |item: &str, contact: &Contact| -> Result<Row, Failure> {
         let duration = straight::pulse(base, contact)?.duration;
-        Ok(near(
-            Row::new(item, "s", contact.time(right_time)),
-            duration,
-            1.0,
-        ))
+        Ok(Row::new(item, "s", contact.time(right_time)).near(duration, 1.0))
     };
     let frequency = |item: &str, contact: &Contact| -> Result<Row, Failure> {
         let frequency = 1.0 / straight::pulse(base, contact)?.duration;
         let right = 1.0 / contact.time(right_time);
-        Ok(near(Row::new(item, "Hz", right), frequency, 1.0).printed(3500.0))
+        let row = Row::new(item, "Hz", right).near(frequency, 1.0);
+        Ok(row.printed(3500.0))
     };
     Ok(vec![
-        near(
-            Row::new("eq. (8), constant", "", right_force),
-            run.peak_force / whole.force(1.0),
-            1.0,
-        )
+        Row::new("eq. (8), constant", "", right_force)
+            .near(run.peak_force / whole.force(1.0), 1.0)
         .printed(PRINTED_FORCE)
         .note("(5/4)^(3/5) (4/(3 pi))^(2/5); ours: F0 of a run over the rest of (8)"),
-        near(
-            Row::new("eq. (9), constant", "", right_time),
-            run.duration / whole.time(1.0),
-            1.0,
-        )
+        Row::new("eq. (9), constant", "", right_time)
+            .near(run.duration / whole.time(1.0), 1.0)
         .printed(PRINTED_TIME)
         .note(
             "2 sqrt(pi) Gamma(7/5)/Gamma(9/10) (15 pi/16)^(2/5); ours: T_c of a run over the rest of (9)",
         ),
-        near(
-            Row::new("eq. (8) times (9), F0 T_c/(m V)", "", product_constant()),
-            product,
-            2.0,
-        )
+        Row::new("eq. (8) times (9), F0 T_c/(m V)", "", product_constant())
+            .near(product, 2.0)
         .printed(PRINTED_FORCE * PRINTED_TIME)
         .note("the printed constants contradict each other; ours: F0 and T_c of a run"),
-        near(Row::new("eq. (10), E_r steel on steel", "Pa", steel), by_force, 2.5)
+        Row::new("eq. (10), E_r steel on steel", "Pa", steel)
+            .near(by_force, 2.5)
             .note("pi E/(2 (1 - nu^2)), right as printed; ours: from F0 of a run by (8)"),
-        near(
-            Row::new("F0 of the rig, 0.3 mm", "N", whole.force(right_force)),
-            run.peak_force,
-            1.0,
-        )
+        Row::new("F0 of the rig, 0.3 mm", "N", whole.force(right_force))
+            .near(run.peak_force, 1.0)
         .printed(whole.force(PRINTED_FORCE))
         .note("3.42 kg after a fall through the gap; printed: eq. (8) with its constant"),
         time("T_c of the rig, 0.3 mm", &whole)?
@@ -99,10 +85,12 @@ pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     ])
 }
 
-/// `row` with ours, as close as `power` times a run's force or time is.
-fn near(row: Row, ours: f64, power: f64) -> Row {
-    let tolerance = rounded(power * TOLERANCE * row.right);
-    row.ours(ours, tolerance)
+impl Row {
+    /// With ours, as close as `power` times a run's force or time is.
+    fn near(self, ours: f64, power: f64) -> Self {
+        let tolerance = rounded(power * TOLERANCE * self.right);
+        self.ours(ours, tolerance)
+    }
 }
 
 /// To one digit, downwards.

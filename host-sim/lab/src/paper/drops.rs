@@ -17,7 +17,7 @@ use serde::Serialize;
 use super::ending::{Ending, of_model, of_reference};
 use super::rig::{GAP, WIDE_GAP};
 use touchdown_base::failure::Failure;
-use touchdown_base::wilson;
+use touchdown_base::{progress, wilson};
 use touchdown_scene::{Scene, Start};
 
 /// Length of a run, in sqrt(rho0/g).
@@ -65,7 +65,7 @@ pub struct Tally {
 }
 
 /// What is compared, all against the first: gap (other starts, then the same), friction, restitution.
-pub fn conditions() -> Vec<Condition> {
+fn conditions() -> Vec<Condition> {
     let rig = Condition {
         clearance_m: GAP,
         friction: 0.1,
@@ -108,16 +108,14 @@ pub fn conditions() -> Vec<Condition> {
 }
 
 /// Drops `base` as each condition says, `drops` times.
-pub fn tally(
-    base: &Scene,
-    conditions: &[Condition],
-    drops: u32,
-    progress: &ProgressBar,
-) -> Result<Vec<Tally>, Failure> {
-    conditions
-        .iter()
-        .map(|condition| count(base, *condition, drops, progress))
-        .collect()
+pub fn tally(base: &Scene, drops: u32) -> Result<Vec<Tally>, Failure> {
+    let conditions = conditions();
+    let progress = progress::bar("drops", u64::from(drops) * conditions.len() as u64);
+    let tallies = (conditions.into_iter())
+        .map(|condition| count(base, condition, drops, &progress))
+        .collect();
+    progress.finish_and_clear();
+    tallies
 }
 
 fn count(

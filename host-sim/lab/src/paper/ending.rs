@@ -6,6 +6,7 @@ use serde::Serialize;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Precision, Stepper, Touch};
 
+use super::rig::refused;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{ModelEvent, PhaseKind};
 use touchdown_run::model::{Subject, Use, with_model};
@@ -43,8 +44,7 @@ fn ending(turns: f64, lift_offs: u32, in_contact: bool) -> Ending {
 
 /// Of the model under test.
 pub fn of_model(scene: &Scene) -> Result<Ending, Failure> {
-    with_model(scene, ToItsEnd(scene))
-        .map_err(|error| Failure::Usage(format!("{}: {error}", scene.name)))
+    with_model(scene, ToItsEnd(scene)).map_err(refused(scene))
 }
 
 struct ToItsEnd<'a>(&'a Scene);

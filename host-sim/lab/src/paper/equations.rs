@@ -35,12 +35,7 @@ fn flight(base: &Scene) -> Result<Vec<Row>, Failure> {
     }
     let g = base.run.gravity;
     let (sin, cos) = polar.angle.sin_cos();
-    let Polar {
-        radius,
-        radial,
-        turning,
-        ..
-    } = polar;
+    let (radius, radial, turning) = (polar.radius, polar.radial, polar.turning);
     Ok(vec![
         Row::new("eq. (1), rho'' in flight, 12 ms", "m/s^2", radius * turning * turning - g * sin)
             .printed(-2.0 * radial * turning - g * sin)

@@ -31,7 +31,6 @@ pub use table::table;
 use serde::Serialize;
 
 use touchdown_base::failure::Failure;
-use touchdown_base::progress;
 use touchdown_scene::Scene;
 
 /// Random drops of a condition, unless fewer are asked for.
@@ -64,10 +63,7 @@ impl Paper {
 /// Works everything out, with so many random drops of a condition.
 pub fn run(drops: u32) -> Result<Paper, Failure> {
     let base = rig::rig()?;
-    let conditions = drops::conditions();
-    let progress = progress::bar("drops", u64::from(drops) * conditions.len() as u64);
-    let drops = drops::tally(&base, &conditions, drops, &progress)?;
-    progress.finish_and_clear();
+    let drops = drops::tally(&base, drops)?;
     let mut rows = equations::rows(&base)?;
     rows.extend(fall::rows(&base)?);
     rows.extend(whirl::rows(&base)?);

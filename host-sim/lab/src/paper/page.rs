@@ -6,6 +6,7 @@ use super::table::cell;
 use super::{Paper, Row, fig_3, fig_4, fig_7};
 use touchdown_chart::plot::minus;
 use touchdown_chart::shell::page as shell;
+use touchdown_chart::table::table;
 
 /// Writes the page.
 pub fn page(paper: &Paper) -> String {
@@ -50,18 +51,11 @@ pub fn page(paper: &Paper) -> String {
 }
 
 fn verdict(paper: &Paper) -> Markup {
-    let measured = paper.rows.iter().filter(|row| row.agrees.is_some()).count();
-    let wrong = paper
-        .rows
-        .iter()
-        .filter(|row| row.agrees == Some(false))
-        .count();
-    let off = paper.rows.iter().filter(|row| row.is_misprinted()).count();
-    let printed = paper
-        .rows
-        .iter()
-        .filter(|row| row.printed.is_some())
-        .count();
+    let count = |is: fn(&&Row) -> bool| paper.rows.iter().filter(is).count();
+    let measured = count(|row| row.agrees.is_some());
+    let wrong = count(|row| row.agrees == Some(false));
+    let off = count(|row| row.is_misprinted());
+    let printed = count(|row| row.printed.is_some());
     html! {
         div.verdict.alarm[wrong > 0] {
             "Of " (measured) " numbers measured on the model, " (wrong) " differ from what is right. Of " (printed)
@@ -88,46 +82,26 @@ fn fig_3(paper: &Paper) -> Markup {
 }
 
 fn numbers(rows: &[Row]) -> Markup {
-    html! {
-        div.scroll tabindex="0" role="region" aria-label="Numbers" {
-            table.numbers {
-                thead {
-                    tr {
-                        th { "Number" }
-                        th.number { "Printed" }
-                        th.number { "Right" }
-                        th.number { "Ours" }
-                        th { "Unit" }
-                        th { "Agrees" }
-                        th { "Note" }
-                    }
-                }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            td { (row.item) }
-                            td.number { (number(row.printed)) }
-                            td.number { (number(Some(row.right))) }
-                            td.number { (number(row.ours)) }
-                            td { (row.unit) }
-                            td.missed[row.agrees == Some(false)] { (agreement(row)) }
-                            td.note { (row.note) }
-                        }
-                    }
-                }
-            }
-        }
-    }
+    table("Numbers", rows)
+        .words("Number", |it| it.item.clone())
+        .number("Printed", |it| number(it.printed))
+        .number("Right", |it| number(Some(it.right)))
+        .number("Ours", |it| number(it.ours))
+        .words("Unit", |it| it.unit)
+        .marked("Agrees", agreement)
+        .marked("Note", |it| ("note", it.note.clone()))
+        .draw()
 }
 
 fn number(value: Option<f64>) -> String {
     value.map_or("\u{2013}".to_owned(), |_| minus(&cell(value)))
 }
 
-fn agreement(row: &Row) -> &'static str {
+/// With its style class.
+fn agreement(row: &Row) -> (&'static str, &'static str) {
     match row.agrees {
-        Some(true) => "yes",
-        Some(false) => "no",
-        None => "\u{2013}",
+        Some(true) => ("", "yes"),
+        Some(false) => ("missed", "no"),
+        None => ("", "\u{2013}"),
     }
 }

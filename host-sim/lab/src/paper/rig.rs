@@ -1,5 +1,7 @@
 //! The rig of the paper, and runs of it on the model under test.
 
+use touchdown_rotor::error::ConfigError;
+
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, RotorState};
 use touchdown_run::model;
@@ -46,7 +48,12 @@ pub fn started(scene: &Scene, start: Start, duration: f64) -> Scene {
 
 /// Runs the model under test.
 pub fn run(scene: &Scene) -> Result<History, Failure> {
-    model::simulate(scene).map_err(|error| Failure::Usage(format!("{}: {error}", scene.name)))
+    model::simulate(scene).map_err(refused(scene))
+}
+
+/// For `map_err`.
+pub fn refused(scene: &Scene) -> impl Fn(ConfigError) -> Failure + '_ {
+    move |error| Failure::Usage(format!("{}: {error}", scene.name))
 }
 
 /// g/rho0, 1/s^2.

@@ -57,17 +57,12 @@ fn third_motion(tally: &Tally) -> Row {
 }
 
 fn name(tally: &Tally) -> String {
-    let Condition {
-        clearance_m,
-        friction,
-        restitution,
-        fastest,
-        ..
-    } = tally.condition;
-    let speed = if fastest > 0.0 { "" } else { ", at rest" };
+    let it = &tally.condition;
+    let gap = it.clearance_m * 1e3;
+    let speed = if it.fastest > 0.0 { "" } else { ", at rest" };
     format!(
-        "{} mm, mu {friction}, eps {restitution}{speed}",
-        clearance_m * 1e3
+        "{gap} mm, mu {}, eps {}{speed}",
+        it.friction, it.restitution
     )
 }
 

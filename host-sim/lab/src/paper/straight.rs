@@ -5,7 +5,7 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Precision, Stepper};
 
 use super::hertz::Contact;
-use super::rig::{run, started};
+use super::rig::{refused, run, started};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Pulse;
 use touchdown_run::model::{Subject, Use, with_model};
@@ -37,7 +37,7 @@ pub fn pulse(base: &Scene, contact: &Contact) -> Result<Pulse, Failure> {
 /// the rotor's speed.
 pub fn curve(base: &Scene, contact: &Contact) -> Result<Vec<(f64, f64)>, Failure> {
     let scene = scene(base, contact)?;
-    with_model(&scene, Curve(&scene)).map_err(|error| refused(&scene, &error))
+    with_model(&scene, Curve(&scene)).map_err(refused(&scene))
 }
 
 /// Straight down at the contact's speed, from a little above the wall.
@@ -56,19 +56,13 @@ fn scene(base: &Scene, contact: &Contact) -> Result<Scene, Failure> {
         velocity: [0.0, -contact.speed],
     };
     scene.start = start(contact.clearance);
-    let time = compliance(&scene)
-        .map_err(|error| refused(&scene, &error))?
-        .contact_time;
+    let time = (compliance(&scene).map_err(refused(&scene))?).contact_time;
     scene.model.step = time / STEPS;
     Ok(started(
         &scene,
         start(BEFORE * time * contact.speed),
         LONGEST * time,
     ))
-}
-
-fn refused(scene: &Scene, error: &ConfigError) -> Failure {
-    Failure::Usage(format!("{}: {error}", scene.name))
 }
 
 struct Curve<'a>(&'a Scene);
@@ -80,14 +74,8 @@ impl Use for Curve<'_> {
         self,
         subject: &Subject<R, M>,
     ) -> Result<Vec<(f64, f64)>, ConfigError> {
-        let Subject {
-            model,
-            start,
-            spin,
-            scales,
-            ..
-        } = subject;
-        let mut state = model.start(start, *spin, |_| {})?;
+        let (model, scales) = (&subject.model, &subject.scales);
+        let mut state = model.start(&subject.start, subject.spin, |_| {})?;
         let upwards =
             |state: &M::State| model.kinematics(state).velocity[1].to_f64() * scales.speed;
         let spacing = SPACING as f64 * self.0.model.step;

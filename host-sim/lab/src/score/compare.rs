@@ -6,73 +6,45 @@ use super::{Findings, Group, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_run::target::Target;
 
-/// What two targets made of the same drops.
-#[derive(Clone, Copy, Debug, Default)]
-struct Agreement {
-    drops: u64,
-    samples: u64,
-    notices: usize,
-    /// Notices, counters or state that are not the same.
-    differences: usize,
-}
+/// What two targets made of the same drops: samples, notices, and how many of notices, state and counters are not the same.
+type Agreement = [u64; 3];
 
-impl Agreement {
-    fn on(target: &Target, drop: &Drop) -> Result<Self, Failure> {
-        let here = Target::Host.run(drop.monitor(), drop.samples()?)?;
-        let there = target.run(drop.monitor(), drop.samples()?)?;
-        let (ours, theirs) = (here.summary, there.summary);
-        let differences = [
-            here.notices != there.notices,
-            ours.state_hash != theirs.state_hash,
-            ours.samples != theirs.samples || ours.faults != theirs.faults,
-        ];
-        Ok(Self {
-            drops: 1,
-            samples: theirs.samples,
-            notices: there.notices.len(),
-            differences: differences.into_iter().filter(|it| *it).count(),
-        })
-    }
-
-    fn and(self, other: Self) -> Self {
-        Self {
-            drops: self.drops + other.drops,
-            samples: self.samples + other.samples,
-            notices: self.notices + other.notices,
-            differences: self.differences + other.differences,
-        }
-    }
-
-    fn row(self, case: String) -> Row {
-        Row::at_most(case, "differences", self.differences as f64, 0.0)
-            .with("drops", self.drops)
-            .with("samples", self.samples)
-            .with("notices", self.notices)
-            .noted(format!(
-                "{} drops, {} samples, {} notices",
-                self.drops, self.samples, self.notices
-            ))
-    }
+fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
+    let here = Target::Host.run(&drop.monitor, drop.samples()?)?;
+    let there = target.run(&drop.monitor, drop.samples()?)?;
+    let (ours, theirs) = (here.summary, there.summary);
+    let differences = [
+        here.notices != there.notices,
+        ours.state_hash != theirs.state_hash,
+        ours.samples != theirs.samples || ours.faults != theirs.faults,
+    ];
+    let differences = differences.map(u64::from).iter().sum();
+    Ok([theirs.samples, there.notices.len() as u64, differences])
 }
 
 /// Runs some cases of `group` on both, each with every seed.
 pub fn run(plan: &Plan, group: &Group, target: &Target) -> Result<Findings, Failure> {
     let seeds = campaign::map(plan, group.name, &[()], |(), mut random| {
         let drops = (group.drops)(plan, &mut random)?.into_iter();
-        let agreed = drops.map(|(case, drop)| Ok((case, Agreement::on(target, &drop)?)));
+        let agreed = drops.map(|(case, drop)| Ok((case, agreement(target, &drop)?)));
         agreed.collect::<Result<Vec<_>, Failure>>()
     })?;
-    let mut cases: Vec<(String, Agreement)> = Vec::new();
-    let numbered = (seeds.into_iter().flatten()).flat_map(|drops| drops.into_iter().enumerate());
-    for (number, (case, agreement)) in numbered {
-        match cases.get_mut(number) {
-            Some((_, all)) => *all = all.and(agreement),
-            None => cases.push((case, agreement)),
-        }
-    }
+    let seeds: Vec<Vec<(String, Agreement)>> = seeds.into_iter().flatten().collect();
+    let row = |(number, (case, _)): (usize, &(String, Agreement))| {
+        let sum = |of: usize| seeds.iter().map(|it| it[number].1[of]).sum::<u64>();
+        let [samples, notices, differences] = [0, 1, 2].map(sum);
+        let drops = seeds.len();
+        Row::at_most(case, "differences", differences as f64, 0.0)
+            .with("drops", drops)
+            .with("samples", samples)
+            .with("notices", notices)
+            .noted(format!(
+                "{drops} drops, {samples} samples, {notices} notices"
+            ))
+    };
     Ok(Findings {
-        rows: (cases.into_iter())
-            .map(|(case, agreement)| agreement.row(case))
+        rows: (seeds.first().into_iter().flatten().enumerate())
+            .map(row)
             .collect(),
         figures: Vec::new(),
     })

@@ -72,11 +72,11 @@ impl Case {
                 // What is told has to be a restitution, too.
                 let scene = any_rig(MOST_RESTITUTION.min(1.0 / restitution), random)?;
                 let spin = sign * scene.rotor.spin;
-                let drop = dropped(plan, scene, spin, random);
-                Ok(drop.told(|monitor| {
-                    monitor.detector.machine.friction *= friction as f32;
-                    monitor.detector.machine.restitution *= restitution as f32;
-                }))
+                let mut drop = dropped(plan, scene, spin, random);
+                let told = &mut drop.monitor.detector.machine;
+                told.friction *= friction as f32;
+                told.restitution *= restitution as f32;
+                Ok(drop)
             }
             Self::Thrown(rate) => {
                 let mut scene = any_rig(MOST_RESTITUTION, random)?;
@@ -141,20 +141,20 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
 }
 
 /// Rows of the confusion.
-const TRUE: [PhaseKind; 4] = [
-    PhaseKind::FreeFall,
-    PhaseKind::Impact,
-    PhaseKind::Sliding,
-    PhaseKind::Rolling,
+const TRUE: [(PhaseKind, &str); 4] = [
+    (PhaseKind::FreeFall, "free fall"),
+    (PhaseKind::Impact, "impacts"),
+    (PhaseKind::Sliding, "sliding"),
+    (PhaseKind::Rolling, "rolling"),
 ];
 /// Its columns.
-const TOLD: [Phase; 6] = [
-    Phase::Starting,
-    Phase::Levitated,
-    Phase::FreeFall,
-    Phase::Impact,
-    Phase::Sliding,
-    Phase::Rolling,
+const TOLD: [(Phase, &str); 6] = [
+    (Phase::Starting, "starting"),
+    (Phase::Levitated, "levitated"),
+    (Phase::FreeFall, "free fall"),
+    (Phase::Impact, "impacts"),
+    (Phase::Sliding, "sliding"),
+    (Phase::Rolling, "rolling"),
 ];
 /// Column that is right, by row.
 const RIGHT_COLUMN: [usize; 4] = [2, 3, 4, 5];
@@ -179,8 +179,8 @@ fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     };
     let mut phases = Counts::default();
     for instant in &watched.instants {
-        let row = TRUE.iter().position(|it| *it == instant.phase);
-        let column = TOLD.iter().position(|it| *it == instant.told);
+        let row = TRUE.iter().position(|it| it.0 == instant.phase);
+        let column = TOLD.iter().position(|it| it.0 == instant.told);
         if let (Some(row), Some(column)) = (row, column) {
             phases[row][column] += 1;
         }
@@ -261,15 +261,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let figures = vec![Figure::Confusion {
         title: "Phases over time",
         unit: "samples",
-        truth: vec!["free fall", "impacts", "sliding", "rolling"],
-        told: vec![
-            "starting",
-            "levitated",
-            "free fall",
-            "impacts",
-            "sliding",
-            "rolling",
-        ],
+        truth: TRUE.map(|it| it.1).to_vec(),
+        told: TOLD.map(|it| it.1).to_vec(),
         counts: all.iter().map(|row| row.to_vec()).collect(),
     }];
     Ok(Findings { rows, figures })

@@ -28,40 +28,32 @@ pub fn hum(time: f64, amplitude: f64) -> Shift {
     [[amplitude * (TAU * 50.0 * time).sin(); 2]; PLANES]
 }
 
-/// Readings that jump by one count, each channel about once a second.
-#[derive(Clone, Debug, Default)]
-pub struct Steps {
-    shift: Shift,
-}
-
-impl Steps {
-    /// One sample of `period` s; `count` is the size of one, m.
-    pub fn next(&mut self, random: &mut ChaCha8Rng, period: f64, count: f64) -> Shift {
-        for shift in self.shift.iter_mut().flatten() {
-            if random.random_bool(period.min(1.0)) {
-                *shift = if *shift == 0.0 { count } else { 0.0 };
-            }
+/// Readings that jump by one count, each channel about once a second, after one sample more of `period` s. `count` is the
+/// size of one, m.
+pub fn steps(shift: &mut Shift, random: &mut ChaCha8Rng, period: f64, count: f64) -> Shift {
+    for shift in shift.iter_mut().flatten() {
+        if random.random_bool(period.min(1.0)) {
+            *shift = if *shift == 0.0 { count } else { 0.0 };
         }
-        self.shift
     }
+    *shift
 }
 
-/// Gaussian noise of a first-order spectrum, each channel its own.
-#[derive(Clone, Debug, Default)]
-pub struct Coloured {
-    shift: Shift,
-}
-
-impl Coloured {
-    /// One sample of `period` s, rms in m, corner in Hz.
-    pub fn next(&mut self, random: &mut ChaCha8Rng, period: f64, rms: f64, corner: f64) -> Shift {
-        let keep = (-TAU * corner * period).exp();
-        for shift in self.shift.iter_mut().flatten() {
-            let white: f64 = StandardNormal.sample(random);
-            *shift = keep * *shift + rms * (1.0 - keep * keep).sqrt() * white;
-        }
-        self.shift
+/// Gaussian noise of a first-order spectrum, each channel its own, after one sample more of `period` s; rms in m, corner
+/// in Hz.
+pub fn coloured(
+    shift: &mut Shift,
+    random: &mut ChaCha8Rng,
+    period: f64,
+    rms: f64,
+    corner: f64,
+) -> Shift {
+    let keep = (-TAU * corner * period).exp();
+    for shift in shift.iter_mut().flatten() {
+        let white: f64 = StandardNormal.sample(random);
+        *shift = keep * *shift + rms * (1.0 - keep * keep).sqrt() * white;
     }
+    *shift
 }
 
 /// A force on the rotor or on its base, per mass, that the controller catches.
@@ -71,15 +63,6 @@ pub enum Kick {
     Load,
     /// A half sine of 5 ms, up to 2 g.
     Shock,
-}
-
-impl Kick {
-    fn largest(self) -> f64 {
-        match self {
-            Self::Load => G,
-            Self::Shock => 2.0 * G,
-        }
-    }
 }
 
 /// Length of a shock, s.
@@ -114,7 +97,10 @@ impl Held {
         self.since += period;
         if self.since >= EVERY {
             self.since = 0.0;
-            let most = self.kick.largest();
+            let most = match self.kick {
+                Kick::Load => G,
+                Kick::Shock => 2.0 * G,
+            };
             let size = most * random.random_range(0.0..1.0);
             let goes = self.kick == Kick::Load && self.force != [0.0; 2];
             let new = direction(random).map(|part| size * part);

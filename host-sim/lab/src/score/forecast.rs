@@ -50,9 +50,9 @@ pub(super) fn drop(plan: &Plan, misled: f64, random: &mut ChaCha8Rng) -> Result<
         spin: scene.rotor.spin,
         ..Levitated::default()
     };
-    let told = told.monitor_config();
-    let drop = Drop::released(plan, scene, floats, velocity, LEAD, 0.0);
-    Ok(drop.told(|monitor| *monitor = told))
+    let mut drop = Drop::released(plan, scene, floats, velocity, LEAD, 0.0);
+    drop.monitor = told.monitor_config();
+    Ok(drop)
 }
 
 /// Drops to compare two targets with.
@@ -96,7 +96,7 @@ fn judged(name: &str, score: &Score) -> [Row; 5] {
     let others = score.drops - whirls;
     let quantiles = |of: Option<Quantiles>| of.map(|it| [it[0], it[2], it[4]]);
     let said = |of: Option<Quantiles>, scale: f64| {
-        let [low, middle, high] = of.map_or([f64::NAN; 3], |it| [it[0], it[2], it[4]]);
+        let [low, middle, high] = quantiles(of).unwrap_or([f64::NAN; 3]);
         format!(
             "{:.2}, {:.2}, {:.2} (5, 50, 95 %)",
             scale * low,

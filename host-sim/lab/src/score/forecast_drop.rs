@@ -41,32 +41,22 @@ pub struct Whirl {
     pub forward: bool,
 }
 
-/// A forecast that answers an event: the first one whose estimate is not older.
-#[derive(Clone, Copy, Debug)]
-pub struct MonitorOutput {
-    /// Declared impact, or contact.
-    pub event: EventKind,
-    /// When the forecast was ready, s.
-    pub made: f64,
-    /// What it says.
-    pub outlook: Outlook,
-}
-
 /// A drop, and what was foretold of it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Case {
     /// What happened.
     pub whirl: Option<Whirl>,
-    /// The forecasts after events, up to the first turn's end.
-    pub answers: Vec<MonitorOutput>,
+    /// The forecasts that answer a declared impact or contact, up to the first turn's end: of each the first whose estimate
+    /// is not older.
+    pub answers: Vec<Outlook>,
     /// Every forecast up to there: when ready (s), forward, backward.
     pub all: Vec<[f64; 3]>,
     /// When the monitor declared that whirl, s.
     pub declared: Option<f64>,
     /// Whirl declared that did not happen, or the wrong way.
     pub false_whirls: u32,
-    /// rho0/(mu |v_t|), and the beginning, as foretold last before the whirl's beginning, s.
-    pub times: Option<[f64; 2]>,
+    /// The beginning, as foretold last before the whirl's beginning, s.
+    pub begins: Option<f64>,
 }
 
 /// The scene of a seed, and the one that the monitor is told of.
@@ -107,7 +97,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
     let mut forecast_task = ForecastTask::try_new(&told.monitor_config().detector)?;
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
-    let (mut case, mut contact, mut asked) = (Case::new(), None, None);
+    let (mut case, mut contact, mut asked) = (Case::default(), None, None);
     let mut told_whirls = Vec::new();
     for k in 0..(levitated + scene.run.duration * rate) as u64 {
         let time = (k as f64 - levitated) / rate;
@@ -135,7 +125,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
             };
             match event.kind {
                 EventKind::Impact | EventKind::Sliding | EventKind::LiftOff => {
-                    asked.get_or_insert((event.kind, k));
+                    asked.get_or_insert(k);
                 }
                 EventKind::ForwardWhirl | EventKind::BackwardWhirl => {
                     told_whirls.push((time, event.kind == EventKind::ForwardWhirl));
@@ -151,19 +141,12 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
         };
         let [forward, backward] = parts(&outlook);
         case.all.push([time, forward, backward]);
-        if let Some(onset) = outlook.onset {
-            let times = [onset.growth_time, onset.time_left].map(f64::from);
-            if onset.time_left > 0.0 {
-                case.times = Some([times[0], time + times[1]]);
-            }
+        if let Some(onset) = outlook.onset.filter(|it| it.time_left > 0.0) {
+            case.begins = Some(time + f64::from(onset.time_left));
         }
-        if let Some((event, _)) = asked.filter(|(_, k)| outlook.from.samples() >= *k as f64) {
+        if asked.is_some_and(|k| outlook.from.samples() >= k as f64) {
             asked = None;
-            case.answers.push(MonitorOutput {
-                event,
-                made: time,
-                outlook,
-            });
+            case.answers.push(outlook);
         }
     }
     let right = |&(_, forward): &(f64, bool)| case.whirl.is_some_and(|it| it.forward == forward);
@@ -177,17 +160,6 @@ fn parts(outlook: &Outlook) -> [f64; 2] {
 }
 
 impl Case {
-    fn new() -> Self {
-        Self {
-            whirl: None,
-            answers: Vec::new(),
-            all: Vec::new(),
-            declared: None,
-            false_whirls: 0,
-            times: None,
-        }
-    }
-
     /// From when on every forecast up to the first turn's end foretold the whirl, s.
     pub fn foretold(&self) -> Option<f64> {
         let whirl = self.whirl?;
@@ -264,7 +236,7 @@ pub fn score(cases: &[Case]) -> Score {
         .flat_map(|case| case.answers.iter().map(move |answer| (case, answer)))
         .flat_map(|(case, answer)| {
             let came = |forward| case.whirl.is_some_and(|it| it.forward == forward);
-            let [with, against] = parts(&answer.outlook);
+            let [with, against] = parts(answer);
             [
                 (with, f64::from(u8::from(came(true)))),
                 (against, f64::from(u8::from(came(false)))),
@@ -278,7 +250,7 @@ pub fn score(cases: &[Case]) -> Score {
     let declared_after = (whirls.iter())
         .filter_map(|(it, w)| Some((it.declared? - w.begins) / (w.turned - w.begins)));
     let onset_error = (whirls.iter())
-        .filter_map(|(it, w)| Some(it.times?[1] - w.begins).filter(|_| it.foretold().is_some()));
+        .filter_map(|(it, w)| Some(it.begins? - w.begins).filter(|_| it.foretold().is_some()));
     Score {
         drops: cases.len(),
         whirls: [whirls.len() - forward, forward],

@@ -168,6 +168,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let (truth, events) = (&watched.truth, &watched.detection.events);
     let matches = match_events(truth, &watched.detection);
     let false_events = matches.false_events.iter();
+    let variance = bound::variance(&drop.scene.sensors);
     let mut seen = Seen {
         invented: false_events
             .filter(|it| events[**it].declared_s >= 0.0)
@@ -179,7 +180,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
         if jump < JUMP {
             continue;
         }
-        if !bound::is_told(drop.variance(), case.rate, &flights(truth, impact, jump)) {
+        if !bound::is_told(variance, case.rate, &flights(truth, impact, jump)) {
             seen.hidden[0] += 1;
             seen.hidden[1] += usize::from(found.detected.is_some());
             continue;
@@ -196,7 +197,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
             .push((speed / impact.normal_speed - 1.0).abs());
         let next = watched.instants.iter().find(|it| it.time >= onset);
         let first = next.map_or(0.0, |it| (it.time - onset) * case.rate);
-        let bound = bound::cusum(drop.variance(), case.rate, first, |t| jump * t);
+        let bound = bound::cusum(variance, case.rate, first, |t| jump * t);
         seen.late.push(latency / bound);
     }
     Ok(seen)

@@ -12,7 +12,7 @@ use touchdown_core::sensing::PLANES;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
 
-use super::disturbance::{Coloured, Held, Kick, Shift, Steps, hum, smooth};
+use super::disturbance::{Held, Kick, Shift, coloured, hum, smooth, steps};
 use super::levitated::{Levitated, ORBIT};
 use super::watch::refused;
 
@@ -22,42 +22,35 @@ pub const RUNOUT: f64 = 5e-6;
 const SPEEDS: [f64; 2] = [10.0, 500.0];
 
 /// What the machine does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display, strum::VariantArray)]
 pub enum Case {
+    #[strum(serialize = "white noise 1 um")]
     White,
+    #[strum(serialize = "orbit 30 um at 10 to 500 Hz, runout 5 um")]
     Orbit,
+    #[strum(serialize = "offset of half the gap")]
     Offset,
+    #[strum(serialize = "sweep through a resonance, up to 30 um")]
     Resonance,
+    #[strum(serialize = "sensor steps of 1 LSB")]
     Steps,
+    #[strum(serialize = "mains hum 50 Hz, 2 um")]
     Hum,
+    #[strum(serialize = "noise 1 um below 500 Hz")]
     Coloured,
-    /// Orbit, runout, offset, sweep, steps and hum.
+    #[strum(serialize = "orbit, runout, offset, sweep, steps and hum at once")]
     Together,
+    #[strum(serialize = "load steps up to 1 g, caught")]
     Load,
+    #[strum(serialize = "base shocks up to 2 g, caught")]
     Shock,
+    #[strum(serialize = "setpoint changes of 50 um in 20 ms")]
     Setpoint,
+    #[strum(serialize = "controlled lift-off and landing")]
     Landing,
 }
 
 impl Case {
-    /// For people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::White => "white noise 1 um",
-            Self::Orbit => "orbit 30 um at 10 to 500 Hz, runout 5 um",
-            Self::Offset => "offset of half the gap",
-            Self::Resonance => "sweep through a resonance, up to 30 um",
-            Self::Steps => "sensor steps of 1 LSB",
-            Self::Hum => "mains hum 50 Hz, 2 um",
-            Self::Coloured => "noise 1 um below 500 Hz",
-            Self::Together => "orbit, runout, offset, sweep, steps and hum at once",
-            Self::Load => "load steps up to 1 g, caught",
-            Self::Shock => "base shocks up to 2 g, caught",
-            Self::Setpoint => "setpoint changes of 50 um in 20 ms",
-            Self::Landing => "controlled lift-off and landing",
-        }
-    }
-
     /// Whether something happens, so that a fall may be declared but not confirmed.
     pub fn is_disturbed(self) -> bool {
         use Case::{Landing, Load, Setpoint, Shock};
@@ -70,8 +63,8 @@ struct Stretch {
     case: Case,
     floats: Levitated,
     random: ChaCha8Rng,
-    steps: Steps,
-    coloured: Coloured,
+    /// Of the channels, by steps or by noise.
+    shift: Shift,
     held: Held,
     /// Of the setpoint's next change.
     change: [f64; 2],
@@ -92,30 +85,23 @@ impl Stretch {
             floats.spin = -floats.spin;
         }
         match case {
-            Case::Orbit => {
-                floats.radius = ORBIT;
-                scene.sensors.runout = RUNOUT;
-                scene.sensors.runout_harmonic = random.random_range(1..=3);
-            }
-            Case::Offset => {
-                let far = 0.5 * scene.retainer.clearance;
-                floats.place = direction(&mut random).map(|part| far * part);
-            }
+            Case::Orbit => floats.radius = ORBIT,
             Case::Coloured => scene.sensors.noise = 0.3e-6,
-            Case::Together => {
-                scene.sensors.runout = RUNOUT;
-                scene.sensors.runout_harmonic = random.random_range(1..=3);
-                let far = 0.5 * scene.retainer.clearance;
-                floats.place = direction(&mut random).map(|part| far * part);
-            }
             _ => {}
+        }
+        if matches!(case, Case::Orbit | Case::Together) {
+            scene.sensors.runout = RUNOUT;
+            scene.sensors.runout_harmonic = random.random_range(1..=3);
+        }
+        if matches!(case, Case::Offset | Case::Together) {
+            let far = 0.5 * scene.retainer.clearance;
+            floats.place = direction(&mut random).map(|part| far * part);
         }
         scene.rotor.spin = floats.spin;
         Self {
             case,
             floats,
-            steps: Steps::default(),
-            coloured: Coloured::default(),
+            shift: Shift::default(),
             held: Held::new(if case == Case::Load {
                 Kick::Load
             } else {
@@ -147,12 +133,12 @@ impl Stretch {
         match self.case {
             Case::White | Case::Orbit | Case::Offset => Shift::default(),
             Case::Resonance => [resonance(time); PLANES],
-            Case::Steps => self.steps.next(&mut self.random, period, self.count),
+            Case::Steps => steps(&mut self.shift, &mut self.random, period, self.count),
             Case::Hum => hum(time, 2e-6),
-            Case::Coloured => self.coloured.next(&mut self.random, period, 1e-6, 500.0),
+            Case::Coloured => coloured(&mut self.shift, &mut self.random, period, 1e-6, 500.0),
             Case::Together => {
                 let [x, y] = resonance(time);
-                let steps = self.steps.next(&mut self.random, period, self.count);
+                let steps = steps(&mut self.shift, &mut self.random, period, self.count);
                 let hum = hum(time, 2e-6);
                 [0, 1].map(|k| [x + steps[k][0] + hum[k][0], y + steps[k][1] + hum[k][1]])
             }

@@ -147,17 +147,12 @@ pub struct Score {
 impl Score {
     /// How much was measured, for people.
     fn extent(&self) -> String {
-        let Plan {
-            seeds,
-            first_seed,
-            seconds,
-            ..
-        } = self.plan;
-        let drops = format!("{seeds} drops a case from seed {first_seed}");
+        let plan = &self.plan;
+        let drops = format!("{} drops a case from seed {}", plan.seeds, plan.first_seed);
         if self.compared {
             format!("{drops}, on the host and on the target")
         } else {
-            format!("{drops}, {seconds} s of levitation a case")
+            format!("{drops}, {} s of levitation a case", plan.seconds)
         }
     }
 

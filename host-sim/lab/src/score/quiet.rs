@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use strum::VariantArray;
 
 use super::levitated::{Levitated, ORBIT};
 use super::listening::{Case, Heard, RUNOUT, listen};
@@ -21,21 +22,6 @@ const HOUR: f64 = 3600.0;
 /// -ln 0.05: upper end of the 95 % interval of a Poisson mean of which none was seen.
 const NONE_SEEN: f64 = 2.995_732_273_553_991;
 
-const CASES: [Case; 12] = [
-    Case::White,
-    Case::Orbit,
-    Case::Offset,
-    Case::Resonance,
-    Case::Steps,
-    Case::Hum,
-    Case::Coloured,
-    Case::Together,
-    Case::Load,
-    Case::Shock,
-    Case::Setpoint,
-    Case::Landing,
-];
-
 /// Drops to compare two targets with: a start from an orbit that is only followed until the release.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
     let mut scene = Scene::load("rig")?;
@@ -48,7 +34,7 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
         ..Levitated::default()
     };
     let drop = Drop::released(plan, scene, floats, [0.0; 2], 1.0, 0.0);
-    Ok(vec![(Case::Orbit.name().to_owned(), drop)])
+    Ok(vec![(Case::Orbit.to_string(), drop)])
 }
 
 /// Runs the group.
@@ -57,14 +43,14 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     scene.tuning = plan.tuning;
     let pieces = (plan.seconds / PIECE).ceil();
     let piece = plan.seconds / pieces;
-    let heard = campaign::map_of(
-        plan.first_seed,
-        pieces as u64,
-        "quiet",
-        &CASES,
-        |case, random| listen(*case, &scene, piece, random),
-    )?;
-    let judged = CASES.iter().zip(&heard);
+    let divided = Plan {
+        seeds: pieces as u64,
+        ..plan.clone()
+    };
+    let heard = campaign::map(&divided, "quiet", Case::VARIANTS, |case, random| {
+        listen(*case, &scene, piece, random)
+    })?;
+    let judged = Case::VARIANTS.iter().zip(&heard);
     Ok(Findings {
         rows: judged
             .map(|(case, heard)| row(*case, heard, plan))
@@ -85,7 +71,7 @@ fn row(case: Case, heard: &[Heard], plan: &Plan) -> Row {
     // A monitor that never listens declares nothing either.
     let deaf = heard.iter().filter(|it| it.armed.is_none()).count();
     let at_most = upper(count) / hours;
-    Row::at_most(case.name(), name, f64::from(count) / hours, 0.0)
+    Row::at_most(case.to_string(), name, f64::from(count) / hours, 0.0)
         .and(deaf == 0)
         .with("hours", hours)
         .with("declared", declared)

@@ -2,20 +2,21 @@
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use strum::VariantArray;
 use touchdown_core::event::EventKind;
 
 use super::figure::Figure;
 use super::impact::dropped;
 use super::levitated::Levitated;
-use super::row::Row;
+use super::row::{Row, interval};
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
 use super::{Findings, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};
-use touchdown_base::wilson;
 use touchdown_scene::{Scene, Start};
+use touchdown_truth::simulate;
 
 /// Part of the regimes that has to be told right.
 const RIGHT: f64 = 0.99;
@@ -34,26 +35,18 @@ const STILL: f64 = 6e-6;
 const HOP: f64 = 1e-6;
 
 /// How a run starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display, strum::VariantArray)]
 enum Case {
+    #[strum(serialize = "drops, random machines")]
     Drop,
-    /// Along the wall, with the spin or against it.
+    /// With the spin or against it.
+    #[strum(serialize = "starts along the wall, random machines")]
     OnTheWall,
-    /// Straight down, without spin.
+    #[strum(serialize = "straight drops without spin")]
     Straight,
 }
 
-const CASES: [Case; 3] = [Case::Drop, Case::OnTheWall, Case::Straight];
-
 impl Case {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Drop => "drops, random machines",
-            Self::OnTheWall => "starts along the wall, random machines",
-            Self::Straight => "straight drops without spin",
-        }
-    }
-
     fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
         let mut scene = Scene::load("rig")?;
         scene.run.duration = WATCHED;
@@ -91,9 +84,9 @@ impl Case {
 
 /// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    CASES
-        .into_iter()
-        .map(|case| Ok((case.name().to_owned(), case.drop(plan, random)?)))
+    let cases = Case::VARIANTS.iter();
+    cases
+        .map(|case| Ok((case.to_string(), case.drop(plan, random)?)))
         .collect()
 }
 
@@ -158,8 +151,10 @@ struct Seen {
 fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let regime = watched.truth.regime;
-    let end = drop.end();
-    let lasts = regime == drop.regime_at(end - SETTLED) || turns(&watched, end).abs() >= LONG;
+    let end = drop.scene.run.duration;
+    let mut shorter = drop.scene.clone();
+    shorter.run.duration = end - SETTLED;
+    let lasts = regime == simulate(&shorter).regime || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
     let events = &watched.detection.events;
     let signs: Vec<_> = events
@@ -192,26 +187,22 @@ fn is_blurred(watched: &Watched, end: f64) -> bool {
 
 /// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
-    let drops = campaign::map(plan, "regime", &CASES, |case, mut random| {
+    let drops = campaign::map(plan, "regime", Case::VARIANTS, |case, mut random| {
         seen(&case.drop(plan, &mut random)?.before_fast_whirl())
     })?;
     let mut rows = Vec::new();
     let mut counts = [[0_u64; KINDS + 1]; KINDS];
-    for (case, drops) in CASES.iter().zip(&drops) {
+    for (case, drops) in Case::VARIANTS.iter().zip(&drops) {
         let judged: Vec<_> = drops.iter().filter_map(|it| it.regime).collect();
         for (row, column) in &judged {
             counts[*row][*column] += 1;
         }
         let right = judged.iter().filter(|(row, column)| row == column).count();
-        let row = Row::at_least(
-            case.name(),
-            "right_share",
-            share(right, judged.len()),
-            RIGHT,
-        )
-        .of(judged.len());
+        let part = share(right, judged.len());
         rows.push(
-            row.with("drops", drops.len())
+            Row::at_least(case.to_string(), "right_share", part, RIGHT)
+                .of(judged.len())
+                .with("drops", drops.len())
                 .with("judged", judged.len())
                 .with("right", right)
                 .noted(format!(
@@ -235,10 +226,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     );
     let wrong: usize = all().map(|it| it.wrong_signs).sum();
     let told: usize = all().map(|it| it.told).sum();
-    let (_, upper) = match told {
-        0 => (0.0, 1.0),
-        _ => wilson::interval(wrong as u64, told as u64),
-    };
+    let (_, upper) = interval(share(wrong, told), told);
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
             .with("drops", all().count())

@@ -152,7 +152,7 @@ impl Row {
 }
 
 /// The 95 % interval of a share or mean.
-fn interval(share: f64, trials: usize) -> (f64, f64) {
+pub fn interval(share: f64, trials: usize) -> (f64, f64) {
     if trials == 0 {
         return (0.0, 1.0);
     }

@@ -237,7 +237,7 @@ fn seen(plan: &Plan, case: Case, random: &mut ChaCha8Rng) -> Result<Seen, Failur
     for (time, it) in told {
         if is_it(it.channel, it.kind) {
             seen.age
-                .get_or_insert(((time - since) * drop.rate()).round());
+                .get_or_insert(((time - since) * drop.scene.run.sample_rate).round());
         } else {
             seen.false_faults += 1;
         }

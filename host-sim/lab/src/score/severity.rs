@@ -26,19 +26,18 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     Ok(vec![("machine known".to_owned(), drop)])
 }
 
-/// A drop's errors, as parts of the truth; none where there was nothing to measure.
-#[derive(Clone, Copy, Debug)]
-struct Errors {
-    impact_speed: Option<f64>,
-    impulse: Option<f64>,
-    total_impulse: Option<f64>,
-    velocity_index: Option<f64>,
-    whirl_load: Option<f64>,
-    /// s, for each start and end of a contact.
-    dwell: Option<f64>,
-}
+/// What is measured, the quantity that is judged, and its target.
+const MEASURES: [(&str, &str, f64); 6] = [
+    ("greatest impact speed", "error_p90", RIGHT),
+    ("greatest impulse", "error_p90", RIGHT),
+    ("sum of impulses", "error_p90", RIGHT),
+    ("velocity index", "error_p90", RIGHT),
+    ("whirl load", "error_p90", LOAD),
+    ("time in contact, per start and end", "error_p90_s", DWELL),
+];
 
-fn errors(scene: &Scene, drop: &Strained) -> Errors {
+/// A drop's errors in the order of [`MEASURES`], as parts of the truth or in s; none where there was nothing to measure.
+fn errors(scene: &Scene, drop: &Strained) -> [Option<f64>; MEASURES.len()] {
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let off = |seen: f32, truth: f64| (f64::from(seen) / truth - 1.0).abs();
     let seen = &drop.seen;
@@ -46,15 +45,15 @@ fn errors(scene: &Scene, drop: &Strained) -> Errors {
     let impulse = largest(&drop.impulses);
     let is_felt = impulse >= JUMP * scene.rotor.mass;
     let unit = (scene.run.gravity * scene.retainer.clearance).sqrt();
-    Errors {
-        impact_speed: is_felt.then(|| off(seen.impact_speed, largest(&drop.speeds))),
-        impulse: is_felt.then(|| off(seen.impulse, impulse)),
-        total_impulse: is_felt.then(|| off(seen.total_impulse, drop.impulses.iter().sum())),
-        velocity_index: is_felt.then(|| off(seen.velocity_index, drop.speed / unit)),
-        whirl_load: drop.whirl_load.map(|truth| off(seen.whirl_load, truth)),
-        dwell: (drop.dwell > 0.0)
-            .then(|| (f64::from(seen.dwell) - drop.dwell).abs() / drop.changes as f64),
-    }
+    let late = (f64::from(seen.dwell) - drop.dwell).abs();
+    [
+        is_felt.then(|| off(seen.impact_speed, largest(&drop.speeds))),
+        is_felt.then(|| off(seen.impulse, impulse)),
+        is_felt.then(|| off(seen.total_impulse, drop.impulses.iter().sum())),
+        is_felt.then(|| off(seen.velocity_index, drop.speed / unit)),
+        drop.whirl_load.map(|truth| off(seen.whirl_load, truth)),
+        (drop.dwell > 0.0).then(|| late / drop.changes as f64),
+    ]
 }
 
 /// Runs the group.
@@ -64,8 +63,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         let drop = watch(&scene, &told).map_err(refused)?;
         Ok(errors(&scene, &drop))
     })?;
-    let row = |case: &str, quantity, target, of: fn(&Errors) -> Option<f64>| {
-        let errors: Vec<f64> = drops.iter().flatten().filter_map(of).collect();
+    let row = |(k, (case, quantity, target))| {
+        let errors: Vec<f64> = drops.iter().flatten().filter_map(|it| it[k]).collect();
         Row::quantile_at_most(case, quantity, &errors, NINE_IN_TEN, target)
             .with("drops", errors.len())
             .with("error_median", median(&errors))
@@ -77,21 +76,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
                 quantile(&errors, 1.0)
             ))
     };
-    let part = "error_p90";
     Ok(Findings {
-        rows: vec![
-            row("greatest impact speed", part, RIGHT, |it| it.impact_speed),
-            row("greatest impulse", part, RIGHT, |it| it.impulse),
-            row("sum of impulses", part, RIGHT, |it| it.total_impulse),
-            row("velocity index", part, RIGHT, |it| it.velocity_index),
-            row("whirl load", part, LOAD, |it| it.whirl_load),
-            row(
-                "time in contact, per start and end",
-                "error_p90_s",
-                DWELL,
-                |it| it.dwell,
-            ),
-        ],
+        rows: MEASURES.into_iter().enumerate().map(row).collect(),
         figures: Vec::new(),
     })
 }

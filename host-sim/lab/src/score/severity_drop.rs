@@ -72,10 +72,8 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
     let history = truth.finish().whole;
     let impacts = || history.impacts.iter().filter(|it| it.state.time <= end);
     let contact = [PhaseKind::Sliding, PhaseKind::Rolling];
-    let contacts = history
-        .phases
-        .iter()
-        .filter(|it| contact.contains(&it.phase));
+    let phases = history.phases.iter();
+    let contacts = phases.filter(|it| contact.contains(&it.phase));
     Ok(Strained {
         seen: *state.severity(),
         impulses: impacts().map(|it| it.normal_impulse).collect(),

@@ -6,23 +6,25 @@ use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
 use touchdown_core::sample::Sample;
 use touchdown_rotor::error::ConfigError;
 
+use super::Plan;
 use super::levitated::Levitated;
-use super::{Plan, bound};
 use touchdown_base::failure::Failure;
-use touchdown_base::history::{History, Impact, PhaseKind, Regime};
+use touchdown_base::history::{History, Impact, PhaseKind};
 use touchdown_run::detection::detection;
 use touchdown_run::monitor_run::MonitorOutput;
 use touchdown_run::outcome::Detection;
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
 use touchdown_scene::{Scene, Start};
-use touchdown_truth::Truth;
+use touchdown_truth::{TrueState, Truth};
 
 /// A drop and what the monitor is told of its machine.
 #[derive(Clone, Debug)]
 pub struct Drop {
-    scene: Scene,
-    monitor: MonitorConfig,
+    /// Of the machine, its sensors and its run.
+    pub scene: Scene,
+    /// What the monitor is told; it may be of another machine than the one that drops.
+    pub monitor: MonitorConfig,
     floats: Option<Levitated>,
     /// Before the release.
     levitated: u64,
@@ -68,27 +70,9 @@ impl Drop {
         }
     }
 
-    /// The monitor is told of another machine than the one that drops.
-    pub fn told(mut self, change: impl FnOnce(&mut MonitorConfig)) -> Self {
-        change(&mut self.monitor);
-        self
-    }
-
     /// Of sample `number`, s since the release.
     fn time(&self, number: u64) -> f64 {
         (number as f64 - self.levitated as f64 + self.first) / self.scene.run.sample_rate
-    }
-
-    /// Of a position on one axis, mean over the planes, m^2.
-    pub fn variance(&self) -> f64 {
-        bound::variance(&self.scene.sensors)
-    }
-
-    /// By the reference, of a run that ends then (s).
-    pub fn regime_at(&self, end: f64) -> Regime {
-        let mut scene = self.scene.clone();
-        scene.run.duration = end;
-        touchdown_truth::simulate(&scene).regime
     }
 
     /// Ends the run where the whirl gets faster than 1000 turns/s, twenty samples a turn: the rigid laws
@@ -111,24 +95,9 @@ impl Drop {
         self
     }
 
-    /// Samples a second.
-    pub fn rate(&self) -> f64 {
-        self.scene.run.sample_rate
-    }
-
     /// Change of the velocity into the wall by an impact, m/s.
     pub fn jump(&self, impact: &Impact) -> f64 {
         (1.0 + self.scene.retainer.restitution) * impact.normal_speed
-    }
-
-    /// When the run ends, s since the release.
-    pub fn end(&self) -> f64 {
-        self.scene.run.duration
-    }
-
-    /// What the monitor is told.
-    pub fn monitor(&self) -> &MonitorConfig {
-        &self.monitor
     }
 
     /// What the sensors deliver.
@@ -144,12 +113,15 @@ impl Drop {
         let mut forecast_task = ForecastTask::try_new(&self.monitor.detector).map_err(refused)?;
         let mut feed = Feed::new(self).map_err(refused)?;
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
-        while let Some((sample, instant)) = feed.next() {
+        while let Some((sample, time, fallen)) = feed.next() {
             notices.extend(monitor.update(&mut state, &sample));
             notices.extend(monitor.look(&state, &mut forecast_task));
-            instants.extend(instant.map(|instant| Instant {
+            instants.extend(fallen.map(|TrueState { phase, rotor, .. }| Instant {
+                time,
+                phase,
                 told: state.phase(),
-                ..instant
+                turns: rotor.turns_in_contact * rotor.spin.signum(),
+                position: rotor.position,
             }));
         }
         let answer = MonitorOutput {
@@ -217,31 +189,23 @@ impl<'a> Feed<'a> {
         })
     }
 
-    fn next(&mut self) -> Option<(Sample, Option<Instant>)> {
+    /// A sample, its time since the release (s), and what is true then, once released.
+    fn next(&mut self) -> Option<(Sample, f64, Option<TrueState>)> {
         let time = self.drop.time(self.next);
         if time > self.drop.scene.run.duration {
             return None;
         }
         self.next += 1;
-        let (motion, instant) = match self.drop.floats {
+        let (motion, fallen) = match self.drop.floats {
             Some(floats) if time < 0.0 => (held(&floats, time), None),
-            _ => self.fallen(time),
+            _ => {
+                let state = self.truth.advance(time);
+                (state.motion(false), Some(state))
+            }
         };
         let mut sample = self.sensors.read(&mut self.seen, &motion);
         self.faults.inject(&mut sample, time);
-        Some((sample, instant))
-    }
-
-    fn fallen(&mut self, time: f64) -> (Motion, Option<Instant>) {
-        let state = self.truth.advance(time);
-        let instant = Instant {
-            time,
-            phase: state.phase,
-            told: Phase::Starting,
-            turns: state.rotor.turns_in_contact * state.rotor.spin.signum(),
-            position: state.rotor.position,
-        };
-        (state.motion(false), Some(instant))
+        Some((sample, time, fallen))
     }
 }
 

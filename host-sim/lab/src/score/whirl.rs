@@ -3,7 +3,6 @@
 use touchdown_core::event::EventKind;
 
 use super::watch::{Instant, Watched};
-use touchdown_base::history::History;
 use touchdown_run::outcome::DetectedEvent;
 
 /// Turns of a whirl that has to be declared: one, and time to say so.
@@ -19,15 +18,11 @@ pub fn has_wrong_sign(watched: &Watched, event: &DetectedEvent) -> Option<bool> 
         EventKind::BackwardWhirl => -1.0,
         _ => return None,
     };
-    let History {
-        contact_starts,
-        lift_offs,
-        ..
-    } = &watched.truth;
+    let truth = &watched.truth;
     let told = event.declared_s;
-    let mut starts = contact_starts.iter().copied();
+    let mut starts = truth.contact_starts.iter().copied();
     let turns = starts.rfind(|it| *it <= told + EARLY).map(|start| {
-        let lift_off = lift_offs.iter().find(|it| **it > start);
+        let lift_off = truth.lift_offs.iter().find(|it| **it > start);
         let stop = lift_off.copied().unwrap_or(f64::INFINITY);
         let first = watched.instants.partition_point(|it| it.time < start);
         let after = watched.instants.partition_point(|it| it.time < stop);
@@ -58,14 +53,10 @@ pub fn turns(watched: &Watched, time: f64) -> f64 {
 /// Of each contact that goes round against the spin: turns when that was first declared in it; infinite
 /// where it was not.
 pub fn whirls(watched: &Watched, end: f64) -> Vec<f64> {
-    let History {
-        contact_starts,
-        lift_offs,
-        ..
-    } = &watched.truth;
+    let truth = &watched.truth;
     let mut whirls = Vec::new();
-    for &start in contact_starts {
-        let lift_off = lift_offs.iter().find(|it| **it > start);
+    for &start in &truth.contact_starts {
+        let lift_off = truth.lift_offs.iter().find(|it| **it > start);
         let stop = lift_off.copied().unwrap_or(end);
         let during = |time: f64| time >= start && time <= stop;
         let mut events = watched.detection.events.iter();

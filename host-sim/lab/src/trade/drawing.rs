@@ -28,8 +28,9 @@ impl Cost {
     /// None where it is not known.
     fn of(self, row: &Row) -> Option<f64> {
         match self {
-            Self::Here => Some(row.seconds_per_simulated_second),
+            Self::Here => Some(row.pace.seconds_per_simulated_second),
             Self::Target => row
+                .pace
                 .mcu_instructions_per_step
                 .map(|count| count / row.step_s),
         }
@@ -45,38 +46,22 @@ impl Cost {
 
 /// The drawing as a part of a page.
 pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
-    let axes = Axes::of(&trade.rows, cost);
-    axes.chart().draw(
-        &html! {},
-        &axes.front(&trade.rows),
-        &axes.points(&trade.rows),
-    )
+    let plot = Plot::of(&trade.rows, cost);
+    plot.chart().draw(&html! {}, &plot.front(), &plot.points())
 }
 
 /// The drawing for this machine as a file of its own.
 pub fn svg(trade: &Trade) -> String {
-    let axes = Axes::of(&trade.rows, Cost::Here);
-    let points = html! { (axes.points(&trade.rows)) (key(&trade.rows)) };
-    axes.chart()
-        .file(WIDTH, &axes.front(&trade.rows), &points)
-        .into_string()
+    let plot = Plot::of(&trade.rows, Cost::Here);
+    let points = html! { (plot.points()) (key(&trade.rows)) };
+    let file = plot.chart().file(WIDTH, &plot.front(), &points);
+    file.into_string()
 }
 
 /// What the points mean, inside the drawing.
 fn key(rows: &[Row]) -> Markup {
-    let mut entries: Vec<(String, String)> = shown(rows)
-        .map(|rung| {
-            (
-                format!("{} f32", rung_class(rung)),
-                format!("rung {}", rung),
-            )
-        })
-        .collect();
-    entries.extend(
-        Precision::ALL.map(|precision| (format!("levitated {precision}"), precision.to_string())),
-    );
     html! {
-        @for (index, (class, name)) in entries.iter().enumerate() {
+        @for (index, (class, name)) in meanings(rows).iter().enumerate() {
             @let y = 0.5 * HEIGHT + 20.0 * index as f64;
             circle class=(class) cx="86%" cy=(y) r="4" {}
             text x="87.5%" y=(y) dy="4" { (name) }
@@ -84,34 +69,33 @@ fn key(rows: &[Row]) -> Markup {
     }
 }
 
-/// The rungs of the table.
-fn shown(rows: &[Row]) -> impl Iterator<Item = Fidelity> {
-    Fidelity::ALL
-        .into_iter()
-        .filter(|rung| rows.iter().any(|row| row.rung == *rung))
+/// Style classes of the points, and what they stand for: the rungs of the table, and the number formats.
+fn meanings(rows: &[Row]) -> Vec<(String, String)> {
+    let shown = |rung: &Fidelity| rows.iter().any(|row| row.rung == *rung);
+    let rungs = Fidelity::ALL.into_iter().filter(shown);
+    let rungs = rungs.map(|rung| (format!("rung-{rung} f32"), format!("rung {rung}")));
+    let formats = Precision::ALL.map(|it| (format!("levitated {it}"), it.to_string()));
+    rungs.chain(formats).collect()
 }
 
-/// Style class of a rung.
-pub(super) fn rung_class(rung: Fidelity) -> String {
-    format!("rung-{}", rung)
-}
-
-struct Axes {
+struct Plot<'a> {
+    rows: &'a [Row],
     of: Cost,
     cost: Axis,
     error: Axis,
 }
 
-impl Axes {
-    fn of(rows: &[Row], of: Cost) -> Self {
+impl<'a> Plot<'a> {
+    fn of(rows: &'a [Row], of: Cost) -> Self {
         let costs = rows.iter().filter_map(|row| of.of(row));
         let least = costs.clone().fold(f64::INFINITY, f64::min);
         let most = costs.fold(0.0, f64::max);
-        let errors = rows.iter().map(|row| height(row.worst_error));
+        let errors = rows.iter().map(|row| height(row.accuracy.worst));
         let (low, high) = errors.fold((MOST_ERROR, LEAST_ERROR), |(low, high), error| {
             (f64::min(low, error), f64::max(high, error))
         });
         Self {
+            rows,
             of,
             cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label(), 8.0),
             error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
@@ -130,26 +114,33 @@ impl Axes {
     }
 
     /// Joins the front, which is about the cost here.
-    fn front(&self, rows: &[Row]) -> Markup {
-        let mut front: Vec<&Row> = rows.iter().filter(|row| row.pareto).collect();
+    fn front(&self) -> Markup {
+        let mut front: Vec<&Row> = self.rows.iter().filter(|row| row.pareto).collect();
         front.sort_by(|a, b| {
-            a.seconds_per_simulated_second
-                .total_cmp(&b.seconds_per_simulated_second)
+            a.pace
+                .seconds_per_simulated_second
+                .total_cmp(&b.pace.seconds_per_simulated_second)
         });
         let chart = self.chart();
         let mut pen = chart.pen();
         for row in front.into_iter().filter(|_| self.of == Cost::Here) {
-            pen.line_to(row.seconds_per_simulated_second, height(row.worst_error));
+            pen.line_to(
+                row.pace.seconds_per_simulated_second,
+                height(row.accuracy.worst),
+            );
         }
         pen.finish("front")
     }
 
-    fn points(&self, rows: &[Row]) -> Markup {
-        let known = rows.iter().filter_map(|row| Some((row, self.of.of(row)?)));
+    fn points(&self) -> Markup {
+        let known = self
+            .rows
+            .iter()
+            .filter_map(|row| Some((row, self.of.of(row)?)));
         html! {
             @for (row, cost) in known {
-                @let y = (1.0 - self.error.fraction(height(row.worst_error))) * HEIGHT;
-                @let class = format!("{} {}", rung_class(row.rung), row.precision);
+                @let y = (1.0 - self.error.fraction(height(row.accuracy.worst))) * HEIGHT;
+                @let class = format!("rung-{} {}", row.rung, row.precision);
                 @let large = row.pareto && self.of == Cost::Here;
                 circle class=(class) cx=(self.cost.percent(cost)) cy=(format!("{y:.1}"))
                     r=(if large { "6" } else { "3.5" }) {
@@ -170,8 +161,8 @@ fn caption(row: &Row) -> String {
         "{}, step {}: error {:.1e}, {:.1} ns a step",
         row.name(),
         si(row.step_s, "s"),
-        row.worst_error,
-        row.ns_per_step
+        row.accuracy.worst,
+        row.pace.ns_per_step
     )
 }
 
@@ -179,17 +170,13 @@ fn caption(row: &Row) -> String {
 pub(super) fn legend(rows: &[Row]) -> Markup {
     html! {
         ul.legend {
-            @for rung in shown(rows) {
-                li { (dot(&format!("{} f32", rung_class(rung)))) "rung " (rung) }
-            }
-            @for precision in Precision::ALL {
-                li { (dot(&format!("levitated {precision}"))) (precision) }
+            @for (class, name) in meanings(rows) {
+                li {
+                    svg width="12" height="12" aria-hidden="true" { circle class=(class) cx="6" cy="6" r="4" {} }
+                    (name)
+                }
             }
             li { "large and joined: the front" }
         }
     }
-}
-
-fn dot(class: &str) -> Markup {
-    html! { svg width="12" height="12" aria-hidden="true" { circle class=(class) cx="6" cy="6" r="4" {} } }
 }

@@ -12,33 +12,37 @@ mod table;
 
 pub use drawing::svg;
 pub use page::page;
-pub use row::{Row, json};
 pub use table::table;
 
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use accuracy::Accuracy;
 use pace::Pace;
 use parts::Worth;
+use row::Row;
 use touchdown_base::history::History;
 use touchdown_base::progress;
 use touchdown_run::fidelity::combination::{self, with};
 use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
-use touchdown_scene::Scene;
+use touchdown_scene::{Model, Scene};
 
 /// The table of a scene, and how much of the scene it was measured over.
+#[derive(Serialize)]
 pub struct Trade {
     /// The scene's heading.
-    pub scene: String,
+    #[serde(skip)]
+    scene: String,
     /// From the release, s.
-    pub measured: f64,
+    #[serde(skip)]
+    measured: f64,
     /// What each part is worth, over this time.
-    pub parts: Worth,
+    parts: Worth,
     /// One a combination that the scene allows.
-    pub rows: Vec<Row>,
+    rows: Vec<Row>,
 }
 
 /// Measures every part, by so many drops, and every combination over the first second of `scene`.
@@ -48,20 +52,18 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
     let models = combination::all();
     let progress = progress::bar("trade", models.len() as u64);
     let measured = models.into_par_iter().map(|model| {
-        let measured = once(&with(&scene, model), &truth);
+        let row = once(&with(&scene, model), &truth);
         progress.inc(1);
-        measured
+        row.map(|row| (model, row))
     });
-    let measured: Vec<Option<(Accuracy, Pace)>> = measured.collect();
+    let measured: Vec<Option<(Model, Row)>> = measured.collect();
     progress.finish_and_clear();
-    let mut rows: Vec<Row> = Vec::with_capacity(measured.len());
-    for (model, measured) in combination::all().into_iter().zip(measured) {
-        if let Some((accuracy, pace)) = measured
-            && let Ok(pace) = pace.of_short(&with(&scene, model))
-        {
-            rows.push(Row::new(model, &accuracy, &pace));
-        }
-    }
+    let measured = measured.into_iter().flatten();
+    let timed = measured.filter_map(|(model, row)| {
+        let pace = row.pace.of_short(&with(&scene, model)).ok()?;
+        Some(Row { pace, ..row })
+    });
+    let mut rows: Vec<Row> = timed.collect();
     pareto::mark(&mut rows);
     Trade {
         scene: scene.heading().to_owned(),
@@ -72,9 +74,10 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
 }
 
 /// How far a model is from the reference, and what its run costs; none where it refuses the scene.
-fn once(scene: &Scene, truth: &History) -> Option<(Accuracy, Pace)> {
+fn once(scene: &Scene, truth: &History) -> Option<Row> {
     let begin = Instant::now();
     let history = model::simulate(scene).ok()?;
     let pace = Pace::of(scene, begin.elapsed());
-    Some((Accuracy::of(&history, truth, scene), pace))
+    let accuracy = Accuracy::of(&history, truth, scene);
+    Some(Row::new(scene.model, accuracy, pace))
 }

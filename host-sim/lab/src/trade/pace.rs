@@ -3,6 +3,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{ModelEvent, Precision, Stepper};
 
@@ -14,20 +15,24 @@ use touchdown_scene::Scene;
 const ENOUGH: Duration = Duration::from_millis(10);
 
 /// Cost of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Pace {
     /// Of the quickest of the runs, each step with the rotor's place after it, ns.
     pub ns_per_step: f64,
+    /// The same, a second of the scene.
+    pub seconds_per_simulated_second: f64,
     /// Mean of the instructions of a step on the target.
-    pub target: Option<f64>,
+    pub mcu_instructions_per_step: Option<f64>,
 }
 
 impl Pace {
     /// Of the scene's model, which took so long for the run.
     pub fn of(scene: &Scene, whole: Duration) -> Self {
+        let ns_per_step = whole.as_secs_f64() * 1e9 / steps(scene);
         Self {
-            ns_per_step: whole.as_secs_f64() * 1e9 / steps(scene),
-            target: cost::per_step(scene),
+            ns_per_step,
+            seconds_per_simulated_second: ns_per_step * 1e-9 / scene.model.step,
+            mcu_instructions_per_step: cost::per_step(scene),
         }
     }
 
@@ -39,8 +44,10 @@ impl Pace {
         while best < ENOUGH && begin.elapsed() < ENOUGH {
             best = best.min(with_model(scene, Timed(steps as u64))?);
         }
+        let ns_per_step = best.as_secs_f64() * 1e9 / steps;
         Ok(Self {
-            ns_per_step: best.as_secs_f64() * 1e9 / steps,
+            ns_per_step,
+            seconds_per_simulated_second: ns_per_step * 1e-9 / scene.model.step,
             ..self
         })
     }

@@ -17,7 +17,7 @@ pub fn page(trade: &Trade) -> String {
     let counted = trade
         .rows
         .iter()
-        .any(|row| row.mcu_instructions_per_step.is_some());
+        .any(|row| row.pace.mcu_instructions_per_step.is_some());
     let body = html! {
         header {
             p.kind { "Accuracy against cost" }
@@ -84,16 +84,24 @@ fn rows(name: &str, rows: &[&Row]) -> Markup {
     table(name, rows)
         .words("Combination", |it| it.name())
         .number("Step", |it| si(it.step_s, "s"))
-        .number("Impact 1", |it| error(it.error_impact_1))
-        .number("Impact 3", |it| error(it.error_impact_3))
-        .number("Impact 10", |it| error(it.error_impact_10))
-        .number("Contact, T", |it| error(it.contact_error))
-        .words("Regime", |it| if it.regime_ok { "right" } else { "wrong" })
-        .number("Energy", |it| error(Some(it.energy_drift)))
-        .number("ns a step", |it| format!("{:.1}", it.ns_per_step))
-        .number("s/s", |it| error(Some(it.seconds_per_simulated_second)))
+        .number("Impact 1", |it| error(it.accuracy.error_impact_1))
+        .number("Impact 3", |it| error(it.accuracy.error_impact_3))
+        .number("Impact 10", |it| error(it.accuracy.error_impact_10))
+        .number("Contact, T", |it| error(it.accuracy.contact_error))
+        .words("Regime", |it| {
+            if it.accuracy.regime_ok {
+                "right"
+            } else {
+                "wrong"
+            }
+        })
+        .number("Energy", |it| error(Some(it.accuracy.energy_drift)))
+        .number("ns a step", |it| format!("{:.1}", it.pace.ns_per_step))
+        .number("s/s", |it| {
+            error(Some(it.pace.seconds_per_simulated_second))
+        })
         .number("Instr. a step", |it| {
-            let count = it.mcu_instructions_per_step;
+            let count = it.pace.mcu_instructions_per_step;
             count.map_or("\u{2013}".to_owned(), |it| format!("{it:.0}"))
         })
         .draw()

@@ -7,7 +7,7 @@ use super::row::Row;
 pub(super) fn mark(rows: &mut [Row]) {
     let points: Vec<[f64; 2]> = rows
         .iter()
-        .map(|row| [row.seconds_per_simulated_second, row.worst_error])
+        .map(|row| [row.pace.seconds_per_simulated_second, row.accuracy.worst])
         .collect();
     for (row, &point) in rows.iter_mut().zip(&points) {
         row.pareto = point[1].is_finite() && !points.iter().any(|&other| beats(other, point));

@@ -29,14 +29,14 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
     text += "ns/step and instructions a step on the target: at a step of 10 us\n\n";
     text += &(paint.bold("nothing is both quicker here and closer than") + "\n");
     let mut front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
-    front.sort_by(|a, b| a.worst_error.total_cmp(&b.worst_error));
+    front.sort_by(|a, b| a.accuracy.worst.total_cmp(&b.accuracy.worst));
     for row in front {
         text += &format!(
             "{:<32} step {:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
             row.name(),
             short(row.step_s * 1e6),
-            row.worst_error,
-            row.seconds_per_simulated_second,
+            row.accuracy.worst,
+            row.pace.seconds_per_simulated_second,
         );
     }
     text
@@ -51,14 +51,14 @@ fn line(group: &[Row]) -> String {
     let errors: String = COLUMNS
         .into_iter()
         .map(|step| match at(step) {
-            Some(row) if row.worst_error.is_finite() => format!("{:>8.1e}", row.worst_error),
+            Some(row) if row.accuracy.worst.is_finite() => format!("{:>8.1e}", row.accuracy.worst),
             _ => format!("{:>8}", "-"),
         })
         .collect();
     let middle = at(10);
-    let pace = middle.map_or("-".to_owned(), |row| format!("{:.1}", row.ns_per_step));
+    let pace = middle.map_or("-".to_owned(), |row| format!("{:.1}", row.pace.ns_per_step));
     let target = middle
-        .and_then(|row| row.mcu_instructions_per_step)
+        .and_then(|row| row.pace.mcu_instructions_per_step)
         .map_or("-".to_owned(), |count| format!("{count:.0}"));
     let name = group.first().map(Row::name).unwrap_or_default();
     format!("{name:<31}{errors}{pace:>8}{target:>7}\n")

@@ -40,14 +40,14 @@ impl Effect {
             return None;
         }
         let mean = |k: usize| both.iter().map(|it| it[k]).sum::<f64>() / both.len() as f64;
-        let it = &QUANTITIES[quantity];
+        let (quantity, unit) = QUANTITIES[quantity];
         Some(Self {
-            quantity: it.name,
-            unit: it.unit,
+            quantity,
+            unit,
             pairs: both.len(),
             whole: mean(0),
             without: mean(1),
-            interval: if it.is_share {
+            interval: if unit.is_empty() {
                 of_shares(&both)
             } else {
                 of_means(&both)
