@@ -7,9 +7,10 @@ use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
 use crate::accuracy;
+use crate::controller_trace::ControllerTrace;
 use crate::detection::detection;
-use crate::model::{self, FollowedDrop, ModelRun};
-use crate::outcome::{Outcome, TracePoint};
+use crate::model::{self, ModelRun};
+use crate::outcome::{Detection, Outcome, TracePoint};
 use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
@@ -30,8 +31,14 @@ pub fn run<W: Write>(
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let model = model::follow(scene).map_err(|error| refused(scene, &error))?;
-    let (mut outcome, stream) = sensed(scene, target, stream, Mover::Model(model))?;
+    let mut model = model::follow(scene).map_err(|error| refused(scene, &error))?;
+    let sensed = sensed(scene, target, stream, &mut |time| {
+        let state = model.advance(time);
+        model.given_up().is_none().then_some(state)
+    })?;
+    let model = model.finish();
+    let truth = model.histories.clone();
+    let (mut outcome, stream) = outcome(scene, model, truth, sensed);
     if outcome.model_given_up.is_none() {
         let rings = outcome.rings.iter().map(|[model, _]| model);
         outcome.accuracy = accuracy::estimate(scene, &outcome.model, rings);
@@ -46,12 +53,35 @@ pub fn by_reference<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let model = model::run(scene).map_err(|error| refused(scene, &error))?;
-    let mover = Mover::Reference(Box::new((Truth::new(scene), model)));
-    sensed(scene, target, stream, mover)
+    let mut reference = Truth::new(scene);
+    let sensed = sensed(scene, target, stream, &mut |time| {
+        let state = reference.advance(time);
+        reference.given_up().is_none().then_some(state)
+    })?;
+    let given_up = reference.given_up();
+    let (outcome, stream) = outcome(scene, model, reference.finish(), sensed);
+    let outcome = Outcome {
+        by_reference: true,
+        given_up,
+        ..outcome
+    };
+    Ok((outcome, stream))
 }
 
 fn refused(scene: &Scene, error: &ConfigError) -> Failure {
     Failure::Usage(format!("{}: {error}", scene.name))
+}
+
+/// What moves the rotor that the sensors see: the machine at a time (s), none once it is given up.
+type Mover<'a> = &'a mut dyn FnMut(f64) -> Option<TrueState>;
+
+/// What sensors, detector and controller made of a drop.
+struct Sensed<W> {
+    trace: Vec<TracePoint>,
+    spectrogram: Spectrogram,
+    detection: Detection,
+    conduct: ControllerTrace,
+    stream: io::Result<Option<W>>,
 }
 
 fn sensed<W: Write>(
@@ -59,7 +89,7 @@ fn sensed<W: Write>(
     target: &Target,
     stream: Option<W>,
     mover: Mover<'_>,
-) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
+) -> Result<Sensed<W>, Failure> {
     let mut feed =
         SampleSource::new(scene, stream, mover).map_err(|error| refused(scene, &error))?;
     let procedure = Procedure {
@@ -67,83 +97,44 @@ fn sensed<W: Write>(
         ..Procedure::default()
     };
     let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, &mut feed)?;
-    let timebase = Timebase::of(scene);
-    let (moved, trace, spectrogram, stream) = feed.finish();
-    let Moved {
-        model,
-        reference,
-        given_up,
-    } = moved;
-    let by_reference = reference.is_some();
-    let truth = reference.unwrap_or_else(|| model.histories.clone());
+    let stream = feed
+        .stream
+        .map(|stream| stream.and_then(StreamWriter::finish));
+    Ok(Sensed {
+        trace: feed.trace.finish(),
+        spectrogram: feed.analyser.finish(),
+        detection: detection(&answer, Timebase::of(scene)),
+        conduct,
+        stream: stream.transpose(),
+    })
+}
+
+/// The outcome where the model moved the rotor and nothing is known of its accuracy.
+fn outcome<W>(
+    scene: &Scene,
+    model: ModelRun,
+    truth: Histories,
+    sensed: Sensed<W>,
+) -> (Outcome, io::Result<Option<W>>) {
     let rings = model.histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
         model: model.histories.whole,
         truth: truth.whole,
         accuracy: None,
-        by_reference,
-        given_up,
+        by_reference: false,
+        given_up: None,
         model_given_up: model.given_up,
         ledger: model.ledger,
         ring: model.ring,
         seats: model.seats,
         rings: rings.map(|(model, truth)| [model, truth]).collect(),
-        trace,
-        spectrogram,
-        detection: detection(&answer, timebase),
-        conduct,
-        timebase,
+        trace: sensed.trace,
+        spectrogram: sensed.spectrogram,
+        detection: sensed.detection,
+        conduct: sensed.conduct,
+        timebase: Timebase::of(scene),
     };
-    Ok((outcome, stream))
-}
-
-/// What moves the rotor that the sensors see.
-enum Mover<'a> {
-    Model(Box<dyn FollowedDrop + 'a>),
-    /// The model has run beside it.
-    Reference(Box<(Truth<'a>, ModelRun)>),
-}
-
-/// What became of it.
-struct Moved {
-    model: ModelRun,
-    reference: Option<Histories>,
-    /// Of the reference, s.
-    given_up: Option<f64>,
-}
-
-impl Mover<'_> {
-    fn advance(&mut self, time: f64) -> TrueState {
-        match self {
-            Self::Model(model) => model.advance(time),
-            Self::Reference(it) => it.0.advance(time),
-        }
-    }
-
-    fn given_up(&self) -> Option<f64> {
-        match self {
-            Self::Model(model) => model.given_up(),
-            Self::Reference(it) => it.0.given_up(),
-        }
-    }
-
-    fn finish(self) -> Moved {
-        match self {
-            Self::Model(model) => Moved {
-                model: model.finish(),
-                reference: None,
-                given_up: None,
-            },
-            Self::Reference(it) => {
-                let (truth, model) = *it;
-                Moved {
-                    model,
-                    given_up: truth.given_up(),
-                    reference: Some(truth.finish()),
-                }
-            }
-        }
-    }
+    (outcome, sensed.stream)
 }
 
 /// The samples of a drop, one after the other.
@@ -195,20 +186,6 @@ impl<'a, W: Write> SampleSource<'a, W> {
             samples,
         })
     }
-
-    fn finish(self) -> (Moved, Vec<TracePoint>, Spectrogram, io::Result<Option<W>>) {
-        let stream = match self.stream {
-            Some(stream) => stream.and_then(StreamWriter::finish).map(Some),
-            None => Ok(None),
-        };
-        let spectrogram = self.analyser.finish();
-        (
-            self.mover.finish(),
-            self.trace.finish(),
-            spectrogram,
-            stream,
-        )
-    }
 }
 
 impl<W: Write> Iterator for SampleSource<'_, W> {
@@ -221,10 +198,7 @@ impl<W: Write> Iterator for SampleSource<'_, W> {
         let time = (self.next as f64 - self.levitated as f64) / self.scene.run.sample_rate;
         self.next += 1;
         self.progress.at(self.next);
-        let state = self.mover.advance(time);
-        if self.mover.given_up().is_some() {
-            return None;
-        }
+        let state = (self.mover)(time)?;
         let motion = Motion {
             bearing: bearing(self.scene, state.moving),
             ..state.motion(time < 0.0)
