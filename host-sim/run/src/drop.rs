@@ -32,10 +32,7 @@ pub fn run<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let mut model = model::follow(scene).map_err(|error| refused(scene, &error))?;
-    let sensed = sensed(scene, target, stream, &mut |time| {
-        let state = model.advance(time);
-        model.given_up().is_none().then_some(state)
-    })?;
+    let sensed = sensed(scene, target, stream, &mut |time| model.advance(time))?;
     let model = model.finish();
     let truth = model.histories.clone();
     let (mut outcome, stream) = outcome(scene, model, truth, sensed);
