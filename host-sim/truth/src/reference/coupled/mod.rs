@@ -30,7 +30,6 @@ mod impact;
 mod jet;
 mod linear;
 mod machine;
-mod mode;
 mod motion;
 mod share;
 mod start;
@@ -41,5 +40,5 @@ mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
-pub use mode::Mode;
 pub use start::CoupledStart;
+pub use system::Mode;

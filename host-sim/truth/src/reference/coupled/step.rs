@@ -3,8 +3,8 @@
 use super::fall::first_fall;
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
-pub use super::mode::Mode;
-use super::system::{Hold, Law, Link, System};
+use super::surroundings::Surroundings;
+use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
 use crate::reference::roots::Fall;
 
@@ -75,14 +75,14 @@ impl Step {
     /// Expands the motion; `accuracy` is the size of the last terms, `longest` the longest span.
     pub fn new(
         system: &System,
-        law: &impl Law,
+        surroundings: &Surroundings,
         modes: &[Mode],
         (place, speed): (&[f64], &[f64]),
         (accuracy, longest): (f64, f64),
     ) -> Self {
         let tape = Tape::new();
         let (places, speeds) = (tape.start(place), tape.start(speed));
-        let forces = Forces::new(&tape, system, law, modes, &places, &speeds);
+        let forces = Forces::new(&tape, system, surroundings, modes, &places, &speeds);
         tape.carry(|before, order, next| {
             let part = 1.0 / order as f64;
             let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
