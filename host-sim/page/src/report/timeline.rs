@@ -5,7 +5,7 @@ use super::window::Window;
 use maud::{Markup, html};
 use strum::VariantArray;
 use touchdown_base::history::{History, Phase, PhaseKind};
-use touchdown_chart::plot::{Axis, columns};
+use touchdown_chart::plot::{Axis, columns, key};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_scene::Scene;
@@ -81,14 +81,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
 pub fn legend() -> Markup {
     html! {
         ul.legend {
-            @for phase in PhaseKind::VARIANTS.iter().copied() {
-                li {
-                    svg width="34" height="12" aria-hidden="true" {
-                        path class={ "curve " (<&str>::from(phase)) } d="M1 6H33" {}
-                    }
-                    (phase_name(phase))
-                }
-            }
+            @for phase in PhaseKind::VARIANTS { (key(phase.into(), phase_name(*phase))) }
         }
     }
 }
