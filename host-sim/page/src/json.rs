@@ -244,8 +244,7 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
 }
 
 fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
-    let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
-    let rings = rings.zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.rings);
     rings
         .enumerate()
         .map(|(index, (ring, [model, _]))| RingJson {

@@ -248,6 +248,11 @@ impl Scene {
         }
     }
 
+    /// The retainer rings of a rotor that tilts; of another none.
+    pub fn rings(&self) -> &[Ring] {
+        self.two_plane.as_ref().map_or(&[], |it| &it.rings)
+    }
+
     /// Samples before the release.
     pub fn levitated_samples(&self) -> u64 {
         match self.start {

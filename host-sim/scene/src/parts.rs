@@ -21,7 +21,7 @@ pub struct Part {
 /// All parts, in the order of the ladder.
 pub fn parts(scene: &Scene) -> Vec<Part> {
     let rung = scene.model.rung;
-    let rings = || scene.two_plane.iter().flat_map(|it| &it.rings);
+    let rings = || scene.rings().iter();
     let support = rings().find_map(|it| it.support.as_ref());
     let support = scene.support.as_ref().or(support);
     let bearing = rings().find_map(|it| it.ball_bearing.as_ref());

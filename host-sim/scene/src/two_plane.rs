@@ -64,7 +64,7 @@ pub struct Ring {
 impl Ring {
     /// That of a rotor that does not tilt: on the mounts of all rings, and turning with all, side by side.
     pub fn of_plane(scene: &Scene) -> Self {
-        let all = || scene.two_plane.iter().flat_map(|it| &it.rings);
+        let all = || scene.rings().iter();
         Self {
             name: String::new(),
             place: 0.0,

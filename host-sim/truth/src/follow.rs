@@ -86,7 +86,7 @@ impl<'a> Truth<'a> {
     }
 
     fn of(scene: &'a Scene, source: Source) -> Self {
-        let rings = scene.two_plane.as_ref().map_or(0, |it| it.rings.len());
+        let rings = scene.rings().len();
         let recorder = Recorder::new(-scene.first_sample_time());
         Self {
             scene,

@@ -1,6 +1,5 @@
 //! Phases over time: the truth above, the detector below.
 
-use super::rings;
 use super::window::Window;
 use maud::{Markup, html};
 use strum::VariantArray;
@@ -37,7 +36,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
         let hits = truth.impacts.iter().map(|it| it.state.time);
         (name, truth.phases.clone(), hits.collect())
     };
-    let rings = rings(scene).iter().zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.rings);
     let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
         vec![true_row(whose.to_owned(), &outcome.truth)];
     rows.extend(

@@ -101,14 +101,8 @@ fn outside(time: f64) -> Failure {
     ))
 }
 
-/// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
-/// The stream says which planes are fitted, how fast it was sampled and whether there is a speed.
-pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Failure> {
-    let orders = Orders::default();
-    Ok(recording(path, &Reading::default(), scene, target, &orders)?.detection)
-}
-
-/// The same of a recording of any kind.
+/// Replays the recording at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
+/// The recording says which planes are fitted, how fast it was sampled and whether there is a speed.
 pub fn recording(
     path: &Path,
     reading: &Reading,
