@@ -24,7 +24,6 @@
 //! planar reference by less than 1e-12 in units of the scale law, and what follows by 1e-10.
 
 mod drop;
-mod fall;
 mod forces;
 mod impact;
 mod jet;
