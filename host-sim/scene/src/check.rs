@@ -37,8 +37,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     // Marks are seen on the ring of one plane only.
     let plane = ball_bearing.filter(|_| file.two_plane.is_none());
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
-    let seat = (support, ball_bearing);
-    let two_plane = two_plane(&file, &rotor, &retainer, &start, seat)?;
+    let two_plane = two_plane(&file, &rotor, &retainer, &start, (support, ball_bearing))?;
     let needed = needed(&file, two_plane.as_ref());
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
@@ -78,7 +77,8 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         Fidelity::Coupled if !given => scene.model.step = resolved_step(&scene),
         _ => {}
     }
-    monitor(&scene)?;
+    // The core has the last word: what it refuses is a flaw of the key that the value came from.
+    Monitor::try_new(&scene.monitor_config()).map_err(|error| translate(&error))?;
     Ok(scene)
 }
 
@@ -208,8 +208,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let rung = KEYS.named_or("rung", &table.rung, needed, &Fidelity::ALL)?;
     let parts = match rung {
         Fidelity::Support => "[support] or [ball_bearing]",
-        Fidelity::TwoPlane => "[two_plane] and [[ring]]",
-        Fidelity::Coupled => "[two_plane] and [[ring]]",
+        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
         Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
     };
     // The coupled rung has all that rigid rings have.
@@ -280,11 +279,4 @@ fn sensors(
     };
     config.check().map_err(|error| translate(&error))?;
     Ok(config)
-}
-
-/// The core has the last word: what it refuses is a flaw of the key that the value came from.
-fn monitor(scene: &Scene) -> Result<(), Diagnostic> {
-    Monitor::try_new(&scene.monitor_config())
-        .map(|_| ())
-        .map_err(|error| translate(&error))
 }

@@ -47,16 +47,13 @@ pub struct BallBearing {
 impl BallBearing {
     /// The optical sensors, where there are any, on a ring of this bore radius (m).
     pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
-        self.marks
-            .iter()
-            .any(Option::is_some)
-            .then_some(Tachometers {
-                marks: self.marks,
-                cage_ratio: self.cage_ratio,
-                bore_radius,
-                edge_error: EDGE_ERROR,
-                window: SPEED_WINDOW,
-            })
+        (self.marks != [None; 2]).then_some(Tachometers {
+            marks: self.marks,
+            cage_ratio: self.cage_ratio,
+            bore_radius,
+            edge_error: EDGE_ERROR,
+            window: SPEED_WINDOW,
+        })
     }
 }
 

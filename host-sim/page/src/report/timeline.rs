@@ -25,11 +25,10 @@ const LETTER: f64 = 6.4;
 pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
     let events = &outcome.detection.events;
-    let estimated = detected_phases(&outcome.detection, window.end, |event| event.onset_s);
-    let declared = detected_phases(&outcome.detection, window.end, |event| event.declared_s);
-    let hits = |time: fn(&DetectedEvent) -> f64| -> Vec<f64> {
+    let seen_row = |name: &str, time: fn(&DetectedEvent) -> f64| {
+        let phases = detected_phases(&outcome.detection, window.end, time);
         let impacts = events.iter().filter(|it| it.event == EventKind::Impact);
-        impacts.map(time).collect()
+        (name.to_owned(), phases, impacts.map(time).collect())
     };
     let whose = ["Truth (model)", "Truth (reference)"][usize::from(outcome.by_reference)];
     let true_row = |name: String, truth: &'_ History| {
@@ -42,16 +41,9 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
     rows.extend(
         rings.map(|(ring, [_, truth])| true_row(format!("Truth, ring {}", ring.name), truth)),
     );
-    rows.push((
-        "Detector, by estimated onset".to_owned(),
-        estimated,
-        hits(|it| it.onset_s),
-    ));
-    rows.push((
-        "Detector, as declared at the time".to_owned(),
-        declared,
-        hits(|it| it.declared_s),
-    ));
+    rows.push(seen_row("Detector, by estimated onset", |it| it.onset_s));
+    let declared = seen_row("Detector, as declared at the time", |it| it.declared_s);
+    rows.push(declared);
     let (labels, lanes) = labels(events, &x, factor);
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;
