@@ -119,7 +119,8 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
     table.draw()
 }
 
-fn peak(history: &History) -> Option<f64> {
+/// The greatest speed of an impact, m/s.
+pub fn peak(history: &History) -> Option<f64> {
     let speeds = history.impacts.iter().map(|impact| impact.normal_speed);
     speeds.reduce(f64::max)
 }

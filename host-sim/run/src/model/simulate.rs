@@ -50,17 +50,11 @@ impl Use for Simulate<'_> {
         subject: &Subject<R, M>,
     ) -> Result<History, ConfigError> {
         let scene = self.scene;
-        let Subject {
-            model,
-            start,
-            spin,
-            scales,
-            ..
-        } = subject;
-        let seen = Seen::new(scene, *scales);
+        let model = &subject.model;
+        let seen = Seen::new(scene, subject.scales);
         let mut recorder = Recorder::new(-scene.first_sample_time());
         let mut take = |happening: model::ModelEvent<R>| recorder.take(seen.happening(&happening));
-        let mut state = model.start(start, *spin, &mut take)?;
+        let mut state = model.start(&subject.start, subject.spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
         let fraction = R::lit(fraction);
         if self.to_verdict {
