@@ -4,7 +4,7 @@ use std::fs;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use touchdown_run::emulator::Emulator;
+use touchdown_run::emulator::{Emulator, built};
 
 /// 16 ns of emulated time an instruction: what the image's counter is made for.
 const ARGUMENTS: [&str; 3] = ["enable=on,target=native", "-icount", "shift=4"];
@@ -19,7 +19,8 @@ pub static COUNTS: LazyLock<String> = LazyLock::new(count);
 /// # Panics
 /// If the image or QEMU is not there, or fails.
 pub fn count() -> String {
-    let emulator = Emulator::find_counting().unwrap_or_else(|error| panic!("{error}"));
+    let emulator =
+        Emulator::find(Some(&built("touchdown-count"))).unwrap_or_else(|error| panic!("{error}"));
     let folder = tempfile::tempdir().expect("a folder");
     emulator
         .execute(folder.path(), &ARGUMENTS, LIMIT)

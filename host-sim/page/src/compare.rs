@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use touchdown_chart::plot::key;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
 use touchdown_chart::text::significant;
@@ -27,8 +28,8 @@ pub fn page(scene: &Scene, comparison: &Comparison) -> String {
                 h2 { "First drop" }
                 @for channel in 0..comparison.aligned.waveform_rms_m.len() { (panel(channel, excerpts, scene, comparison)) }
                 ul.legend {
-                    li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } (a) }
-                    li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M1 6H33" {} } (b) ", shifted by " (format!("{:.6}", -comparison.aligned.shift_s)) "\u{a0}s" }
+                    (key("motion", a))
+                    (key("sensed", &format!("{b}, shifted by {:.6}\u{a0}s", -comparison.aligned.shift_s)))
                 }
             }
         }

@@ -140,17 +140,14 @@ enum EventJson<'a> {
 
 /// In the order of declaration.
 fn events(detection: &Detection) -> Vec<EventJson<'_>> {
-    let detected = detection
-        .events
-        .iter()
-        .map(|it| (it.sample, EventJson::Detected(it)));
-    let touches = detection
-        .touches
-        .iter()
-        .map(|it| (it.sample, EventJson::Touch(it)));
+    let touches = detection.touches.iter().map(EventJson::Touch);
+    let detected = detection.events.iter().map(EventJson::Detected);
     let mut all: Vec<_> = touches.chain(detected).collect();
-    all.sort_by_key(|(sample, _)| *sample);
-    all.into_iter().map(|(_, event)| event).collect()
+    all.sort_by_key(|event| match event {
+        EventJson::Detected(it) => it.sample,
+        EventJson::Touch(it) => it.sample,
+    });
+    all
 }
 
 /// `drop --json`.
@@ -244,8 +241,7 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
 }
 
 fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
-    let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
-    let rings = rings.zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.rings);
     rings
         .enumerate()
         .map(|(index, (ring, [model, _]))| RingJson {

@@ -66,18 +66,14 @@ fn figure(name: &str, value: &str) -> Markup {
 fn whole(scene: &Scene, replay: &Replay) -> Markup {
     let envelope = &replay.envelope;
     let stretch = envelope.stride as f64 / replay.rate;
-    panels(
-        [replay.start, end(replay)],
-        scene,
-        replay,
-        &|channel, line| {
-            for (index, bucket) in envelope.buckets().enumerate() {
-                let time = replay.start + (index as f64 + 0.5) * stretch;
-                line(time, bucket[channel][0]);
-                line(time, bucket[channel][1]);
-            }
-        },
-    )
+    let end = replay.start + replay.detection.samples as f64 / replay.rate;
+    panels([replay.start, end], scene, replay, &|channel, line| {
+        for (index, bucket) in envelope.buckets().enumerate() {
+            let time = replay.start + (index as f64 + 0.5) * stretch;
+            line(time, bucket[channel][0]);
+            line(time, bucket[channel][1]);
+        }
+    })
 }
 
 fn close(drop: &Excerpt, scene: &Scene, replay: &Replay) -> Markup {
@@ -85,11 +81,6 @@ fn close(drop: &Excerpt, scene: &Scene, replay: &Replay) -> Markup {
     panels(span, scene, replay, &|channel, line| {
         drop.draw(channel, 0.0, line)
     })
-}
-
-/// The end of the recording, s.
-fn end(replay: &Replay) -> f64 {
-    replay.start + replay.detection.samples as f64 / replay.rate
 }
 
 /// A chart for each channel; `draw` hands out its points, s and m.

@@ -32,23 +32,19 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
 
 /// Takes what a notice tells into `events`: a new one, or what became of the last one of its number.
 pub fn take(events: &mut Vec<DetectedEvent>, notice: &Notice, timebase: Timebase) {
-    let last = |number: u16| move |it: &&mut DetectedEvent| it.number == number;
-    let time = |sample: u64| Some(timebase.time(sample as f64));
-    match notice {
-        Notice::Declared(event) => events.push(declared(event, timebase)),
-        Notice::Confirmed { number, sample } => {
-            let event = events.iter_mut().rfind(last(*number));
-            event
-                .into_iter()
-                .for_each(|it| it.confirmed_s = time(*sample));
+    let (number, sample) = match notice {
+        Notice::Declared(event) => return events.push(declared(event, timebase)),
+        Notice::Confirmed { number, sample } | Notice::Withdrawn { number, sample } => {
+            (*number, *sample)
         }
-        Notice::Withdrawn { number, sample } => {
-            let event = events.iter_mut().rfind(last(*number));
-            event
-                .into_iter()
-                .for_each(|it| it.withdrawn_s = time(*sample));
+        _ => return,
+    };
+    if let Some(event) = events.iter_mut().rfind(|it| it.number == number) {
+        let time = Some(timebase.time(sample as f64));
+        match notice {
+            Notice::Confirmed { .. } => event.confirmed_s = time,
+            _ => event.withdrawn_s = time,
         }
-        _ => {}
     }
 }
 

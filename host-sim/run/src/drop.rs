@@ -2,14 +2,15 @@
 
 use std::io::{self, Write};
 
-use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sample::TACHOMETERS;
 use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
 use crate::accuracy;
+use crate::controller_trace::ControllerTrace;
 use crate::detection::detection;
-use crate::model::{self, FollowedDrop, ModelRun};
-use crate::outcome::{Outcome, TracePoint};
+use crate::model::{self, ModelRun};
+use crate::outcome::{Detection, Outcome, TracePoint};
 use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
@@ -20,7 +21,7 @@ use touchdown_base::rings::Histories;
 use touchdown_base::spectrogram::{Analyser, Spectrogram};
 use touchdown_files::stream::{Columns, StreamWriter, to_row};
 use touchdown_scene::Scene;
-use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
+use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsConfig};
 use touchdown_truth::{Moving, TrueState, Truth};
 
 /// Drops the rotor of `scene` as its model has it, with the detector on `target`. What the sensors read also goes to
@@ -30,8 +31,11 @@ pub fn run<W: Write>(
     target: &Target,
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let model = model::follow(scene).map_err(|error| refused(scene, &error))?;
-    let (mut outcome, stream) = sensed(scene, target, stream, Mover::Model(model))?;
+    let mut model = model::follow(scene).map_err(|error| refused(scene, &error))?;
+    let sensed = sensed(scene, target, stream, &mut |time| model.advance(time))?;
+    let model = model.finish();
+    let truth = model.histories.clone();
+    let (mut outcome, stream) = outcome(scene, model, truth, sensed);
     if outcome.model_given_up.is_none() {
         let rings = outcome.rings.iter().map(|[model, _]| model);
         outcome.accuracy = accuracy::estimate(scene, &outcome.model, rings);
@@ -46,213 +50,132 @@ pub fn by_reference<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let model = model::run(scene).map_err(|error| refused(scene, &error))?;
-    let mover = Mover::Reference(Box::new((Truth::new(scene), model)));
-    sensed(scene, target, stream, mover)
+    let mut reference = Truth::new(scene);
+    let sensed = sensed(scene, target, stream, &mut |time| {
+        let state = reference.advance(time);
+        reference.given_up().is_none().then_some(state)
+    })?;
+    let given_up = reference.given_up();
+    let (outcome, stream) = outcome(scene, model, reference.finish(), sensed);
+    let outcome = Outcome {
+        by_reference: true,
+        given_up,
+        ..outcome
+    };
+    Ok((outcome, stream))
 }
 
 fn refused(scene: &Scene, error: &ConfigError) -> Failure {
     Failure::Usage(format!("{}: {error}", scene.name))
 }
 
+/// What sensors, detector and controller made of a drop.
+struct Sensed<W> {
+    trace: Vec<TracePoint>,
+    spectrogram: Spectrogram,
+    detection: Detection,
+    conduct: ControllerTrace,
+    stream: io::Result<Option<W>>,
+}
+
+/// `mover` moves the rotor that the sensors see: it tells the machine at a time (s), nothing once it is given up.
 fn sensed<W: Write>(
     scene: &Scene,
     target: &Target,
     stream: Option<W>,
-    mover: Mover<'_>,
-) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
-    let mut feed =
-        SampleSource::new(scene, stream, mover).map_err(|error| refused(scene, &error))?;
-    let procedure = Procedure {
-        zones: scene.zones,
-        ..Procedure::default()
-    };
-    let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, &mut feed)?;
-    let timebase = Timebase::of(scene);
-    let (moved, trace, spectrogram, stream) = feed.finish();
-    let Moved {
-        model,
-        reference,
-        given_up,
-    } = moved;
-    let by_reference = reference.is_some();
-    let truth = reference.unwrap_or_else(|| model.histories.clone());
-    let rings = model.histories.rings.into_iter().zip(truth.rings);
-    let outcome = Outcome {
-        model: model.histories.whole,
-        truth: truth.whole,
-        accuracy: None,
-        by_reference,
-        given_up,
-        model_given_up: model.given_up,
-        ledger: model.ledger,
-        ring: model.ring,
-        seats: model.seats,
-        rings: rings.map(|(model, truth)| [model, truth]).collect(),
-        trace,
-        spectrogram,
-        detection: detection(&answer, timebase),
-        conduct,
-        timebase,
-    };
-    Ok((outcome, stream))
-}
-
-/// What moves the rotor that the sensors see.
-enum Mover<'a> {
-    Model(Box<dyn FollowedDrop + 'a>),
-    /// The model has run beside it.
-    Reference(Box<(Truth<'a>, ModelRun)>),
-}
-
-/// What became of it.
-struct Moved {
-    model: ModelRun,
-    reference: Option<Histories>,
-    /// Of the reference, s.
-    given_up: Option<f64>,
-}
-
-impl Mover<'_> {
-    fn advance(&mut self, time: f64) -> TrueState {
-        match self {
-            Self::Model(model) => model.advance(time),
-            Self::Reference(it) => it.0.advance(time),
-        }
-    }
-
-    fn given_up(&self) -> Option<f64> {
-        match self {
-            Self::Model(model) => model.given_up(),
-            Self::Reference(it) => it.0.given_up(),
-        }
-    }
-
-    fn finish(self) -> Moved {
-        match self {
-            Self::Model(model) => Moved {
-                model: model.finish(),
-                reference: None,
-                given_up: None,
-            },
-            Self::Reference(it) => {
-                let (truth, model) = *it;
-                Moved {
-                    model,
-                    given_up: truth.given_up(),
-                    reference: Some(truth.finish()),
-                }
-            }
-        }
-    }
-}
-
-/// The samples of a drop, one after the other.
-struct SampleSource<'a, W> {
-    scene: &'a Scene,
-    mover: Mover<'a>,
-    sensors: Sensors,
-    seen: SensorsState,
-    faults: Faults,
-    sensing: Sensing,
-    trace: Trace,
-    analyser: Analyser,
-    stream: Option<io::Result<StreamWriter<W>>>,
-    progress: Progress,
-    /// Samples before the release.
-    levitated: u64,
-    next: u64,
-    samples: u64,
-}
-
-impl<'a, W: Write> SampleSource<'a, W> {
-    fn new(scene: &'a Scene, stream: Option<W>, mover: Mover<'a>) -> Result<Self, ConfigError> {
-        let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
-        let levitated = scene.levitated_samples();
-        // An end that is a whole number of samples but for rounding has its own sample.
-        let last = (scene.run.duration * scene.run.sample_rate + 1e-6).floor() as u64;
-        let samples = levitated + last + 1;
-        let columns = Columns {
-            planes: scene.sensors.planes,
-            speed: scene.sensors.speed,
-            levitated: scene.sensors.levitation_signal,
-            edges: (scene.sensors.tachometers).map_or([false; TACHOMETERS], |it| {
-                it.marks.map(|marks| marks.is_some())
-            }),
-        };
-        Ok(Self {
-            scene,
-            mover,
-            seen: sensors.start(scene.run.seed),
-            sensors,
-            faults: Faults::new(&scene.faults, &scene.sensors),
-            sensing: Sensing::try_new(&scene.sensors.sensing())?,
-            trace: Trace::default(),
-            analyser: Analyser::new(scene.run.sample_rate),
-            stream: stream.map(|out| StreamWriter::new(out, columns)),
-            progress: Progress::new("drop", samples),
-            levitated,
-            next: 0,
-            samples,
-        })
-    }
-
-    fn finish(self) -> (Moved, Vec<TracePoint>, Spectrogram, io::Result<Option<W>>) {
-        let stream = match self.stream {
-            Some(stream) => stream.and_then(StreamWriter::finish).map(Some),
-            None => Ok(None),
-        };
-        let spectrogram = self.analyser.finish();
-        (
-            self.mover.finish(),
-            self.trace.finish(),
-            spectrogram,
-            stream,
-        )
-    }
-}
-
-impl<W: Write> Iterator for SampleSource<'_, W> {
-    type Item = Sample;
-
-    fn next(&mut self) -> Option<Sample> {
-        if self.next == self.samples || matches!(self.stream, Some(Err(_))) {
+    mover: &mut dyn FnMut(f64) -> Option<TrueState>,
+) -> Result<Sensed<W>, Failure> {
+    let (config, rate) = (&scene.sensors, scene.run.sample_rate);
+    let sensors = Sensors::try_new(config, rate).map_err(|error| refused(scene, &error))?;
+    let sensing = Sensing::try_new(&config.sensing()).map_err(|error| refused(scene, &error))?;
+    let mut chain = sensors.start(scene.run.seed);
+    let mut faults = Faults::new(&scene.faults, config);
+    let (mut trace, mut analyser) = (Trace::default(), Analyser::new(rate));
+    let mut stream = stream.map(|out| StreamWriter::new(out, columns(config)));
+    let levitated = scene.levitated_samples();
+    // An end that is a whole number of samples but for rounding has its own sample.
+    let count = levitated + (scene.run.duration * rate + 1e-6).floor() as u64 + 1;
+    let mut progress = Progress::new("drop", count);
+    let samples = (0..count).map_while(|number| {
+        if matches!(stream, Some(Err(_))) {
             return None;
         }
-        let time = (self.next as f64 - self.levitated as f64) / self.scene.run.sample_rate;
-        self.next += 1;
-        self.progress.at(self.next);
-        let state = self.mover.advance(time);
-        if self.mover.given_up().is_some() {
-            return None;
-        }
+        progress.at(number + 1);
+        let time = (number as f64 - levitated as f64) / rate;
+        let state = mover(time)?;
         let motion = Motion {
-            bearing: bearing(self.scene, state.moving),
+            bearing: bearing(scene, state.moving),
             ..state.motion(time < 0.0)
         };
-        let mut sample = self.sensors.read(&mut self.seen, &motion);
-        self.faults.inject(&mut sample, time);
-        let [sensed, _] = self.sensing.planes(&sample);
-        let sensed = sensed.map(|plane| plane.map(f64::from));
-        self.analyser.take(time, sensed);
-        self.trace.push(TracePoint {
+        let mut sample = sensors.read(&mut chain, &motion);
+        faults.inject(&mut sample, time);
+        let [plane, _] = sensing.planes(&sample);
+        let sensed = plane.map(|plane| plane.map(f64::from));
+        analyser.take(time, sensed);
+        trace.push(TracePoint {
             state: state.rotor,
             phase: state.phase,
             moving: state.moving,
             sensed,
         });
-        if let Some(Ok(stream)) = &mut self.stream {
-            let row = to_row(
-                time,
-                &sample,
-                &self.scene.sensors,
-                self.scene.run.sample_rate,
-            );
-            if let Err(error) = stream.write(&row) {
-                self.stream = Some(Err(error));
-            }
+        if let Some(Ok(open)) = &mut stream
+            && let Err(error) = open.write(&to_row(time, &sample, config, rate))
+        {
+            stream = Some(Err(error));
         }
         Some(sample)
+    });
+    let procedure = Procedure {
+        zones: scene.zones,
+        ..Procedure::default()
+    };
+    let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, samples)?;
+    let stream = stream.map(|stream| stream.and_then(StreamWriter::finish));
+    Ok(Sensed {
+        trace: trace.finish(),
+        spectrogram: analyser.finish(),
+        detection: detection(&answer, Timebase::of(scene)),
+        conduct,
+        stream: stream.transpose(),
+    })
+}
+
+fn columns(sensors: &SensorsConfig) -> Columns {
+    let marks = sensors.tachometers.map(|it| it.marks);
+    Columns {
+        planes: sensors.planes,
+        speed: sensors.speed,
+        levitated: sensors.levitation_signal,
+        edges: marks.map_or([false; TACHOMETERS], |it| it.map(|marks| marks.is_some())),
     }
+}
+
+/// The outcome where the model moved the rotor and nothing is known of its accuracy.
+fn outcome<W>(
+    scene: &Scene,
+    model: ModelRun,
+    truth: Histories,
+    sensed: Sensed<W>,
+) -> (Outcome, io::Result<Option<W>>) {
+    let rings = model.histories.rings.into_iter().zip(truth.rings);
+    let outcome = Outcome {
+        model: model.histories.whole,
+        truth: truth.whole,
+        accuracy: None,
+        by_reference: false,
+        given_up: None,
+        model_given_up: model.given_up,
+        ledger: model.ledger,
+        ring: model.ring,
+        seats: model.seats,
+        rings: rings.map(|(model, truth)| [model, truth]).collect(),
+        trace: sensed.trace,
+        spectrogram: sensed.spectrogram,
+        detection: sensed.detection,
+        conduct: sensed.conduct,
+        timebase: Timebase::of(scene),
+    };
+    (outcome, sensed.stream)
 }
 
 /// Angles of inner ring and cage since the release, rad.

@@ -4,10 +4,15 @@ use super::Model;
 use super::diagnostic::Diagnostic;
 use super::file::{ModelTable, OutputsTable, SceneFile};
 use super::outputs::{Auto, Fixed, Output, Request};
+use super::rule::{Keys, MICRO};
 use touchdown_base::plain::Number;
 
-const MICRO: f64 = 1e-6;
+const OUTPUTS: Keys = Keys("outputs");
 const PERCENT: f64 = 1e-2;
+const REGIME: Request = Request {
+    output: Output::Regime,
+    tolerance: 0.0,
+};
 /// Of the phases' bounds, where a scene asks for nothing, s.
 const DEFAULT_PHASES: f64 = 100e-6;
 
@@ -15,18 +20,14 @@ const DEFAULT_PHASES: f64 = 100e-6;
 pub(super) fn auto(file: &SceneFile, model: &Model) -> Result<Option<Auto>, Diagnostic> {
     let both = file.fidelity.is_some() && file.model.fidelity.is_some();
     if both {
-        return Err(Diagnostic::new(
-            "model",
-            "fidelity",
-            "fidelity is given twice",
-        ));
+        return Err(Keys("model").broken("fidelity", "fidelity is given twice"));
     }
     let given = file.fidelity.as_deref().or(file.model.fidelity.as_deref());
     match (given, &file.outputs) {
         (None, None) => Ok(None),
         (None, Some(_)) => {
             let rule = "[outputs] says what fidelity = \"auto\" has to give, but the scene has no such line";
-            Err(Diagnostic::new("outputs", "", rule))
+            Err(OUTPUTS.broken("", rule))
         }
         (Some("auto"), outputs) => Ok(Some(Auto {
             asked: asked(outputs.as_ref())?,
@@ -55,77 +56,57 @@ fn fixed(table: &ModelTable, model: &Model) -> Fixed {
 
 fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Diagnostic> {
     let Some(table) = table else {
-        return Ok(vec![
-            Request {
-                output: Output::Regime,
-                tolerance: 0.0,
-            },
-            Request {
-                output: Output::Phases,
-                tolerance: DEFAULT_PHASES,
-            },
-        ]);
+        let phases = Request {
+            output: Output::Phases,
+            tolerance: DEFAULT_PHASES,
+        };
+        return Ok(vec![REGIME, phases]);
     };
     let mut asked = Vec::new();
-    if table.regime == Some(true) {
-        asked.push(Request {
-            output: Output::Regime,
-            tolerance: 0.0,
-        });
-    }
-    let tolerances = [
-        (
-            "impact_time_us",
-            table.impact_time_us,
-            Output::ImpactTime,
-            MICRO,
-        ),
+    asked.extend((table.regime == Some(true)).then_some(REGIME));
+    for (key, given, output) in [
+        ("impact_time_us", table.impact_time_us, Output::ImpactTime),
         (
             "impact_speed_percent",
             table.impact_speed_percent,
             Output::ImpactSpeed,
-            PERCENT,
         ),
-        ("phases_us", table.phases_us, Output::Phases, MICRO),
+        ("phases_us", table.phases_us, Output::Phases),
         (
             "whirl_load_percent",
             table.whirl_load_percent,
             Output::WhirlLoad,
-            PERCENT,
         ),
         (
             "peak_force_percent",
             table.peak_force_percent,
             Output::PeakForce,
-            PERCENT,
         ),
         (
             "contact_time_percent",
             table.contact_time_percent,
             Output::ContactTime,
-            PERCENT,
         ),
-    ];
-    for (key, given, output, unit) in tolerances {
+    ] {
         let Some(given) = given else { continue };
         if given <= 0.0 {
             let rule = format!(
                 "{key} is a tolerance and must be above 0, is {}",
                 Number(given)
             );
-            return Err(Diagnostic::new("outputs", key, rule));
+            return Err(OUTPUTS.broken(key, rule));
         }
+        let unit = match output {
+            Output::ImpactTime | Output::Phases => MICRO,
+            _ => PERCENT,
+        };
         asked.push(Request {
             output,
             tolerance: unit * given,
         });
     }
     if asked.is_empty() {
-        return Err(Diagnostic::new(
-            "outputs",
-            "regime",
-            "[outputs] asks for nothing",
-        ));
+        return Err(OUTPUTS.broken("regime", "[outputs] asks for nothing"));
     }
     Ok(asked)
 }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{MILLI, between};
+use super::rule::{Keys, MILLI};
 use super::{limits, list};
 
 /// A base that goes to and fro: by its amplitude times the cosine of an angle.
@@ -29,12 +29,12 @@ pub(super) struct BaseTable {
 
 impl BaseTable {
     pub fn check(&self) -> Result<Base, Diagnostic> {
-        const TABLE: &str = "base";
+        const KEYS: Keys = Keys("base");
         for amplitude in self.amplitude_mm {
-            between(TABLE, "amplitude_mm", amplitude, limits::BASE_MM)?;
+            KEYS.between("amplitude_mm", amplitude, limits::BASE_MM)?;
         }
-        let frequency = between(TABLE, "frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
-        let phase = between(TABLE, "phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
+        let frequency = KEYS.between("frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
+        let phase = KEYS.between("phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
         Ok(Base {
             amplitude: self.amplitude_mm.map(|it| MILLI * it),
             rate: std::f64::consts::TAU * frequency,

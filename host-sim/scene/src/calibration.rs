@@ -5,7 +5,9 @@ use touchdown_core::sensing::{Calibration, PlaneCalibration};
 
 use super::diagnostic::Diagnostic;
 use super::list;
-use super::rule::{MICRO, between};
+use super::rule::{Keys, MICRO};
+
+const KEYS: Keys = Keys("calibration");
 
 /// Table `[calibration]`.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -48,7 +50,7 @@ impl CalibrationTable {
         Ok(Calibration {
             date: day(&self.date).ok_or_else(|| {
                 let rule = format!("date must be a day as \"2026-12-31\", is \"{}\"", self.date);
-                Diagnostic::new("calibration", "date", rule)
+                KEYS.broken("date", rule)
             })?,
             planes: [plane("a", &self.a)?, plane("b", &self.b)?],
         })
@@ -58,11 +60,8 @@ impl CalibrationTable {
 impl PlaneTable {
     fn check(&self, plane: &'static str) -> Result<PlaneCalibration, Diagnostic> {
         let held = |name, value, range| {
-            let value = between("calibration", plane, value, range);
-            value.map_err(|it| {
-                let rule = format!("{name} of plane {}", it.rule);
-                Diagnostic::new("calibration", plane, rule)
-            })
+            let value = KEYS.between(plane, value, range);
+            value.map_err(|it| KEYS.broken(plane, format!("{name} of plane {}", it.rule)))
         };
         for gain in self.gain {
             held("gain", gain, 0.2..=5.0)?;

@@ -12,11 +12,11 @@ use super::diagnostic::Diagnostic;
 use super::faults::faults;
 use super::file::{ModelTable, RunTable, SceneFile, SensorsTable, StatorTable};
 use super::machine::{retainer, rotor, start};
-use super::rule::{MICRO, MILLI, above_zero, between, named, translate, zero_or_more};
+use super::rule::{Keys, MICRO, MILLI, translate};
 use super::support::{BallBearingTable, SupportTable};
 use super::{
-    BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Scheme,
-    Start, Support, TwoPlane, limits,
+    BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Start,
+    Support, TwoPlane, limits,
 };
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
@@ -37,8 +37,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     // Marks are seen on the ring of one plane only.
     let plane = ball_bearing.filter(|_| file.two_plane.is_none());
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
-    let seat = (support, ball_bearing);
-    let two_plane = two_plane(&file, &rotor, &retainer, &start, seat)?;
+    let two_plane = two_plane(&file, &rotor, &retainer, &start, (support, ball_bearing))?;
     let needed = needed(&file, two_plane.as_ref());
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
@@ -78,13 +77,14 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         Fidelity::Coupled if !given => scene.model.step = resolved_step(&scene),
         _ => {}
     }
-    monitor(&scene)?;
+    // The core has the last word: what it refuses is a flaw of the key that the value came from.
+    Monitor::try_new(&scene.monitor_config()).map_err(|error| translate(&error))?;
     Ok(scene)
 }
 
 /// Radial, m.
 fn stator_gap(table: Option<&StatorTable>) -> Result<Option<f64>, Diagnostic> {
-    let gap = |it: &StatorTable| between("stator", "gap_mm", it.gap_mm, limits::CLEARANCE_MM);
+    let gap = |it: &StatorTable| Keys("stator").between("gap_mm", it.gap_mm, limits::CLEARANCE_MM);
     Ok(table.map(gap).transpose()?.map(|gap| MILLI * gap))
 }
 
@@ -110,24 +110,25 @@ fn zones(zones: [f64; 3]) -> Result<[f64; 3], Diagnostic> {
     Err(Diagnostic::new("guard", "zones", rule))
 }
 
+const RUN: Keys = Keys("run");
+/// m/s^2.
+const STANDARD_GRAVITY: f64 = 9.81;
+/// Hz.
+const USUAL_RATE: f64 = 20_000.0;
+
 fn run(table: &RunTable) -> Result<Run, Diagnostic> {
-    let duration = above_zero("run", "duration_s", table.duration_s)?;
+    let duration = RUN.above_zero("duration_s", table.duration_s)?;
     if duration > 86_400.0 {
         let rule = format!(
             "duration_s must be no more than 86400, is {}",
             Number(duration)
         );
-        return Err(Diagnostic::new("run", "duration_s", rule));
+        return Err(RUN.broken("duration_s", rule));
     }
-    let rate = table.sample_rate_hz;
-    let gravity = gravity(table.gravity_m_s2)?;
+    let gravity = gravity(table.gravity_m_s2.unwrap_or(STANDARD_GRAVITY))?;
     let inclination = table.inclination_deg;
-    let inclination = between(
-        "run",
-        "inclination_deg",
-        inclination,
-        limits::INCLINATION_DEG,
-    )?;
+    let inclination = RUN.between("inclination_deg", inclination, limits::INCLINATION_DEG)?;
+    let rate = table.sample_rate_hz.unwrap_or(USUAL_RATE);
     let across = gravity * inclination.to_radians().cos();
     Ok(Run {
         duration,
@@ -137,23 +138,23 @@ fn run(table: &RunTable) -> Result<Run, Diagnostic> {
         } else {
             across
         },
-        sample_rate: between("run", "sample_rate_hz", rate, 100.0..=200_000.0)?,
-        seed: table.seed,
+        sample_rate: RUN.between("sample_rate_hz", rate, 100.0..=200_000.0)?,
+        seed: table.seed.unwrap_or(1),
     })
 }
 
 /// Gravity, m/s^2.
 pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
-    let gravity = zero_or_more("run", "gravity_m_s2", given)?;
+    let gravity = RUN.zero_or_more("gravity_m_s2", given)?;
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
         let rule = format!(
             "gravity_m_s2 must be 0, or {} or more, is {}",
             Number(limits::LEAST_GRAVITY_M_S2),
             Number(gravity)
         );
-        return Err(Diagnostic::new("run", "gravity_m_s2", rule));
+        return Err(RUN.broken("gravity_m_s2", rule));
     }
-    between("run", "gravity_m_s2", gravity, limits::GRAVITY_M_S2)
+    RUN.between("gravity_m_s2", gravity, limits::GRAVITY_M_S2)
 }
 
 /// The lowest rung that has all parts of the machine.
@@ -203,14 +204,11 @@ fn two_plane(
 }
 
 fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
-    let rung = match table.rung.as_deref() {
-        None => needed,
-        Some(name) => named("model", "rung", name, &Fidelity::ALL, Fidelity::into)?,
-    };
+    const KEYS: Keys = Keys("model");
+    let rung = KEYS.named_or("rung", &table.rung, needed, &Fidelity::ALL)?;
     let parts = match rung {
         Fidelity::Support => "[support] or [ball_bearing]",
-        Fidelity::TwoPlane => "[two_plane] and [[ring]]",
-        Fidelity::Coupled => "[two_plane] and [[ring]]",
+        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
         Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
     };
     // The coupled rung has all that rigid rings have.
@@ -218,39 +216,32 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
         let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, magnet's damping or times: leave them out, or rung";
-        return Err(Diagnostic::new("model", "rung", rule));
+        return Err(KEYS.broken("rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {
         let rule = format!("rung = \"{}\" needs {parts}", rung);
-        return Err(Diagnostic::new("model", "rung", rule));
+        return Err(KEYS.broken("rung", rule));
     }
-    let scheme = match table.scheme.as_deref() {
-        None => rung.schemes()[0],
-        Some(name) => named("model", "scheme", name, rung.schemes(), Scheme::into)?,
-    };
-    let precision = match table.precision.as_deref() {
-        None => Precision::F64,
-        Some(name) => named("model", "precision", name, &Precision::ALL, Precision::into)?,
-    };
-    let math = match table.math.as_deref() {
-        None => Math::Libm,
-        Some(name) => named("model", "math", name, &Math::ALL, Math::into)?,
-    };
+    let schemes = rung.schemes();
+    let scheme = KEYS.named_or("scheme", &table.scheme, schemes[0], schemes)?;
+    let (double, both) = (Precision::F64, &Precision::ALL);
+    let precision = KEYS.named_or("precision", &table.precision, double, both)?;
+    let math = KEYS.named_or("math", &table.math, Math::Libm, &Math::ALL)?;
     if !rung.maths(precision).contains(&math) {
         let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
-        return Err(Diagnostic::new("model", "math", rule));
+        return Err(KEYS.broken("math", rule));
     }
     let step = match table.step_us {
-        Some(step) => MICRO * between("model", "step_us", step, limits::STEP_US)?,
+        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
     };
     let cutoff = match table.cutoff_mm_s {
         None => 0.0,
         Some(_) if rung != Fidelity::Rigid => {
             let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
-            return Err(Diagnostic::new("model", "cutoff_mm_s", rule));
+            return Err(KEYS.broken("cutoff_mm_s", rule));
         }
-        Some(speed) => MILLI * between("model", "cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
     };
     Ok(Model {
         rung,
@@ -288,11 +279,4 @@ fn sensors(
     };
     config.check().map_err(|error| translate(&error))?;
     Ok(config)
-}
-
-/// The core has the last word: what it refuses is a flaw of the key that the value came from.
-fn monitor(scene: &Scene) -> Result<(), Diagnostic> {
-    Monitor::try_new(&scene.monitor_config())
-        .map(|_| ())
-        .map_err(|error| translate(&error))
 }

@@ -4,7 +4,7 @@ use touchdown_models::Materials as Elastic;
 
 use super::diagnostic::Diagnostic;
 use super::file::MaterialsTable;
-use super::rule::{MICRO, MILLI, above_zero, between, named, translate};
+use super::rule::{Keys, MICRO, MILLI, translate};
 use super::{Contact, Materials, Scene, limits};
 use crate::scales::compliance;
 use touchdown_base::plain::Number;
@@ -33,28 +33,24 @@ pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Diagnos
 
 /// The materials, and how they touch.
 pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Diagnostic> {
-    const TABLE: &str = "materials";
+    const KEYS: Keys = Keys("materials");
     let steel = MaterialsTable::default();
     let table = given.unwrap_or(&steel);
     let modulus = |key, value| {
-        let value = above_zero(TABLE, key, value)?;
-        between(TABLE, key, value, limits::MODULUS_GPA).map(|value| GIGA * value)
+        let value = KEYS.within(key, value, limits::MODULUS_GPA);
+        value.map(|value| GIGA * value)
     };
-    let poisson = |key, value| between(TABLE, key, value, limits::POISSON);
+    let poisson = |key, value| KEYS.between(key, value, limits::POISSON);
     let names = ["point", "line", "line-power"];
-    let contact = match table.contact.as_deref() {
-        None => names[0],
-        Some(name) => named(TABLE, "contact", name, &names, |name| name)?,
-    };
+    let contact = KEYS.named_or("contact", &table.contact, names[0], &names)?;
     let contact = match (contact, table.length_mm) {
         ("point", None) => Contact::Point,
         ("point", Some(_)) => {
             let rule = "length_mm is that of contact = \"line\"";
-            return Err(Diagnostic::new(TABLE, "length_mm", rule));
+            return Err(KEYS.broken("length_mm", rule));
         }
         (name, Some(length)) => {
-            let length = above_zero(TABLE, "length_mm", length)?;
-            let length = MILLI * between(TABLE, "length_mm", length, limits::LENGTH_MM)?;
+            let length = MILLI * KEYS.within("length_mm", length, limits::LENGTH_MM)?;
             match name {
                 "line" => Contact::Line { length },
                 _ => Contact::LinePower { length },
@@ -62,7 +58,7 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
         }
         (name, None) => {
             let rule = format!("contact = \"{name}\" needs length_mm");
-            return Err(Diagnostic::new(TABLE, "contact", rule));
+            return Err(KEYS.broken("contact", rule));
         }
     };
     Ok(Materials {

@@ -4,11 +4,12 @@ use serde::Deserialize;
 use touchdown_core::sample::CHANNELS;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{MICRO, above_zero, between, named};
+use super::rule::{Keys, MICRO};
 use super::{LEVITATED_BEFORE, Run};
 use crate::names::channel_name;
 use crate::sensors::{Failing, SensorFault, SensorsConfig};
 
+const KEYS: Keys = Keys("fault");
 /// Most of them.
 const FAULTS: usize = 16;
 const KINDS: [&str; 10] = [
@@ -32,29 +33,17 @@ pub(super) fn faults(
     sensors: &SensorsConfig,
     run: &Run,
 ) -> Result<Vec<SensorFault>, Diagnostic> {
-    if tables.len() > FAULTS {
-        let rule = format!(
-            "[[fault]] must stand no more than {FAULTS} times, stands {} times",
-            tables.len()
-        );
-        return Err(Diagnostic::new("fault", "kind", rule).in_row(FAULTS));
-    }
-    let rows = tables.iter().enumerate();
-    rows.map(|(row, table)| {
-        let fault = table.check(sensors, run);
-        fault.map_err(|flaw| flaw.in_row(row))
-    })
-    .collect()
+    KEYS.rows("kind", tables, FAULTS, |_, table| table.check(sensors, run))
 }
 
 impl FaultTable {
     fn check(&self, sensors: &SensorsConfig, run: &Run) -> Result<SensorFault, Diagnostic> {
-        let kind = named("fault", "kind", &self.kind, &KINDS, |kind| kind)?;
+        let kind = KEYS.named("kind", &self.kind, &KINDS, |kind| kind)?;
         let fitted = &[0, 1, 2, 3][..CHANNELS / 2 * usize::from(sensors.planes)];
-        let channel = named("fault", "channel", &self.channel, fitted, channel_name)?;
-        let start = between("fault", "at_s", self.at_s, -LEVITATED_BEFORE..=run.duration)?;
+        let channel = KEYS.named("channel", &self.channel, fitted, channel_name)?;
+        let start = KEYS.between("at_s", self.at_s, -LEVITATED_BEFORE..=run.duration)?;
         let duration = match self.duration_s {
-            Some(duration) => above_zero("fault", "duration_s", duration)?,
+            Some(duration) => KEYS.above_zero("duration_s", duration)?,
             // A sample that is just due at the start is within rounding of it.
             None if matches!(kind, "spike" | "dropped") => 0.999_999 / run.sample_rate,
             None => f64::INFINITY,
@@ -70,10 +59,8 @@ impl FaultTable {
     fn failing(&self, kind: &str) -> Result<Failing, Diagnostic> {
         let size = |unit: &str| {
             let rule = || format!("kind = \"{kind}\" needs size, in {unit}");
-            let size = self
-                .size
-                .ok_or_else(|| Diagnostic::new("fault", "kind", rule()))?;
-            between("fault", "size", size, -1e6..=1e6)
+            let size = self.size.ok_or_else(|| KEYS.broken("kind", rule()))?;
+            KEYS.between("size", size, -1e6..=1e6)
         };
         let failing = match kind {
             "spike" | "shift" => Failing::Off(MICRO * size("um")?),
@@ -81,9 +68,9 @@ impl FaultTable {
             "gain" => Failing::Gain(size("%")? / 100.0),
             _ if self.size.is_some() => {
                 let rule = format!("kind = \"{kind}\" has no size");
-                return Err(Diagnostic::new("fault", "size", rule));
+                return Err(KEYS.broken("size", rule));
             }
-            _ => (kind.parse()).map_err(|_| Diagnostic::new("fault", "kind", "kind is unknown"))?,
+            _ => (kind.parse()).map_err(|_| KEYS.broken("kind", "kind is unknown"))?,
         };
         Ok(failing)
     }

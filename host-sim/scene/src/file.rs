@@ -64,7 +64,6 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub model: ModelTable,
     pub outputs: Option<OutputsTable>,
-    #[serde(default)]
     pub materials: Option<MaterialsTable>,
     #[serde(default)]
     pub sensors: SensorsTable,
@@ -145,26 +144,11 @@ pub(super) struct StartTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct RunTable {
     pub duration_s: f64,
-    #[serde(default = "standard_gravity")]
-    pub gravity_m_s2: f64,
+    pub gravity_m_s2: Option<f64>,
     #[serde(default)]
     pub inclination_deg: f64,
-    #[serde(default = "default_rate")]
-    pub sample_rate_hz: f64,
-    #[serde(default = "default_seed")]
-    pub seed: u64,
-}
-
-fn standard_gravity() -> f64 {
-    9.81
-}
-
-fn default_rate() -> f64 {
-    20_000.0
-}
-
-fn default_seed() -> u64 {
-    1
+    pub sample_rate_hz: Option<f64>,
+    pub seed: Option<u64>,
 }
 
 #[derive(Default, Deserialize)]

@@ -248,6 +248,11 @@ impl Scene {
         }
     }
 
+    /// The retainer rings of a rotor that tilts; of another none.
+    pub fn rings(&self) -> &[Ring] {
+        self.two_plane.as_ref().map_or(&[], |it| &it.rings)
+    }
+
     /// Samples before the release.
     pub fn levitated_samples(&self) -> u64 {
         match self.start {
@@ -282,20 +287,14 @@ impl Scene {
 
 /// What the monitor is told of a machine; gravity across the rotor's axis, m/s^2.
 pub fn machine_config(rotor: &Rotor, retainer: &Retainer, gravity: f64) -> MachineConfig {
-    let Rotor {
-        mass,
-        radius,
-        polar_inertia,
-        spin,
-    } = *rotor;
     MachineConfig {
-        mass: mass as f32,
+        mass: rotor.mass as f32,
         clearance: retainer.clearance as f32,
         gravity: gravity as f32,
-        rotor_radius: radius as f32,
-        inertia_ratio: (polar_inertia / (mass * radius * radius)) as f32,
+        rotor_radius: rotor.radius as f32,
+        inertia_ratio: (rotor.polar_inertia / (rotor.mass * rotor.radius * rotor.radius)) as f32,
         friction: retainer.friction as f32,
         restitution: retainer.restitution as f32,
-        spin: spin as f32,
+        spin: rotor.spin as f32,
     }
 }

@@ -2,20 +2,19 @@
 
 use super::diagnostic::Diagnostic;
 use super::file::{RetainerTable, RotorTable, StartTable};
-use super::rule::{MILLI, ON_THE_WALL, RPM, above_zero, between, zero_or_more};
+use super::rule::{Keys, MILLI, ON_THE_WALL, RPM};
 use super::{Retainer, Rotor, Start, limits};
 use touchdown_base::plain::Number;
 
 /// Checks `[rotor]`.
 pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
-    let mass = above_zero("rotor", "mass_kg", table.mass_kg)?;
-    let mass = between("rotor", "mass_kg", mass, limits::MASS_KG)?;
-    let radius = above_zero("rotor", "radius_mm", table.radius_mm)?;
-    let radius = MILLI * between("rotor", "radius_mm", radius, limits::RADIUS_MM)?;
+    const KEYS: Keys = Keys("rotor");
+    let mass = KEYS.within("mass_kg", table.mass_kg, limits::MASS_KG)?;
+    let radius = MILLI * KEYS.within("radius_mm", table.radius_mm, limits::RADIUS_MM)?;
     let solid = 0.5 * mass * radius * radius;
     let polar_inertia = match table.polar_inertia_kg_m2 {
         Some(inertia) => {
-            let inertia = above_zero("rotor", "polar_inertia_kg_m2", inertia)?;
+            let inertia = KEYS.above_zero("polar_inertia_kg_m2", inertia)?;
             let ratio = inertia / solid;
             if !limits::INERTIA_RATIO.contains(&ratio) {
                 let (low, high) = limits::INERTIA_RATIO.into_inner();
@@ -24,13 +23,13 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
                      ({solid:.3e}), is {}",
                     Number(inertia)
                 );
-                return Err(Diagnostic::new("rotor", "polar_inertia_kg_m2", rule));
+                return Err(KEYS.broken("polar_inertia_kg_m2", rule));
             }
             inertia
         }
         None => solid,
     };
-    let speed = between("rotor", "speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
+    let speed = KEYS.between("speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
     Ok(Rotor {
         mass,
         radius,
@@ -41,17 +40,18 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
 
 /// Checks `[retainer]`.
 pub fn retainer(table: &RetainerTable) -> Result<Retainer, Diagnostic> {
-    let clearance = above_zero("retainer", "clearance_mm", table.clearance_mm)?;
-    let friction = zero_or_more("retainer", "friction", table.friction)?;
+    const KEYS: Keys = Keys("retainer");
+    let clearance = KEYS.within("clearance_mm", table.clearance_mm, limits::CLEARANCE_MM)?;
     Ok(Retainer {
-        clearance: MILLI * between("retainer", "clearance_mm", clearance, limits::CLEARANCE_MM)?,
-        friction: between("retainer", "friction", friction, limits::FRICTION)?,
-        restitution: between("retainer", "restitution", table.restitution, 0.0..=1.0)?,
+        clearance: MILLI * clearance,
+        friction: KEYS.within("friction", table.friction, limits::FRICTION)?,
+        restitution: KEYS.between("restitution", table.restitution, 0.0..=1.0)?,
     })
 }
 
 /// A free start must be within `clearance`, m.
 pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnostic> {
+    const KEYS: Keys = Keys("start");
     let free = [
         ("x_mm", table.x_mm),
         ("y_mm", table.y_mm),
@@ -72,19 +72,19 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
             let rule = format!(
                 "{wall_key} starts the rotor on the wall, {free_key} starts it free: give one kind"
             );
-            return Err(Diagnostic::new("start", wall_key, rule));
+            return Err(KEYS.broken(wall_key, rule));
         }
         let angle = table.angle_deg.unwrap_or(0.0);
-        let angle = between("start", "angle_deg", angle, limits::ANGLE_DEG)?;
+        let angle = KEYS.between("angle_deg", angle, limits::ANGLE_DEG)?;
         let speed = table.tangential_mm_s.unwrap_or(0.0);
-        let speed = between("start", "tangential_mm_s", speed, limits::SPEED_MM_S)?;
+        let speed = KEYS.between("tangential_mm_s", speed, limits::SPEED_MM_S)?;
         return Ok(Start::Wall {
             angle: angle.to_radians(),
             tangential: MILLI * speed,
         });
     }
     for (key, speed) in &free[2..] {
-        between("start", key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
+        KEYS.between(key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
     }
     let [x, y, vx, vy] = free.map(|(_, value)| MILLI * value.unwrap_or(0.0));
     let distance = x.hypot(y);
@@ -95,7 +95,7 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
             Number(distance / MILLI),
             Number(clearance / MILLI)
         );
-        return Err(Diagnostic::new("start", key, rule));
+        return Err(KEYS.broken(key, rule));
     }
     Ok(Start::Free {
         position: [x, y],

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
 use super::limits;
-use super::rule::{MILLI, above_zero, between};
+use super::rule::{Keys, MILLI};
 
 /// Most modes.
 pub const MODES: usize = 3;
@@ -81,7 +81,7 @@ pub(super) struct ModeTable {
     beam: bool,
 }
 
-const TABLE: &str = "mode";
+const KEYS: Keys = Keys("mode");
 
 /// All of them; `length` of the rotor, mm.
 pub(super) fn all_modes(
@@ -89,47 +89,25 @@ pub(super) fn all_modes(
     mass: f64,
     length: Option<f64>,
 ) -> Result<Vec<Mode>, Diagnostic> {
-    if tables.len() > MODES {
-        let rule = format!(
-            "[[mode]] must stand {MODES} times at most, stands {} times",
-            tables.len()
-        );
-        return Err(Diagnostic::new(TABLE, "frequency_hz", rule).in_row(MODES));
-    }
-    let modes = tables.iter().enumerate();
-    modes
-        .map(|(row, table)| {
-            let mode = table.check(row, mass, length);
-            mode.map_err(|flaw| flaw.in_row(row))
-        })
-        .collect()
+    let check = |row, table: &ModeTable| table.check(row, mass, length);
+    KEYS.rows("frequency_hz", tables, MODES, check)
 }
 
 impl ModeTable {
     fn check(&self, row: usize, mass: f64, length: Option<f64>) -> Result<Mode, Diagnostic> {
-        let frequency = between(
-            TABLE,
-            "frequency_hz",
-            self.frequency_hz,
-            limits::ELASTIC_MODE_HZ,
-        )?;
-        let mass = match self.modal_mass_kg {
-            Some(given) => {
-                let given = above_zero(TABLE, "modal_mass_kg", given)?;
-                between(TABLE, "modal_mass_kg", given, limits::MASS_KG)?
-            }
-            None => mass,
-        };
+        let frequency = self.frequency_hz;
+        let frequency = KEYS.between("frequency_hz", frequency, limits::ELASTIC_MODE_HZ)?;
+        let given = |given| KEYS.within("modal_mass_kg", given, limits::MASS_KG);
         Ok(Mode {
             speed: std::f64::consts::TAU * frequency,
-            damping_ratio: between(TABLE, "damping_ratio", self.damping_ratio, DAMPING_RATIO)?,
-            mass,
+            damping_ratio: KEYS.between("damping_ratio", self.damping_ratio, DAMPING_RATIO)?,
+            mass: self.modal_mass_kg.map_or(Ok(mass), given)?,
             shape: self.shape(row, length)?,
         })
     }
 
     fn shape(&self, row: usize, length: Option<f64>) -> Result<Shape, Diagnostic> {
-        let broken = |key, rule: &str| Err(Diagnostic::new(TABLE, key, rule));
+        let broken = |key, rule: &str| Err(KEYS.broken(key, rule));
         match (&self.shape, &self.at_mm, self.beam) {
             (None, None, true) => match length {
                 Some(length) => Ok(Shape::Beam([FREE_FREE[row], MILLI * length])),
@@ -145,8 +123,8 @@ impl ModeTable {
                 }
                 let points = places.iter().zip(shape);
                 let points = points.map(|(place, value)| {
-                    let place = between(TABLE, "at_mm", *place, limits::PLACE_MM)?;
-                    Ok([MILLI * place, between(TABLE, "shape", *value, -1e3..=1e3)?])
+                    let place = KEYS.between("at_mm", *place, limits::PLACE_MM)?;
+                    Ok([MILLI * place, KEYS.between("shape", *value, -1e3..=1e3)?])
                 });
                 points.collect::<Result<_, _>>().map(Shape::Points)
             }

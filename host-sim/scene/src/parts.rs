@@ -21,34 +21,30 @@ pub struct Part {
 /// All parts, in the order of the ladder.
 pub fn parts(scene: &Scene) -> Vec<Part> {
     let rung = scene.model.rung;
-    let rings = || scene.two_plane.iter().flat_map(|it| &it.rings);
+    let rings = || scene.rings().iter();
     let support = rings().find_map(|it| it.support.as_ref());
     let support = scene.support.as_ref().or(support);
     let bearing = rings().find_map(|it| it.ball_bearing.as_ref());
     let bearing = scene.ball_bearing.as_ref().or(bearing);
     let two_plane = scene.two_plane.as_ref();
-    let laws = match rung {
-        Fidelity::Hertz => "as losses of a contact that takes time",
-        _ => "the laws that all rungs share",
+    let fixed = |name, modelled, asked, reason: &str| Part {
+        name,
+        removable: None,
+        modelled,
+        asked,
+        reason: reason.to_owned(),
+    };
+    let takes_time = rung == Fidelity::Hertz;
+    let (laws, force) = match takes_time {
+        true => (
+            "as losses of a contact that takes time",
+            "rung hertz is asked for",
+        ),
+        false => ("the laws that all rungs share", "rung hertz has them"),
     };
     let mut parts = vec![
-        Part {
-            name: "gap, restitution, friction, spin",
-            removable: None,
-            modelled: true,
-            asked: true,
-            reason: laws.to_owned(),
-        },
-        Part {
-            name: "contact force and its duration",
-            removable: None,
-            modelled: rung == Fidelity::Hertz,
-            asked: false,
-            reason: match rung {
-                Fidelity::Hertz => "rung hertz is asked for".to_owned(),
-                _ => "rung hertz has them".to_owned(),
-            },
-        },
+        fixed("gap, restitution, friction, spin", true, true, laws),
+        fixed("contact force and its duration", takes_time, false, force),
     ];
     let mut part = |removable: Removable, asked: bool, needs: Fidelity, key: &str| {
         let has = scene.model.has(removable);
@@ -71,23 +67,15 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     let stop = support.is_some_and(|it| it.travel.is_some());
     let is = |of: fn(&TwoPlane) -> bool| two_plane.is_some_and(of);
     let turns = is(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0);
-    let magnets = is(|it| !it.magnets.is_empty());
-    let bends = is(|it| !it.modes.is_empty());
     part(Mount, support.is_some(), s, "[support]");
     part(Stop, stop, s, "travel_mm");
     part(BallBearing, bearing.is_some(), s, "[ball_bearing]");
     part(Tilt, two_plane.is_some(), t, "[two_plane]");
     part(Unbalance, turns, t, "unbalance_g_mm or skew_mrad");
-    part(Magnets, magnets, t, "[[magnet]]");
-    part(Bending, bends, c, "[[mode]]");
+    part(Magnets, is(|it| !it.magnets.is_empty()), t, "[[magnet]]");
+    part(Bending, is(|it| !it.modes.is_empty()), c, "[[mode]]");
     part(Base, is(|it| it.base.is_some()), c, "[base]");
-    parts.push(Part {
-        name: "wear",
-        removable: None,
-        modelled: false,
-        asked: false,
-        reason: "no rung has it".to_owned(),
-    });
+    parts.push(fixed("wear", false, false, "no rung has it"));
     parts
 }
 

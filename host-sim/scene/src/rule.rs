@@ -1,5 +1,7 @@
 //! Rules that many keys share, and the units they are written in.
 
+use std::ops::RangeInclusive;
+
 use touchdown_base::plain::Number;
 use touchdown_rotor::error::ConfigError;
 
@@ -14,64 +16,110 @@ pub const MICRO: f64 = 1e-6;
 /// How far outside the gap rounding may put a start on the wall, relative to the clearance.
 pub(super) const ON_THE_WALL: f64 = 1e-9;
 
-pub(super) fn above_zero(
-    table: &'static str,
-    key: &'static str,
-    value: f64,
-) -> Result<f64, Diagnostic> {
-    holds(table, key, value, value > 0.0, "above 0")
-}
+/// The keys of a table, held against their rules.
+#[derive(Clone, Copy)]
+pub(crate) struct Keys(pub(crate) &'static str);
 
-pub(crate) fn zero_or_more(
-    table: &'static str,
-    key: &'static str,
-    value: f64,
-) -> Result<f64, Diagnostic> {
-    holds(table, key, value, value >= 0.0, "0 or more")
-}
+impl Keys {
+    /// That one breaks a rule.
+    pub(crate) fn broken(self, key: &'static str, rule: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(self.0, key, rule)
+    }
 
-fn holds(
-    table: &'static str,
-    key: &'static str,
-    value: f64,
-    is_right: bool,
-    rule: &str,
-) -> Result<f64, Diagnostic> {
-    let broken = || format!("{key} must be {rule}, is {}", Number(value));
-    let value = is_right.then_some(value);
-    value.ok_or_else(|| Diagnostic::new(table, key, broken()))
-}
+    fn holds(
+        self,
+        key: &'static str,
+        value: f64,
+        is_right: bool,
+        rule: &str,
+    ) -> Result<f64, Diagnostic> {
+        let broken = || format!("{key} must be {rule}, is {}", Number(value));
+        let value = is_right.then_some(value);
+        value.ok_or_else(|| self.broken(key, broken()))
+    }
 
-pub(crate) fn between(
-    table: &'static str,
-    key: &'static str,
-    value: f64,
-    range: std::ops::RangeInclusive<f64>,
-) -> Result<f64, Diagnostic> {
-    let [low, high] = [*range.start(), *range.end()].map(Number);
-    let rule = format!("{low} to {high}");
-    holds(table, key, value, range.contains(&value), &rule)
-}
+    pub(crate) fn above_zero(self, key: &'static str, value: f64) -> Result<f64, Diagnostic> {
+        self.holds(key, value, value > 0.0, "above 0")
+    }
 
-/// The one of `all` that has this name.
-pub(super) fn named<T: Copy>(
-    table: &'static str,
-    key: &'static str,
-    given: &str,
-    all: &[T],
-    name: impl Fn(T) -> &'static str,
-) -> Result<T, Diagnostic> {
-    all.iter()
-        .copied()
-        .find(|&item| name(item) == given)
-        .ok_or_else(|| {
-            let names: Vec<_> = all
-                .iter()
-                .map(|&item| format!("\"{}\"", name(item)))
-                .collect();
+    pub(crate) fn zero_or_more(self, key: &'static str, value: f64) -> Result<f64, Diagnostic> {
+        self.holds(key, value, value >= 0.0, "0 or more")
+    }
+
+    pub(crate) fn between(
+        self,
+        key: &'static str,
+        value: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, Diagnostic> {
+        let [low, high] = [*range.start(), *range.end()].map(Number);
+        let rule = format!("{low} to {high}");
+        self.holds(key, value, range.contains(&value), &rule)
+    }
+
+    /// In a range that begins at 0 or above: what is on the wrong side of 0 is told so.
+    pub(crate) fn within(
+        self,
+        key: &'static str,
+        value: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, Diagnostic> {
+        if *range.start() > 0.0 {
+            self.above_zero(key, value)?;
+        } else {
+            self.zero_or_more(key, value)?;
+        }
+        self.between(key, value, range)
+    }
+
+    /// The one of `all` that has this name.
+    pub(crate) fn named<T: Copy>(
+        self,
+        key: &'static str,
+        given: &str,
+        all: &[T],
+        name: impl Fn(T) -> &'static str,
+    ) -> Result<T, Diagnostic> {
+        let found = all.iter().copied().find(|&item| name(item) == given);
+        found.ok_or_else(|| {
+            let names = all.iter().map(|&item| format!("\"{}\"", name(item)));
+            let names: Vec<_> = names.collect();
             let rule = format!("{key} must be {}, is \"{given}\"", names.join(" or "));
-            Diagnostic::new(table, key, rule)
+            self.broken(key, rule)
         })
+    }
+
+    /// Likewise, `other` where none is given.
+    pub(crate) fn named_or<T: Copy + Into<&'static str>>(
+        self,
+        key: &'static str,
+        given: &Option<String>,
+        other: T,
+        all: &[T],
+    ) -> Result<T, Diagnostic> {
+        match given {
+            Some(given) => self.named(key, given, all, T::into),
+            None => Ok(other),
+        }
+    }
+
+    /// Checks the rows of a table that stands `most` times at most; `key` is one that every row has.
+    pub(crate) fn rows<T, U>(
+        self,
+        key: &'static str,
+        rows: &[T],
+        most: usize,
+        check: impl Fn(usize, &T) -> Result<U, Diagnostic>,
+    ) -> Result<Vec<U>, Diagnostic> {
+        let (table, count) = (self.0, rows.len());
+        if count > most {
+            let rule = format!("[[{table}]] must stand {most} times at most, stands {count} times");
+            return Err(self.broken(key, rule).in_row(most));
+        }
+        let rows = rows.iter().enumerate();
+        rows.map(|(row, table)| check(row, table).map_err(|flaw| flaw.in_row(row)))
+            .collect()
+    }
 }
 
 /// A rule in the words of the configuration, in those of the file.

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
 use super::limits;
-use super::rule::{MILLI, above_zero, between, zero_or_more};
+use super::rule::{Keys, MILLI};
 use crate::sensors::Tachometers;
 
 /// Of an optical mark, rad: 0.1 mm on a circle of 50 mm diameter.
@@ -47,16 +47,13 @@ pub struct BallBearing {
 impl BallBearing {
     /// The optical sensors, where there are any, on a ring of this bore radius (m).
     pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
-        self.marks
-            .iter()
-            .any(Option::is_some)
-            .then_some(Tachometers {
-                marks: self.marks,
-                cage_ratio: self.cage_ratio,
-                bore_radius,
-                edge_error: EDGE_ERROR,
-                window: SPEED_WINDOW,
-            })
+        (self.marks != [None; 2]).then_some(Tachometers {
+            marks: self.marks,
+            cage_ratio: self.cage_ratio,
+            bore_radius,
+            edge_error: EDGE_ERROR,
+            window: SPEED_WINDOW,
+        })
     }
 }
 
@@ -78,10 +75,8 @@ pub(super) struct BallBearingTable {
     dry_drag_n_m: f64,
     #[serde(default)]
     viscous_drag_n_m_s: f64,
-    #[serde(default = "usual_cage_ratio")]
-    cage_ratio: f64,
-    #[serde(default = "usual_heat_capacity")]
-    heat_capacity_j_k: f64,
+    cage_ratio: Option<f64>,
+    heat_capacity_j_k: Option<f64>,
     #[serde(default)]
     heat_loss_w_k: f64,
     inner_ring_marks: Option<u16>,
@@ -90,67 +85,49 @@ pub(super) struct BallBearingTable {
 
 /// (1 - ball over pitch diameter)/2 where balls are a fifth of the pitch diameter, as in deep-groove
 /// bearings.
-fn usual_cage_ratio() -> f64 {
-    0.4
-}
-
+const USUAL_CAGE_RATIO: f64 = 0.4;
 /// 0.2 kg of steel, 460 J/(kg K).
-fn usual_heat_capacity() -> f64 {
-    92.0
-}
+const USUAL_HEAT_CAPACITY: f64 = 92.0;
 
 impl SupportTable {
     pub fn check(&self) -> Result<Support, Diagnostic> {
-        const TABLE: &str = "support";
-        let mass = above_zero(TABLE, "mass_kg", self.mass_kg)?;
-        let stiffness = above_zero(TABLE, "stiffness_n_m", self.stiffness_n_m)?;
-        let damping = zero_or_more(TABLE, "damping_n_s_m", self.damping_n_s_m)?;
-        let travel = match self.travel_mm {
-            Some(travel) => {
-                let travel = above_zero(TABLE, "travel_mm", travel)?;
-                Some(MILLI * between(TABLE, "travel_mm", travel, limits::TRAVEL_MM)?)
-            }
-            None => None,
-        };
+        const KEYS: Keys = Keys("support");
+        let travel = |travel| KEYS.within("travel_mm", travel, limits::TRAVEL_MM);
         Ok(Support {
-            mass: between(TABLE, "mass_kg", mass, limits::MASS_KG)?,
-            stiffness: between(TABLE, "stiffness_n_m", stiffness, limits::STIFFNESS_N_M)?,
-            damping: between(TABLE, "damping_n_s_m", damping, limits::DAMPING_N_S_M)?,
-            travel,
+            mass: KEYS.within("mass_kg", self.mass_kg, limits::MASS_KG)?,
+            stiffness: KEYS.within("stiffness_n_m", self.stiffness_n_m, limits::STIFFNESS_N_M)?,
+            damping: KEYS.within("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,
+            travel: self.travel_mm.map(travel).transpose()?.map(|it| MILLI * it),
         })
     }
 }
 
 impl BallBearingTable {
     pub fn check(&self) -> Result<BallBearing, Diagnostic> {
-        const TABLE: &str = "ball_bearing";
-        let inertia = "inner_ring_inertia_kg_m2";
-        let given = above_zero(TABLE, inertia, self.inner_ring_inertia_kg_m2)?;
-        let capacity = above_zero(TABLE, "heat_capacity_j_k", self.heat_capacity_j_k)?;
-        let drag = |key, value| {
-            let value = zero_or_more(TABLE, key, value)?;
-            between(TABLE, key, value, limits::DRAG)
-        };
+        const KEYS: Keys = Keys("ball_bearing");
+        let inertia = self.inner_ring_inertia_kg_m2;
+        let cage_ratio = self.cage_ratio.unwrap_or(USUAL_CAGE_RATIO);
+        let capacity = self.heat_capacity_j_k.unwrap_or(USUAL_HEAT_CAPACITY);
+        let drag = |key, value| KEYS.within(key, value, limits::DRAG);
         let marks = [
             ("inner_ring_marks", self.inner_ring_marks),
             ("cage_marks", self.cage_marks),
         ];
         for (key, marks) in marks {
             if let Some(marks) = marks {
-                between(TABLE, key, f64::from(marks), limits::MARKS)?;
+                KEYS.between(key, f64::from(marks), limits::MARKS)?;
             }
         }
         Ok(BallBearing {
-            inertia: between(TABLE, inertia, given, limits::RING_INERTIA_KG_M2)?,
+            inertia: KEYS.within(
+                "inner_ring_inertia_kg_m2",
+                inertia,
+                limits::RING_INERTIA_KG_M2,
+            )?,
             dry_drag: drag("dry_drag_n_m", self.dry_drag_n_m)?,
             viscous_drag: drag("viscous_drag_n_m_s", self.viscous_drag_n_m_s)?,
-            cage_ratio: between(TABLE, "cage_ratio", self.cage_ratio, limits::CAGE_RATIO)?,
-            heat_capacity: between(
-                TABLE,
-                "heat_capacity_j_k",
-                capacity,
-                limits::HEAT_CAPACITY_J_K,
-            )?,
+            cage_ratio: KEYS.between("cage_ratio", cage_ratio, limits::CAGE_RATIO)?,
+            heat_capacity: KEYS.within("heat_capacity_j_k", capacity, limits::HEAT_CAPACITY_J_K)?,
             heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
             marks: marks.map(|(_, marks)| marks),
         })

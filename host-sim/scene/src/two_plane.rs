@@ -6,7 +6,7 @@ use super::base::Base;
 use super::diagnostic::Diagnostic;
 use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::mode::{Mode, ModeTable, all_modes};
-use super::rule::{MILLI, ON_THE_WALL, above_zero, between};
+use super::rule::{Keys, MILLI, ON_THE_WALL};
 use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
 use super::{Retainer, Rotor, Scene, Start, limits, list};
 use touchdown_base::plain::Number;
@@ -64,7 +64,7 @@ pub struct Ring {
 impl Ring {
     /// That of a rotor that does not tilt: on the mounts of all rings, and turning with all, side by side.
     pub fn of_plane(scene: &Scene) -> Self {
-        let all = || scene.two_plane.iter().flat_map(|it| &it.rings);
+        let all = || scene.rings().iter();
         Self {
             name: String::new(),
             place: 0.0,
@@ -168,7 +168,7 @@ impl TwoPlane {
                     Number(x.hypot(y) / MILLI),
                     Number(clearance / MILLI)
                 );
-                return Err(Diagnostic::new("ring", "z_mm", rule).in_row(row));
+                return Err(RING.broken("z_mm", rule).in_row(row));
             }
         }
         Ok(())
@@ -207,7 +207,7 @@ pub(super) struct RingTable {
     ball_bearing: Option<BallBearingTable>,
 }
 
-const TABLE: &str = "two_plane";
+const KEYS: Keys = Keys("two_plane");
 
 impl TwoPlaneTable {
     pub fn check(
@@ -222,14 +222,14 @@ impl TwoPlaneTable {
         let ends = rings.iter().map(|ring| ring.place);
         let lowest = ends.clone().fold(f64::INFINITY, f64::min);
         let sensors = self.sensors([lowest, ends.fold(f64::NEG_INFINITY, f64::max)])?;
-        let mode = |it| between(TABLE, "elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
+        let mode = |it| KEYS.between("elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
         let elastic_mode = self.elastic_mode_hz.map(mode).transpose()?;
         for (key, pair) in [
             ("tilt_mrad", self.tilt_mrad),
             ("tilt_rate_rad_s", self.tilt_rate_rad_s),
         ] {
             for value in pair {
-                between(TABLE, key, value, limits::TILT)?;
+                KEYS.between(key, value, limits::TILT)?;
             }
         }
         for (key, angle) in [
@@ -237,15 +237,11 @@ impl TwoPlaneTable {
             ("skew_deg", self.skew_deg),
             ("gravity_deg", self.gravity_deg),
         ] {
-            between(TABLE, key, angle, limits::ANGLE_DEG)?;
+            KEYS.between(key, angle, limits::ANGLE_DEG)?;
         }
-        let unbalance = between(
-            TABLE,
-            "unbalance_g_mm",
-            self.unbalance_g_mm,
-            limits::UNBALANCE_G_MM,
-        )?;
-        let skew = between(TABLE, "skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
+        let unbalance = self.unbalance_g_mm;
+        let unbalance = KEYS.between("unbalance_g_mm", unbalance, limits::UNBALANCE_G_MM)?;
+        let skew = KEYS.between("skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
         Ok(TwoPlane {
             transverse_inertia: self.transverse_inertia(rotor)?,
             unbalance: [GRAM_MM * unbalance, self.unbalance_deg.to_radians()],
@@ -268,7 +264,7 @@ impl TwoPlaneTable {
             return Ok(ends);
         };
         for place in places {
-            between(TABLE, "sensor_z_mm", place, limits::PLACE_MM)?;
+            KEYS.between("sensor_z_mm", place, limits::PLACE_MM)?;
         }
         Ok(places.map(|place| MILLI * place))
     }
@@ -277,10 +273,9 @@ impl TwoPlaneTable {
     fn transverse_inertia(&self, rotor: &Rotor) -> Result<f64, Diagnostic> {
         let key = "transverse_inertia_kg_m2";
         let (inertia, key) = match (self.transverse_inertia_kg_m2, self.rotor_length_mm) {
-            (Some(inertia), None) => (above_zero(TABLE, key, inertia)?, key),
+            (Some(inertia), None) => (KEYS.above_zero(key, inertia)?, key),
             (None, Some(length)) => {
-                let length = above_zero(TABLE, "rotor_length_mm", length)?;
-                let length = MILLI * between(TABLE, "rotor_length_mm", length, limits::LENGTH_MM)?;
+                let length = MILLI * KEYS.within("rotor_length_mm", length, limits::LENGTH_MM)?;
                 let square = rotor.radius * rotor.radius / 4.0 + length * length / 12.0;
                 (rotor.mass * square, "rotor_length_mm")
             }
@@ -291,7 +286,7 @@ impl TwoPlaneTable {
                 } else {
                     "transverse_inertia_kg_m2 or rotor_length_mm must be given"
                 };
-                return Err(Diagnostic::new(TABLE, key, rule));
+                return Err(KEYS.broken(key, rule));
             }
         };
         let ratio = rotor.polar_inertia / inertia;
@@ -303,7 +298,7 @@ impl TwoPlaneTable {
             "polar over transverse inertia must be {low:e} to {high} (a thin disc), is {:.6}",
             Number(ratio)
         );
-        Err(Diagnostic::new(TABLE, key, rule))
+        Err(KEYS.broken(key, rule))
     }
 }
 
@@ -317,85 +312,48 @@ fn all_rings(
             "[[ring]] must stand 1 to {RINGS} times, stands {} times",
             tables.len()
         );
-        let table = if tables.is_empty() { TABLE } else { "ring" };
-        return Err(Diagnostic::new(table, "z_mm", rule));
+        let keys = if tables.is_empty() { KEYS } else { RING };
+        return Err(keys.broken("z_mm", rule));
     }
-    let rings = tables.iter().enumerate();
-    rings
-        .map(|(index, table)| {
-            let ring = table.check(rotor, retainer);
-            ring.map_err(|flaw| flaw.in_row(index))
-                .map(|ring| match &table.name {
-                    Some(name) => Ring {
-                        name: name.clone(),
-                        ..ring
-                    },
-                    None => Ring {
-                        name: ["a", "b", "c", "d"][index].to_owned(),
-                        ..ring
-                    },
-                })
-        })
-        .collect()
+    RING.rows("z_mm", tables, RINGS, |row, table| {
+        table.check(["a", "b", "c", "d"][row], rotor, retainer)
+    })
 }
 
 /// A flaw of a table in a ring's row stands at that table.
 fn in_ring<T, U>(
     check: impl Fn(&T) -> Result<U, Diagnostic>,
 ) -> impl Fn(&T) -> Result<U, Diagnostic> {
-    move |table| check(table).map_err(|flaw| Diagnostic::new("ring", flaw.table, flaw.rule))
+    move |table| check(table).map_err(|flaw| RING.broken(flaw.table, flaw.rule))
 }
 
+const RING: Keys = Keys("ring");
+
 impl RingTable {
-    fn check(&self, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Diagnostic> {
-        const TABLE: &str = "ring";
-        let optional = |key, value: Option<f64>, scale: f64, other: f64, range| match value {
-            Some(value) => between(TABLE, key, value, range).map(|value| scale * value),
-            None => Ok(other),
+    /// `name` where it gives none.
+    fn check(&self, name: &str, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Diagnostic> {
+        let given = |key, value: Option<f64>, range| {
+            let given = |value| RING.between(key, value, range);
+            value.map(given).transpose()
         };
+        let radius = given("radius_mm", self.radius_mm, limits::RADIUS_MM)?;
+        let clearance = given("clearance_mm", self.clearance_mm, limits::CLEARANCE_MM)?;
+        let friction = given("friction", self.friction, limits::FRICTION)?;
+        let restitution = given("restitution", self.restitution, 0.0..=1.0)?;
+        let support = self.support.as_ref().map(in_ring(SupportTable::check));
+        let ball_bearing = self.ball_bearing.as_ref();
+        let ball_bearing = ball_bearing.map(in_ring(BallBearingTable::check));
         Ok(Ring {
-            name: String::new(),
-            place: MILLI * between(TABLE, "z_mm", self.z_mm, limits::PLACE_MM)?,
-            radius: optional(
-                "radius_mm",
-                self.radius_mm,
-                MILLI,
-                rotor.radius,
-                limits::RADIUS_MM,
-            )?,
+            name: self.name.clone().unwrap_or_else(|| name.to_owned()),
+            place: MILLI * RING.between("z_mm", self.z_mm, limits::PLACE_MM)?,
+            radius: radius.map_or(rotor.radius, |it| MILLI * it),
             retainer: Retainer {
-                clearance: optional(
-                    "clearance_mm",
-                    self.clearance_mm,
-                    MILLI,
-                    retainer.clearance,
-                    limits::CLEARANCE_MM,
-                )?,
-                friction: optional(
-                    "friction",
-                    self.friction,
-                    1.0,
-                    retainer.friction,
-                    limits::FRICTION,
-                )?,
-                restitution: optional(
-                    "restitution",
-                    self.restitution,
-                    1.0,
-                    retainer.restitution,
-                    0.0..=1.0,
-                )?,
+                clearance: clearance.map_or(retainer.clearance, |it| MILLI * it),
+                friction: friction.unwrap_or(retainer.friction),
+                restitution: restitution.unwrap_or(retainer.restitution),
             },
-            support: self
-                .support
-                .as_ref()
-                .map(in_ring(SupportTable::check))
-                .transpose()?,
-            ball_bearing: self
-                .ball_bearing
-                .as_ref()
-                .map(in_ring(BallBearingTable::check))
-                .transpose()?,
+            support: support.transpose()?,
+            ball_bearing: ball_bearing.transpose()?,
         })
     }
 }

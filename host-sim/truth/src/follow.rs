@@ -86,7 +86,7 @@ impl<'a> Truth<'a> {
     }
 
     fn of(scene: &'a Scene, source: Source) -> Self {
-        let rings = scene.two_plane.as_ref().map_or(0, |it| it.rings.len());
+        let rings = scene.rings().len();
         let recorder = Recorder::new(-scene.first_sample_time());
         Self {
             scene,
@@ -203,33 +203,15 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     }
 }
 
-fn ring(ring: &touchdown_scene::Ring) -> Ring {
-    Ring {
-        place: ring.place,
-        radius: ring.radius,
-        clearance: ring.retainer.clearance,
-        friction: ring.retainer.friction,
-        restitution: ring.retainer.restitution,
-    }
-}
-
-fn gravity(scene: &Scene, machine: &TwoPlane) -> [f64; 2] {
-    let (sin, cos) = machine.gravity_angle.sin_cos();
-    [scene.run.gravity * sin, -scene.run.gravity * cos]
-}
-
-fn unbalance(scene: &Scene, machine: &TwoPlane) -> Unbalance {
-    Unbalance {
-        eccentricity: machine.unbalance[0] / scene.rotor.mass,
-        angle: machine.unbalance[1],
-        skew: machine.skew[0],
-        skew_angle: machine.skew[1],
-    }
-}
-
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
-        ring: ring(it),
+        ring: Ring {
+            place: it.place,
+            radius: it.radius,
+            clearance: it.retainer.clearance,
+            friction: it.retainer.friction,
+            restitution: it.retainer.restitution,
+        },
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
     };
@@ -241,13 +223,19 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         at_magnets: machine.magnets.iter().map(|it| mode.at(it.place)).collect(),
         at_centre: mode.at(0.0),
     };
+    let (sin, cos) = machine.gravity_angle.sin_cos();
     CoupledMachine {
         mass: scene.rotor.mass,
         polar_inertia: scene.rotor.polar_inertia,
         transverse_inertia: machine.transverse_inertia,
-        gravity: gravity(scene, machine),
+        gravity: [scene.run.gravity * sin, -scene.run.gravity * cos],
         retainers: machine.rings.iter().map(retainer).collect(),
-        unbalance: unbalance(scene, machine),
+        unbalance: Unbalance {
+            eccentricity: machine.unbalance[0] / scene.rotor.mass,
+            angle: machine.unbalance[1],
+            skew: machine.skew[0],
+            skew_angle: machine.skew[1],
+        },
         magnets: machine.magnets.clone(),
         bending: machine.modes.iter().map(bending).collect(),
         base: machine.base,

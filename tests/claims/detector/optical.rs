@@ -8,10 +8,11 @@ use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::tachometer::{Speed, Tachometers as Core, TachometersConfig};
 use touchdown_protocol::wire::Played;
+use touchdown_files::recording::Reading;
 use touchdown_files::stream::{Columns, StreamWriter, to_row, to_sample};
 use touchdown_rotor::error::ConfigError;
 use touchdown_run::monitor_run;
-use touchdown_run::replay;
+use touchdown_run::replay::{self, Orders};
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors, Tachometers};
@@ -546,7 +547,9 @@ fn a_recorded_stream_with_pulses_replays_to_the_same_verdict() {
             writer.write(&row).expect("a file");
         }
         writer.finish().expect("a file");
-        let detection = replay::run(file.path(), &scene, &Target::Host).expect("own stream");
+        let (path, orders) = (file.path(), Orders::default());
+        let replay = replay::recording(path, &Reading::default(), &scene, &Target::Host, &orders);
+        let detection = replay.expect("own stream").detection;
         let kinds = detection.events.into_iter().map(|event| event.event);
         kinds
             .filter(|kind| matches!(kind, EventKind::Sliding | EventKind::Rolling))

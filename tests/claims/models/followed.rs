@@ -40,7 +40,8 @@ fn what_the_sensors_see_is_the_references() {
         let gap = scene.retainer.clearance;
         for k in -3..(until * 20_000.0) as i32 {
             let time = f64::from(k) / 20_000.0;
-            let [ours, theirs] = [followed.advance(time), truth.advance(time)];
+            let ours = followed.advance(time).expect("is not given up");
+            let theirs = truth.advance(time);
             for (a, b) in ours.sensed.iter().flatten().zip(theirs.sensed.iter().flatten()) {
                 let off = (a - b).abs() / gap;
                 assert!(off <= tolerance, "{name} at {time} s: {off:e}");

@@ -14,7 +14,7 @@ use touchdown_files::recording::{Reading, Recording};
 use touchdown_files::stream::{of_field, to_field, to_sample, without_record};
 use touchdown_run::drop;
 use touchdown_run::outcome::DetectedEvent;
-use touchdown_run::replay;
+use touchdown_run::replay::{self, Orders};
 use touchdown_run::target::Target;
 use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
@@ -47,8 +47,9 @@ fn replayed(episode: &Episode, scene: &Scene) -> Vec<DetectedEvent> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("e.csv");
     assert!(stream(episode, File::create(&path).expect("a file")).expect("is written"));
-    replay::run(&path, scene, &Target::Host)
+    replay::recording(&path, &Reading::default(), scene, &Target::Host, &Orders::default())
         .expect("replays")
+        .detection
         .events
 }
 
@@ -159,7 +160,9 @@ fn an_export_as_comtrade_replays_with_the_record() {
     fs::write(folder.path().join("e.cfg"), cfg).expect("a file");
     fs::write(folder.path().join("e.dat"), dat).expect("a file");
     let path = folder.path().join("e.cfg");
-    let replay = replay::run(&path, &scene, &Target::Host).expect("replays");
+    let orders = Orders::default();
+    let replay = replay::recording(&path, &Reading::default(), &scene, &Target::Host, &orders);
+    let replay = replay.expect("replays").detection;
     let header = episode.header.as_ref().expect("a header");
     let recording = Recording::open(&path, &Reading::default(), &scene).expect("opens");
     assert!(recording.is_episode);

@@ -87,10 +87,12 @@ fn mm_s(speed: f64) -> String {
 /// Times and end state side by side, with differences.
 fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
     let (model, truth) = (&outcome.model, &outcome.truth);
+    let both = [model, truth];
+    let first = |history: &History| Some(history.impacts.first()?.state.time);
     let mut rows = vec![
-        count_row("Impacts", model.impacts.len(), truth.impacts.len()),
-        time_row("First impact, ms", first_impact(model), first_impact(truth)),
-        speed_row(peak(model), peak(truth)),
+        count_row("Impacts", both.map(|it| it.impacts.len())),
+        row("First impact, ms", both.map(first), "s", ms),
+        row("Peak impact speed, mm/s", both.map(peak), "m/s", mm_s),
     ];
     let starts: [(_, Times); 3] = [
         ("Permanent contact", |it| &it.contact_starts),
@@ -98,14 +100,14 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
         ("Lift-off", |it| &it.lift_offs),
     ];
     for (name, of) in starts {
-        let first = [model, truth].map(|it| of(it).first().copied());
+        let first = both.map(|it| of(it).first().copied());
         if first != [None; 2] {
-            rows.push(time_row(&format!("{name}, first, ms"), first[0], first[1]));
+            rows.push(row(&format!("{name}, first, ms"), first, "s", ms));
         }
     }
     let same = model.regime == truth.regime;
     let same = if same { "same" } else { "differs" };
-    let [ours, theirs] = [model, truth].map(|it| regime_name(it.regime));
+    let [ours, theirs] = both.map(|it| regime_name(it.regime));
     rows.push(["Regime", ours, theirs, same].map(str::to_owned));
     let apart = error(apart(model, truth) / scene.retainer.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
@@ -117,11 +119,8 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
     table.draw()
 }
 
-fn first_impact(history: &History) -> Option<f64> {
-    history.impacts.first().map(|impact| impact.state.time)
-}
-
-fn peak(history: &History) -> Option<f64> {
+/// The greatest speed of an impact, m/s.
+pub fn peak(history: &History) -> Option<f64> {
     let speeds = history.impacts.iter().map(|impact| impact.normal_speed);
     speeds.reduce(f64::max)
 }
@@ -131,30 +130,17 @@ fn apart(model: &History, truth: &History) -> f64 {
     f64::hypot(x - u, y - v)
 }
 
-fn count_row(name: &str, model: usize, truth: usize) -> Row {
+fn count_row(name: &str, [model, truth]: [usize; 2]) -> Row {
     let [a, b, apart] = [model, truth, model.abs_diff(truth)].map(|it| it.to_string());
     [name.to_owned(), a, b, apart]
 }
 
-fn time_row(name: &str, model: Option<f64>, truth: Option<f64>) -> Row {
-    row(name, model, truth, "s", ms)
-}
-
-fn speed_row(model: Option<f64>, truth: Option<f64>) -> Row {
-    row("Peak impact speed, mm/s", model, truth, "m/s", mm_s)
-}
-
-fn row(
-    name: &str,
-    model: Option<f64>,
-    truth: Option<f64>,
-    unit: &str,
-    show: fn(f64) -> String,
-) -> Row {
+fn row(name: &str, both: [Option<f64>; 2], unit: &str, show: fn(f64) -> String) -> Row {
     let cell = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), show);
-    let apart = match (model, truth) {
-        (Some(model), Some(truth)) => format!("{}\u{a0}{unit}", error(model - truth)),
+    let apart = match both {
+        [Some(model), Some(truth)] => format!("{}\u{a0}{unit}", error(model - truth)),
         _ => "\u{2013}".to_owned(),
     };
-    [name.to_owned(), cell(model), cell(truth), apart]
+    let [model, truth] = both.map(cell);
+    [name.to_owned(), model, truth, apart]
 }

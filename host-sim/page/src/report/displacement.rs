@@ -4,7 +4,7 @@ use super::stretch::far;
 use super::timeline::{percent, strokes, visible};
 use super::window::Window;
 use maud::{Markup, html};
-use touchdown_chart::plot::{Axis, Chart};
+use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Outcome, TracePoint};
 use touchdown_scene::Scene;
@@ -18,7 +18,7 @@ pub fn displacement(window: Window, scene: &Scene, outcome: &Outcome) -> Markup 
         (panel(0, window, scene, outcome))
         (panel(1, window, scene, outcome))
         ul.legend {
-            li { svg width="34" height="12" aria-hidden="true" { path.curve.motion d="M1 6H33" {} } "true motion" }
+            (key("motion", "true motion"))
             li { svg width="34" height="12" aria-hidden="true" { path.curve.sensed d="M4 8h0M11 4h0M18 7h0M25 5h0M31 8h0" {} } "sensed" }
             li { svg width="34" height="12" aria-hidden="true" { line.true-mark x1="17" x2="17" y1="0" y2="12" {} } "true change" }
             li { svg width="34" height="12" aria-hidden="true" { line.mark x1="17" x2="17" y1="0" y2="12" {} } "detected onset" }

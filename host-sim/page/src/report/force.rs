@@ -1,6 +1,5 @@
 //! What the wall took: the impulse of each impact, and its force over time where the materials are known.
 
-use super::rings;
 use super::timeline::percent;
 use super::window::Window;
 use maud::{Markup, html};
@@ -24,7 +23,7 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let rings: Vec<(Option<&str>, &History, f64)> = if outcome.rings.is_empty() {
         vec![(None, &outcome.truth, scene.retainer.restitution)]
     } else {
-        let rings = rings(scene).iter().zip(&outcome.rings);
+        let rings = scene.rings().iter().zip(&outcome.rings);
         rings
             .map(|(ring, [_, truth])| (Some(&*ring.name), truth, ring.retainer.restitution))
             .collect()

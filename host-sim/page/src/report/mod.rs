@@ -31,13 +31,8 @@ use spectrum::Spectra;
 use touchdown_chart::shell::page;
 use touchdown_run::matching::match_events;
 use touchdown_run::outcome::Outcome;
-use touchdown_scene::{Ring, Scene};
+use touchdown_scene::Scene;
 use window::Window;
-
-/// Rings of a rotor that tilts; else none.
-fn rings(scene: &Scene) -> &[Ring] {
-    scene.two_plane.as_ref().map_or(&[], |it| &it.rings)
-}
 
 /// Writes the page.
 pub fn render(scene: &Scene, outcome: &Outcome) -> String {
@@ -131,7 +126,7 @@ fn spectra(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
 fn parts_that_move(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (ring, race) = moving::ring_moves(outcome);
     html! {
-        @if !rings(scene).is_empty() { (moving::ends(scene, outcome)) }
+        @if !scene.rings().is_empty() { (moving::ends(scene, outcome)) }
         @if ring {
             section {
                 h2 { "Retainer ring" }

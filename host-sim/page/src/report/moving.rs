@@ -1,7 +1,6 @@
 //! What moves besides the rotor's centre: its ends, the retainer ring, the inner ring.
 
 use super::orbit::{Orbit, draw};
-use super::rings;
 use super::window::Window;
 use maud::{Markup, html};
 use std::f64::consts::TAU;
@@ -16,7 +15,7 @@ const MICRO: f64 = 1e6;
 
 /// One orbit a ring of a rotor that tilts.
 pub fn ends(scene: &Scene, outcome: &Outcome) -> Markup {
-    let rings = rings(scene).iter().zip(&outcome.rings).enumerate();
+    let rings = scene.rings().iter().zip(&outcome.rings).enumerate();
     html! {
         div.pair {
             @for (index, (ring, [_, truth])) in rings {

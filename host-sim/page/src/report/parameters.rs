@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use std::f64::consts::PI;
 use touchdown_chart::text::{si, significant};
+use touchdown_run::explain::numbers::{scales, speeds};
 use touchdown_scene::parts::{parts, removable};
 use touchdown_scene::scales::validity;
 use touchdown_scene::{Removable, Scene};
@@ -22,10 +23,7 @@ pub fn parameters(scene: &Scene) -> Markup {
         ("Mass", si(machine.mass, "kg")),
         ("Rotor radius at the retainer", si(machine.radius, "m")),
         ("Polar inertia", format!("{inertia}\u{a0}kg\u{a0}m\u{b2}")),
-        (
-            "Radial clearance \u{3c1}\u{2080}",
-            si(machine.clearance, "m"),
-        ),
+        ("Radial clearance", si(machine.clearance, "m")),
         ("Spin at the release", format!("{rpm}\u{a0}rpm{turn}")),
         ("Gravity", format!("{gravity}\u{a0}m/s\u{b2}")),
     ];
@@ -43,39 +41,13 @@ pub fn parameters(scene: &Scene) -> Markup {
     html! {
         div.pair {
             div { (list("Rotor and retainer", &physical)) }
-            div { (list("Dimensionless numbers and scales", &scales(scene))) (list("Run", &run)) }
+            div { (list("Run", &run)) }
+        }
+        div.pair {
+            div { (list("Dimensionless numbers and scales", &scales(scene))) }
+            div { (list("Speeds and times", &speeds(scene))) }
         }
     }
-}
-
-fn scales(scene: &Scene) -> Vec<(&'static str, String)> {
-    let machine = &scene.machine();
-    let beta = machine.polar_inertia / (machine.mass * machine.radius * machine.radius);
-    let time = (machine.clearance / machine.gravity).sqrt();
-    let speed = (machine.clearance * machine.gravity).sqrt();
-    let spin = significant(machine.radius * scene.rotor.spin / speed, 5);
-    let whirl = si(whirl_speed(scene), "rad/s");
-    let mut scales = vec![
-        ("Friction \u{b5}", significant(machine.friction, 4)),
-        ("Restitution \u{3b5}", significant(machine.restitution, 4)),
-        ("Inertia \u{3b2} = J/(m r\u{b2})", significant(beta, 4)),
-    ];
-    if machine.gravity > 0.0 {
-        scales.extend([
-            ("Spin W\u{2080} = r \u{3c9}\u{2080}/V", spin),
-            ("Time T = \u{221a}(\u{3c1}\u{2080}/g)", si(time, "s")),
-            ("Speed V = \u{221a}(g \u{3c1}\u{2080})", si(speed, "m/s")),
-            ("Whirl keeps contact from, at the bottom", whirl),
-        ]);
-    }
-    scales
-}
-
-/// Least angular speed at the bottom from which a rotor driven by friction keeps contact for a turn.
-fn whirl_speed(scene: &Scene) -> f64 {
-    let friction = scene.retainer.friction;
-    let drive = 3.0 * (1.0 + (-2.0 * PI * friction).exp()) / (1.0 + 4.0 * friction * friction);
-    (scene.run.gravity / scene.retainer.clearance * (drive - 1.0)).sqrt()
 }
 
 fn list(name: &str, rows: &[(&str, String)]) -> Markup {
@@ -110,16 +82,4 @@ pub fn limits(scene: &Scene, forces: bool) -> Markup {
 
 pub fn versions() -> Markup {
     html! { dl.versions { div { dt { "touchdown" } dd { (env!("CARGO_PKG_VERSION")) } } } }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::fixture;
-
-    #[test]
-    fn whirl_speed_of_the_rig() {
-        let speed = whirl_speed(&fixture::scene());
-        assert!((speed - 334.59).abs() < 0.01, "{speed}");
-    }
 }

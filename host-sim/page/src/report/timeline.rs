@@ -1,11 +1,10 @@
 //! Phases over time: the truth above, the detector below.
 
-use super::rings;
 use super::window::Window;
 use maud::{Markup, html};
 use strum::VariantArray;
 use touchdown_base::history::{History, Phase, PhaseKind};
-use touchdown_chart::plot::{Axis, columns};
+use touchdown_chart::plot::{Axis, columns, key};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_scene::Scene;
@@ -26,33 +25,25 @@ const LETTER: f64 = 6.4;
 pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     let (x, factor) = window.axis(6.0);
     let events = &outcome.detection.events;
-    let estimated = detected_phases(&outcome.detection, window.end, |event| event.onset_s);
-    let declared = detected_phases(&outcome.detection, window.end, |event| event.declared_s);
-    let hits = |time: fn(&DetectedEvent) -> f64| -> Vec<f64> {
+    let seen_row = |name: &str, time: fn(&DetectedEvent) -> f64| {
+        let phases = detected_phases(&outcome.detection, window.end, time);
         let impacts = events.iter().filter(|it| it.event == EventKind::Impact);
-        impacts.map(time).collect()
+        (name.to_owned(), phases, impacts.map(time).collect())
     };
     let whose = ["Truth (model)", "Truth (reference)"][usize::from(outcome.by_reference)];
     let true_row = |name: String, truth: &'_ History| {
         let hits = truth.impacts.iter().map(|it| it.state.time);
         (name, truth.phases.clone(), hits.collect())
     };
-    let rings = rings(scene).iter().zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.rings);
     let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
         vec![true_row(whose.to_owned(), &outcome.truth)];
     rows.extend(
         rings.map(|(ring, [_, truth])| true_row(format!("Truth, ring {}", ring.name), truth)),
     );
-    rows.push((
-        "Detector, by estimated onset".to_owned(),
-        estimated,
-        hits(|it| it.onset_s),
-    ));
-    rows.push((
-        "Detector, as declared at the time".to_owned(),
-        declared,
-        hits(|it| it.declared_s),
-    ));
+    rows.push(seen_row("Detector, by estimated onset", |it| it.onset_s));
+    let declared = seen_row("Detector, as declared at the time", |it| it.declared_s);
+    rows.push(declared);
     let (labels, lanes) = labels(events, &x, factor);
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;
@@ -81,14 +72,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
 pub fn legend() -> Markup {
     html! {
         ul.legend {
-            @for phase in PhaseKind::VARIANTS.iter().copied() {
-                li {
-                    svg width="34" height="12" aria-hidden="true" {
-                        path class={ "curve " (<&str>::from(phase)) } d="M1 6H33" {}
-                    }
-                    (phase_name(phase))
-                }
-            }
+            @for phase in PhaseKind::VARIANTS { (key(phase.into(), phase_name(*phase))) }
         }
     }
 }

@@ -120,9 +120,7 @@ fn whirl(truth: &History) -> String {
 }
 
 fn peak(truth: &History) -> String {
-    let speeds = truth.impacts.iter().map(|impact| impact.normal_speed);
-    let peak = speeds.reduce(f64::max);
-    peak.map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
+    super::accuracy::peak(truth).map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
 }
 
 fn impact_count(truth: &History) -> String {

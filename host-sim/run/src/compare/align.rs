@@ -38,14 +38,9 @@ pub struct Aligned {
 pub fn align(replays: &[Replay; 2], excerpts: Option<&[Excerpt; 2]>) -> Aligned {
     let first = |kind: EventKind| {
         let onset = |replay: &Replay| {
-            let stands =
-                |it: &&crate::outcome::DetectedEvent| it.event == kind && it.withdrawn_s.is_none();
-            replay
-                .detection
-                .events
-                .iter()
-                .find(stands)
-                .map(|it| it.onset_s)
+            let mut events = replay.detection.events.iter();
+            let first = events.find(|it| it.event == kind && it.withdrawn_s.is_none());
+            first.map(|it| it.onset_s)
         };
         onset(&replays[0]).zip(onset(&replays[1]))
     };
@@ -58,12 +53,8 @@ pub fn align(replays: &[Replay; 2], excerpts: Option<&[Excerpt; 2]>) -> Aligned 
             waveform_rms_m: Vec::new(),
         };
     };
-    let planes = replays
-        .iter()
-        .map(|it| it.envelope.planes)
-        .min()
-        .unwrap_or(1);
-    let channels = 2 * usize::from(planes);
+    let [planes, others] = replays.each_ref().map(|it| it.envelope.planes);
+    let channels = 2 * usize::from(planes.min(others));
     let mut shift = b - a;
     let mut rms = Vec::new();
     if let Some(excerpts) = excerpts {

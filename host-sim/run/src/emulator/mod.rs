@@ -4,18 +4,17 @@
 mod files;
 mod session;
 
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::process::ExitStatus;
+use std::time::Duration;
 
 use crate::controller_trace::ControllerTrace;
 use crate::monitor_run::MonitorOutput;
 use crate::procedure::Procedure;
 use defmt_decoder::{DecodeError, Table};
-use touchdown_base::interrupt::{Registered, TemporaryFolder, spawn};
+use touchdown_base::interrupt::TemporaryFolder;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_files::link::LinkError;
@@ -30,7 +29,6 @@ const MACHINE: &str = "netduinoplus2";
 /// 8 ns of emulated time an instruction; a core that waits is not waited for.
 const TIME: [&str; 2] = ["-icount", "shift=3,sleep=off"];
 const IMAGE: &str = "touchdown-qemu";
-const COUNTING_IMAGE: &str = "touchdown-count";
 
 /// Longest time for the start of QEMU, and for each sample: far more than they take.
 const START_LIMIT: Duration = Duration::from_secs(30);
@@ -86,15 +84,7 @@ pub struct Emulator {
 impl Emulator {
     /// Looks for the image, by default the one that `cargo xtask firmware` builds, and for QEMU.
     pub fn find(image: Option<&Path>) -> Result<Self, EmulatorError> {
-        Self::over(image.map_or_else(|| built(IMAGE), Path::to_path_buf))
-    }
-
-    /// Looks for the image that counts instructions, and for QEMU.
-    pub fn find_counting() -> Result<Self, EmulatorError> {
-        Self::over(built(COUNTING_IMAGE))
-    }
-
-    fn over(image: PathBuf) -> Result<Self, EmulatorError> {
+        let image = image.map_or_else(|| built(IMAGE), Path::to_path_buf);
         let Ok(image) = image.canonicalize() else {
             return Err(EmulatorError::ImageMissing(image));
         };
@@ -116,14 +106,9 @@ impl Emulator {
         config: &MonitorConfig,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<MonitorOutput, EmulatorError> {
-        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
-        let replay = folder.path().join("replay");
-        let count = write_replay(&replay, config, &Procedure::default(), samples)
-            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
-
+        let (folder, limit) = prepared(config, &Procedure::default(), samples)?;
         let [clock, rate] = TIME;
         let arguments = ["enable=on,target=native,arg=replay,arg=answer", clock, rate];
-        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let log = self.execute(folder.path(), &arguments, limit)?;
         let answer = read(&folder.path().join("answer"))?;
         let answer = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
@@ -140,11 +125,7 @@ impl Emulator {
         procedure: &Procedure,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(MonitorOutput, ControllerTrace), EmulatorError> {
-        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
-        let replay = folder.path().join("replay");
-        let count = write_replay(&replay, config, procedure, samples)
-            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
-        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+        let (folder, limit) = prepared(config, procedure, samples)?;
         let mut session = self.open(folder.path())?;
         let Answer { output, shown } = session.answer(limit)?;
         let mut client = session.client()?;
@@ -155,50 +136,6 @@ impl Emulator {
         };
         let log = session.cut()?;
         Ok((MonitorOutput { log, ..output }, conduct))
-    }
-
-    /// Runs the image in `folder`, where its files are; what it logged. `arguments` are QEMU's after
-    /// `-semihosting-config`.
-    pub fn execute(
-        &self,
-        folder: &Path,
-        arguments: &[&str],
-        limit: Duration,
-    ) -> Result<Vec<String>, EmulatorError> {
-        let elf = read(&self.image)?;
-        let (out, err) = (folder.join("out"), folder.join("err"));
-        let (child, _registered) = self
-            .start(folder, "none", arguments, &out, &err)
-            .map_err(|e| EmulatorError::Io("start QEMU", e))?;
-        let status = wait(child, limit)?;
-        let log = self.decode_log(&elf, &read(&out)?)?;
-        if !status.success() {
-            let qemu = String::from_utf8_lossy(&read(&err)?).trim().to_owned();
-            return Err(EmulatorError::Failed { status, log, qemu });
-        }
-        Ok(log)
-    }
-
-    fn start(
-        &self,
-        folder: &Path,
-        serial: &str,
-        arguments: &[&str],
-        out: &Path,
-        err: &Path,
-    ) -> io::Result<(Child, Registered)> {
-        let mut command = Command::new(QEMU);
-        command
-            .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
-            .args(["-serial", serial, "-semihosting-config"])
-            .args(arguments)
-            .arg("-kernel")
-            .arg(&self.image)
-            .current_dir(folder)
-            .stdin(Stdio::null())
-            .stdout(File::create(out)?)
-            .stderr(File::create(err)?);
-        spawn(&mut command)
     }
 
     fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
@@ -222,6 +159,19 @@ impl Emulator {
     }
 }
 
+/// A folder with the samples as a replay file, and the longest time that the image takes over them.
+fn prepared(
+    config: &MonitorConfig,
+    procedure: &Procedure,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<(TemporaryFolder, Duration), EmulatorError> {
+    let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
+    let count = write_replay(&folder.path().join("replay"), config, procedure, samples)
+        .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+    let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
+    Ok((folder, limit))
+}
+
 fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {
     fs::read(path).map_err(|e| EmulatorError::Io("read", e))
 }
@@ -235,22 +185,6 @@ pub fn built(name: &str) -> PathBuf {
     target.join("thumbv7em-none-eabihf/firmware").join(name)
 }
 
-fn wait(mut child: Child, limit: Duration) -> Result<ExitStatus, EmulatorError> {
-    let failed = |e| EmulatorError::Io("wait for QEMU", e);
-    let start = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait().map_err(failed)? {
-            return Ok(status);
-        }
-        if start.elapsed() > limit {
-            child.kill().map_err(failed)?;
-            child.wait().map_err(failed)?;
-            return Err(EmulatorError::Timeout(limit));
-        }
-        thread::sleep(Duration::from_millis(2));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,12 +193,5 @@ mod tests {
     fn missing_image_names_the_command_that_builds_it() {
         let error = Emulator::find(Some(Path::new("no/such/image"))).unwrap_err();
         assert!(error.to_string().contains("cargo xtask firmware"));
-    }
-
-    #[test]
-    fn process_that_hangs_is_ended_and_reported() {
-        let child = Command::new("sleep").arg("60").spawn().unwrap();
-        let error = wait(child, Duration::from_millis(20)).unwrap_err();
-        assert!(matches!(error, EmulatorError::Timeout(_)));
     }
 }

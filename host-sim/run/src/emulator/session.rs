@@ -1,22 +1,23 @@
 //! The image at work, with its link on a socket.
 
+use std::fs::File;
 use std::io;
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ExitStatus};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{Answer, Emulator, EmulatorError, TIME, decode_answer, read};
-use touchdown_base::interrupt::Registered;
+use super::{
+    Answer, Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, read,
+};
+use touchdown_base::interrupt::{Registered, spawn};
 use touchdown_files::link::Client;
 
 /// Exit status of an image that has stored a configuration and would be reset now.
 pub const RESTART: i32 = 7;
 /// Names of the files in the session's folder: samples, what came of them, flash, stored configuration.
 const FILES: &str = "enable=on,target=native,arg=replay,arg=answer,arg=log,arg=settings";
-/// Longest time for QEMU to come up.
-const START: Duration = Duration::from_secs(30);
 const LOOK: Duration = Duration::from_millis(2);
 
 /// The image at work. It stays on its link when no samples are left, until it is cut off.
@@ -37,19 +38,51 @@ impl Emulator {
         let socket = TcpListener::bind("127.0.0.1:0").map_err(failed("open a socket"))?;
         let port = socket.local_addr().map_err(failed("open a socket"))?.port();
         let serial = format!("tcp:127.0.0.1:{port}");
-        let (out, err) = (folder.join("out"), folder.join("err"));
         let [clock, rate] = TIME;
-        let started = self.start(folder, &serial, &[FILES, clock, rate], &out, &err);
-        let (child, registered) = started.map_err(failed("start QEMU"))?;
-        let mut session = Session {
+        let mut session = self.start(folder, &serial, &[FILES, clock, rate])?;
+        session.line = Some(session.accept(&socket)?);
+        Ok(session)
+    }
+
+    /// Runs the image in `folder`, where its files are, to its end; what it logged. `arguments` are QEMU's after
+    /// `-semihosting-config`.
+    pub fn execute(
+        &self,
+        folder: &Path,
+        arguments: &[&str],
+        limit: Duration,
+    ) -> Result<Vec<String>, EmulatorError> {
+        self.start(folder, "none", arguments)?.end(limit)
+    }
+
+    fn start(
+        &self,
+        folder: &Path,
+        serial: &str,
+        arguments: &[&str],
+    ) -> Result<Session, EmulatorError> {
+        let started = || {
+            let mut command = Command::new(QEMU);
+            command
+                .args(["-M", MACHINE, "-nographic", "-monitor", "none"])
+                .args(["-serial", serial, "-semihosting-config"])
+                .args(arguments)
+                .arg("-kernel")
+                .arg(&self.image)
+                .current_dir(folder)
+                .stdin(Stdio::null())
+                .stdout(File::create(folder.join("out"))?)
+                .stderr(File::create(folder.join("err"))?);
+            spawn(&mut command)
+        };
+        let (child, registered) = started().map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        Ok(Session {
             emulator: self.clone(),
             folder: folder.to_owned(),
             child,
             line: None,
             _registered: registered,
-        };
-        session.line = Some(session.accept(&socket)?);
-        Ok(session)
+        })
     }
 }
 
@@ -66,12 +99,12 @@ impl Session {
                     return Ok(line);
                 }
                 Err(e) if e.kind() != io::ErrorKind::WouldBlock => return Err(failed(e)),
-                Err(_) => self.look(start, START)?,
+                Err(_) => self.look(start, START_LIMIT)?,
             }
         }
     }
 
-    /// Waits a little for an image that works, up to `limit` from `start`.
+    /// Waits a little for an image that works, up to `limit` from `start`; one that has ended, well or not, has failed.
     fn look(&mut self, start: Instant, limit: Duration) -> Result<(), EmulatorError> {
         if let Some(status) = self.ended()? {
             let log = self.log()?;
@@ -84,6 +117,20 @@ impl Session {
         }
         thread::sleep(LOOK);
         Ok(())
+    }
+
+    /// Waits for its end, which is to be a good one; what it logged.
+    fn end(mut self, limit: Duration) -> Result<Vec<String>, EmulatorError> {
+        let start = Instant::now();
+        loop {
+            match self.look(start, limit) {
+                Ok(()) => {}
+                Err(EmulatorError::Failed { status, log, .. }) if status.success() => {
+                    return Ok(log);
+                }
+                Err(error) => return Err(error),
+            }
+        }
     }
 
     /// Its answer and the changes of the outputs, once all samples of a file are taken.
@@ -139,5 +186,26 @@ impl Session {
 impl Drop for Session {
     fn drop(&mut self) {
         self.stop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn process_that_hangs_is_ended_and_reported() {
+        let (child, registered) = spawn(Command::new("sleep").arg("60")).unwrap();
+        let session = Session {
+            emulator: Emulator {
+                image: PathBuf::new(),
+            },
+            folder: PathBuf::new(),
+            child,
+            line: None,
+            _registered: registered,
+        };
+        let error = session.end(Duration::from_millis(20)).unwrap_err();
+        assert!(matches!(error, EmulatorError::Timeout(_)));
     }
 }

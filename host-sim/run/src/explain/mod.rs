@@ -2,7 +2,7 @@
 
 mod contact;
 mod model;
-mod numbers;
+pub mod numbers;
 mod sensors;
 
 use std::fmt::Write;
@@ -13,7 +13,8 @@ use touchdown_base::plain::shown;
 use touchdown_scene::parts::{Part, parts};
 use touchdown_scene::{Fidelity, Scene};
 
-type Row = (&'static str, String);
+/// Name and value.
+pub type Row = (&'static str, String);
 
 /// What there is to say of a scene.
 #[derive(Clone, Debug, Serialize)]

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use super::Row;
 use touchdown_scene::Scene;
 
-pub(super) fn scales(scene: &Scene) -> Vec<Row> {
+/// Clearance, laws and units.
+pub fn scales(scene: &Scene) -> Vec<Row> {
     let machine = scene.machine();
     let clearance = machine.clearance;
     let beta = machine.polar_inertia / (machine.mass * machine.radius * machine.radius);
@@ -32,7 +33,8 @@ pub(super) fn scales(scene: &Scene) -> Vec<Row> {
     rows
 }
 
-pub(super) fn speeds(scene: &Scene) -> Vec<Row> {
+/// How fast it falls, swings and whirls.
+pub fn speeds(scene: &Scene) -> Vec<Row> {
     let machine = scene.machine();
     let (gravity, clearance, mu) = (machine.gravity, machine.clearance, machine.friction);
     if gravity == 0.0 {
@@ -74,4 +76,19 @@ pub(super) fn speeds(scene: &Scene) -> Vec<Row> {
 
 fn millis(seconds: f64) -> String {
     format!("{:.4} ms", seconds * 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whirl_speed_of_the_rig() {
+        let speeds = speeds(&Scene::load("rig").unwrap());
+        let whirl = speeds
+            .iter()
+            .find(|it| it.0 == "whirl from the bottom above");
+        let (_, text) = whirl.unwrap();
+        assert!(text.starts_with("334.59 rad/s"), "{text}");
+    }
 }

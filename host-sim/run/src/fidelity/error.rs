@@ -1,7 +1,7 @@
 //! How wrong an output is.
 
 use super::force::pulses;
-use touchdown_base::history::{History, Pulse, Regime};
+use touchdown_base::history::{History, Impact, Pulse, Regime};
 use touchdown_scene::{Output, Scene};
 use touchdown_truth::reference::pulse::Pulse as True;
 
@@ -46,11 +46,7 @@ fn relative(ours: f64, theirs: f64) -> f64 {
     }
 }
 
-fn impacts(
-    history: &History,
-    truth: &History,
-    apart: impl Fn(&touchdown_base::history::Impact, &touchdown_base::history::Impact) -> f64,
-) -> f64 {
+fn impacts(history: &History, truth: &History, apart: impl Fn(&Impact, &Impact) -> f64) -> f64 {
     let expected = truth.impacts.len().min(IMPACTS);
     if history.impacts.len() < expected {
         return f64::INFINITY;
@@ -60,15 +56,10 @@ fn impacts(
 }
 
 fn phases(history: &History, truth: &History) -> f64 {
-    let lists = |history: &History| {
-        [
-            history.contact_starts.clone(),
-            history.rolling_starts.clone(),
-            history.lift_offs.clone(),
-        ]
-    };
+    let [ours, theirs] =
+        [history, truth].map(|it| [&it.contact_starts, &it.rolling_starts, &it.lift_offs]);
     let mut worst = 0.0;
-    for (ours, theirs) in lists(history).iter().zip(&lists(truth)) {
+    for (ours, theirs) in ours.into_iter().zip(theirs) {
         if ours.len() != theirs.len() {
             return f64::INFINITY;
         }

@@ -9,10 +9,10 @@ use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start};
 
 use super::boxed::Boxed;
-use super::machine::MachineDrop;
-pub use super::machine::{StepView, WatchedDrop};
+pub use super::machine::StepView;
+use super::machine::{MachineDrop, OnStep};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
-use super::seen::ModelRun;
+use super::seen::{FollowedDrop, ModelRun};
 use super::{InNumbers, Numbers, Subject, in_numbers_of_rings, scaled};
 use touchdown_scene::scales::start_speed;
 use touchdown_scene::{Fidelity, MODES, Removable, Scene};
@@ -179,18 +179,21 @@ fn placement<const N: usize, const Q: usize>(
 
 /// Runs the scene's model, watched after each step.
 pub fn watch(scene: &Scene, each: &mut dyn FnMut(StepView)) -> Result<ModelRun, ConfigError> {
-    Ok(follow(scene)?.watched(each))
+    Ok(follow(scene, Some(each))?.finish())
 }
 
 /// The scene's machine at its release.
-pub(super) fn follow(scene: &Scene) -> Result<Box<dyn WatchedDrop + '_>, ConfigError> {
-    in_numbers_of_rings(scene, MachineRelease(scene))
+pub(super) fn follow<'a>(
+    scene: &'a Scene,
+    on_step: Option<OnStep<'a>>,
+) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
+    in_numbers_of_rings(scene, MachineRelease(scene, on_step))
 }
 
-struct MachineRelease<'a>(&'a Scene);
+struct MachineRelease<'a>(&'a Scene, Option<OnStep<'a>>);
 
 impl<'a> InNumbers for MachineRelease<'a> {
-    type Output = Box<dyn WatchedDrop + 'a>;
+    type Output = Box<dyn FollowedDrop + 'a>;
 
     fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError> {
         in_parts::<R, _>(self.0, self)
@@ -198,13 +201,14 @@ impl<'a> InNumbers for MachineRelease<'a> {
 }
 
 impl<'a> UseWhole for MachineRelease<'a> {
-    type Output<R: Precision> = Box<dyn WatchedDrop + 'a>;
+    type Output<R: Precision> = Box<dyn FollowedDrop + 'a>;
 
     fn with<R: Precision, const N: usize, const Q: usize>(
         self,
         whole: Whole<R, N, Q>,
         scales: Scales<f64>,
-    ) -> Result<Box<dyn WatchedDrop + 'a>, ConfigError> {
-        Ok(Box::new(MachineDrop::new(self.0, whole, scales)?))
+    ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
+        let Self(scene, on_step) = self;
+        Ok(Box::new(MachineDrop::new(scene, on_step, whole, scales)?))
     }
 }

@@ -5,9 +5,8 @@ use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Stepper};
 
-use super::follow::FollowedDrop;
 use super::parts::{ends, modelled_modes, seats, shape};
-use super::seen::{ModelRun, RaceEnd, RingEnd, STILL, Seen, steps_of_run};
+use super::seen::{FollowedDrop, ModelRun, RaceEnd, RingEnd, Seen, steps_of_run};
 use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::ledger::{Ledger, entries};
 use touchdown_base::rings::{Histories, Merge};
@@ -29,17 +28,15 @@ pub struct StepView {
     pub energy: CoupledEnergy<f64>,
 }
 
-/// A drop that can be watched.
-pub trait WatchedDrop: FollowedDrop {
-    /// Runs to the end, watched after each step.
-    fn watched(self: Box<Self>, each: &mut dyn FnMut(StepView)) -> ModelRun;
-}
+/// Told of the machine after each step.
+pub type OnStep<'a> = &'a mut dyn FnMut(StepView);
 
 /// A drop of the machine of a scene.
 pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
     scene: &'a Scene,
+    on_step: Option<OnStep<'a>>,
     of: Whole<R, N, Q>,
-    scales: Scales<f64>,
+    seen: Seen,
     state: CoupledState<R, N, Q>,
     done: u64,
     told: Told<N>,
@@ -66,13 +63,9 @@ impl<const N: usize> Told<N> {
         let radii: Vec<f64> = seats(scene).iter().map(|it| it.ring.radius).collect();
         Self {
             // Spin is told as surface speed in the ring.
-            seen: std::array::from_fn(|ring| Seen {
-                scales: Scales {
-                    spin: scales.speed / radii[ring],
-                    ..*scales
-                },
-                step: scene.model.step,
-                mass: scene.rotor.mass,
+            seen: std::array::from_fn(|ring| {
+                let spin = scales.speed / radii[ring];
+                Seen::new(scene, Scales { spin, ..*scales })
             }),
             whole: recorder.clone(),
             rings: vec![recorder; N],
@@ -96,6 +89,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
     /// At the release.
     pub(super) fn new(
         scene: &'a Scene,
+        on_step: Option<OnStep<'a>>,
         of: Whole<R, N, Q>,
         scales: Scales<f64>,
     ) -> Result<Self, ConfigError> {
@@ -105,9 +99,10 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let state = of.model.start(&of.start, spin, take)?;
         Ok(Self {
             scene,
+            on_step,
             begun: of.model.energy(&state).to_f64(),
             of,
-            scales,
+            seen: Seen::new(scene, scales),
             state,
             done: 0,
             told,
@@ -134,12 +129,16 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         }
         self.farthest();
         self.done += 1;
+        if let Some(on_step) = self.on_step.take() {
+            on_step(self.view());
+            self.on_step = Some(on_step);
+        }
     }
 
     fn race_spins(&self, state: &CoupledState<R, N, Q>) -> [f64; N] {
         std::array::from_fn(|ring| {
             let race = self.of.model.ring(state, ring).race;
-            race.map_or(0.0, |race| race.spin.to_f64() * self.scales.spin)
+            race.map_or(0.0, |race| race.spin.to_f64() * self.seen.scales.spin)
         })
     }
 
@@ -151,55 +150,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         while self.done < steps && self.given_up.is_none() {
             self.step();
         }
-    }
-
-    fn ended(mut self) -> ModelRun {
-        let scene = self.scene;
-        let (steps, fraction) = self.steps(scene.run.duration);
-        self.to(steps);
-        if fraction > 0.0 && self.given_up.is_none() {
-            let told = &mut self.told;
-            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
-            self.of
-                .model
-                .part_step(&mut self.state, R::lit(fraction), take);
-            self.farthest();
-        }
-        for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {
-            *radius = f64::max(*radius, struck);
-        }
-        let (model, state, scales) = (&self.of.model, &self.state, &self.scales);
-        let duration = self.given_up.unwrap_or(scene.run.duration);
-        let ends: Vec<RotorState> = (0..N)
-            .map(|ring| {
-                let at_ring = &self.told.seen[ring].scales;
-                Seen::state(&model.kinematics_at(state, ring), duration, at_ring)
-            })
-            .collect();
-        let end = Seen::state(&self.of.kinematics(state), duration, scales);
-        let still = STILL * scales.speed;
-        let unit = scene.rotor.mass * scales.speed * scales.speed;
-        let seats = (0..N).map(|ring| self.ring_end(ring, unit));
-        let energy = [self.begun, model.energy(state).to_f64()];
-        let mut run = ModelRun {
-            given_up: self.given_up,
-            tried: state.tried(),
-            ring: None,
-            seats: Vec::new(),
-            ledger: Some(ledger(scene, unit, &energy)),
-            histories: Histories {
-                whole: self.told.whole.clone().finish(end, still),
-                rings: Vec::new(),
-            },
-        };
-        if scene.model.rung == Fidelity::Support {
-            run.ring = seats.last();
-        } else {
-            run.seats = seats.collect();
-            let rings = self.told.rings.into_iter().zip(ends);
-            run.histories.rings = rings.map(|(ring, end)| ring.finish(end, still)).collect();
-        }
-        run
     }
 
     fn view(&self) -> StepView {
@@ -231,7 +181,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     /// `unit` in J.
     fn ring_end(&self, ring: usize, unit: f64) -> RingEnd {
-        let (model, scales) = (&self.of.model, &self.scales);
+        let (model, scales) = (&self.of.model, &self.seen.scales);
         let [radius, excursion] = self.peaks[ring];
         let motion = model.ring(&self.state, ring);
         let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
@@ -257,7 +207,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     /// Where the sensors see the rotor, m.
     fn sensed(&self, state: &CoupledState<R, N, Q>) -> [[f64; 2]; PLANES] {
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.scales.length);
+        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
         let Some(machine) = ends(self.scene) else {
             return [metres(state.centre().0); PLANES];
         };
@@ -270,7 +220,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     fn moving(&self, state: &CoupledState<R, N, Q>, since: f64) -> Moving {
         let model = &self.of.model;
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.scales.length);
+        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
         if self.scene.two_plane.is_some() {
             let mut ends = [[0.0; 2]; RINGS];
             for (ring, end) in ends.iter_mut().enumerate().take(N) {
@@ -288,12 +238,15 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 }
 
 impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<'_, R, N, Q> {
-    fn advance(&mut self, time: f64) -> TrueState {
+    fn advance(&mut self, time: f64) -> Option<TrueState> {
         if time < 0.0 {
-            return held(self.scene, time);
+            return Some(held(self.scene, time));
         }
         let (steps, fraction) = self.steps(time);
         self.to(steps);
+        if self.given_up.is_some() {
+            return None;
+        }
         let mut state = self.state;
         if fraction > 0.0 {
             let ignore: &mut dyn FnMut(RingEvent<R>) = &mut |_| ();
@@ -301,34 +254,61 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
                 .model
                 .part_step(&mut state, R::lit(fraction), ignore);
         }
-        TrueState {
-            rotor: Seen::state(&self.of.kinematics(&state), time, &self.scales),
+        Some(TrueState {
+            rotor: self.seen.state(&self.of.kinematics(&state), time),
             phase: self.told.whole.phase(),
             sensed: self.sensed(&state),
             moving: self.moving(&state, fraction * self.scene.model.step),
+        })
+    }
+
+    fn finish(mut self: Box<Self>) -> ModelRun {
+        let scene = self.scene;
+        let (steps, fraction) = self.steps(scene.run.duration);
+        self.to(steps);
+        if fraction > 0.0 && self.given_up.is_none() {
+            let told = &mut self.told;
+            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+            self.of
+                .model
+                .part_step(&mut self.state, R::lit(fraction), take);
+            self.farthest();
         }
-    }
-
-    fn given_up(&self) -> Option<f64> {
-        self.given_up
-    }
-
-    fn finish(self: Box<Self>) -> ModelRun {
-        self.ended()
-    }
-}
-
-impl<R: Precision, const N: usize, const Q: usize> WatchedDrop for MachineDrop<'_, R, N, Q> {
-    fn watched(mut self: Box<Self>, each: &mut dyn FnMut(StepView)) -> ModelRun {
-        let (steps, _) = self.steps(self.scene.run.duration);
-        while self.done < steps && self.given_up.is_none() {
-            let done = self.done;
-            self.step();
-            if self.done > done {
-                each(self.view());
-            }
+        for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {
+            *radius = f64::max(*radius, struck);
         }
-        self.ended()
+        let (model, state, seen) = (&self.of.model, &self.state, &self.seen);
+        let duration = self.given_up.unwrap_or(scene.run.duration);
+        let ends: Vec<RotorState> = (0..N)
+            .map(|ring| {
+                let now = model.kinematics_at(state, ring);
+                self.told.seen[ring].state(&now, duration)
+            })
+            .collect();
+        let end = seen.state(&self.of.kinematics(state), duration);
+        let still = seen.still();
+        let unit = scene.rotor.mass * seen.scales.speed * seen.scales.speed;
+        let seats = (0..N).map(|ring| self.ring_end(ring, unit));
+        let energy = [self.begun, model.energy(state).to_f64()];
+        let mut run = ModelRun {
+            given_up: self.given_up,
+            tried: state.tried(),
+            ring: None,
+            seats: Vec::new(),
+            ledger: Some(ledger(scene, unit, &energy)),
+            histories: Histories {
+                whole: self.told.whole.clone().finish(end, still),
+                rings: Vec::new(),
+            },
+        };
+        if scene.model.rung == Fidelity::Support {
+            run.ring = seats.last();
+        } else {
+            run.seats = seats.collect();
+            let rings = self.told.rings.into_iter().zip(ends);
+            run.histories.rings = rings.map(|(ring, end)| ring.finish(end, still)).collect();
+        }
+        run
     }
 }
 

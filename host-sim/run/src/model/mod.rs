@@ -2,7 +2,6 @@
 
 mod boxed;
 pub mod coupled;
-mod follow;
 mod machine;
 mod parts;
 mod plane;
@@ -10,7 +9,6 @@ mod seen;
 mod simulate;
 
 use boxed::Boxed;
-pub use follow::FollowedDrop;
 pub use plane::follow;
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 pub use simulate::{run, simulate, simulate_to_verdict};

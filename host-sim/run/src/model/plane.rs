@@ -1,11 +1,9 @@
 //! A drop of the rungs that move in the plane of one ring, followed; and of any rung.
 
 use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Stepper};
 
-use super::follow::FollowedDrop;
-use super::seen::{ModelRun, STILL, Seen, steps_of_run};
+use super::seen::{FollowedDrop, ModelRun, Seen, steps_of_run};
 use super::{Subject, Use, coupled, with_model};
 use touchdown_base::history::Recorder;
 use touchdown_scene::sensors::PLANES;
@@ -15,7 +13,7 @@ use touchdown_truth::{Moving, TrueState, held};
 /// The scene's model at the release.
 pub fn follow(scene: &Scene) -> Result<Box<dyn FollowedDrop + '_>, ConfigError> {
     match scene.model.rung {
-        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => Ok(coupled::follow(scene)?),
+        Fidelity::Support | Fidelity::TwoPlane | Fidelity::Coupled => coupled::follow(scene, None),
         _ => with_model(scene, PlaneRelease(scene)),
     }
 }
@@ -30,11 +28,7 @@ impl<'a> Use for PlaneRelease<'a> {
         subject: &Subject<R, M>,
     ) -> Result<Self::Output, ConfigError> {
         let scene = self.0;
-        let seen = Seen {
-            scales: subject.scales,
-            step: scene.model.step,
-            mass: scene.rotor.mass,
-        };
+        let seen = Seen::new(scene, subject.scales);
         let mut told = Recorder::new(-scene.first_sample_time());
         let take = |it| told.take(seen.happening(&it));
         let state = subject.model.start(&subject.start, subject.spin, take)?;
@@ -70,16 +64,12 @@ impl<R: Precision, M: Stepper<R>> PlaneDrop<'_, R, M> {
         }
         fraction
     }
-
-    fn scales(&self) -> &Scales<f64> {
-        &self.seen.scales
-    }
 }
 
 impl<R: Precision, M: Stepper<R>> FollowedDrop for PlaneDrop<'_, R, M> {
-    fn advance(&mut self, time: f64) -> TrueState {
+    fn advance(&mut self, time: f64) -> Option<TrueState> {
         if time < 0.0 {
-            return held(self.scene, time);
+            return Some(held(self.scene, time));
         }
         let fraction = self.to(time);
         let now = if fraction > 0.0 {
@@ -89,35 +79,34 @@ impl<R: Precision, M: Stepper<R>> FollowedDrop for PlaneDrop<'_, R, M> {
         } else {
             self.model.kinematics(&self.state)
         };
-        let rotor = Seen::state(&now, time, self.scales());
+        let rotor = self.seen.state(&now, time);
         let moving = match held(self.scene, time).moving {
             Moving::Ends(_) => Moving::Ends([rotor.position; RINGS]),
             other => other,
         };
-        TrueState {
+        Some(TrueState {
             rotor,
             phase: self.told.phase(),
             sensed: [rotor.position; PLANES],
             moving,
-        }
-    }
-
-    fn given_up(&self) -> Option<f64> {
-        None
+        })
     }
 
     fn finish(mut self: Box<Self>) -> ModelRun {
         let duration = self.scene.run.duration;
         let fraction = self.to(duration);
-        let this = &mut *self;
+        let Self {
+            model,
+            mut state,
+            seen,
+            mut told,
+            ..
+        } = *self;
         if fraction > 0.0 {
-            let (seen, told) = (&this.seen, &mut this.told);
             let take = |it| told.take(seen.happening(&it));
-            this.model
-                .part_step(&mut this.state, R::lit(fraction), take);
+            model.part_step(&mut state, R::lit(fraction), take);
         }
-        let last = Seen::state(&this.model.kinematics(&this.state), duration, this.scales());
-        let still = STILL * this.scales().speed;
-        ModelRun::of_rotor(this.told.clone().finish(last, still))
+        let last = seen.state(&model.kinematics(&state), duration);
+        ModelRun::of_rotor(told.finish(last, seen.still()))
     }
 }

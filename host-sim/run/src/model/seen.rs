@@ -8,9 +8,22 @@ use touchdown_rotor as model;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Change, Kinematics, Touch};
+use touchdown_scene::Scene;
+use touchdown_truth::TrueState;
 
 /// Part of the speed scale below which a rotor in contact is at rest.
-pub(super) const STILL: f64 = 1e-6;
+const STILL: f64 = 1e-6;
+
+/// A drop of a model, followed from its release.
+pub trait FollowedDrop {
+    /// The machine at `time` (s since the release; times must not decrease), none once it is given up: it would take too
+    /// long. Before the release it is held at the start. Between two steps it is where a shorter step leads; the run itself
+    /// keeps its steps.
+    fn advance(&mut self, time: f64) -> Option<TrueState>;
+
+    /// Goes on to the end of the run, or to where it is given up.
+    fn finish(self: Box<Self>) -> ModelRun;
+}
 
 /// What a model made of a drop.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,19 +110,32 @@ pub fn steps_of_run(steps: f64) -> (u64, f64) {
 pub(super) struct Seen {
     pub scales: Scales<f64>,
     /// s.
-    pub step: f64,
+    step: f64,
     /// Of the rotor, kg.
-    pub mass: f64,
+    mass: f64,
 }
 
 impl Seen {
+    pub(super) fn new(scene: &Scene, scales: Scales<f64>) -> Self {
+        Self {
+            scales,
+            step: scene.model.step,
+            mass: scene.rotor.mass,
+        }
+    }
+
+    /// Speed below which a rotor in contact is at rest, m/s.
+    pub(super) fn still(&self) -> f64 {
+        STILL * self.scales.speed
+    }
+
     pub(super) fn happening<R: Real>(&self, happening: &model::ModelEvent<R>) -> ModelEvent {
         let model::ModelEvent { at, change, after } = happening;
         let time = (at.tick as f64 + at.fraction.to_f64()) * self.step;
         let Scales {
             speed, time: unit, ..
         } = self.scales;
-        let state = Self::state(after, time, &self.scales);
+        let state = self.state(after, time);
         match *change {
             Change::Impact {
                 speed: into,
@@ -138,7 +164,8 @@ impl Seen {
         }
     }
 
-    pub(super) fn state<R: Real>(k: &Kinematics<R>, time: f64, scales: &Scales<f64>) -> RotorState {
+    pub(super) fn state<R: Real>(&self, k: &Kinematics<R>, time: f64) -> RotorState {
+        let scales = &self.scales;
         RotorState {
             time,
             position: k.position.map(|x| x.to_f64() * scales.length),

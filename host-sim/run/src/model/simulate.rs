@@ -4,7 +4,7 @@ use touchdown_rotor as model;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Precision, Stepper};
 
-use super::seen::{ModelRun, STILL, Seen, steps_of_run};
+use super::seen::{ModelRun, Seen, steps_of_run};
 use super::{Subject, Use, follow, with_model};
 use touchdown_base::history::{History, Recorder};
 use touchdown_scene::{Fidelity, Scene};
@@ -50,21 +50,11 @@ impl Use for Simulate<'_> {
         subject: &Subject<R, M>,
     ) -> Result<History, ConfigError> {
         let scene = self.scene;
-        let Subject {
-            model,
-            start,
-            spin,
-            scales,
-            ..
-        } = subject;
-        let seen = Seen {
-            scales: *scales,
-            step: scene.model.step,
-            mass: scene.rotor.mass,
-        };
+        let model = &subject.model;
+        let seen = Seen::new(scene, subject.scales);
         let mut recorder = Recorder::new(-scene.first_sample_time());
         let mut take = |happening: model::ModelEvent<R>| recorder.take(seen.happening(&happening));
-        let mut state = model.start(start, *spin, &mut take)?;
+        let mut state = model.start(&subject.start, subject.spin, &mut take)?;
         let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
         let fraction = R::lit(fraction);
         if self.to_verdict {
@@ -72,7 +62,7 @@ impl Use for Simulate<'_> {
         } else {
             model.run(&mut state, steps, fraction, &mut take);
         }
-        let last = Seen::state(&model.kinematics(&state), scene.run.duration, scales);
-        Ok(recorder.finish(last, STILL * scales.speed))
+        let last = seen.state(&model.kinematics(&state), scene.run.duration);
+        Ok(recorder.finish(last, seen.still()))
     }
 }

@@ -22,7 +22,7 @@ use touchdown_base::input_error::InputError;
 use touchdown_base::progress::Progress;
 use touchdown_base::spectrogram::{Analyser, Spectrogram};
 use touchdown_files::recording::{Reading, Recording};
-use touchdown_files::stream::{to_sample, without_record};
+use touchdown_files::stream::{Row, to_sample, without_record};
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::SensorsConfig;
 
@@ -101,14 +101,8 @@ fn outside(time: f64) -> Failure {
     ))
 }
 
-/// Replays the stream at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
-/// The stream says which planes are fitted, how fast it was sampled and whether there is a speed.
-pub fn run(path: &Path, scene: &Scene, target: &Target) -> Result<Detection, Failure> {
-    let orders = Orders::default();
-    Ok(recording(path, &Reading::default(), scene, target, &orders)?.detection)
-}
-
-/// The same of a recording of any kind.
+/// Replays the recording at `path` with rotor, retainer, gravity, sensors and detector of `scene`.
+/// The recording says which planes are fitted, how fast it was sampled and whether there is a speed.
 pub fn recording(
     path: &Path,
     reading: &Reading,
@@ -140,39 +134,31 @@ pub fn recording(
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
     let mut analyser = Analyser::new(rate);
-    let samples = Samples {
-        sensors: &sensors,
-        flaw: &mut flaw,
-        progress: Progress::of_bytes("replay", recording.size),
-        recording: &mut recording,
-        envelope: &mut envelope,
-        analyser: &mut analyser,
-        seen: 0,
+    let seen = |row: &Row| {
+        envelope.take(&row.positions);
+        let [x, y, ..] = row.positions;
+        analyser.take(row.time, Some([x, y]));
     };
+    let samples = samples(&mut recording, &sensors, &mut flaw, seen);
     let (answer, conduct) = target.control(&config, &procedure, samples)?;
-    if flaw.is_none() {
-        // Rounding apart.
-        let last = timebase.time(answer.summary.samples as f64 - 1.0);
-        orders.check(last + 1e-6 / rate)?;
+    if let Some(flaw) = flaw {
+        return Err(flaw.into());
     }
-    match flaw {
-        Some(flaw) => Err(flaw.into()),
-        None => Ok(Replay {
-            format: if is_warm {
-                Some(EPISODE.to_owned())
-            } else {
-                recording.format.take()
-            },
-            rate,
-            start: recording.start,
-            detection: detection(&answer, timebase),
-            conduct,
-            timebase,
-            envelope,
-            spectrogram: analyser.finish(),
-            warnings: recording.warnings(),
-        }),
-    }
+    // Rounding apart.
+    let last = timebase.time(answer.summary.samples as f64 - 1.0);
+    orders.check(last + 1e-6 / rate)?;
+    let episode = is_warm.then(|| EPISODE.to_owned());
+    Ok(Replay {
+        format: episode.or(recording.format.take()),
+        rate,
+        start: recording.start,
+        detection: detection(&answer, timebase),
+        conduct,
+        timebase,
+        envelope,
+        spectrogram: analyser.finish(),
+        warnings: recording.warnings(),
+    })
 }
 
 /// A stream that says what had been learnt.
@@ -195,38 +181,28 @@ pub fn first_drop(
     excerpt(path, reading, scene, about).map(Some)
 }
 
-/// The samples of a recording, up to its first flaw.
-struct Samples<'a> {
+/// The samples of a recording, up to its first flaw; `see` is handed each row before.
+fn samples<'a>(
     recording: &'a mut Recording,
     sensors: &'a SensorsConfig,
     flaw: &'a mut Option<InputError>,
-    progress: Progress,
-    envelope: &'a mut Envelope,
-    analyser: &'a mut Analyser,
-    seen: u64,
-}
-
-impl Iterator for Samples<'_> {
-    type Item = Sample;
-
-    fn next(&mut self) -> Option<Sample> {
-        match self.recording.next()? {
-            Ok(mut row) => {
-                self.seen += 1;
-                self.progress
-                    .passed(self.seen, || self.recording.bytes_read());
-                self.envelope.take(&row.positions);
-                let [x, y, ..] = row.positions;
-                self.analyser.take(row.time, Some([x, y]));
-                if self.recording.is_episode && self.sensors.calibration.is_some() {
-                    row.positions = without_record(&row.positions, self.sensors);
-                }
-                Some(to_sample(&row, self.sensors, self.recording.rate))
+    mut see: impl FnMut(&Row) + 'a,
+) -> impl Iterator<Item = Sample> + 'a {
+    let progress = Progress::of_bytes("replay", recording.size);
+    let mut seen = 0;
+    std::iter::from_fn(move || match recording.next()? {
+        Ok(mut row) => {
+            seen += 1;
+            progress.passed(seen, || recording.bytes_read());
+            see(&row);
+            if recording.is_episode && sensors.calibration.is_some() {
+                row.positions = without_record(&row.positions, sensors);
             }
-            Err(flaw) => {
-                *self.flaw = Some(flaw);
-                None
-            }
+            Some(to_sample(&row, sensors, recording.rate))
         }
-    }
+        Err(error) => {
+            *flaw = Some(error);
+            None
+        }
+    })
 }

@@ -80,26 +80,20 @@ impl SensorsConfig {
     /// Checks every field.
     pub fn check(&self) -> Result<(), ConfigError> {
         use ConfigError::{Negative, NotFinite, NotPositive, OutOfRange};
-        let lists = [
-            &self.offset[..],
-            &self.gain_error,
-            &self.mounting_angle,
-            &self.skew,
+        let corner = self.bandwidth.unwrap_or(1.0);
+        let lists: [(&[f64], &'static str); 9] = [
+            (&self.offset, "offset"),
+            (&self.gain_error, "gain_error"),
+            (&self.mounting_angle, "mounting_angle"),
+            (&self.skew, "skew"),
+            (&[self.range], "range"),
+            (&[self.noise], "noise"),
+            (&[self.nonlinearity], "nonlinearity"),
+            (&[self.runout], "runout"),
+            (&[corner], "bandwidth"),
         ];
-        let names = ["offset", "gain_error", "mounting_angle", "skew"];
-        for (list, name) in lists.into_iter().zip(names) {
+        for (list, name) in lists {
             if list.iter().any(|value| !value.is_finite()) {
-                return Err(NotFinite(name));
-            }
-        }
-        for (value, name) in [
-            (self.range, "range"),
-            (self.noise, "noise"),
-            (self.nonlinearity, "nonlinearity"),
-            (self.runout, "runout"),
-            (self.bandwidth.unwrap_or(1.0), "bandwidth"),
-        ] {
-            if !value.is_finite() {
                 return Err(NotFinite(name));
             }
         }
@@ -118,7 +112,7 @@ impl SensorsConfig {
         if self.noise > self.range {
             return Err(OutOfRange("noise", "no more than the range"));
         }
-        if self.bandwidth.is_some_and(|corner| corner <= 0.0) {
+        if corner <= 0.0 {
             return Err(NotPositive("bandwidth"));
         }
         if self.gain_error.iter().any(|error| *error <= -1.0) {

@@ -15,7 +15,8 @@ pub struct Flight {
     position: [f64; 2],
     velocity: [f64; 2],
     gravity: f64,
-    surface: f64,
+    /// Radius times spin.
+    pub surface: f64,
     /// Until it lands; infinite if it never does.
     pub duration: f64,
     normal_speed: f64,
@@ -123,11 +124,6 @@ impl Flight {
             [x + vx * elapsed, y + (vy - 0.5 * fallen) * elapsed],
             [vx, vy - fallen],
         )
-    }
-
-    /// Radius times spin.
-    pub fn surface(&self) -> f64 {
-        self.surface
     }
 
     /// The wall state and the speed into the wall just before the impact.

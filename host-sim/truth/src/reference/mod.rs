@@ -178,7 +178,7 @@ impl Reference {
         match &self.motion {
             Motion::Flight(flight) => {
                 let (position, velocity) = flight.at(elapsed);
-                self.si(time, position, velocity, flight.surface(), 0.0)
+                self.si(time, position, velocity, flight.surface, 0.0)
             }
             Motion::Settling(settling) => self.on_wall(time, &settling.at(elapsed), 0.0),
             Motion::Contact(contact) => self.on_wall(time, &contact.at(elapsed), 0.0),

@@ -1,11 +1,9 @@
 //! A drop of a machine.
 
 use super::machine::CoupledMachine;
-use super::mode::Mode;
 use super::motion::{Moment, Motion};
 use super::start::CoupledStart;
-use super::surroundings::Surroundings;
-use super::system::{Law, Link};
+use super::system::{Link, Mode};
 use super::tape::Tape;
 use touchdown_base::history::ModelEvent;
 
@@ -41,8 +39,6 @@ pub struct CoupledState {
     pub tilt_rate: [f64; 2],
     /// Counter-clockwise positive, rad/s.
     pub spin: f64,
-    /// Since the release, rad.
-    pub spin_angle: f64,
     /// Of each mode.
     pub bending: Vec<[f64; 2]>,
     /// Of each ring.
@@ -73,7 +69,7 @@ impl CoupledState {
 /// space; then come the stops, of the rings that have one, told with the ring's position.
 #[derive(Clone, Debug)]
 pub struct CoupledReference {
-    motion: Motion<Surroundings>,
+    motion: Motion,
     /// Displacements in the rings.
     rings: Vec<Link>,
     bending: usize,
@@ -86,10 +82,10 @@ impl CoupledReference {
         let length = rings()
             .map(|ring| ring.clearance)
             .fold(f64::INFINITY, f64::min);
-        let (law, system) = (machine.surroundings(), machine.system(length));
+        let (surroundings, system) = (machine.surroundings(), machine.system(length));
         let [place, speed] = start.coordinates(machine, spin);
         let tape = Tape::new();
-        let pulled = law.forces(&tape.start(&place), &tape.start(&speed));
+        let pulled = surroundings.forces(&tape.start(&place), &tape.start(&speed));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
         let walls = system.links[..machine.retainers.len()].to_vec();
         let moving = walls.iter().map(|link| {
@@ -105,7 +101,7 @@ impl CoupledReference {
         ];
         let unit = unit.into_iter().find(|speed| *speed > 0.0).unwrap_or(1.0);
         Self {
-            motion: Motion::new(system, law, (length / unit, unit), (place, speed)),
+            motion: Motion::new(system, surroundings, (length / unit, unit), (place, speed)),
             rings: walls,
             bending: machine.bending.len(),
         }
@@ -138,7 +134,6 @@ impl CoupledReference {
             tilt: of(place, 1),
             tilt_rate: of(speed, 1),
             spin: speed[spins],
-            spin_angle: place[spins],
             bending: (2..first).map(|k| of(place, k)).collect(),
             rings: self.rings.iter().enumerate().map(ring).collect(),
             modes: moment.modes[..walls].to_vec(),

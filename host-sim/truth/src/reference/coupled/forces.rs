@@ -1,8 +1,8 @@
 //! The forces of closed links: from the conditions that they keep, at the level of accelerations.
 
 use super::jet::dot;
-use super::mode::Mode;
-use super::system::{Hold, Law, System};
+use super::surroundings::Surroundings;
+use super::system::{Hold, Mode, System};
 use super::tape::{Tape, Term};
 
 /// Accelerations under the links' forces.
@@ -31,13 +31,13 @@ impl<'t> Forces<'t> {
     pub fn new(
         tape: &'t Tape,
         system: &System,
-        law: &impl Law,
+        surroundings: &Surroundings,
         modes: &[Mode],
         place: &[Term<'t>],
         speed: &[Term<'t>],
     ) -> Self {
         let none = place[0].constant(0.0);
-        let mut acceleration = law.forces(place, speed);
+        let mut acceleration = surroundings.forces(place, speed);
         for (force, mobility) in acceleration.iter_mut().zip(&system.mobility) {
             *force = *force * *mobility;
         }

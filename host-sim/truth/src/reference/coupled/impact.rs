@@ -3,8 +3,7 @@
 //! closed against rounding.
 
 use super::linear::solve;
-use super::step::Mode;
-use super::system::{Hold, Link, System};
+use super::system::{Hold, Link, Mode, System};
 
 /// Passes over all links; thousands are needed for a light ring between the rotor and its stop where no
 /// linear system is the answer.

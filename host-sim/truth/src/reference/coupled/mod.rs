@@ -24,13 +24,11 @@
 //! planar reference by less than 1e-12 in units of the scale law, and what follows by 1e-10.
 
 mod drop;
-mod fall;
 mod forces;
 mod impact;
 mod jet;
 mod linear;
 mod machine;
-mod mode;
 mod motion;
 mod share;
 mod start;
@@ -41,5 +39,5 @@ mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
-pub use mode::Mode;
 pub use start::CoupledStart;
+pub use system::Mode;

@@ -1,12 +1,12 @@
 //! A step of smooth motion: its Taylor series, and where it ends.
 
-use super::fall::first_fall;
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
-pub use super::mode::Mode;
-use super::system::{Hold, Law, Link, System};
+use super::surroundings::Surroundings;
+use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
-use crate::reference::roots::Fall;
+use crate::reference::roots::{Fall, fall};
+use std::iter::repeat;
 
 /// Rounding of what a contact's forces and slips are made of, relative.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -75,20 +75,20 @@ impl Step {
     /// Expands the motion; `accuracy` is the size of the last terms, `longest` the longest span.
     pub fn new(
         system: &System,
-        law: &impl Law,
+        surroundings: &Surroundings,
         modes: &[Mode],
         (place, speed): (&[f64], &[f64]),
         (accuracy, longest): (f64, f64),
     ) -> Self {
         let tape = Tape::new();
         let (places, speeds) = (tape.start(place), tape.start(speed));
-        let forces = Forces::new(&tape, system, law, modes, &places, &speeds);
+        let forces = Forces::new(&tape, system, surroundings, modes, &places, &speeds);
         tape.carry(|before, order, next| {
             let part = 1.0 / order as f64;
             let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
             for ((place, speed), acceleration) in rates {
-                next[place.index()] = part * before[speed.index()];
-                next[speed.index()] = part * before[acceleration.index()];
+                next[place.index] = part * before[speed.index];
+                next[speed.index] = part * before[acceleration.index];
             }
         });
         let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
@@ -206,4 +206,18 @@ impl Step {
             (self.end, self.ending) = (end, ending);
         }
     }
+}
+
+/// Where a function that is not negative at 0 first falls below zero, without passing a fall by.
+///
+/// Leading coefficients within `tolerances` (the last is that of all further ones too) are taken as
+/// zero, so a function that starts on zero is judged by the way it leaves it.
+fn first_fall(coefficients: &[f64], tolerances: [f64; 3]) -> Fall {
+    let [first, second, further] = tolerances;
+    let tolerances = [first, second].into_iter().chain(repeat(further));
+    let matters = |(c, tolerance): (&f64, f64)| c.abs() > tolerance;
+    let Some(first) = coefficients.iter().zip(tolerances).position(matters) else {
+        return Fall::Never;
+    };
+    fall(&coefficients[first..])
 }

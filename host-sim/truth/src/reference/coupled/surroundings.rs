@@ -2,7 +2,6 @@
 //! and drag.
 
 use super::share::shared;
-use super::system::Law;
 use super::tape::Term;
 use touchdown_scene::Magnet;
 
@@ -50,8 +49,9 @@ pub struct Surroundings {
     pub base: bool,
 }
 
-impl Law for Surroundings {
-    fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>> {
+impl Surroundings {
+    /// Force or torque on each coordinate.
+    pub fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>> {
         let constant = |value| place[0].constant(value);
         let spins = 2 * self.bodies.len();
         let mut forces = Vec::with_capacity(place.len());
@@ -110,7 +110,8 @@ impl Law for Surroundings {
         forces
     }
 
-    fn potential(&self, place: &[f64]) -> f64 {
+    /// Potential energy, J.
+    pub fn potential(&self, place: &[f64]) -> f64 {
         let of_body = |(k, body): (usize, &Body)| {
             let (x, y) = (place[2 * k], place[2 * k + 1]);
             let [wx, wy] = body.weight;
@@ -126,7 +127,8 @@ impl Law for Surroundings {
         bodies + magnets.map(held).sum::<f64>()
     }
 
-    fn reach(&mut self, time: f64) -> f64 {
+    /// Makes them those of `time` (s since the release) and after; when they next change, s.
+    pub fn reach(&mut self, time: f64) -> f64 {
         let reached = |moment: f64| moment <= time * (1.0 + MOMENT_ROUNDING);
         let mut next = f64::INFINITY;
         for pull in &mut self.magnets {

@@ -4,7 +4,17 @@
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
 use super::share::{Shared, shared, weighted};
-use super::tape::Term;
+
+/// What a link does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mode {
+    /// Apart.
+    Flight,
+    /// Slips with this sign; 0 without friction.
+    Slide(f64),
+    /// Without slip.
+    Stick,
+}
 
 /// How far a link's grip goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,16 +153,4 @@ impl System {
         };
         speed.iter().zip(&self.mobility).map(moving).sum()
     }
-}
-
-/// The forces besides those of the links.
-pub trait Law {
-    /// Force or torque on each coordinate.
-    fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>>;
-
-    /// Makes them those of `time` (s since the release) and after; when they next change, s.
-    fn reach(&mut self, time: f64) -> f64;
-
-    /// Potential energy, J.
-    fn potential(&self, place: &[f64]) -> f64;
 }

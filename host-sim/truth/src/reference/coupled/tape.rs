@@ -171,7 +171,8 @@ pub struct Tape(RefCell<Record>);
 #[derive(Clone, Copy, Debug)]
 pub struct Term<'t> {
     tape: &'t Tape,
-    index: usize,
+    /// Its number on the tape.
+    pub index: usize,
 }
 
 impl Tape {
@@ -266,11 +267,6 @@ impl<'t> Term<'t> {
     /// What that is made of, without signs.
     pub fn size(&self) -> f64 {
         self.tape.0.borrow().sizes[self.index]
-    }
-
-    /// Its number on the tape.
-    pub fn index(&self) -> usize {
-        self.index
     }
 
     /// All terms, once they are carried.

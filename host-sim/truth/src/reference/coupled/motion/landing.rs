@@ -2,8 +2,7 @@
 
 use super::super::impact::{self, Touching};
 use super::super::share::shared;
-use super::super::step::Mode;
-use super::super::system::{Hold, Law};
+use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
 use touchdown_base::history::{Impact, ModelEvent, RotorState};
 
@@ -15,7 +14,7 @@ const FAST_CUTOFF: f64 = 1e-12;
 /// what bounds the hops that are flown.
 const MANY_IMPACTS: f64 = 250.0;
 
-impl<L: Law> Motion<L> {
+impl Motion {
     /// Positions outside their walls are taken back.
     pub(super) fn take_inside(&mut self) {
         for link in 0..self.modes.len() {

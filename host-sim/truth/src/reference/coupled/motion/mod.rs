@@ -3,9 +3,9 @@
 mod landing;
 mod modes;
 
-use super::mode::Mode;
 use super::step::{Ending, Step};
-use super::system::{Hold, Law, Link, System};
+use super::surroundings::Surroundings;
+use super::system::{Hold, Link, Mode, System};
 use crate::reference::scale::Sum;
 use std::f64::consts::TAU;
 use touchdown_base::history::ModelEvent;
@@ -20,9 +20,9 @@ const MOST_COST: usize = 12_000_000;
 
 /// A system that moves.
 #[derive(Clone, Debug)]
-pub struct Motion<L> {
+pub struct Motion {
     system: System,
-    law: L,
+    surroundings: Surroundings,
     accuracy: f64,
     /// Units of time and speed.
     units: (f64, f64),
@@ -59,11 +59,11 @@ pub struct Moment {
     pub normal: Vec<f64>,
 }
 
-impl<L: Law> Motion<L> {
+impl Motion {
     /// At the release. `units` are those of time and speed against which small is small.
     pub fn new(
         system: System,
-        law: L,
+        surroundings: Surroundings,
         units: (f64, f64),
         (place, speed): (Vec<f64>, Vec<f64>),
     ) -> Self {
@@ -77,7 +77,7 @@ impl<L: Law> Motion<L> {
             modes: system.links.iter().map(brake_or_flight).collect(),
             step: Step::none(&place, &speed, links),
             system,
-            law,
+            surroundings,
             accuracy: ACCURACY,
             units,
             since: Sum::default(),
@@ -126,7 +126,7 @@ impl<L: Law> Motion<L> {
 
     /// Kinetic and potential, J.
     pub fn energy(&self, moment: &Moment) -> f64 {
-        self.system.kinetic(&moment.speed) + self.law.potential(&moment.place)
+        self.system.kinetic(&moment.speed) + self.surroundings.potential(&moment.place)
     }
 
     fn moment(&self, time: f64, part: f64) -> Moment {

@@ -1,8 +1,8 @@
 //! Which links are closed, and how: the modes that last.
 
 use super::super::impact::{self, Touching};
-use super::super::step::{Ending, Mode, Step};
-use super::super::system::Law;
+use super::super::step::{Ending, Step};
+use super::super::system::Mode;
 use super::{Motion, ON_WALL};
 
 /// Slip below this part of the speeds that it is made of is none.
@@ -17,7 +17,7 @@ pub const FORCED_STEP: f64 = 1e-7;
 /// Longest of them.
 const LONGEST_FORCED: f64 = 1e-3;
 
-impl<L: Law> Motion<L> {
+impl Motion {
     pub(super) fn change(&mut self, ending: Ending) {
         match ending {
             Ending::Step => {}
@@ -124,10 +124,10 @@ impl<L: Law> Motion<L> {
         }
         impact::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
         let since = self.since.value;
-        let until = self.law.reach(since) - since;
+        let until = self.surroundings.reach(since) - since;
         self.step = Step::new(
             &self.system,
-            &self.law,
+            &self.surroundings,
             &self.modes,
             (&self.place, &self.speed),
             (self.accuracy, until.min(LONGEST * self.units.0)),
