@@ -99,8 +99,8 @@ impl<R: Read> TextRows<R> {
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
-            .delimiter(layout.delimiter.byte())
-            .comment(layout.comment.map(|it| it.byte()))
+            .delimiter(layout.delimiter as u8)
+            .comment(layout.comment.map(|it| it as u8))
             .from_reader(bytes);
         let mut rows = Self {
             file: file.to_owned(),
