@@ -88,26 +88,22 @@ impl Doubt {
         let mut warnings = Vec::new();
         let ratio = self.farthest / self.clearance;
         if self.samples > 0 && !self.seen {
-            warnings.push(format!(
-                "{}: not one sample has a position: are these the right columns?",
-                self.file
-            ));
+            let rule = "not one sample has a position: are these the right columns?";
+            warnings.push(rule.to_owned());
         } else if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
             let would = |it: &&(&str, f64)| (0.2..=1.5).contains(&(ratio / it.1));
             let units = UNITS.iter().find(would);
             let units = units.map_or(String::new(), |(name, _)| format!(" ({name}?)"));
             warnings.push(format!(
-                "{}: the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are \
-                 unit and offset right?{units}",
-                self.file,
+                "the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are unit \
+                 and offset right?{units}",
                 Number(self.farthest * 1e6),
                 self.clearance * 1e6
             ));
         }
         if self.saturated as f64 > SATURATED * self.samples as f64 {
             warnings.push(format!(
-                "{}: {} of {} samples are beyond the sensors' range of {} um and are cut off there",
-                self.file,
+                "{} of {} samples are beyond the sensors' range of {} um and are cut off there",
                 self.saturated,
                 self.samples,
                 self.sensors.range * 1e6
@@ -116,8 +112,7 @@ impl Doubt {
         if self.fastest * self.spin < 0.0 {
             let rpm = |spin: f64| spin * 60.0 / std::f64::consts::TAU;
             warnings.push(format!(
-                "{}: the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
-                self.file,
+                "the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
                 Number(rpm(self.fastest)),
                 rpm(self.spin)
             ));
@@ -125,17 +120,14 @@ impl Doubt {
         let ratio = (self.fastest / self.spin).abs();
         let near = |it: &&(&str, f64)| (ratio / it.1 - 1.0).abs() < NEAR;
         if let Some((name, _)) = SPEEDS.iter().find(near) {
-            warnings.push(format!(
-                "{}: the speed is {ratio:.4} of the scene's: {name}?",
-                self.file
-            ));
+            warnings.push(format!("the speed is {ratio:.4} of the scene's: {name}?"));
         }
         if self.seen && !self.planes && self.sensors.planes == 2 {
-            warnings.push(format!(
-                "{}: it has plane a alone, the scene two planes: falls and impacts are found later",
-                self.file
-            ));
+            let rule =
+                "it has plane a alone, the scene two planes: falls and impacts are found later";
+            warnings.push(rule.to_owned());
         }
-        warnings
+        let of_file = |it| format!("{}: {it}", self.file);
+        warnings.into_iter().map(of_file).collect()
     }
 }

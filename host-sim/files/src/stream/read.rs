@@ -14,9 +14,8 @@ use super::clock::Stamp;
 use super::learnt::{LEARNT, of_field};
 use super::row::{Pulses, Row, Stamped};
 use touchdown_base::input_error::{InputError, reason};
+use touchdown_scene::rule::{MICRO, RPM};
 
-const RPM: f64 = std::f64::consts::TAU / 60.0;
-const MICRO: f64 = 1e-6;
 /// Whole numbers up to here are exact.
 const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
 
