@@ -12,11 +12,12 @@ pub struct Histories {
     pub rings: Vec<History>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The rotor as a whole has the greatest of its rings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Touch {
     None,
-    Sliding,
     Rolling,
+    Sliding,
 }
 
 /// Turns what happens in each ring into what happens to the rotor.
@@ -64,13 +65,7 @@ impl Merge {
     }
 
     fn overall(&self) -> Touch {
-        if self.touches.contains(&Touch::Sliding) {
-            Touch::Sliding
-        } else if self.touches.contains(&Touch::Rolling) {
-            Touch::Rolling
-        } else {
-            Touch::None
-        }
+        self.touches.iter().copied().max().unwrap_or(Touch::None)
     }
 }
 
