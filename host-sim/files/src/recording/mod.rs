@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-pub use comtrade::{Cfg, DEVICE, STATION};
+pub use comtrade::{DEVICE, STATION};
 pub use mapping::Mapping;
 
 use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
@@ -241,7 +241,7 @@ impl<'a> Source<'a> {
                 let rule = "counted edges cannot be resampled";
                 return Err(InputError::of_file(file, rule));
             }
-            let resampled = Resampled::new(file, stamped, wanted, &self.remarks)?;
+            let resampled = Resampled::new(file, Box::new(stamped), wanted, &self.remarks)?;
             let start = resampled.start;
             (Box::new(resampled), wanted, start)
         } else if let Some(given) = rate {
