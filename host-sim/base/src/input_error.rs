@@ -1,7 +1,7 @@
 //! What is wrong with an input file: the file, the line and the rule.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -123,7 +123,7 @@ impl InputError {
     }
 
     /// Opens a file; also how many bytes it has.
-    pub fn open(path: &Path) -> Result<(File, u64), Self> {
+    pub fn open(path: &Path) -> Result<(BufReader<File>, u64), Self> {
         let file = path.display().to_string();
         if path.is_dir() {
             return Err(Self::of_file(&file, "is a folder, not a file"));
@@ -131,7 +131,7 @@ impl InputError {
         let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
         let there = File::open(path).map_err(unread)?;
         let size = there.metadata().map_err(unread)?.len();
-        Ok((there, size))
+        Ok((BufReader::with_capacity(1 << 16, there), size))
     }
 
     /// The rule that is broken; may quote the file as it is.

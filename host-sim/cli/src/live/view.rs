@@ -82,12 +82,8 @@ struct Pen(bool);
 
 impl Pen {
     fn of(self, colour: Color, text: String) -> Span<'static> {
-        let style = if self.0 {
-            Style::default().fg(colour)
-        } else {
-            Style::default()
-        };
-        Span::styled(text, style)
+        let colour = if self.0 { colour } else { Color::Reset };
+        Span::styled(text, Style::default().fg(colour))
     }
 
     fn bold(text: String) -> Span<'static> {

@@ -10,7 +10,6 @@ mod resample;
 mod text;
 mod unit;
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -69,7 +68,7 @@ impl Recording {
     pub fn open(path: &Path, reading: &Reading, scene: &Scene) -> Result<Self, InputError> {
         let file = path.display().to_string();
         if !is_pair(path) {
-            let (bytes, size) = opened(path)?;
+            let (bytes, size) = InputError::open(path)?;
             return Self::of_bytes(&file, bytes, size, reading, scene);
         }
         let mut source = Source::new(&file, 0, reading, scene);
@@ -126,12 +125,6 @@ impl Iterator for Recording {
         }
         Some(row)
     }
-}
-
-/// Opens a file; also how many bytes it has.
-fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
-    let (file, size) = InputError::open(path)?;
-    Ok((BufReader::with_capacity(1 << 16, file), size))
 }
 
 /// What a recording of any kind is read with.
