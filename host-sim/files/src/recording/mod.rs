@@ -11,6 +11,7 @@ mod text;
 mod unit;
 
 use std::io::{BufReader, Read};
+use std::iter;
 use std::path::Path;
 
 pub use comtrade::{DEVICE, STATION};
@@ -121,7 +122,7 @@ impl Iterator for Recording {
         match &row {
             Ok(row) => self.doubt.take(row),
             // Nothing comes after what is wrong.
-            Err(_) => self.rows = Box::new(std::iter::empty()),
+            Err(_) => self.rows = Box::new(iter::empty()),
         }
         Some(row)
     }
@@ -155,9 +156,10 @@ impl<'a> Source<'a> {
         mapping: &Mapping,
     ) -> Result<Recording, InputError> {
         let (sensors, remarks) = (&self.scene.sensors, &self.remarks);
-        let rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
+        let mut rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
         let (header, format) = (rows.layout.before.1.max(1), format_of(&rows.layout));
         let (columns, rate) = (rows.pick.columns(), rows.rate);
+        let rows = iter::from_fn(move || rows.read().transpose());
         Ok(Recording {
             format: Some(format),
             ..self.paced(columns, rows, rate, header)?
@@ -188,7 +190,7 @@ impl<'a> Source<'a> {
 
     fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
         let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
-        let rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
+        let mut rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
             let rates: Vec<_> = cfg
@@ -205,13 +207,13 @@ impl<'a> Source<'a> {
         let is_episode = cfg.is_episode && mapping.is_none();
         let format = format!("COMTRADE {}, {} data", cfg.year, cfg.data);
         let (columns, rate) = (rows.pick.columns(), cfg.rate());
-        let rows = rows.map(move |it| {
-            let mut stamped = it?;
-            if is_episode {
+        let rows = iter::from_fn(move || {
+            let mut read = rows.read();
+            if let (true, Ok(Some(stamped))) = (is_episode, &mut read) {
                 let positions = &mut stamped.row.positions;
                 *positions = of_own_axes(positions, &sensors);
             }
-            Ok(stamped)
+            read.transpose()
         });
         Ok(Recording {
             format: Some(format),

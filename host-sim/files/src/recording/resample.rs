@@ -19,12 +19,12 @@ const LONGEST_GAP: f64 = 60.0;
 const SAME: f64 = 1e-6;
 
 /// Rows as they come.
-type Rows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
+type StampedRows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
 
 /// Rows at a rate of choice.
 pub struct Resampled {
     file: String,
-    rows: Rows,
+    rows: StampedRows,
     /// The rows about the next time.
     from: Stamped,
     to: Option<Stamped>,
@@ -44,7 +44,7 @@ impl Resampled {
     /// Of `rows` of the file `file`, at `rate` (Hz), from the first of them on.
     pub fn new(
         file: &str,
-        mut rows: Rows,
+        mut rows: StampedRows,
         rate: f64,
         remarks: &Remarks,
     ) -> Result<Self, InputError> {

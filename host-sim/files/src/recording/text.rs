@@ -129,9 +129,9 @@ impl<R: Read> TextRows<R> {
         read.map_err(|error| csv_error(&self.file, &error, &self.meter).further(before))
     }
 
-    /// A number that lost its last digits is still a number: only the end of its line shows that the
+    /// The next row. A number that lost its last digits is still a number: only the end of its line shows that the
     /// last row is whole.
-    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+    pub fn read(&mut self) -> Result<Option<Stamped>, InputError> {
         if !std::mem::replace(&mut self.there, Ok(false))? {
             return Ok(None);
         }
@@ -206,13 +206,5 @@ impl<R: Read> TextRows<R> {
                 self.name(column)
             )
         })
-    }
-}
-
-impl<R: Read> Iterator for TextRows<R> {
-    type Item = Result<Stamped, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        self.read().transpose()
     }
 }

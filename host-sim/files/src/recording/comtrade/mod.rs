@@ -87,7 +87,8 @@ impl<R: Read> ComtradeRows<R> {
         })
     }
 
-    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+    /// The next sample's row.
+    pub fn read(&mut self) -> Result<Option<Stamped>, InputError> {
         let Some(sample) = self.dat.next()? else {
             let (there, told) = (self.dat.records, self.dat.cfg.samples);
             if there < told {
@@ -144,13 +145,5 @@ impl<R: Read> ComtradeRows<R> {
             row: self.pick.row(stamp.time, &self.dat.values),
             line,
         }))
-    }
-}
-
-impl<R: Read> Iterator for ComtradeRows<R> {
-    type Item = Result<Stamped, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        self.read().transpose()
     }
 }
