@@ -3,7 +3,6 @@
 use crate::stream::Row;
 use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
-use touchdown_scene::sensors::SensorsConfig;
 
 /// Farthest that a rotor gets from the centre, in clearances; a support gives way.
 const FARTHEST: f64 = 3.0;
@@ -30,18 +29,20 @@ const SPEEDS: [(&str, f64); 4] = [
 const NEAR: f64 = 0.1;
 
 /// Largest values so far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Doubt {
     file: String,
     clearance: f64,
     spin: f64,
-    sensors: SensorsConfig,
+    /// Of the sensors, m.
+    range: f64,
+    two_planes: bool,
     samples: u64,
     seen: bool,
     farthest: f64,
     saturated: u64,
     fastest: f64,
-    planes: bool,
+    plane_b: bool,
 }
 
 impl Doubt {
@@ -51,20 +52,15 @@ impl Doubt {
             file: file.to_owned(),
             clearance: scene.retainer.clearance,
             spin: scene.rotor.spin,
-            sensors: scene.sensors,
-            samples: 0,
-            seen: false,
-            farthest: 0.0,
-            saturated: 0,
-            fastest: 0.0,
-            planes: false,
+            range: scene.sensors.range,
+            two_planes: scene.sensors.planes == 2,
+            ..Self::default()
         }
     }
 
     /// Takes the next row.
     pub fn take(&mut self, row: &Row) {
         self.samples += 1;
-        let range = self.sensors.range;
         let mut beyond = false;
         for plane in row.positions.as_chunks::<2>().0 {
             let distance = f64::hypot(plane[0], plane[1]);
@@ -73,10 +69,10 @@ impl Doubt {
                 self.farthest = distance;
             }
             self.seen |= !distance.is_nan();
-            beyond |= plane.iter().any(|it| it.abs() > range);
+            beyond |= plane.iter().any(|it| it.abs() > self.range);
         }
         self.saturated += u64::from(beyond);
-        self.planes |= !row.positions[2].is_nan();
+        self.plane_b |= !row.positions[2].is_nan();
         let spin = row.spin.unwrap_or(0.0);
         if spin.abs() > self.fastest.abs() {
             self.fastest = spin;
@@ -106,7 +102,7 @@ impl Doubt {
                 "{} of {} samples are beyond the sensors' range of {} um and are cut off there",
                 self.saturated,
                 self.samples,
-                self.sensors.range * 1e6
+                self.range * 1e6
             ));
         }
         if self.fastest * self.spin < 0.0 {
@@ -122,7 +118,7 @@ impl Doubt {
         if let Some((name, _)) = SPEEDS.iter().find(near) {
             warnings.push(format!("the speed is {ratio:.4} of the scene's: {name}?"));
         }
-        if self.seen && !self.planes && self.sensors.planes == 2 {
+        if self.two_planes && self.seen && !self.plane_b {
             let rule =
                 "it has plane a alone, the scene two planes: falls and impacts are found later";
             warnings.push(rule.to_owned());
