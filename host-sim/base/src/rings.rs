@@ -38,16 +38,10 @@ impl Merge {
     pub fn take(&mut self, ring: usize, happening: ModelEvent) -> Option<ModelEvent> {
         let (touch, time) = match happening {
             ModelEvent::Impact(_) | ModelEvent::Released { .. } => return Some(happening),
-            ModelEvent::ContactStart {
-                time,
-                rolling: false,
-            }
-            | ModelEvent::SlidingStart(time) => (Touch::Sliding, time),
-            ModelEvent::ContactStart {
-                time,
-                rolling: true,
-            }
-            | ModelEvent::RollingStart(time) => (Touch::Rolling, time),
+            ModelEvent::ContactStart { time, rolling } if rolling => (Touch::Rolling, time),
+            ModelEvent::ContactStart { time, .. } => (Touch::Sliding, time),
+            ModelEvent::SlidingStart(time) => (Touch::Sliding, time),
+            ModelEvent::RollingStart(time) => (Touch::Rolling, time),
             ModelEvent::LiftOff(time) => (Touch::None, time),
         };
         let before = self.overall();
