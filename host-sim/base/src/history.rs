@@ -100,7 +100,7 @@ pub struct Phase {
 
 /// How the run ended.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, IntoStaticStr, VariantArray,
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, IntoStaticStr, VariantArray,
 )]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -116,11 +116,12 @@ pub enum Regime {
     /// Four lift-offs or more without whirl.
     Intermittent,
     /// Not in permanent contact.
+    #[default]
     Bouncing,
 }
 
 /// A drop as it went.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// In the order of time.
     pub impacts: Vec<Impact>,
@@ -151,56 +152,59 @@ impl History {
 }
 
 /// Collects happenings into a history.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Recorder {
-    impacts: Vec<Impact>,
-    phases: Vec<Phase>,
-    contact_starts: Vec<f64>,
-    lift_offs: Vec<f64>,
-    rolling_starts: Vec<f64>,
-    current: Option<(PhaseKind, f64)>,
+    /// So far; its end is still to come.
+    history: History,
+    /// The open phase, and its start, s.
+    current: (PhaseKind, f64),
 }
 
 impl Recorder {
     /// Starts in flight at time 0, after `levitated` seconds held at the start position (0: none).
     pub fn new(levitated: f64) -> Self {
-        let mut recorder = Self::default();
-        if levitated > 0.0 {
-            recorder.phases.push(Phase {
-                phase: PhaseKind::Levitated,
-                start_s: -levitated,
-                end_s: 0.0,
-            });
+        let held = Phase {
+            phase: PhaseKind::Levitated,
+            start_s: -levitated,
+            end_s: 0.0,
+        };
+        Self {
+            history: History {
+                phases: Vec::from_iter((levitated > 0.0).then_some(held)),
+                ..History::default()
+            },
+            current: (PhaseKind::FreeFall, 0.0),
         }
-        recorder.current = Some((PhaseKind::FreeFall, 0.0));
-        recorder
     }
 
     fn change(&mut self, phase: PhaseKind, time: f64) {
-        if let Some((kind, start_s)) = self.current {
-            if kind == phase {
-                return;
-            }
-            if time > start_s {
-                self.phases.push(Phase {
-                    phase: kind,
-                    start_s,
-                    end_s: time,
-                });
-            }
+        let (kind, start) = self.current;
+        if kind == phase {
+            return;
         }
-        self.current = Some((phase, time));
+        if time > start {
+            self.close(time);
+        }
+        self.current = (phase, time);
+    }
+
+    /// The open phase ends.
+    fn close(&mut self, end_s: f64) {
+        let (phase, start_s) = self.current;
+        self.history.phases.push(Phase {
+            phase,
+            start_s,
+            end_s,
+        });
     }
 
     fn in_contact(&self) -> bool {
-        let contact = [PhaseKind::Sliding, PhaseKind::Rolling];
-        self.current
-            .is_some_and(|(kind, _)| contact.contains(&kind))
+        matches!(self.phase(), PhaseKind::Sliding | PhaseKind::Rolling)
     }
 
     /// The present one.
     pub fn phase(&self) -> PhaseKind {
-        self.current.map_or(PhaseKind::FreeFall, |(kind, _)| kind)
+        self.current.0
     }
 
     /// Takes the next happening.
@@ -211,10 +215,10 @@ impl Recorder {
                 if !self.in_contact() {
                     self.change(PhaseKind::Impact, impact.state.time);
                 }
-                self.impacts.push(impact);
+                self.history.impacts.push(impact);
             }
             ModelEvent::Released { state, pulse } => {
-                if let Some(impact) = self.impacts.last_mut() {
+                if let Some(impact) = self.history.impacts.last_mut() {
                     let time = impact.state.time;
                     impact.state = RotorState { time, ..state };
                     impact.normal_impulse = pulse.impulse;
@@ -222,21 +226,20 @@ impl Recorder {
                 }
             }
             ModelEvent::ContactStart { time, rolling } => {
-                self.contact_starts.push(time);
-                if rolling {
-                    self.rolling_starts.push(time);
-                    self.change(PhaseKind::Rolling, time);
+                self.history.contact_starts.push(time);
+                self.take(if rolling {
+                    ModelEvent::RollingStart(time)
                 } else {
-                    self.change(PhaseKind::Sliding, time);
-                }
+                    ModelEvent::SlidingStart(time)
+                });
             }
             ModelEvent::RollingStart(time) => {
-                self.rolling_starts.push(time);
+                self.history.rolling_starts.push(time);
                 self.change(PhaseKind::Rolling, time);
             }
             ModelEvent::SlidingStart(time) => self.change(PhaseKind::Sliding, time),
             ModelEvent::LiftOff(time) => {
-                self.lift_offs.push(time);
+                self.history.lift_offs.push(time);
                 self.change(PhaseKind::FreeFall, time);
             }
         }
@@ -245,20 +248,14 @@ impl Recorder {
     /// Closes the run. `still_speed` (m/s) is the speed below which a rotor in contact is at rest.
     pub fn finish(mut self, end: RotorState, still_speed: f64) -> History {
         let in_contact = self.in_contact();
-        if let Some((phase, start_s)) = self.current {
-            self.phases.push(Phase {
-                phase,
-                start_s,
-                end_s: end.time,
-            });
-        }
+        self.close(end.time);
         let whirls = in_contact && end.turns_in_contact.abs() >= 1.0;
         let speed = f64::hypot(end.velocity[0], end.velocity[1]);
         let regime = if whirls && end.turns_in_contact * end.spin >= 0.0 {
             Regime::ForwardWhirl
         } else if whirls {
             Regime::BackwardWhirl
-        } else if self.lift_offs.len() >= 4 {
+        } else if self.history.lift_offs.len() >= 4 {
             Regime::Intermittent
         } else if !in_contact {
             Regime::Bouncing
@@ -268,13 +265,9 @@ impl Recorder {
             Regime::Pendulum
         };
         History {
-            impacts: self.impacts,
-            phases: self.phases,
-            contact_starts: self.contact_starts,
-            lift_offs: self.lift_offs,
-            rolling_starts: self.rolling_starts,
             regime,
             end,
+            ..self.history
         }
     }
 }

@@ -1,11 +1,12 @@
 //! What is wrong with an input file: the file, the line and the rule.
 
-use std::fmt;
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufReader, Read};
 use std::path::Path;
+use std::sync::Arc;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use miette::{Diagnostic, NamedSource, SourceSpan};
+use thiserror::Error;
 
 use crate::plain::shown;
 
@@ -13,12 +14,16 @@ use crate::plain::shown;
 pub const LARGEST_TOML: u64 = 4 << 20;
 
 /// A flaw in a scene or a recorded stream.
-#[derive(Debug)]
+#[derive(Debug, Diagnostic, Error)]
+#[error("{}{}: {}", shown(.file), .line.map_or(String::new(), |it| format!(":{it}")), shown(.rule))]
 pub struct InputError {
     file: String,
     line: Option<u64>,
     rule: String,
-    excerpt: Option<Box<(NamedSource<String>, SourceSpan)>>,
+    #[source_code]
+    excerpt: Option<Arc<NamedSource<String>>>,
+    #[label]
+    span: Option<SourceSpan>,
 }
 
 impl InputError {
@@ -29,6 +34,7 @@ impl InputError {
             line: None,
             rule: rule.into(),
             excerpt: None,
+            span: None,
         }
     }
 
@@ -51,11 +57,10 @@ impl InputError {
         let end = text.ceil_char_boundary(span.end.clamp(start, text.len()));
         let line = 1 + text[..start].matches('\n').count();
         let parts = [&text[..start], &text[start..end], &text[end..]].map(shown);
-        let begins = parts[0].len();
-        let span = begins..begins + parts[1].len();
         let source = NamedSource::new(shown(file), parts.concat());
         Self {
-            excerpt: Some(Box::new((source.with_language("toml"), span.into()))),
+            excerpt: Some(Arc::new(source.with_language("toml"))),
+            span: Some((parts[0].len(), parts[1].len()).into()),
             ..Self::at_line(file, line as u64, rule)
         }
     }
@@ -66,6 +71,7 @@ impl InputError {
         Self {
             rule: without_quotes(&self.rule),
             excerpt: None,
+            span: None,
             ..self
         }
     }
@@ -117,7 +123,7 @@ impl InputError {
     }
 
     /// Opens a file; also how many bytes it has.
-    pub fn open(path: &Path) -> Result<(File, u64), Self> {
+    pub fn open(path: &Path) -> Result<(BufReader<File>, u64), Self> {
         let file = path.display().to_string();
         if path.is_dir() {
             return Err(Self::of_file(&file, "is a folder, not a file"));
@@ -125,7 +131,7 @@ impl InputError {
         let unread = |error: std::io::Error| Self::of_file(&file, reason(&error));
         let there = File::open(path).map_err(unread)?;
         let size = there.metadata().map_err(unread)?.len();
-        Ok((there, size))
+        Ok((BufReader::with_capacity(1 << 16, there), size))
     }
 
     /// The rule that is broken; may quote the file as it is.
@@ -168,30 +174,5 @@ pub fn reason(error: &std::io::Error) -> String {
             Some((text, _)) => text.to_owned(),
             None => error.to_string(),
         },
-    }
-}
-
-impl fmt::Display for InputError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (file, rule) = (shown(&self.file), shown(&self.rule));
-        match self.line {
-            Some(line) => write!(f, "{file}:{line}: {rule}"),
-            None => write!(f, "{file}: {rule}"),
-        }
-    }
-}
-
-impl std::error::Error for InputError {}
-
-impl Diagnostic for InputError {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        let (source, _) = self.excerpt.as_deref()?;
-        Some(source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, span) = self.excerpt.as_deref()?;
-        let label = LabeledSpan::new_with_span(None, *span);
-        Some(Box::new(std::iter::once(label)))
     }
 }

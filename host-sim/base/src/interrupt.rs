@@ -19,13 +19,8 @@ static LEFT: Mutex<BTreeMap<u64, Undo>> = Mutex::new(BTreeMap::new());
 static HELD: Mutex<()> = Mutex::new(());
 
 /// Something to undo, for as long as this lives.
+#[derive(Debug)]
 pub struct Registered(u64);
-
-impl std::fmt::Debug for Registered {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Registered({})", self.0)
-    }
-}
 
 impl Drop for Registered {
     fn drop(&mut self) {

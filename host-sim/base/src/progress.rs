@@ -23,29 +23,21 @@ const BYTES: &str = "{msg} {wide_bar} {bytes} of {total_bytes}, {eta} left";
 impl Progress {
     /// Starts the clock; `total` samples, 0 if not known.
     pub fn new(what: &'static str, total: u64) -> Self {
-        Self {
-            bar: bar(what, total),
-            done: 0,
-            look: LOOK,
-        }
+        Self::of(bar(what, total), LOOK)
     }
 
     /// Of a file of `total` bytes; what is counted is its rows.
     pub fn of_bytes(what: &'static str, total: u64) -> Self {
-        Self {
-            bar: styled(what, total, BYTES),
-            done: 0,
-            look: LOOK,
-        }
+        Self::of(styled(what, total, BYTES), LOOK)
     }
 
     /// Of jobs that each take long enough for a look at the clock.
     pub fn of_jobs(what: &'static str, total: u64) -> Self {
-        Self {
-            bar: bar(what, total),
-            done: 0,
-            look: 1,
-        }
+        Self::of(bar(what, total), 1)
+    }
+
+    fn of(bar: ProgressBar, look: u64) -> Self {
+        Self { bar, done: 0, look }
     }
 
     /// One more is through.

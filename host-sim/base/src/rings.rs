@@ -12,11 +12,12 @@ pub struct Histories {
     pub rings: Vec<History>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The rotor as a whole has the greatest of its rings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Touch {
     None,
-    Sliding,
     Rolling,
+    Sliding,
 }
 
 /// Turns what happens in each ring into what happens to the rotor.
@@ -37,16 +38,10 @@ impl Merge {
     pub fn take(&mut self, ring: usize, happening: ModelEvent) -> Option<ModelEvent> {
         let (touch, time) = match happening {
             ModelEvent::Impact(_) | ModelEvent::Released { .. } => return Some(happening),
-            ModelEvent::ContactStart {
-                time,
-                rolling: false,
-            }
-            | ModelEvent::SlidingStart(time) => (Touch::Sliding, time),
-            ModelEvent::ContactStart {
-                time,
-                rolling: true,
-            }
-            | ModelEvent::RollingStart(time) => (Touch::Rolling, time),
+            ModelEvent::ContactStart { time, rolling } if rolling => (Touch::Rolling, time),
+            ModelEvent::ContactStart { time, .. } => (Touch::Sliding, time),
+            ModelEvent::SlidingStart(time) => (Touch::Sliding, time),
+            ModelEvent::RollingStart(time) => (Touch::Rolling, time),
             ModelEvent::LiftOff(time) => (Touch::None, time),
         };
         let before = self.overall();
@@ -64,13 +59,7 @@ impl Merge {
     }
 
     fn overall(&self) -> Touch {
-        if self.touches.contains(&Touch::Sliding) {
-            Touch::Sliding
-        } else if self.touches.contains(&Touch::Rolling) {
-            Touch::Rolling
-        } else {
-            Touch::None
-        }
+        self.touches.iter().copied().max().unwrap_or(Touch::None)
     }
 }
 

@@ -132,29 +132,17 @@ pub fn coordinate(value: f64) -> String {
 
 /// Curves over two axes, as SVG path data in the drawing units of the chart.
 pub struct Pen<'a> {
-    x: &'a Axis,
-    y: &'a Axis,
-    height: f64,
+    chart: &'a Chart<'a>,
     path: String,
     last: Option<(f64, f64)>,
 }
 
-impl<'a> Pen<'a> {
-    /// A pen for a chart of that height, px.
-    pub fn new(x: &'a Axis, y: &'a Axis, height: f64) -> Self {
-        Self {
-            x,
-            y,
-            height,
-            path: String::new(),
-            last: None,
-        }
-    }
-
+impl Pen<'_> {
     fn place(&self, x: f64, y: f64) -> Option<(f64, f64)> {
-        let at = (self.x.fraction(x), 1.0 - self.y.fraction(y));
+        let chart = self.chart;
+        let at = (chart.x.fraction(x), 1.0 - chart.y.fraction(y));
         let near = at.0.abs() < 3.0 && at.1.abs() < 3.0;
-        near.then_some((at.0 * WIDTH, at.1 * self.height))
+        near.then_some((at.0 * WIDTH, at.1 * chart.height))
     }
 
     /// Goes on to a point; where it is not finite or far outside, the curve breaks.
@@ -239,7 +227,11 @@ pub struct Chart<'a> {
 impl Chart<'_> {
     /// A pen for this chart.
     pub fn pen(&self) -> Pen<'_> {
-        Pen::new(self.x, self.y, self.height)
+        Pen {
+            chart: self,
+            path: String::new(),
+            last: None,
+        }
     }
 
     /// A curve through these points, styled by its class.
@@ -350,7 +342,14 @@ mod tests {
     #[test]
     fn curves_skip_what_cannot_be_seen_or_drawn() {
         let axis = Axis::new(0.0, 1.0, "", 5.0);
-        let mut pen = Pen::new(&axis, &axis, 100.0);
+        let chart = Chart {
+            title: "",
+            description: "",
+            x: &axis,
+            y: &axis,
+            height: 100.0,
+        };
+        let mut pen = chart.pen();
         pen.line_to(0.0, 0.0);
         pen.line_to(1e-6, 1e-6);
         pen.line_to(0.5, 0.25);

@@ -280,8 +280,7 @@ impl Outputs {
 
 /// Text for people on standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    said(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    Output::create(STDOUT)?.put(text)
 }
 
 /// What came of text on standard output. A reader that has gone away is no failure.

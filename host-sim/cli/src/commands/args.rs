@@ -62,11 +62,8 @@ pub(super) enum Command {
     #[command(after_help = help!("rig"))]
     Rig(RigArgs),
     /// List, show, export or verify the drops that the firmware recorded; keep or erase them
-    #[command(after_help = help!("log"))]
-    Log {
-        #[command(subcommand)]
-        what: LogCommand,
-    },
+    #[command(subcommand, after_help = help!("log"))]
+    Log(LogCommand),
     /// Watch a controller over its serial link
     #[command(after_help = help!("live"))]
     Live(LiveArgs),
@@ -108,11 +105,8 @@ pub(super) enum Command {
     #[command(after_help = help!("score"))]
     Score(ScoreArgs),
     /// Look at scenes
-    #[command(after_help = help!("scene"))]
-    Scene {
-        #[command(subcommand)]
-        what: SceneCommand,
-    },
+    #[command(subcommand, after_help = help!("scene"))]
+    Scene(SceneCommand),
     /// Print a script that completes commands and options in a shell
     #[command(after_help = help!("completions"))]
     Completions {

@@ -63,7 +63,7 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Sweep(args)) => sweep::sweep(&args),
         #[cfg(unix)]
         Some(Command::Rig(args)) => rig::rig(&args),
-        Some(Command::Log { what }) => log::log(&what),
+        Some(Command::Log(what)) => log::log(&what),
         Some(Command::Live(args)) => live::live(&args),
         Some(Command::Clear(args)) => order::order(Act::Clear, &args),
         Some(Command::Config(args)) => config::config(&args),
@@ -74,7 +74,7 @@ pub fn main() -> Result<(), Failure> {
                 .open()?
                 .finish(&String::from_utf8_lossy(&script))
         }
-        Some(Command::Scene { what }) => scene::look(&what),
+        Some(Command::Scene(what)) => scene::look(&what),
     }
 }
 

@@ -4,7 +4,8 @@ use serde::Serialize;
 use touchdown_core::event::Act;
 
 use super::args::OrderArgs;
-use crate::gate::{Gate, note};
+use super::warn;
+use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_files::link::{Client, LinkError, Port, load_key, why};
 use touchdown_page::json;
@@ -52,9 +53,7 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
 /// Over the port, with the key in a file, and a warning where others may read that.
 pub(super) fn client(port: &Port, key_file: Option<&str>) -> Result<Client, Failure> {
     let (key, warning) = key_file.map(load_key).transpose()?.unzip();
-    if let Some(warning) = warning.flatten() {
-        note(&format!("warning: {warning}\n"));
-    }
+    warn(warning.flatten().as_slice());
     let mut client = Client::new(port.open().map_err(|it| it.at(port))?);
     client.key = key;
     Ok(client)

@@ -16,6 +16,9 @@ use touchdown_run::emulator::Emulator;
 use touchdown_scene::names::channel_name;
 
 const CHANNELS: u8 = 4;
+/// What can be typed.
+const ORDERS: &str =
+    "lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off or quit";
 const LOOK: Duration = Duration::from_millis(50);
 /// What the rig and its emulator write in their folder.
 const FILES: [&str; 6] = ["log", "settings", "replay", "answer", "out", "err"];
@@ -49,8 +52,7 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
         },
     )?;
     print(&format!(
-        "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n\
-         lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off, quit\n",
+        "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n{ORDERS}\n",
         rig.address,
         log.display()
     ))?;
@@ -114,11 +116,7 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
             let kinds = "the kinds are open, short, dropped, stuck, reversed, swapped";
             Order::Spoil(channel.into(), failing.map_err(|_| kinds)?)
         }
-        _ => {
-            let rule =
-                "lift, drop, fault CHANNEL KIND, repair, noise PART, cut, service on|off or quit";
-            return Err(rule);
-        }
+        _ => return Err(ORDERS),
     }))
 }
 

@@ -29,25 +29,21 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             .to_string_lossy();
         format!("{stem}-sweep")
     });
+    let gate = gate(&folder, &args.json)
+        .reads("PLAN", [name])
+        .reads("the plan's scene", &plan.scene_file);
     if let Some(rule) = plan.find {
         if args.shard.is_some() {
             let rule = "a search is not divided: run it without --shard";
             return Err(Failure::Usage(rule.to_owned()));
         }
-        let out = gate(&folder, &args.json)
-            .reads("PLAN", [name])
-            .reads("the plan's scene", &plan.scene_file)
-            .open()?;
+        let out = gate.open()?;
         let (tried, results) = find(&plan, rule, Path::new(&folder))?;
         return finish(&tried, results, out);
     }
     let parts = args.shard.map_or_else(|| Part::all(&plan), |it| vec![it]);
     let paths: Vec<_> = parts.iter().map(|it| it.path(Path::new(&folder))).collect();
-    let out = gate(&folder, &args.json)
-        .reads("PLAN", [name])
-        .reads("the plan's scene", &plan.scene_file)
-        .claims("--out", &paths)
-        .open()?;
+    let out = gate.claims("--out", &paths).open()?;
     let had = run(&plan, &parts, Path::new(&folder))?;
     if had > 0 {
         note(&format!("{folder} had {had} drops already\n"));

@@ -1,7 +1,8 @@
 //! The terminal's picture.
 
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
+use ratatui::layout::{Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
@@ -32,28 +33,13 @@ pub struct View {
 
 /// Draws `watched` as it is at `now` (s).
 pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
-    let [head, body, foot] = Layout::vertical([
-        Constraint::Length(1),
-        Constraint::Min(0),
-        Constraint::Length(1),
-    ])
-    .areas(frame.area());
-    let [left, right] =
-        Layout::horizontal([Constraint::Percentage(46), Constraint::Fill(1)]).areas(body);
-    let [status, events, episodes] = Layout::vertical([
-        Constraint::Length(14),
-        Constraint::Fill(3),
-        Constraint::Fill(2),
-    ])
-    .areas(right);
+    let [head, body, foot] = Layout::vertical([Length(1), Min(0), Length(1)]).areas(frame.area());
+    let [left, right] = Layout::horizontal([Percentage(46), Fill(1)]).areas(body);
+    let [status, events, episodes] = Layout::vertical([Length(14), Fill(3), Fill(2)]).areas(right);
     let pen = Pen(view.paint);
     frame.render_widget(Paragraph::new(headline(watched, now, pen)), head);
     orbit(frame, left, watched, view.plane, view.paint);
-    let block = Block::bordered().title(" now ");
-    frame.render_widget(
-        Paragraph::new(status_lines(watched, now, pen)).block(block),
-        status,
-    );
+    list(frame, status, " now ", status_lines(watched, now, pen));
     list(
         frame,
         events,
@@ -82,12 +68,8 @@ struct Pen(bool);
 
 impl Pen {
     fn of(self, colour: Color, text: String) -> Span<'static> {
-        let style = if self.0 {
-            Style::default().fg(colour)
-        } else {
-            Style::default()
-        };
-        Span::styled(text, style)
+        let colour = if self.0 { colour } else { Color::Reset };
+        Span::styled(text, Style::default().fg(colour))
     }
 
     fn bold(text: String) -> Span<'static> {

@@ -1,6 +1,6 @@
 //! Holds the line on a thread of its own: asks, listens, and opens the line again when it is gone.
 
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -35,10 +35,13 @@ impl Watcher {
     pub fn start(port: Port) -> Self {
         let (to, updates) = channel();
         let start = Instant::now();
-        let mut teller = Teller { to, start };
+        let mut tell = move |said| {
+            let at = start.elapsed().as_secs_f64();
+            to.send(Update { at, said }).map_err(|_| None)
+        };
         thread::spawn(move || {
-            while let Err(Some(error)) = session(&port, &mut teller) {
-                if teller.tell(Said::Lost(error.to_string())).is_err() {
+            while let Err(Some(error)) = session(&port, &mut tell) {
+                if tell(Said::Lost(error.to_string())).is_err() {
                     break;
                 }
                 thread::sleep(RETRY);
@@ -63,24 +66,15 @@ impl Watcher {
     }
 }
 
-struct Teller {
-    to: Sender<Update>,
-    start: Instant,
-}
-
-impl Teller {
-    fn tell(&mut self, said: Said) -> Result<(), Option<LinkError>> {
-        let at = self.start.elapsed().as_secs_f64();
-        self.to.send(Update { at, said }).map_err(|_| None)
-    }
-}
+/// Tells whoever listens; no error in its place where nobody does any more.
+type Tell<'a> = &'a mut dyn FnMut(Said) -> Result<(), Option<LinkError>>;
 
 /// From the opening of the line to its end; no error where nobody listens any more.
-fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
+fn session(port: &Port, tell: Tell<'_>) -> Result<(), Option<LinkError>> {
     let mut client = Client::new(port.open()?);
     let hello = client.hello()?;
     let settings = client.settings()?;
-    teller.tell(Said::Connected(Greeting {
+    tell(Said::Connected(Greeting {
         firmware: shown(&hello.firmware).into_owned(),
         sample_rate: hello.sample_rate,
         settings,
@@ -94,7 +88,7 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
     loop {
         while let Some(told) = client.listen(Duration::from_millis(20))? {
             heard = Instant::now();
-            teller.tell(match told {
+            tell(match told {
                 Told::State(state) => Said::State(state),
                 Told::Notice(notice) => Said::Notice(notice),
             })?;
@@ -104,15 +98,15 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
         }
         if positions.is_due() {
             positions.put_off();
-            teller.tell(Said::Recent(client.recent(step)?))?;
+            tell(Said::Recent(client.recent(step)?))?;
         }
         if log.is_due() {
             log.put_off();
-            known = look(&mut client, known, teller)?;
+            known = look(&mut client, known, tell)?;
             let counters = client.lifetime()?;
             if counters != lifetime {
                 lifetime = counters;
-                counters.map_or(Ok(()), |it| teller.tell(Said::Lifetime(it)))?;
+                counters.map_or(Ok(()), |it| tell(Said::Lifetime(it)))?;
             }
         }
         if heard.elapsed() > SILENCE {
@@ -121,7 +115,7 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
         }
         if client.damaged != damaged {
             damaged = client.damaged;
-            teller.tell(Said::Damaged(damaged))?;
+            tell(Said::Damaged(damaged))?;
         }
     }
 }
@@ -130,7 +124,7 @@ fn session(port: &Port, teller: &mut Teller) -> Result<(), Option<LinkError>> {
 fn look(
     client: &mut Client,
     known: Option<u32>,
-    teller: &mut Teller,
+    tell: Tell<'_>,
 ) -> Result<Option<u32>, Option<LinkError>> {
     let Some((first, last)) = client.episodes()? else {
         return Ok(None);
@@ -141,7 +135,7 @@ fn look(
     let first = told.map_or(first, |it| first.max(it.saturating_add(1)));
     for number in first..=last {
         if let Some((_, page)) = client.chunk(number, 0)? {
-            teller.tell(Said::Episode(number, Episode::of(&page).header))?;
+            tell(Said::Episode(number, Episode::of(&page).header))?;
             told = Some(number);
         }
     }

@@ -67,12 +67,15 @@ pub struct Episode {
 }
 
 /// Whether an episode was recorded to its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "lowercase")]
 pub enum Completeness {
     /// It has its ending.
+    #[strum(serialize = "complete")]
     Yes,
     /// Power went before its end.
+    #[strum(serialize = "cut off")]
     CutOff,
     /// Still being written, or cut off by a loss of power after which nothing has been switched on yet.
     Open,

@@ -16,7 +16,6 @@ pub use text::{list, show};
 use std::io::Write;
 
 use touchdown_core::learnt::Learnt;
-use touchdown_core::sample::Edges;
 
 use crate::stream::{Columns, Pulses, Row, StreamWriter, of_field};
 
@@ -44,19 +43,14 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
     let rate = f64::from(header.sample_rate);
     let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
     for (number, counts) in episode.samples.iter().enumerate() {
-        let shown = episode.pulses.get(number).copied().flatten();
-        let shown = shown.unwrap_or_default();
+        let edges = episode.pulses.get(number).copied().flatten();
+        let edges = edges.unwrap_or_default();
         writer.write(&Row {
             time: episode.time(header, number),
             positions: episode.positions(header, counts),
             spin,
             levitated,
-            edges: shown.map(|edges| {
-                edges.map(|Edges { count, age }| Pulses {
-                    count: count.into(),
-                    age: f64::from(age) / (256.0 * rate),
-                })
-            }),
+            edges: edges.map(|it| it.map(|it| Pulses::of(it, rate))),
         })?;
     }
     writer.finish()?;

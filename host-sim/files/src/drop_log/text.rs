@@ -40,7 +40,7 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
 
 fn line(episode: &Episode, paint: Paint) -> String {
     let header = episode.header.as_ref();
-    let state = format!("{:<11}", complete(episode.complete));
+    let state = format!("{:<11}", <&str>::from(episode.complete));
     let state = match (episode.damaged, episode.complete) {
         (true, _) => paint.bad(&state),
         (false, Completeness::Yes) => paint.good(&state),
@@ -92,18 +92,10 @@ fn damage(episode: &Episode) -> String {
     format!("  damaged: {}", parts.join("; "))
 }
 
-fn complete(complete: Completeness) -> &'static str {
-    match complete {
-        Completeness::Yes => "complete",
-        Completeness::CutOff => "cut off",
-        Completeness::Open => "open",
-    }
-}
-
 /// One episode.
 pub fn show(episode: &Episode, paint: Paint) -> String {
     let mut text = paint.bold(&format!("Episode {}: ", episode.sequence));
-    text += complete(episode.complete);
+    text += episode.complete.into();
     text += &damage(episode);
     text.push('\n');
     if let Some(header) = &episode.header {

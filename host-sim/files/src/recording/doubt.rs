@@ -3,7 +3,6 @@
 use crate::stream::Row;
 use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
-use touchdown_scene::sensors::SensorsConfig;
 
 /// Farthest that a rotor gets from the centre, in clearances; a support gives way.
 const FARTHEST: f64 = 3.0;
@@ -30,18 +29,20 @@ const SPEEDS: [(&str, f64); 4] = [
 const NEAR: f64 = 0.1;
 
 /// Largest values so far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Doubt {
     file: String,
     clearance: f64,
     spin: f64,
-    sensors: SensorsConfig,
+    /// Of the sensors, m.
+    range: f64,
+    two_planes: bool,
     samples: u64,
     seen: bool,
     farthest: f64,
     saturated: u64,
     fastest: f64,
-    planes: bool,
+    plane_b: bool,
 }
 
 impl Doubt {
@@ -51,20 +52,15 @@ impl Doubt {
             file: file.to_owned(),
             clearance: scene.retainer.clearance,
             spin: scene.rotor.spin,
-            sensors: scene.sensors,
-            samples: 0,
-            seen: false,
-            farthest: 0.0,
-            saturated: 0,
-            fastest: 0.0,
-            planes: false,
+            range: scene.sensors.range,
+            two_planes: scene.sensors.planes == 2,
+            ..Self::default()
         }
     }
 
     /// Takes the next row.
     pub fn take(&mut self, row: &Row) {
         self.samples += 1;
-        let range = self.sensors.range;
         let mut beyond = false;
         for plane in row.positions.as_chunks::<2>().0 {
             let distance = f64::hypot(plane[0], plane[1]);
@@ -73,10 +69,10 @@ impl Doubt {
                 self.farthest = distance;
             }
             self.seen |= !distance.is_nan();
-            beyond |= plane.iter().any(|it| it.abs() > range);
+            beyond |= plane.iter().any(|it| it.abs() > self.range);
         }
         self.saturated += u64::from(beyond);
-        self.planes |= !row.positions[2].is_nan();
+        self.plane_b |= !row.positions[2].is_nan();
         let spin = row.spin.unwrap_or(0.0);
         if spin.abs() > self.fastest.abs() {
             self.fastest = spin;
@@ -88,36 +84,31 @@ impl Doubt {
         let mut warnings = Vec::new();
         let ratio = self.farthest / self.clearance;
         if self.samples > 0 && !self.seen {
-            warnings.push(format!(
-                "{}: not one sample has a position: are these the right columns?",
-                self.file
-            ));
+            let rule = "not one sample has a position: are these the right columns?";
+            warnings.push(rule.to_owned());
         } else if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
             let would = |it: &&(&str, f64)| (0.2..=1.5).contains(&(ratio / it.1));
             let units = UNITS.iter().find(would);
             let units = units.map_or(String::new(), |(name, _)| format!(" ({name}?)"));
             warnings.push(format!(
-                "{}: the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are \
-                 unit and offset right?{units}",
-                self.file,
+                "the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are unit \
+                 and offset right?{units}",
                 Number(self.farthest * 1e6),
                 self.clearance * 1e6
             ));
         }
         if self.saturated as f64 > SATURATED * self.samples as f64 {
             warnings.push(format!(
-                "{}: {} of {} samples are beyond the sensors' range of {} um and are cut off there",
-                self.file,
+                "{} of {} samples are beyond the sensors' range of {} um and are cut off there",
                 self.saturated,
                 self.samples,
-                self.sensors.range * 1e6
+                self.range * 1e6
             ));
         }
         if self.fastest * self.spin < 0.0 {
             let rpm = |spin: f64| spin * 60.0 / std::f64::consts::TAU;
             warnings.push(format!(
-                "{}: the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
-                self.file,
+                "the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
                 Number(rpm(self.fastest)),
                 rpm(self.spin)
             ));
@@ -125,17 +116,14 @@ impl Doubt {
         let ratio = (self.fastest / self.spin).abs();
         let near = |it: &&(&str, f64)| (ratio / it.1 - 1.0).abs() < NEAR;
         if let Some((name, _)) = SPEEDS.iter().find(near) {
-            warnings.push(format!(
-                "{}: the speed is {ratio:.4} of the scene's: {name}?",
-                self.file
-            ));
+            warnings.push(format!("the speed is {ratio:.4} of the scene's: {name}?"));
         }
-        if self.seen && !self.planes && self.sensors.planes == 2 {
-            warnings.push(format!(
-                "{}: it has plane a alone, the scene two planes: falls and impacts are found later",
-                self.file
-            ));
+        if self.two_planes && self.seen && !self.plane_b {
+            let rule =
+                "it has plane a alone, the scene two planes: falls and impacts are found later";
+            warnings.push(rule.to_owned());
         }
-        warnings
+        let of_file = |it| format!("{}: {it}", self.file);
+        warnings.into_iter().map(of_file).collect()
     }
 }

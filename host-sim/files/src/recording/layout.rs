@@ -26,9 +26,8 @@ pub struct Layout {
 }
 
 /// A line that may be of the table.
-#[derive(Clone, Copy)]
-struct Line<'a> {
-    text: &'a str,
+struct Line {
+    text: String,
     /// Its first byte in the head, and its number from 1.
     at: (usize, u64),
 }
@@ -59,24 +58,27 @@ impl Layout {
         if !whole {
             lines.pop();
         }
-        let texts: Vec<String> = lines.iter().map(|(bytes, _)| text_of(bytes)).collect();
-        let all: Vec<Line> = (texts.iter().zip(&lines))
-            .map(|(text, (_, at))| Line { text, at: *at })
-            .collect();
-        let comment = hints.comment.or_else(|| comment_of(&all));
-        let is_comment = |line: &&Line| {
-            comment.is_some_and(|it| line.text.trim_start().as_bytes().first() == Some(&it.byte()))
-        };
-        let table: Vec<Line> = (all.iter())
+        let comment = hints.comment.or_else(|| comment_of(&lines));
+        let is_comment = |line: &&Line| comment.is_some_and(|it| line.begins_with(it));
+        let table: Vec<&Line> = (lines.iter())
             .filter(|it| !it.text.trim().is_empty() && !is_comment(it))
-            .copied()
             .collect();
-        let (delimiter, decimal) = marks(&table, hints)?;
-        let fields = |line: &Line| split(line.text, delimiter);
         let tail = &table[table.len().saturating_sub(LOOKED_AT)..];
-        let width = usual_width(tail, delimiter);
-        let numeric = numeric_columns(tail, width, delimiter, decimal);
-        let is_row = |line: &Line| {
+        let Some((delimiter, decimal)) = marks(tail, hints) else {
+            let rule = "there are no rows of two numbers or more with commas, semicolons or tabs between them";
+            return Err((table.first().map_or(1, |it| it.at.1), rule.to_owned()));
+        };
+        let fields = |line: &&Line| split(&line.text, delimiter);
+        let usual = usual_rows(tail, delimiter);
+        let width = usual.first().map_or(0, Vec::len);
+        let numbers = |column: usize| {
+            let fields = usual.iter().map(|row| &row[column]);
+            fields.filter(|it| is_value(it, decimal)).count()
+        };
+        let numeric: Vec<bool> = (0..width)
+            .map(|column| 2 * numbers(column) > usual.len())
+            .collect();
+        let is_row = |line: &&Line| {
             let fields = fields(line);
             let numbers = fields.iter().filter(|it| is_number(it, decimal));
             fields.len() == width
@@ -98,11 +100,8 @@ impl Layout {
             .collect();
         if above.is_empty() {
             // NumPy and gnuplot put the names into a comment.
-            let names = all
-                .iter()
-                .rev()
-                .filter(|it| it.at.1 < at.1)
-                .find(is_comment);
+            let mut before = lines.iter().rev().filter(|it| it.at.1 < at.1);
+            let names = before.find(is_comment);
             let names = names.map(|it| it.text.trim_start().trim_start_matches(['#', '%']));
             let names = names.map(|it| split(it.trim_start(), delimiter));
             above.extend(names.filter(|it| it.len() == width));
@@ -130,14 +129,23 @@ impl Layout {
     }
 }
 
+impl Line {
+    fn begins_with(&self, mark: Comment) -> bool {
+        self.text.trim_start().as_bytes().first() == Some(&(mark as u8))
+    }
+}
+
 /// Each line with its place; a last one without an end is one too.
-fn lines(head: &[u8], from: usize) -> Vec<(&[u8], (usize, u64))> {
+fn lines(head: &[u8], from: usize) -> Vec<Line> {
     let (mut lines, mut start, mut number) = (Vec::new(), from, 1);
     while start < head.len() {
         let rest = &head[start..];
         let length = rest.iter().position(|it| *it == b'\n' || *it == b'\r');
         let length = length.unwrap_or(rest.len());
-        lines.push((&rest[..length], (start, number)));
+        lines.push(Line {
+            text: text_of(&rest[..length]),
+            at: (start, number),
+        });
         let ends_in_both = rest[length..].starts_with(b"\r\n");
         start += length + if ends_in_both { 2 } else { 1 };
         number += 1;
@@ -146,15 +154,13 @@ fn lines(head: &[u8], from: usize) -> Vec<(&[u8], (usize, u64))> {
 }
 
 fn comment_of(lines: &[Line]) -> Option<Comment> {
-    [Comment::Hash, Comment::Percent].into_iter().find(|it| {
-        let begins = |line: &Line| line.text.trim_start().as_bytes().first() == Some(&it.byte());
-        lines.iter().any(begins)
-    })
+    let mut marks = [Comment::Hash, Comment::Percent].into_iter();
+    marks.find(|mark| lines.iter().any(|it| it.begins_with(*mark)))
 }
 
 /// The fields of a line, without blanks and quotes about them.
 fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
-    let between = char::from(delimiter.byte());
+    let between = char::from(delimiter as u8);
     let mut fields = vec![String::new()];
     let mut quoted = false;
     for letter in line.chars() {
@@ -170,69 +176,36 @@ fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
 }
 
 /// Delimiter and decimal sign by which most of the last lines' fields are numbers.
-fn marks(table: &[Line], hints: &TextHints) -> Result<(Delimiter, Decimal), (u64, String)> {
-    let tail = &table[table.len().saturating_sub(LOOKED_AT)..];
+fn marks(tail: &[&Line], hints: &TextHints) -> Option<(Delimiter, Decimal)> {
     let mut best = None;
     let mut most = (0.0, 0);
-    for delimiter in Delimiter::ALL {
+    for delimiter in [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma] {
         for decimal in [Decimal::Point, Decimal::Comma] {
             let wanted = hints.delimiter.is_none_or(|it| it == delimiter)
                 && hints.decimal.is_none_or(|it| it == decimal);
             if !wanted || (delimiter == Delimiter::Comma && decimal == Decimal::Comma) {
                 continue;
             }
-            let width = usual_width(tail, delimiter);
-            let rows = tail.iter().map(|it| split(it.text, delimiter));
-            let (mut numbers, mut fields) = (0, 0);
-            for row in rows.filter(|it| it.len() == width && width > 1) {
-                fields += row.len();
-                numbers += row.iter().filter(|it| is_value(it, decimal)).count();
-            }
-            let part = numbers as f64 / fields.max(1) as f64;
+            let mut fields = usual_rows(tail, delimiter);
+            fields.retain(|row| row.len() > 1);
+            let fields = fields.concat();
+            let numbers = fields.iter().filter(|it| is_value(it, decimal)).count();
+            let part = numbers as f64 / fields.len().max(1) as f64;
             if numbers > 0 && (part, numbers) > most {
                 (most, best) = ((part, numbers), Some((delimiter, decimal)));
             }
         }
     }
-    best.ok_or_else(|| {
-        let rule =
-            "there are no rows of two numbers or more with commas, semicolons or tabs between them";
-        (table.first().map_or(1, |it| it.at.1), rule.to_owned())
-    })
+    best
 }
 
-/// Fields of most lines.
-fn usual_width(lines: &[Line], delimiter: Delimiter) -> usize {
-    let widths: Vec<_> = lines
-        .iter()
-        .map(|it| split(it.text, delimiter).len())
-        .collect();
-    let count = |width: usize| widths.iter().filter(|it| **it == width).count();
-    widths
-        .iter()
-        .copied()
-        .max_by_key(|it| count(*it))
-        .unwrap_or(0)
-}
-
-/// Which columns hold numbers in most lines.
-fn numeric_columns(
-    lines: &[Line],
-    width: usize,
-    delimiter: Delimiter,
-    decimal: Decimal,
-) -> Vec<bool> {
-    let rows: Vec<_> = (lines.iter().map(|it| split(it.text, delimiter)))
-        .filter(|it| it.len() == width)
-        .collect();
-    let numbers = |column: usize| {
-        rows.iter()
-            .filter(|it| is_value(&it[column], decimal))
-            .count()
-    };
-    (0..width)
-        .map(|column| 2 * numbers(column) > rows.len())
-        .collect()
+/// The fields of those lines that have as many as most.
+fn usual_rows(lines: &[&Line], delimiter: Delimiter) -> Vec<Vec<String>> {
+    let mut rows: Vec<_> = (lines.iter().map(|it| split(&it.text, delimiter))).collect();
+    let alike = |row: &&Vec<String>| rows.iter().filter(|it| it.len() == row.len()).count();
+    let width = rows.iter().max_by_key(alike).map_or(0, Vec::len);
+    rows.retain(|it| it.len() == width);
+    rows
 }
 
 /// A number, or what stands for a missing one.

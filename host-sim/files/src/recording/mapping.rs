@@ -65,31 +65,20 @@ pub struct TextHints {
 
 /// Between fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, strum::Display)]
+#[repr(u8)]
 pub enum Delimiter {
     /// `,`
     #[serde(rename = ",", alias = "comma")]
     #[strum(serialize = "commas")]
-    Comma,
+    Comma = b',',
     /// `;`
     #[serde(rename = ";", alias = "semicolon")]
     #[strum(serialize = "semicolons")]
-    Semicolon,
+    Semicolon = b';',
     /// A tabulator.
     #[serde(rename = "\t", alias = "tab")]
     #[strum(serialize = "tabs")]
-    Tab,
-}
-
-impl Delimiter {
-    pub const ALL: [Self; 3] = [Self::Semicolon, Self::Tab, Self::Comma];
-
-    pub fn byte(self) -> u8 {
-        match self {
-            Self::Comma => b',',
-            Self::Semicolon => b';',
-            Self::Tab => b'\t',
-        }
-    }
+    Tab = b'\t',
 }
 
 /// Between whole and fraction.
@@ -105,22 +94,14 @@ pub enum Decimal {
 
 /// What a comment begins with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[repr(u8)]
 pub enum Comment {
     /// `#`
     #[serde(rename = "#")]
-    Hash,
+    Hash = b'#',
     /// `%`
     #[serde(rename = "%")]
-    Percent,
-}
-
-impl Comment {
-    pub fn byte(self) -> u8 {
-        match self {
-            Self::Hash => b'#',
-            Self::Percent => b'%',
-        }
-    }
+    Percent = b'%',
 }
 
 /// A column by its name, with or without the unit in it, or by its number, counted from 1.

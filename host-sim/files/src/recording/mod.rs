@@ -10,11 +10,11 @@ mod resample;
 mod text;
 mod unit;
 
-use std::fs::File;
 use std::io::{BufReader, Read};
+use std::iter;
 use std::path::Path;
 
-pub use comtrade::{Cfg, DEVICE, STATION};
+pub use comtrade::{DEVICE, STATION};
 pub use mapping::Mapping;
 
 use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
@@ -69,7 +69,7 @@ impl Recording {
     pub fn open(path: &Path, reading: &Reading, scene: &Scene) -> Result<Self, InputError> {
         let file = path.display().to_string();
         if !is_pair(path) {
-            let (bytes, size) = opened(path)?;
+            let (bytes, size) = InputError::open(path)?;
             return Self::of_bytes(&file, bytes, size, reading, scene);
         }
         let mut source = Source::new(&file, 0, reading, scene);
@@ -122,16 +122,10 @@ impl Iterator for Recording {
         match &row {
             Ok(row) => self.doubt.take(row),
             // Nothing comes after what is wrong.
-            Err(_) => self.rows = Box::new(std::iter::empty()),
+            Err(_) => self.rows = Box::new(iter::empty()),
         }
         Some(row)
     }
-}
-
-/// Opens a file; also how many bytes it has.
-fn opened(path: &Path) -> Result<(BufReader<File>, u64), InputError> {
-    let (file, size) = InputError::open(path)?;
-    Ok((BufReader::with_capacity(1 << 16, file), size))
 }
 
 /// What a recording of any kind is read with.
@@ -162,9 +156,10 @@ impl<'a> Source<'a> {
         mapping: &Mapping,
     ) -> Result<Recording, InputError> {
         let (sensors, remarks) = (&self.scene.sensors, &self.remarks);
-        let rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
+        let mut rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
         let (header, format) = (rows.layout.before.1.max(1), format_of(&rows.layout));
         let (columns, rate) = (rows.pick.columns(), rows.rate);
+        let rows = iter::from_fn(move || rows.read().transpose());
         Ok(Recording {
             format: Some(format),
             ..self.paced(columns, rows, rate, header)?
@@ -195,7 +190,7 @@ impl<'a> Source<'a> {
 
     fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
         let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
-        let rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
+        let mut rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
             let rates: Vec<_> = cfg
@@ -212,13 +207,13 @@ impl<'a> Source<'a> {
         let is_episode = cfg.is_episode && mapping.is_none();
         let format = format!("COMTRADE {}, {} data", cfg.year, cfg.data);
         let (columns, rate) = (rows.pick.columns(), cfg.rate());
-        let rows = rows.map(move |it| {
-            let mut stamped = it?;
-            if is_episode {
+        let rows = iter::from_fn(move || {
+            let mut read = rows.read();
+            if let (true, Ok(Some(stamped))) = (is_episode, &mut read) {
                 let positions = &mut stamped.row.positions;
                 *positions = of_own_axes(positions, &sensors);
             }
-            Ok(stamped)
+            read.transpose()
         });
         Ok(Recording {
             format: Some(format),
@@ -241,7 +236,7 @@ impl<'a> Source<'a> {
                 let rule = "counted edges cannot be resampled";
                 return Err(InputError::of_file(file, rule));
             }
-            let resampled = Resampled::new(file, stamped, wanted, &self.remarks)?;
+            let resampled = Resampled::new(file, Box::new(stamped), wanted, &self.remarks)?;
             let start = resampled.start;
             (Box::new(resampled), wanted, start)
         } else if let Some(given) = rate {

@@ -134,16 +134,7 @@ impl Pick {
 
     /// No column is two quantities.
     fn each_its_own(&self, found: &[Heading]) -> Result<(), String> {
-        let positions = self.positions.iter().map(|it| it.column);
-        let others = [
-            ("time", self.time.map(|it| it.0)),
-            ("speed", self.speed.map(|it| it.column)),
-            ("levitated", self.levitated.map(|it| it.column)),
-        ];
-        let others = others
-            .into_iter()
-            .filter_map(|(name, it)| Some((name, it?)));
-        let all: Vec<_> = POSITIONS.into_iter().zip(positions).chain(others).collect();
+        let all: Vec<_> = self.quantities().collect();
         for (index, (name, column)) in all.iter().enumerate() {
             if let Some((before, _)) = all[..index].iter().find(|it| it.1 == *column) {
                 let (number, named) = (column + 1, &found[*column].text);
@@ -166,12 +157,20 @@ impl Pick {
         }
     }
 
-    /// Which columns are read.
-    pub fn used(&self) -> Vec<usize> {
+    /// Each quantity and its column.
+    fn quantities(&self) -> impl Iterator<Item = (&'static str, usize)> {
         let positions = self.positions.iter().map(|it| it.column);
-        let speed = self.speed.map(|it| it.column);
-        let levitated = self.levitated.map(|it| it.column);
-        positions.chain(speed).chain(levitated).collect()
+        let time = self.time.map(|it| ("time", it.0));
+        let speed = self.speed.map(|it| ("speed", it.column));
+        let levitated = self.levitated.map(|it| ("levitated", it.column));
+        let all = POSITIONS.into_iter().zip(positions).chain(time);
+        all.chain(speed).chain(levitated)
+    }
+
+    /// Which columns have values that are read; the times are read by their digits.
+    pub fn used(&self) -> Vec<usize> {
+        let values = self.quantities().filter(|(name, _)| *name != "time");
+        values.map(|(_, column)| column).collect()
     }
 
     /// The row of `values`, of which those that are used are there; NaN where there is none.
@@ -180,10 +179,9 @@ impl Pick {
         for (place, column) in positions.iter_mut().zip(&self.positions) {
             *place = column.of(values);
         }
-        for (plane, angle) in self.turned.iter().flatten().enumerate() {
-            let along = [positions[2 * plane], positions[2 * plane + 1]];
-            let [x, y] = to_sensor_axes(along, -angle);
-            (positions[2 * plane], positions[2 * plane + 1]) = (x, y);
+        let (planes, _) = positions.as_chunks_mut::<2>();
+        for (place, angle) in planes.iter_mut().zip(self.turned.iter().flatten()) {
+            *place = to_sensor_axes(*place, -angle);
         }
         let spin = self.speed.map(|it| it.of(values));
         Row {
@@ -200,10 +198,8 @@ impl Pick {
 }
 
 fn time(mapping: &Mapping, found: &[Heading]) -> Result<Option<(usize, i32)>, String> {
-    let Some(it) = mapping.time.as_ref().map(toml::Spanned::get_ref) else {
-        return Ok(None);
-    };
-    let Some(column) = &it.column else {
+    let it = mapping.time.as_ref().map(toml::Spanned::get_ref);
+    let Some((it, column)) = it.and_then(|it| Some((it, it.column.as_ref()?))) else {
         return Ok(None);
     };
     let index = find(column, "time", found)?;

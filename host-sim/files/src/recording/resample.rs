@@ -18,11 +18,13 @@ const LONGEST_GAP: f64 = 60.0;
 /// A time within this part of the usual interval of a row is that row's.
 const SAME: f64 = 1e-6;
 
+/// Rows as they come.
+type StampedRows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
+
 /// Rows at a rate of choice.
-pub struct Resampled<I> {
+pub struct Resampled {
     file: String,
-    rows: I,
-    ahead: std::collections::VecDeque<Stamped>,
+    rows: StampedRows,
     /// The rows about the next time.
     from: Stamped,
     to: Option<Stamped>,
@@ -38,39 +40,43 @@ pub struct Resampled<I> {
     remarks: Remarks,
 }
 
-impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
+impl Resampled {
     /// Of `rows` of the file `file`, at `rate` (Hz), from the first of them on.
-    pub fn new(file: &str, mut rows: I, rate: f64, remarks: &Remarks) -> Result<Self, InputError> {
+    pub fn new(
+        file: &str,
+        mut rows: StampedRows,
+        rate: f64,
+        remarks: &Remarks,
+    ) -> Result<Self, InputError> {
         let Some(from) = rows.next().transpose()? else {
             return Err(InputError::of_file(file, "there are no rows"));
         };
-        let ahead = (&mut rows).take(LOOK_AHEAD).collect::<Result<_, _>>();
+        let start = from.stamp.time;
+        let ahead = (&mut rows).take(LOOK_AHEAD);
+        let ahead = ahead.collect::<Result<Vec<_>, _>>()?;
+        let usual = median_interval(start, ahead.iter().map(|it| it.stamp.time));
         let mut resampled = Self {
             file: file.to_owned(),
-            rows,
-            ahead: ahead?,
+            rows: Box::new(ahead.into_iter().map(Ok).chain(rows)),
             from,
             to: None,
-            start: from.stamp.time,
+            start,
             rate,
-            usual: 0.0,
+            usual,
             read: 1,
             made: 0,
             gaps: 0,
             empty: 0,
             remarks: remarks.clone(),
         };
-        let times = resampled.ahead.iter().map(|it| it.stamp.time);
-        resampled.usual = median_interval(resampled.start, times);
         resampled.to = resampled.read()?;
         if resampled.to.is_none() {
             let rule = "one row alone has no sample rate";
             return Err(InputError::at_line(file, from.line, rule));
         }
-        if rate * resampled.usual > FINEST {
+        if rate * usual > FINEST {
             let rule = format!(
-                "most rows are {:.3e} s apart: at {rate} Hz that is more than {FINEST} samples a row, most of them made up",
-                resampled.usual
+                "most rows are {usual:.3e} s apart: at {rate} Hz that is more than {FINEST} samples a row, most of them made up"
             );
             return Err(InputError::of_file(file, rule));
         }
@@ -78,12 +84,8 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Resampled<I> {
     }
 
     fn read(&mut self) -> Result<Option<Stamped>, InputError> {
-        let next = match self.ahead.pop_front() {
-            Some(next) => next,
-            None => match self.rows.next().transpose()? {
-                Some(next) => next,
-                None => return Ok(None),
-            },
+        let Some(next) = self.rows.next().transpose()? else {
+            return Ok(None);
         };
         self.read += 1;
         let last = self.to.unwrap_or(self.from).stamp.time;
@@ -181,7 +183,7 @@ fn between(from: &Stamped, to: &Stamped, time: f64, usual: f64) -> Row {
     row
 }
 
-impl<I: Iterator<Item = Result<Stamped, InputError>>> Iterator for Resampled<I> {
+impl Iterator for Resampled {
     type Item = Result<Row, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {

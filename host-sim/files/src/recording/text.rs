@@ -64,9 +64,8 @@ pub struct TextRows<R> {
     values: Vec<f64>,
     /// Rows so far.
     rows: u64,
-    /// The row that is handed out once it is known whether another follows.
-    ready: Option<Result<Stamped, InputError>>,
-    left_out: bool,
+    /// Whether `record` is one that is not handed out yet, or why it cannot be read.
+    there: Result<bool, InputError>,
     remarks: Remarks,
 }
 
@@ -99,8 +98,8 @@ impl<R: Read> TextRows<R> {
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
-            .delimiter(layout.delimiter.byte())
-            .comment(layout.comment.map(|it| it.byte()))
+            .delimiter(layout.delimiter as u8)
+            .comment(layout.comment.map(|it| it as u8))
             .from_reader(bytes);
         let mut rows = Self {
             file: file.to_owned(),
@@ -113,11 +112,10 @@ impl<R: Read> TextRows<R> {
             meter: meter.clone(),
             record: ByteRecord::new(),
             rows: 0,
-            ready: None,
-            left_out: false,
+            there: Ok(false),
             remarks: remarks.clone(),
         };
-        rows.ready = rows.read().transpose();
+        rows.there = rows.advance();
         Ok(rows)
     }
 
@@ -131,22 +129,24 @@ impl<R: Read> TextRows<R> {
         read.map_err(|error| csv_error(&self.file, &error, &self.meter).further(before))
     }
 
-    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
-        if !self.advance()? {
+    /// The next row. A number that lost its last digits is still a number: only the end of its line shows that the
+    /// last row is whole.
+    pub fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+        if !std::mem::replace(&mut self.there, Ok(false))? {
             return Ok(None);
         }
         let line = self.line();
-        match self.parse(line) {
-            Ok(row) => Ok(Some(row)),
-            Err(rule) => {
-                let error = InputError::at_line(&self.file, line, rule);
-                if !self.advance().unwrap_or(true) && self.is_cut_off() {
-                    self.leave_out(line);
-                    return Ok(None);
-                }
-                Err(error)
-            }
+        let row = self.parse(line);
+        self.there = self.advance();
+        if matches!(self.there, Ok(false)) && !self.meter.ends_in(b"\r\n") {
+            self.remarks.warn(format!(
+                "{}:{line}: the last line is left out: it does not end with a newline, so it may be cut off",
+                self.file
+            ));
+            return Ok(None);
         }
+        let row = row.map_err(|rule| InputError::at_line(&self.file, line, rule));
+        row.map(Some)
     }
 
     fn parse(&mut self, line: u64) -> Result<Stamped, String> {
@@ -171,20 +171,6 @@ impl<R: Read> TextRows<R> {
             row: self.pick.row(stamp.time, &self.values),
             line,
         })
-    }
-
-    /// A number that lost its last digits is still a number: only the end of its line shows that the
-    /// last row is whole.
-    fn is_cut_off(&self) -> bool {
-        !self.meter.ends_in(b"\r\n")
-    }
-
-    fn leave_out(&mut self, line: u64) {
-        self.left_out = true;
-        self.remarks.warn(format!(
-            "{}:{line}: the last line is left out: it does not end with a newline, so it may be cut off",
-            self.file
-        ));
     }
 
     fn name(&self, column: usize) -> String {
@@ -220,22 +206,5 @@ impl<R: Read> TextRows<R> {
                 self.name(column)
             )
         })
-    }
-}
-
-impl<R: Read> Iterator for TextRows<R> {
-    type Item = Result<Stamped, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let ready = match self.ready.take()? {
-            Ok(row) => row,
-            Err(error) => return Some(Err(error)),
-        };
-        self.ready = self.read().transpose();
-        if self.ready.is_none() && self.is_cut_off() && !self.left_out {
-            self.leave_out(ready.line);
-            return None;
-        }
-        Some(Ok(ready))
     }
 }

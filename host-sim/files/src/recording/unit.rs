@@ -39,6 +39,12 @@ fn plain(text: &str) -> String {
     text.replace(['\u{b5}', '\u{3bc}'], "u").to_lowercase()
 }
 
+fn unknown<T>(quantity: &str, units: &str, text: &str) -> Result<T, String> {
+    Err(format!(
+        "the unit of {quantity} must be {units}, is {text:?}"
+    ))
+}
+
 impl FromStr for Displacement {
     type Err = String;
 
@@ -52,11 +58,7 @@ impl FromStr for Displacement {
             "in" | "inch" => Self::Length(INCH),
             "v" | "volt" | "volts" => Self::Volts(1.0),
             "mv" => Self::Volts(1e-3),
-            _ => {
-                return Err(format!(
-                    "the unit of a displacement must be um, nm, mm, m, mil, in, V or mV, is {text:?}"
-                ));
-            }
+            _ => return unknown("a displacement", "um, nm, mm, m, mil, in, V or mV", text),
         })
     }
 }
@@ -70,11 +72,7 @@ impl FromStr for Time {
             "ms" | "msec" => -3,
             "us" | "usec" => -6,
             "ns" => -9,
-            _ => {
-                return Err(format!(
-                    "the unit of time must be s, ms, us or ns, is {text:?}"
-                ));
-            }
+            _ => return unknown("time", "s, ms, us or ns", text),
         }))
     }
 }
@@ -87,11 +85,7 @@ impl FromStr for Speed {
             "rpm" | "r/min" | "1/min" | "min-1" | "rev/min" => TURN / 60.0,
             "rad/s" => 1.0,
             "hz" | "1/s" | "rps" | "rev/s" => TURN,
-            _ => {
-                return Err(format!(
-                    "the unit of a speed must be rpm, rad/s or Hz, is {text:?}"
-                ));
-            }
+            _ => return unknown("a speed", "rpm, rad/s or Hz", text),
         }))
     }
 }

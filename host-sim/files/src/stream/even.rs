@@ -41,10 +41,8 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         let mut clock = Clock::new(first.stamp);
         let mut ahead = VecDeque::from([first.row]);
         let mut stamps = Vec::new();
-        while stamps.len() + 1 < LOOK_AHEAD {
-            let Some(next) = rows.next().transpose()? else {
-                break;
-            };
+        for next in rows.by_ref().take(LOOK_AHEAD - 1) {
+            let next = next?;
             clock.learn(next.stamp);
             ahead.push_back(next.row);
             stamps.push((next.stamp, next.line));

@@ -128,12 +128,12 @@ pub fn to_sample(row: &Row, sensors: &SensorsConfig, rate: f64) -> Sample {
 /// Displacements in the scene's axes, of those along the channels' own axes, as `sensors` are mounted.
 pub fn of_own_axes(along: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
     let mut positions = *along;
-    let planes =
-        (sensors.mounting_angle.into_iter()).zip(sensors.calibration.unwrap_or_default().planes);
-    for (place, (angle, of)) in positions.chunks_exact_mut(2).zip(planes) {
+    let record = sensors.calibration.unwrap_or_default();
+    let planes = sensors.mounting_angle.into_iter().zip(record.planes);
+    for (place, (angle, of)) in positions.as_chunks_mut::<2>().0.iter_mut().zip(planes) {
         let (sin, cos) = f64::from(of.skew).sin_cos();
         let second = (place[1] + sin * place[0]) / cos;
-        place.copy_from_slice(&to_sensor_axes([place[0], second], -angle));
+        *place = to_sensor_axes([place[0], second], -angle);
     }
     positions
 }
@@ -143,12 +143,12 @@ pub fn without_record(positions: &[f64; CHANNELS], sensors: &SensorsConfig) -> [
     let mut readings = *positions;
     let record = sensors.calibration.unwrap_or_default();
     let planes = sensors.mounting_angle.into_iter().zip(record.planes);
-    for (place, (angle, of)) in readings.chunks_exact_mut(2).zip(planes) {
-        let [first, _] = to_sensor_axes([place[0], place[1]], angle);
-        let [_, second] = to_sensor_axes([place[0], place[1]], angle + f64::from(of.skew));
-        let [u, v] = [(first, 0), (second, 1)]
+    for (place, (angle, of)) in readings.as_chunks_mut::<2>().0.iter_mut().zip(planes) {
+        let [first, _] = to_sensor_axes(*place, angle);
+        let [_, second] = to_sensor_axes(*place, angle + f64::from(of.skew));
+        let read = [(first, 0), (second, 1)]
             .map(|(along, axis)| f64::from(of.zero[axis]) + f64::from(of.gain[axis]) * along);
-        place.copy_from_slice(&to_sensor_axes([u, v], -angle));
+        *place = to_sensor_axes(read, -angle);
     }
     readings
 }
@@ -161,12 +161,10 @@ pub fn to_row(time: f64, sample: &Sample, sensors: &SensorsConfig, rate: f64) ->
             *position = displacement(sensors, sample.counts[channel]);
         }
     }
-    for (plane, angle) in sensors.mounting_angle.into_iter().enumerate() {
+    let (planes, _) = positions.as_chunks_mut::<2>();
+    for (place, angle) in planes.iter_mut().zip(sensors.mounting_angle) {
         if angle != 0.0 {
-            let along = [positions[2 * plane], positions[2 * plane + 1]];
-            let [x, y] = to_sensor_axes(along, -angle);
-            positions[2 * plane] = x;
-            positions[2 * plane + 1] = y;
+            *place = to_sensor_axes(*place, -angle);
         }
     }
     Row {
@@ -174,11 +172,6 @@ pub fn to_row(time: f64, sample: &Sample, sensors: &SensorsConfig, rate: f64) ->
         positions,
         spin: sample.spin.map(f64::from),
         levitated: sample.levitated,
-        edges: sample.edges.map(|edges| {
-            edges.map(|Edges { count, age }| Pulses {
-                count: u64::from(count),
-                age: f64::from(age) / (256.0 * rate),
-            })
-        }),
+        edges: sample.edges.map(|it| it.map(|it| Pulses::of(it, rate))),
     }
 }

@@ -14,9 +14,8 @@ use super::clock::Stamp;
 use super::learnt::{LEARNT, of_field};
 use super::row::{Pulses, Row, Stamped};
 use touchdown_base::input_error::{InputError, reason};
+use touchdown_scene::rule::{MICRO, RPM};
 
-const RPM: f64 = std::f64::consts::TAU / 60.0;
-const MICRO: f64 = 1e-6;
 /// Whole numbers up to here are exact.
 const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
 
@@ -161,70 +160,58 @@ fn parse(
             record.len()
         )));
     }
-    let number = |column: usize| -> Result<f64, InputError> {
-        let text = &record[column];
-        match text.parse::<f64>() {
-            _ if is_missing(text) => Ok(f64::NAN),
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(fail(format!(
-                "{} must be a finite number, empty or NaN, is {text:?}",
-                header[column]
-            ))),
-        }
-    };
     let stamp = Stamp::parse(&record[0]).ok_or_else(|| {
         fail(format!(
             "time_s must be a finite number, is {:?}",
             &record[0]
         ))
     })?;
-    let channels = 2 * usize::from(columns.planes);
+    let number = |(name, text): (&str, &str)| match text.parse::<f64>() {
+        _ if is_missing(text) => Ok(f64::NAN),
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(fail(format!(
+            "{name} must be a finite number, empty or NaN, is {text:?}"
+        ))),
+    };
+    let mut fields = header.iter().copied().zip(record).skip(1);
+    // There are as many as the columns want.
+    let mut next = || fields.next().unwrap_or_default();
     let mut positions = [f64::NAN; CHANNELS];
-    for (channel, position) in positions[..channels].iter_mut().enumerate() {
-        *position = MICRO * number(1 + channel)?;
+    for position in &mut positions[..2 * usize::from(columns.planes)] {
+        *position = MICRO * number(next())?;
     }
-    let mut column = 1 + channels;
-    let mut spin = None;
-    if columns.speed {
-        spin = Some(RPM * number(column)?).filter(|spin| !spin.is_nan());
-        column += 1;
-    }
-    let mut levitated = None;
-    if columns.levitated {
-        levitated = match &record[column] {
-            "0" => Some(false),
-            "1" => Some(true),
-            other if is_missing(other) => None,
-            other => {
-                let rule = "must be 0, 1, empty or NaN";
-                return Err(fail(format!("levitated {rule}, is {other:?}")));
-            }
-        };
-        column += 1;
-    }
+    let spin = columns.speed.then(|| number(next())).transpose()?;
+    let levitated = match columns.levitated.then(|| next().1) {
+        Some("0") => Some(false),
+        Some("1") => Some(true),
+        Some(other) if !is_missing(other) => {
+            let rule = "must be 0, 1, empty or NaN";
+            return Err(fail(format!("levitated {rule}, is {other:?}")));
+        }
+        _ => None,
+    };
     let mut edges = [None; TACHOMETERS];
     for (pulses, _) in (edges.iter_mut().zip(columns.edges)).filter(|(_, there)| *there) {
-        let (count, age) = (number(column)?, MICRO * number(column + 1)?);
+        let (counted, aged) = (next(), next());
+        let (count, age) = (number(counted)?, MICRO * number(aged)?);
         if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
-            let text = &record[column];
+            let (name, text) = counted;
             let rule = "must be a whole number from 0 to 2^53, empty or NaN";
-            return Err(fail(format!("{} {rule}, is {text:?}", header[column])));
+            return Err(fail(format!("{name} {rule}, is {text:?}")));
         }
         if age < 0.0 {
-            let text = &record[column + 1];
-            let name = header[column + 1];
+            let (name, text) = aged;
             return Err(fail(format!("{name} must be 0 or more, is {text:?}")));
         }
         *pulses = (!count.is_nan() && !age.is_nan()).then_some(Pulses {
             count: count as u64,
             age,
         });
-        column += 2;
     }
     let row = Row {
         time: stamp.time,
         positions,
-        spin,
+        spin: spin.map(|it| RPM * it).filter(|it| !it.is_nan()),
         levitated,
         edges,
     };

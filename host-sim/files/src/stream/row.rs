@@ -1,7 +1,7 @@
 //! One row of a stream.
 
 use super::clock::Stamp;
-use touchdown_core::sample::{CHANNELS, TACHOMETERS};
+use touchdown_core::sample::{CHANNELS, Edges, TACHOMETERS};
 
 /// Sample rates that the detector takes, Hz.
 pub const RATES: std::ops::RangeInclusive<f64> = 100.0..=200_000.0;
@@ -13,6 +13,16 @@ pub struct Pulses {
     pub count: u64,
     /// Time since the last one, s.
     pub age: f64,
+}
+
+impl Pulses {
+    /// Of what a sample says at `rate` (Hz).
+    pub fn of(Edges { count, age }: Edges, rate: f64) -> Self {
+        Self {
+            count: count.into(),
+            age: f64::from(age) / (256.0 * rate),
+        }
+    }
 }
 
 /// One row; SI.

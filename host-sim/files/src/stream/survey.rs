@@ -13,7 +13,7 @@ const NAMED: usize = 5;
 const GAP: f64 = 1.5;
 
 /// Counts what is uneven, in constant memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Survey {
     /// Median of the first intervals, s.
     period: f64,
@@ -81,13 +81,8 @@ impl Survey {
             period: median_interval(first, times),
             first,
             last: first,
-            intervals: 0,
             shortest: f64::INFINITY,
-            longest: 0.0,
-            squares: 0.0,
-            gaps: Lines::default(),
-            back: Lines::default(),
-            cut: false,
+            ..Self::default()
         }
     }
 

@@ -3,9 +3,7 @@
 use std::io::{self, Write};
 
 use super::{Columns, LEARNT, Row};
-
-const RPM: f64 = std::f64::consts::TAU / 60.0;
-const MICRO: f64 = 1e-6;
+use touchdown_scene::rule::{MICRO, RPM};
 
 /// A stream being written.
 pub struct StreamWriter<W> {

@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use chrono::{Datelike, NaiveDateTime};
 
+use crate::recording::pick::Heading;
+
 /// Most channels of a kind that are believed.
 const MOST_CHANNELS: usize = 10_000;
 /// Most rates that are believed.
@@ -22,8 +24,8 @@ pub struct Cfg {
     pub is_episode: bool,
     /// In the order of the data.
     pub analog: Vec<Analog>,
-    /// Names, in the order of the data.
-    pub digital: Vec<String>,
+    /// In the order of the data.
+    pub digital: Vec<Heading>,
     /// Each rate (Hz) and the number of its last sample; none where the stamps alone tell.
     pub rates: Vec<(f64, u64)>,
     /// Samples in all.
@@ -39,9 +41,7 @@ pub struct Cfg {
 /// An analog channel: value = scale count + shift.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analog {
-    pub name: String,
-    /// As it is written.
-    pub unit: String,
+    pub heading: Heading,
     /// `a`.
     pub scale: f64,
     /// `b`.
@@ -134,7 +134,7 @@ impl Cfg {
             .collect::<Result<_, _>>()?;
         let digital = (0..digitals).map(|_| {
             let fields = lines.fields("a digital channel")?;
-            Ok(fields.get(1).copied().unwrap_or("").to_owned())
+            Ok(heading(&fields, None))
         });
         let digital = digital.collect::<Result<_, Diagnostic>>()?;
         lines.next("the line frequency")?;
@@ -234,13 +234,20 @@ fn analog(lines: &mut Lines) -> Result<Analog, Diagnostic> {
         _ => lines.finite(&fields, at, what),
     };
     Ok(Analog {
-        name: fields.get(1).copied().unwrap_or("").to_owned(),
-        unit: fields.get(4).copied().unwrap_or("").to_owned(),
+        heading: heading(&fields, fields.get(4)),
         scale: lines.finite(&fields, 5, "the factor a of a channel")?,
         shift: lines.finite(&fields, 6, "the offset b of a channel")?,
         skew: or_zero(7, "the skew of a channel")?,
         most: or_zero(9, "the largest count of a channel")?,
     })
+}
+
+/// Of a channel; the unit as it is written.
+fn heading(fields: &[&str], unit: Option<&&str>) -> Heading {
+    Heading {
+        text: fields.get(1).copied().unwrap_or("").to_owned(),
+        unit: unit.filter(|it| !it.is_empty()).map(|it| (*it).to_owned()),
+    }
 }
 
 /// Rates with their last samples, and samples in all.

@@ -158,7 +158,7 @@ fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, Stri
             (Data::Float32, &[a, b, c, d]) => {
                 let count = f32::from_le_bytes([a, b, c, d]);
                 if count.is_infinite() {
-                    return Err(format!("channel {} is infinite", channel.name));
+                    return Err(format!("channel {} is infinite", channel.heading.text));
                 }
                 Some(f64::from(count))
             }

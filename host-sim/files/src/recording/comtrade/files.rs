@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
-use crate::recording::opened;
 use crate::stream::Meter;
 use touchdown_base::input_error::{InputError, reason};
 
@@ -35,7 +34,7 @@ pub fn open(path: &Path, meter: &Meter) -> Result<(Dat<Box<dyn Read>>, u64), Inp
     let cfg = Cfg::parse(&text)
         .map_err(|(line, rule)| InputError::at_line(&cfg_path.display().to_string(), line, rule))?;
     let dat_path = beside(path, "dat")?;
-    let (file, size) = opened(&dat_path)?;
+    let (file, size) = InputError::open(&dat_path)?;
     let name = dat_path.display().to_string();
     Ok((Dat::new(&name, cfg, Box::new(file), meter), size))
 }

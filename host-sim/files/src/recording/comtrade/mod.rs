@@ -8,12 +8,14 @@ mod files;
 
 use std::io::Read;
 
-pub use cfg::{Cfg, DEVICE, STATION};
+pub use cfg::{DEVICE, STATION};
 pub use dat::Dat;
 pub use files::{combined, is_combined, is_pair, open};
 
+use cfg::Data;
+
 use super::mapping::Mapping;
-use super::pick::{Heading, Pick, by_name};
+use super::pick::{Heading, Pick, by_name, list};
 use super::remarks::Remarks;
 use crate::stream::{Stamp, Stamped};
 use touchdown_base::input_error::InputError;
@@ -31,8 +33,6 @@ pub struct ComtradeRows<R> {
     pub dat: Dat<R>,
     /// What is taken of it.
     pub pick: Pick,
-    /// By the rates, where it has them.
-    by_rate: bool,
     /// First stamp, ticks.
     first: Option<f64>,
 }
@@ -47,24 +47,21 @@ impl<R: Read> ComtradeRows<R> {
     ) -> Result<Self, InputError> {
         let cfg = &dat.cfg;
         let fail = |rule: String| InputError::of_file(&dat.file, rule);
-        let found = headings(cfg);
+        let analog = cfg.analog.iter().map(|it| &it.heading);
+        let found: Vec<Heading> = analog.chain(&cfg.digital).cloned().collect();
         let named;
         let mapping = match mapping {
             Some(mapping) => mapping,
             None => {
-                named = by_name(&found).ok_or_else(|| {
-                    fail(format!(
-                        "no channels are named ax and ay: --columns says which they are; {}",
-                        super::pick::list(&found)
-                    ))
-                })?;
+                let rule = "no channels are named ax and ay: --columns says which they are";
+                let unnamed = || fail(format!("{rule}; {}", list(&found)));
+                named = by_name(&found).ok_or_else(unnamed)?;
                 &named
             }
         };
         if mapping.time.is_some() {
-            return Err(fail(
-                "COMTRADE has its own rate: leave out [time] of --columns".to_owned(),
-            ));
+            let rule = "COMTRADE has its own rate: leave out [time] of --columns";
+            return Err(fail(rule.to_owned()));
         }
         let pick = Pick::new(mapping, &found, sensors, remarks).map_err(fail)?;
         for channel in pick.used().iter().filter_map(|it| cfg.analog.get(*it)) {
@@ -72,7 +69,7 @@ impl<R: Read> ComtradeRows<R> {
                 remarks.warn(format!(
                     "{}: channel {} is sampled {} us late, which is not undone",
                     dat.file,
-                    channel.name,
+                    channel.heading.text,
                     Number(channel.skew)
                 ));
             }
@@ -84,14 +81,14 @@ impl<R: Read> ComtradeRows<R> {
             ));
         }
         Ok(Self {
-            by_rate: !cfg.rates.is_empty(),
             dat,
             pick,
             first: None,
         })
     }
 
-    fn read(&mut self) -> Result<Option<Stamped>, InputError> {
+    /// The next sample's row.
+    pub fn read(&mut self) -> Result<Option<Stamped>, InputError> {
         let Some(sample) = self.dat.next()? else {
             let (there, told) = (self.dat.records, self.dat.cfg.samples);
             if there < told {
@@ -119,17 +116,12 @@ impl<R: Read> ComtradeRows<R> {
         let start = cfg.start.unwrap_or(0.0);
         let first = *self.first.get_or_insert(sample.stamp.unwrap_or(0.0));
         let since = sample.stamp.map(|it| (it - first) * cfg.tick);
-        let stamp = if self.by_rate {
+        let stamp = if let Some((rate, _)) = cfg.rates.iter().find(|it| line <= it.1) {
             let since_first = cfg.time(line - 1);
-            let period = cfg
-                .rates
-                .iter()
-                .find(|it| line <= it.1)
-                .map_or(0.0, |it| 1.0 / it.0);
-            let wrap = if cfg.data == cfg::Data::Ascii {
-                f64::INFINITY
-            } else {
-                WRAP * cfg.tick
+            let period = 1.0 / rate;
+            let wrap = match cfg.data {
+                Data::Ascii => f64::INFINITY,
+                _ => WRAP * cfg.tick,
             };
             let off = |since: &f64| {
                 let off = (since - since_first).abs() % wrap;
@@ -144,11 +136,8 @@ impl<R: Read> ComtradeRows<R> {
             }
             Stamp::exact(start + since_first)
         } else {
-            let Some(since) = since else {
-                return Err(self
-                    .dat
-                    .flaw("the sample has no stamp, and the configuration no rate"));
-            };
+            let rule = "the sample has no stamp, and the configuration no rate";
+            let since = since.ok_or_else(|| self.dat.flaw(rule))?;
             Stamp::counted(start + since, cfg.tick)
         };
         Ok(Some(Stamped {
@@ -157,25 +146,4 @@ impl<R: Read> ComtradeRows<R> {
             line,
         }))
     }
-}
-
-impl<R: Read> Iterator for ComtradeRows<R> {
-    type Item = Result<Stamped, InputError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        self.read().transpose()
-    }
-}
-
-/// The channels, analog before digital.
-fn headings(cfg: &Cfg) -> Vec<Heading> {
-    let analog = cfg.analog.iter().map(|it| Heading {
-        text: it.name.clone(),
-        unit: (!it.unit.is_empty()).then(|| it.unit.clone()),
-    });
-    let digital = cfg.digital.iter().map(|name| Heading {
-        text: name.clone(),
-        unit: None,
-    });
-    analog.chain(digital).collect()
 }
