@@ -174,7 +174,7 @@ impl Controller {
         for episode in &self.log.dump.episodes {
             text += &logged(episode);
         }
-        text
+        text + &self.link.text()
     }
 }
 
@@ -193,4 +193,17 @@ fn logged(episode: &Episode) -> String {
         episode.samples.iter().flatten().count(),
         episode.events.len(),
     )
+}
+
+impl Link {
+    fn text(&self) -> String {
+        format!(
+            "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
+            self.firmware,
+            self.sample_rate_hz,
+            self.counters.lost_samples,
+            self.counters.lost_notices,
+            self.counters.damaged_frames
+        )
+    }
 }
