@@ -7,6 +7,7 @@ use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
 use crate::platform::{JournalEntry, LogStore, Platform};
+use crate::tick::TickTask;
 
 /// Samples between two states that the link sends unasked.
 const STATE_SAMPLES: u64 = 1_000;
@@ -54,7 +55,7 @@ impl MainLoop {
 
     /// One turn. The samples that were taken as it began are done at its end, unless the log is not.
     pub fn turn<P: Platform>(&mut self, platform: &mut P) {
-        let samples = platform.hold(|tick| tick.app.state().samples());
+        let samples = platform.hold(TickTask::begin_turn);
         // The number of this power-on is in the log by then: what was recorded before gives no right any more.
         if self.log_due > 0 {
             self.answer(platform);

@@ -7,12 +7,17 @@ use touchdown_protocol::controller::{Cause, Outputs, Shown};
 
 use crate::app::App;
 use crate::board::Board;
-use crate::intake::Waiting;
+use crate::intake::{RING, Waiting};
 use crate::recorder::Recorder;
 
 /// Missed samples in a row whose time goes on in the monitor: 1 ms at 20 kHz, for which it trips. Those beyond are told
 /// and not made up for.
 const MOST_MISSED: u32 = 20;
+/// Samples in a row, after which the others wait for a turn of the main loop: an order over the link is heard also while ticks
+/// take all the time.
+const IN_A_ROW: u32 = 64;
+/// Sample periods that they wait at most. A main loop that hangs stops no tick.
+const LONGEST_WAIT: u32 = RING as u32 / 2;
 /// Notices on their way to log and link. If it is full they are lost and counted; events are numbered, so a gap shows.
 pub type Outbox = Deque<Notice, 64>;
 
@@ -54,6 +59,8 @@ pub struct TickTask<'m, B> {
     notices: Notices,
     /// Number of the next sample.
     next: u32,
+    /// Samples since the main loop's last turn began, and periods that one has waited for the next turn.
+    row: u32,
 }
 
 impl<'m, B: Board> TickTask<'m, B> {
@@ -78,15 +85,30 @@ impl<'m, B: Board> TickTask<'m, B> {
             },
             notices: Notices::new(),
             next: 0,
+            row: 0,
         }
     }
 
-    /// The oldest sample that waits, if there is one.
+    /// A turn of the main loop begins; how many samples there were.
+    pub fn begin_turn(&mut self) -> u64 {
+        self.row = 0;
+        self.app.state().samples()
+    }
+
+    /// The oldest sample that waits, if there is one and it is not the main loop's turn.
     #[inline]
     pub fn step(&mut self) -> bool {
+        if (IN_A_ROW..IN_A_ROW + LONGEST_WAIT).contains(&self.row) {
+            self.row += 1;
+            return false;
+        }
         let Some(taken) = self.desk.waiting.pop() else {
             return false;
         };
+        if self.row == IN_A_ROW + LONGEST_WAIT {
+            self.row = 0;
+        }
+        self.row += 1;
         let lost = taken.number.wrapping_sub(self.next);
         self.next = taken.number.wrapping_add(1);
         let arrival = &taken.arrival;

@@ -67,6 +67,16 @@ fn nothing_is_lost_until_the_ring_is_full() {
     assert!((dates[0] - dates[1]).abs() < 2.0, "{dates:?}");
 }
 
+/// It keeps the others waiting for half the ring at most, and they are made up for.
+#[test]
+fn a_main_loop_that_hangs_stops_no_tick() {
+    let (mut machine, mut main_loop) = started(falling(), |_| TICK);
+    run_to(&mut machine, &mut main_loop, 0.05);
+    machine.work(100_000_000);
+    assert_eq!(machine.tick.app.report(0, 0).counters.lost_samples, 0);
+    assert!(machine.given - machine.taken <= RING as u64 / 2);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
@@ -82,7 +92,8 @@ proptest! {
         run_to(&mut machine, &mut main_loop, 0.3);
         // The next that has room tells what was lost before it.
         machine.cost = Box::new(|_| 1);
-        run_to(&mut machine, &mut main_loop, 0.301);
+        let soon = machine.now as f64 * 1e-9 + 1e-3;
+        run_to(&mut machine, &mut main_loop, soon);
         let missing = machine.given - machine.taken;
         prop_assert_eq!(u64::from(machine.tick.app.report(0, 0).counters.lost_samples), missing);
     }
@@ -175,12 +186,19 @@ impl Desktop {
 /// In flight, between impacts, while it lies, while a sector is erased.
 #[test]
 fn a_clear_is_answered_within_20_ms_at_any_moment() {
+    for mean in [0.8, 1.0, 2.2] {
+        clear_at_any_moment(mean);
+    }
+}
+
+/// Ticks take so much of the core in the mean, and 0.3 of a period more or less.
+fn clear_at_any_moment(mean: f64) {
     let (mut worst, mut done, mut refused, mut erasing) = (0, 0, 0, 0);
+    let least = ((mean - 0.3) * PERIOD as f64) as u64;
     for seed in 1..=40_u64 {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut costs = state ^ 1;
-        // Four fifths of the core, and of a period up to 1.1.
-        let cost = move |_| PERIOD / 2 + random(&mut costs) % (3 * PERIOD / 5);
+        let cost = move |_| least + random(&mut costs) % (3 * PERIOD / 5);
         let (mut machine, mut main_loop) = started(falling(), cost);
         run_to(&mut machine, &mut main_loop, 0.05);
         // Some 0.3 s of looks.
@@ -213,9 +231,10 @@ fn a_clear_is_answered_within_20_ms_at_any_moment() {
         worst = worst.max(answered).max(asked);
     }
     println!(
-        "{done} done, {refused} refused, {erasing} while the flash was busy; {} us at worst",
+        "{mean} of the core: {done} done, {refused} refused, {erasing} while the flash was busy; {} us at worst",
         worst / 1_000
     );
     assert!(worst <= 20_000_000, "{worst} ns");
-    assert!(refused > 0 && erasing > 0);
+    // Where more than half of the samples are lost no drop is seen.
+    assert!((refused > 0 || mean > 1.0) && erasing > 0);
 }

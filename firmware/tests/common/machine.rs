@@ -139,16 +139,19 @@ pub fn started(
 
 impl Machine {
     /// The main loop works so long, and is interrupted.
-    fn work(&mut self, mut left: u64) {
+    pub fn work(&mut self, mut left: u64) {
         while self.now + left >= self.next_event() {
             left -= self.next_event() - self.now;
+            let samples = self.given;
             self.advance_to(self.next_event());
-            self.ticks();
+            if self.given > samples {
+                self.ticks();
+            }
         }
         self.now += left;
     }
 
-    /// All ticks that wait, one after another.
+    /// The ticks of the samples that wait, one after another, as the sampling interrupt asks for.
     fn ticks(&mut self) {
         while self.tick.step() {
             self.taken += 1;

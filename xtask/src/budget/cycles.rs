@@ -9,7 +9,7 @@ use std::thread;
 use anyhow::{Context, ensure};
 use serde::{Deserialize, Serialize};
 
-use super::queue::{self, Queue};
+use super::queue::{self, MainLoopTurn, Queue};
 use super::stream::Stream;
 use super::ticks::{self, TYPICAL, Table};
 use crate::firmware;
@@ -20,6 +20,8 @@ const RATES: [u64; 3] = [20_000, 25_000, 50_000];
 const PERIOD: u64 = CLOCK / RATES[0];
 /// Samples that can wait: `firmware/src/intake.rs`.
 const RING: usize = 15;
+/// Samples in a row, then a turn of the main loop: `firmware/src/tick.rs`.
+const IN_A_ROW: u32 = 64;
 /// Samples in 10 ms.
 const SPAN: usize = 200;
 /// Entry and exit of the interrupt: 12 cycles and 18 words of the floating-point unit each way, as modelled a line of
@@ -330,7 +332,13 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
         typical_modelled: mean(typical().flat_map(|it| it.part(k))).modelled,
         worst_modelled: worst(streams.iter().flat_map(|it| it.part(k))).modelled,
     };
-    let queues: Vec<_> = RATES.map(|rate| at_rate(&interrupts, rate)).into();
+    // A slice of the forecast is the longest thing that the main loop does.
+    let slices = streams.iter().flat_map(|it| it.part(PARTS.len() - 1));
+    let turn = MainLoopTurn {
+        in_a_row: IN_A_ROW,
+        cycles: worst(slices).modelled,
+    };
+    let queues: Vec<_> = RATES.map(|rate| at_rate(&interrupts, rate, turn)).into();
     let spans = interrupts.iter().flat_map(|it| it.windows(SPAN));
     let mean_10_ms = spans.map(|it| it.iter().sum::<u64>() / SPAN as u64).max();
     Modelled {
@@ -363,9 +371,11 @@ impl PlayedStream<'_> {
 }
 
 /// Each stream by itself.
-fn at_rate(streams: &[Vec<u64>], rate: u64) -> AtRate {
+fn at_rate(streams: &[Vec<u64>], rate: u64, turn: MainLoopTurn) -> AtRate {
     let period = CLOCK / rate;
-    let queues = streams.iter().map(|it| queue::simulate(it, period, RING));
+    let queues = streams
+        .iter()
+        .map(|it| queue::simulate(it, period, RING, turn));
     let all = queues.fold(Queue::default(), |a, b| Queue {
         lost: a.lost + b.lost,
         latency_worst: a.latency_worst.max(b.latency_worst),

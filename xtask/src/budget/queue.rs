@@ -9,14 +9,26 @@ pub struct Queue {
     pub latency_worst: u64,
 }
 
+/// The main loop's share: after so many samples in a row it takes so many cycles.
+#[derive(Clone, Copy, Debug)]
+pub struct MainLoopTurn {
+    pub in_a_row: u32,
+    pub cycles: u64,
+}
+
 /// Of samples at equal `period`s, whose ticks take `cycles` each. Up to `depth` samples wait; a new one is then lost,
 /// and takes no time.
-pub fn simulate(cycles: &[u64], period: u64, depth: usize) -> Queue {
+pub fn simulate(cycles: &[u64], period: u64, depth: usize, turn: MainLoopTurn) -> Queue {
     let mut queue = Queue::default();
     let mut waiting = std::collections::VecDeque::new();
-    let mut free = 0;
+    let (mut free, mut row) = (0, 0);
     let arrival = |sample: usize| sample as u64 * period;
-    let serve = |sample: usize, free: &mut u64| {
+    let mut serve = |sample: usize, free: &mut u64| {
+        row = if *free > arrival(sample) { row + 1 } else { 1 };
+        if row > turn.in_a_row {
+            row = 1;
+            *free += turn.cycles;
+        }
         *free = arrival(sample).max(*free) + cycles[sample];
         *free - arrival(sample)
     };
@@ -43,11 +55,16 @@ pub fn simulate(cycles: &[u64], period: u64, depth: usize) -> Queue {
 mod tests {
     use super::*;
 
+    const NONE: MainLoopTurn = MainLoopTurn {
+        in_a_row: u32::MAX,
+        cycles: 0,
+    };
+
     fn of(cycles: &[u64], depth: usize) -> (u64, u64) {
         let Queue {
             lost,
             latency_worst,
-        } = simulate(cycles, 100, depth);
+        } = simulate(cycles, 100, depth, NONE);
         (lost, latency_worst)
     }
 
@@ -82,7 +99,18 @@ mod tests {
     #[test]
     fn ticks_that_are_always_too_long_lose_a_share() {
         // Each takes one and a half periods: every third is lost.
-        let lost = simulate(&[150; 300], 100, 1).lost;
+        let lost = simulate(&[150; 300], 100, 1, NONE).lost;
         assert!((98..=100).contains(&lost), "{lost}");
+    }
+    #[test]
+    fn the_main_loop_has_a_turn_where_ticks_take_all_the_time() {
+        // Of ten samples in a row 1 000 are served, and each turn takes the time of two.
+        let turn = MainLoopTurn {
+            in_a_row: 10,
+            cycles: 200,
+        };
+        let lost = simulate(&[101; 1_200], 100, 15, turn).lost;
+        assert!((190..=205).contains(&lost), "{lost}");
+        assert_eq!(simulate(&[99; 1_200], 100, 15, turn).lost, 0);
     }
 }
