@@ -218,7 +218,9 @@ impl Watch {
         it.count = count;
         it.value = value - it.shift;
         it.innovation = it.value - it.position;
-        if it.seen < WARM_UP || it.blind > 0 {
+        // Where it was stuck is no place to judge it by: the rotor has moved since.
+        let was_stuck = it.condition == Condition::Lost && it.cause == FaultKind::Stuck;
+        if it.seen < WARM_UP || it.blind > 0 || was_stuck {
             return Look::Calm;
         }
         let square = it.innovation * it.innovation;
@@ -332,7 +334,7 @@ impl Watch {
             if it.condition == Condition::Lost {
                 return (None, None);
             }
-            it.condition = Condition::Lost;
+            (it.condition, it.cause) = (Condition::Lost, FaultKind::Stuck);
             return (None, found(FaultKind::Stuck, it.repeats));
         }
         if it.condition == Condition::Lost {
@@ -531,6 +533,28 @@ mod tests {
                 assert_eq!(taken, (Some(f32::from(count)), None), "{k}");
             }
         }
+    }
+
+    #[test]
+    fn a_channel_that_was_stuck_is_used_again_wherever_the_rotor_is() {
+        let watch = Watch::new(25.3, 80.0, 4095);
+        let (mut it, mut seed) = (ChannelMonitorState::default(), 1);
+        let mut lost = 0;
+        for k in 0..2_100_u16 {
+            let way = f32::from(k.saturating_sub(1_998));
+            let noisy = (2_048.0 + way + 2.0 * white(&mut seed)) as u16;
+            let count = if (2_000..2_050).contains(&k) {
+                2_048
+            } else {
+                noisy
+            };
+            let look = watch.look(&mut it, Some(count), true);
+            watch.take(&mut it, look, true, true);
+            watch.refine(&mut it);
+            lost += u16::from(it.condition == Condition::Lost);
+        }
+        assert_eq!(it.condition, Condition::Ok);
+        assert!((20..70).contains(&lost), "{lost}");
     }
 
     /// Its count of sound samples once ran over, after 65 536 of them.
