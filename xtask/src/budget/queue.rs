@@ -104,7 +104,7 @@ mod tests {
     }
     #[test]
     fn the_main_loop_has_a_turn_where_ticks_take_all_the_time() {
-        // Of ten samples in a row 1 000 are served, and each turn takes the time of two.
+        // After ten samples in a row a turn takes the time of two: of twelve two are lost.
         let turn = MainLoopTurn {
             in_a_row: 10,
             cycles: 200,
