@@ -15,7 +15,6 @@ use crate::blind_timer::BlindTimer;
 use crate::board::Board;
 use crate::lift_interlock::LiftInterlock;
 use crate::memory_scrub::MemoryScrub;
-use crate::outputs::{self, Condition};
 use crate::safety::{Findings, Safety};
 
 /// The monitor, what is latched, and the outputs.
@@ -134,8 +133,19 @@ impl App {
         let is_proven = self.safety.is_proven();
         self.lies_still = self.permit.take(places, self.state.phases(), is_proven);
         self.watch_itself(board.config(), places.is_some(), lost);
-        let told = self.told.take();
-        self.step(told);
+        let was_latched = self.safety.is_latched();
+        self.safety.step(&Findings {
+            guard: self.state.guard.verdict,
+            told: self.told.take(),
+            sees_all: self.state.sees_all(),
+            faulted: self.faults.trip(),
+            tested: self.tested.config && self.tested.sensors,
+            lies: self.state.phase().is_contact(),
+            lies_still: self.lies_still,
+        });
+        if self.safety.is_latched() && !was_latched {
+            self.state.guard.proof.forget();
+        }
         board.drive(self.shown());
     }
 
@@ -147,23 +157,6 @@ impl App {
             }
             self.permit.hear(notice);
             board.report(notice);
-        }
-    }
-
-    /// Mode, cause and proof.
-    fn step(&mut self, told: Option<Cause>) {
-        let was_latched = self.safety.is_latched();
-        self.safety.step(&Findings {
-            guard: self.state.guard.verdict,
-            told,
-            sees_all: self.state.sees_all(),
-            faulted: self.faults.trip(),
-            tested: self.tested.config && self.tested.sensors,
-            lies: self.state.phase().is_contact(),
-            lies_still: self.lies_still,
-        });
-        if self.safety.is_latched() && !was_latched {
-            self.state.guard.proof.forget();
         }
     }
 
@@ -293,16 +286,11 @@ impl App {
 
     /// Outputs, mode and cause after the last tick.
     pub fn shown(&self) -> Shown {
-        let mode = self.safety.mode();
+        let armed = self.state.is_armed();
+        let outputs = self.safety.outputs(self.faults, self.lies_still, armed);
         Shown {
-            outputs: outputs::outputs(&Condition {
-                mode,
-                faults: self.faults,
-                lies_still: self.lies_still,
-                whirls: self.safety.whirls(),
-                armed: self.state.is_armed(),
-            }),
-            mode,
+            outputs,
+            mode: self.safety.mode(),
             cause: self.safety.cause(),
         }
     }

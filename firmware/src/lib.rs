@@ -19,7 +19,6 @@ pub mod main_loop;
 pub mod memory;
 pub mod memory_scrub;
 pub mod outgoing;
-pub mod outputs;
 pub mod overrun;
 pub mod platform;
 #[cfg(target_os = "none")]

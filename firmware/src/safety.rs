@@ -3,7 +3,7 @@
 //! `tests/safety.rs` explores every state and every input.
 
 use touchdown_core::guard::Verdict;
-use touchdown_protocol::controller::{Cause, Mode};
+use touchdown_protocol::controller::{Cause, Faults, Mode, Outputs};
 
 /// What a tick shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,6 +88,33 @@ impl Safety {
         self.proven = false;
     }
 
+    /// The outputs, by the table of docs/build/firmware.md: of `faults` that are latched, a rotor that lies still enough on
+    /// the retainer to be lifted or not, and a detector that is `armed` or not. A fault that trips rules, whatever the
+    /// mode says.
+    pub fn outputs(&self, faults: Faults, lies_still: bool, armed: bool) -> Outputs {
+        if faults.trip() {
+            return Outputs::SAFE;
+        }
+        match self.mode {
+            Mode::SelfTest | Mode::Faulted => Outputs::SAFE,
+            Mode::Arming => Outputs {
+                no_brake: !self.whirls(),
+                permit: lies_still,
+                ..Outputs::SAFE
+            },
+            Mode::Watching => Outputs {
+                run: true,
+                no_brake: true,
+                permit: false,
+                ready: armed && faults.is_empty(),
+            },
+            Mode::Dropped => Outputs {
+                permit: lies_still,
+                ..Outputs::SAFE
+            },
+        }
+    }
+
     /// What it is doing.
     pub fn mode(&self) -> Mode {
         self.mode
@@ -133,5 +160,69 @@ fn beyond(guard: &Verdict) -> Option<Cause> {
         Some(Cause::PositionsLost)
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strum::VariantArray as _;
+
+    /// The table of docs/build/firmware.md: mode, then the outputs in the order of their bits, each `on`,
+    /// `off` or on only where something holds.
+    fn table() -> Vec<(String, Vec<String>)> {
+        let text = include_str!("../../docs/build/firmware.md");
+        let rows = text.split("| mode | run |").nth(1).expect("the table");
+        let rows = rows.lines().skip(2).take_while(|row| row.starts_with('|'));
+        rows.map(|row| {
+            let mut cells = row
+                .trim_matches('|')
+                .split('|')
+                .map(|it| it.trim().to_owned());
+            (cells.next().unwrap(), cells.collect())
+        })
+        .collect()
+    }
+
+    #[test]
+    fn every_state_gives_what_the_table_says() {
+        let table = table();
+        assert_eq!(table.len(), Mode::VARIANTS.len());
+        let mut conditions = 0;
+        for &mode in Mode::VARIANTS {
+            let row = table.iter().find(|row| row.0 == <&str>::from(mode));
+            let (_, cells) = row.expect("a row for each mode");
+            // The seven bits of the faults: every set of them.
+            for faults in (0..1 << 7).map(Faults) {
+                for bits in 0..8 {
+                    let [lies_still, whirls, armed] = [1, 2, 4].map(|it| bits & it != 0);
+                    let safety = Safety {
+                        mode,
+                        cause: whirls.then_some(Cause::Whirl),
+                        proven: false,
+                    };
+                    let is_on = |cell: &String| match cell.as_str() {
+                        "on" => true,
+                        "off" => false,
+                        "if it lies still" => lies_still,
+                        "unless it whirls" => !whirls,
+                        "if armed and no fault" => armed && faults == Faults::NONE,
+                        other => panic!("{other}"),
+                    };
+                    let on = cells.iter().enumerate();
+                    let expected: u8 = on.map(|(bit, cell)| u8::from(is_on(cell)) << bit).sum();
+                    // All but the overrun, which has code 0, trip.
+                    let expected = if faults.0 > 1 { 0 } else { expected };
+                    let outputs = safety.outputs(faults, lies_still, armed);
+                    assert_eq!(
+                        outputs.bits(),
+                        expected,
+                        "{safety:?}, {faults:?}, {bits:#b}"
+                    );
+                    conditions += 1;
+                }
+            }
+        }
+        assert_eq!(conditions, 5 * 128 * 8);
     }
 }

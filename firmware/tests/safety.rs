@@ -14,7 +14,6 @@ use touchdown_core::guard::Verdict;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{default_config, default_settings};
-use touchdown_firmware::outputs::{Condition, outputs};
 use touchdown_firmware::safety::{Findings, Safety};
 use touchdown_protocol::config_block;
 use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs};
@@ -101,13 +100,7 @@ impl World {
         } else {
             Faults::NONE
         };
-        outputs(&Condition {
-            mode: self.safety.mode(),
-            faults,
-            lies_still: true,
-            whirls: self.safety.whirls(),
-            armed: true,
-        })
+        self.safety.outputs(faults, true, true)
     }
 
     fn step(mut self, input: &Input) -> Self {
