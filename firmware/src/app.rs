@@ -131,16 +131,18 @@ impl App {
     fn act(&mut self, board: &mut impl Board, lost: u32) {
         let places = self.state.places();
         let is_proven = self.safety.is_proven();
-        self.lies_still = self.permit.take(places, self.state.phases(), is_proven);
+        self.lies_still = self
+            .permit
+            .take(places, self.state.detector.phases(), is_proven);
         self.watch_itself(board.config(), places.is_some(), lost);
         let was_latched = self.safety.is_latched();
         self.safety.step(&Findings {
             guard: self.state.guard.verdict,
             told: self.told.take(),
-            sees_all: self.state.sees_all(),
+            sees_all: !self.state.lacks,
             faulted: self.faults.trip(),
             tested: self.tested.config && self.tested.sensors,
-            lies: self.state.phase().is_contact(),
+            lies: self.state.detector.phase().is_contact(),
             lies_still: self.lies_still,
         });
         if self.safety.is_latched() && !was_latched {
@@ -224,7 +226,7 @@ impl App {
         Notice::Ordered(Ordered {
             act: Act::Clear,
             refused: refused.map_or(0, |it| Refusal::from(it).code()),
-            sample: self.state.samples().wrapping_sub(1),
+            sample: self.state.samples.wrapping_sub(1),
         })
     }
 
@@ -240,7 +242,10 @@ impl App {
 
     /// Whether the rotor falls, bounces, slides or whirls.
     pub fn drop_runs(&self) -> bool {
-        let floats = matches!(self.state.phase(), Phase::Starting | Phase::Levitated);
+        let floats = matches!(
+            self.state.detector.phase(),
+            Phase::Starting | Phase::Levitated
+        );
         !floats && !self.lies_still
     }
 
@@ -252,17 +257,17 @@ impl App {
     /// What goes on, for the link; the last tick was `age_us` ago.
     pub fn report(&self, age_us: u32, lost_notices: u32) -> State {
         State {
-            sample: self.state.samples().wrapping_sub(1),
+            sample: self.state.samples.wrapping_sub(1),
             age_us,
-            phase: self.state.phase(),
+            phase: self.state.detector.phase(),
             mode: self.safety.mode(),
             cause: self.safety.cause(),
-            touches: self.state.touches(),
+            touches: self.state.touch.count,
             outputs: self.shown().outputs,
             faults: self.faults,
             counters: Counters {
                 lost_samples: self.lost,
-                unusable_values: self.state.faults(),
+                unusable_values: self.state.faults,
                 lost_notices,
                 damaged_frames: 0,
             },
@@ -286,7 +291,7 @@ impl App {
 
     /// Outputs, mode and cause after the last tick.
     pub fn shown(&self) -> Shown {
-        let armed = self.state.is_armed();
+        let armed = self.state.detector.is_armed();
         let outputs = self.safety.outputs(self.faults, self.lies_still, armed);
         Shown {
             outputs,

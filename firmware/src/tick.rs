@@ -37,8 +37,8 @@ pub fn tick(
         let missed = left > 0;
         let sample = if missed { &before } else { sample };
         app.take(board, sample, missed, lost, notices);
-        recorder.set_severity(app.state().severity());
-        recorder.set_phase(app.state().phase(), app.shown());
+        recorder.set_severity(&app.state().severity.so_far);
+        recorder.set_phase(app.state().detector.phase(), app.shown());
         recorder.take(sample, notices);
         recorder.keep(app.state());
         if !missed {
@@ -92,7 +92,7 @@ impl<'m, B: Board> TickTask<'m, B> {
     /// A turn of the main loop begins; how many samples there were.
     pub fn begin_turn(&mut self) -> u64 {
         self.row = 0;
-        self.app.state().samples()
+        self.app.state().samples
     }
 
     /// The oldest sample that waits, if there is one and it is not the main loop's turn.

@@ -678,6 +678,9 @@ fn a_wall_that_has_moved_is_told_once_until_clear_and_trips_nothing() {
     assert_eq!(bench.app.clear(), Ok(()));
     lie(&mut bench);
     assert_eq!(moved(&bench), 4);
-    assert_eq!(bench.app.state().conditions(), [Condition::Ok; CHANNELS]);
+    assert_eq!(
+        bench.app.state().health.conditions(),
+        [Condition::Ok; CHANNELS]
+    );
     assert_eq!(bench.app.faults(), Faults::NONE);
 }

@@ -62,7 +62,7 @@ fn drop(lost: impl Fn(usize) -> bool) -> Outcome {
         .filter(|it| matches!(it.kind, EventKind::FreeFall | EventKind::Impact));
     Outcome {
         onsets: told.map(|it| it.onset.0 as f64 / 256.0).take(4).collect(),
-        samples: app.state().samples(),
+        samples: app.state().samples,
         lost: app.report(0, 0).counters.lost_samples,
         faults: app.faults(),
         sensor_faults: events

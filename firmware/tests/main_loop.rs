@@ -51,7 +51,7 @@ fn nothing_is_lost_until_the_ring_is_full() {
         );
         assert_eq!(app.faults().contains(Fault::Overrun), lost > 0);
         assert_eq!(machine.given - machine.taken, lost);
-        assert_eq!(app.state().samples(), machine.given, "time goes on");
+        assert_eq!(app.state().samples, machine.given, "time goes on");
         told.push(machine.pins.borrow().events.clone());
     }
     let [at_once, late, full, lost] = &told[..] else {

@@ -133,7 +133,7 @@ impl Controller {
         for _ in 0..samples {
             let mut sample = sample(height);
             // A count of noise: one that stands still may be a sensor that does not work.
-            let noise = (self.app.state().samples() / 3 % 2) as u16;
+            let noise = (self.app.state().samples / 3 % 2) as u16;
             sample.counts = sample.counts.map(|count| count + noise);
             self.app
                 .take(&mut self.board, &sample, false, 0, &mut notices);

@@ -173,7 +173,7 @@ fn cycle(rng: &mut Rng, told: &Told, is_near: bool, apart: bool, gravity: f64) -
             machine.gap * 1e6,
             told.gap,
             run.chain.noise,
-            run.app.state().phase()
+            run.app.state().detector.phase()
         );
         // Without weight it presses on nothing where it lies.
         if shown.outputs.run && (truth.in_contact || x.hypot(y) > 0.99) {

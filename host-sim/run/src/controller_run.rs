@@ -71,7 +71,7 @@ pub fn run(
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,
-        severity: *app.state().severity(),
+        severity: app.state().severity.so_far,
         summary: fingerprint.summary(app.state()),
         log: Vec::new(),
     };

@@ -50,7 +50,7 @@ pub fn run(
     Ok(MonitorOutput {
         notices,
         left_out,
-        severity: *state.severity(),
+        severity: state.severity.so_far,
         summary: fingerprint.summary(&state),
         log: Vec::new(),
     })

@@ -45,7 +45,7 @@ impl Learnt {
             self.told = (state.spin.believed, state.levitated);
             self.health.clone_from(&state.health);
             self.detector.update(&state.detector);
-            let next = Moment::of_sample(state.samples());
+            let next = Moment::of_sample(state.samples);
             learnt::update(&mut self.rings, &state.tachometers, next);
         }
     }

@@ -3,16 +3,14 @@
 use crc::Digest;
 
 use crate::checksum::CRC;
-use crate::detect::{
-    Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, Slip, bits,
-};
-use crate::event::{Motion, Notice, Notices};
+use crate::detect::{Detector, DetectorConfig, DetectorState, Phase, Retainer, Signals, bits};
+use crate::event::{Notice, Notices};
 use crate::forecast::{ForecastInput, ForecastTask};
 use crate::guard::{Guard, GuardConfig, GuardState};
 use crate::health::{Condition, Health, HealthState};
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::{PLANES, PlanePositions, Reading, Sensing, SensingConfig, mean};
-use crate::severity::{Severity, SeverityModel, SeverityState};
+use crate::severity::{SeverityModel, SeverityState};
 use crate::spin::{SpinCheck, SpinState};
 use crate::tachometer::{Speed, Tachometers, TachometersConfig, TachometersState};
 use crate::touch::{TouchState, Touches};
@@ -59,21 +57,28 @@ pub struct Seen {
 /// What the tick carries from sample to sample.
 #[derive(Clone, Debug, Default)]
 pub struct MonitorState {
-    samples: u64,
-    faults: u64,
+    /// Samples seen.
+    pub samples: u64,
+    /// Channel values that were unusable, or not used.
+    pub faults: u64,
     /// Of the guard, as it sees the last sample.
     pub guard: GuardState,
-    touch: TouchState,
-    pub(crate) health: HealthState,
+    /// Of the touches, whatever held the rotor.
+    pub touch: TouchState,
+    /// What is known of the sensors.
+    pub health: HealthState,
     pub(crate) tachometers: TachometersState,
     planes: PlanePositions,
     /// Whether a channel that is fitted gave no value of its own.
-    lacks: bool,
-    inner_ring: Option<Speed>,
-    pub(crate) detector: DetectorState,
+    pub lacks: bool,
+    /// Speed of the ball bearing's inner ring, where known.
+    pub inner_ring: Option<Speed>,
+    /// Phase, motion and slip of the rotor.
+    pub detector: DetectorState,
     pub(crate) spin: SpinState,
     pub(crate) levitated: Option<bool>,
-    severity: SeverityState,
+    /// What the last drop has done to the machine so far; zeros before the first.
+    pub severity: SeverityState,
 }
 
 /// What a whole run adds up to.
@@ -280,16 +285,6 @@ impl Monitor {
 }
 
 impl MonitorState {
-    /// Samples seen.
-    pub fn samples(&self) -> u64 {
-        self.samples
-    }
-
-    /// Channel values that were unusable, or not used.
-    pub fn faults(&self) -> u64 {
-        self.faults
-    }
-
     /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers values of its own.
     pub fn position(&self) -> Option<[f32; 2]> {
         mean(&self.planes).map(|(position, _)| position)
@@ -301,60 +296,10 @@ impl MonitorState {
         Some([a.or(b)?, b.or(a)?])
     }
 
-    /// Whether each channel that is fitted gives values of its own.
-    pub fn sees_all(&self) -> bool {
-        !self.lacks
-    }
-
-    /// What can be had of each channel.
-    pub fn conditions(&self) -> [Condition; CHANNELS] {
-        self.health.conditions()
-    }
-
-    /// Times that the rotor came to the wall, whatever held it.
-    pub fn touches(&self) -> u32 {
-        self.touch.count
-    }
-
     /// Tells a wall that has moved once more, where it is seen again.
     pub fn forget_wall(&mut self) {
         self.health.wall = Default::default();
         self.touch.short = [0; PLANES];
-    }
-
-    /// The present phase.
-    pub fn phase(&self) -> Phase {
-        self.detector.phase()
-    }
-
-    /// The present phase of each end of the rotor.
-    pub fn phases(&self) -> [Phase; PLANES] {
-        self.detector.phases()
-    }
-
-    /// How the rotor moves.
-    pub fn motion(&self) -> Motion {
-        self.detector.motion()
-    }
-
-    /// Speed of the ball bearing's inner ring, where known.
-    pub fn inner_ring(&self) -> Option<Speed> {
-        self.inner_ring
-    }
-
-    /// Slip on the wall, where it is measured: in contact, with rotor and inner ring speed known.
-    pub fn slip(&self) -> Option<Slip> {
-        self.detector.slip()
-    }
-
-    /// What the last drop has done to the machine so far; zeros before the first.
-    pub fn severity(&self) -> &Severity {
-        &self.severity.so_far
-    }
-
-    /// Whether noise and position have been learnt.
-    pub fn is_armed(&self) -> bool {
-        self.detector.is_armed()
     }
 }
 
@@ -379,7 +324,7 @@ impl Fingerprint {
         state
             .detector
             .fingerprint(|word| self.0.update(&word.to_le_bytes()));
-        let severity = state.severity().words();
+        let severity = state.severity.so_far.words();
         for value in forecast_task.words().into_iter().chain(severity) {
             self.0.update(&bits(value).to_le_bytes());
         }
@@ -390,7 +335,7 @@ impl Fingerprint {
         Summary {
             samples: state.samples,
             faults: state.faults,
-            conditions: state.conditions(),
+            conditions: state.health.conditions(),
             state_hash: self.0.finalize(),
         }
     }

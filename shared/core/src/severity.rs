@@ -47,8 +47,9 @@ pub(crate) struct SeverityModel {
 
 /// What an episode carries from tick to tick.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SeverityState {
-    pub(crate) so_far: Severity,
+pub struct SeverityState {
+    /// What it has added up to.
+    pub so_far: Severity,
     /// Sum of the speeds into the wall, m/s.
     speeds: f32,
     was_released: bool,

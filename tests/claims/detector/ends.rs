@@ -74,8 +74,8 @@ fn watch_in(scene: &Scene, seconds: f64, ends: impl Fn(f64) -> [[f64; 2]; 2]) ->
                 _ => {}
             }
         }
-        watched.phases.push(state.phases());
-        watched.motions.push(state.motion());
+        watched.phases.push(state.detector.phases());
+        watched.motions.push(state.detector.motion());
     }
     watched
 }

@@ -389,7 +389,7 @@ fn the_slip_is_within_its_error() {
         for (k, sample) in samples.iter().enumerate() {
             monitor.update(&mut state, sample);
             let time = k as f64 / RATE;
-            let Some(slip) = state.slip().filter(|_| time > 0.1) else {
+            let Some(slip) = state.detector.slip().filter(|_| time > 0.1) else {
                 continue;
             };
             let along = -CLEARANCE * SWING * swing_rate() * (swing_rate() * time).sin();

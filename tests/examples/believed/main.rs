@@ -534,7 +534,7 @@ fn run(c: &Case, rng: &mut Rng, verbose: bool) -> Tally {
         }
     }
     if c.drops {
-        let s = state.severity();
+        let s = &state.severity.so_far;
         let greatest = truth.impacts.iter().map(|i| i.speed).fold(0.0, f64::max);
         if greatest > 0.0 {
             t.severity.push(f64::from(s.impact_speed) / greatest);

@@ -134,8 +134,8 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let ((), severity) = counter.count(|| monitor.update_severity(state, &notices));
         let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
-            recorder.set_severity(app.state().severity());
-            recorder.set_phase(app.state().phase(), app.shown());
+            recorder.set_severity(&app.state().severity.so_far);
+            recorder.set_phase(app.state().detector.phase(), app.shown());
             recorder.take(sample, &notices);
         });
         let (outlook, forecast) =

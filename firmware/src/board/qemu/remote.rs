@@ -59,7 +59,7 @@ impl EmulatorPlatform {
     fn summarise(&mut self, fingerprint: Fingerprint) {
         self.hold(|tick| {
             let summary = fingerprint.summary(tick.app.state());
-            let severity = *tick.app.state().severity();
+            let severity = tick.app.state().severity.so_far;
             let board = &mut tick.desk.board;
             board.write(&Record::Severity(severity));
             board.write(&Record::Summary(summary));

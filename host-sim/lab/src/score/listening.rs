@@ -225,7 +225,7 @@ pub fn listen(
                 _ => {}
             }
         }
-        if heard.armed.is_none() && state.is_armed() {
+        if heard.armed.is_none() && state.detector.is_armed() {
             heard.armed = Some(number);
         }
     }

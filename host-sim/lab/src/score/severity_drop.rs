@@ -75,7 +75,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
     let phases = history.phases.iter();
     let contacts = phases.filter(|it| contact.contains(&it.phase));
     Ok(Strained {
-        seen: *state.severity(),
+        seen: state.severity.so_far,
         impulses: impacts().map(|it| it.normal_impulse).collect(),
         speeds: impacts().map(|it| it.normal_speed).collect(),
         dwell: contacts

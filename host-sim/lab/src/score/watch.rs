@@ -119,7 +119,7 @@ impl Drop {
             instants.extend(fallen.map(|TrueState { phase, rotor, .. }| Instant {
                 time,
                 phase,
-                told: state.phase(),
+                told: state.detector.phase(),
                 turns: rotor.turns_in_contact * rotor.spin.signum(),
                 position: rotor.position,
             }));
@@ -127,7 +127,7 @@ impl Drop {
         let answer = MonitorOutput {
             notices,
             left_out: 0,
-            severity: *state.severity(),
+            severity: state.severity.so_far,
             summary: Fingerprint::default().summary(&state),
             log: Vec::new(),
         };

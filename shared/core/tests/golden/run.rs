@@ -95,28 +95,28 @@ fn name(kind: EventKind) -> String {
 }
 
 fn end(state: &MonitorState) -> String {
-    let severity = state.severity();
+    let severity = &state.severity.so_far;
     let mut text = format!(
         "phases {:?}, {:?}, armed {}\n",
-        state.phases(),
-        state.motion(),
-        state.is_armed()
+        state.detector.phases(),
+        state.detector.motion(),
+        state.detector.is_armed()
     );
-    let channels = state.conditions().map(|it| it.to_string());
+    let channels = state.health.conditions().map(|it| it.to_string());
     writeln!(
         text,
         "channels {channels:?}, {} values without use",
-        state.faults()
+        state.faults
     )
     .expect("a string");
     writeln!(
         text,
         "position {:?}, inner ring {:?}",
         state.position(),
-        state.inner_ring()
+        state.inner_ring
     )
     .expect("a string");
-    writeln!(text, "slip {:?}", state.slip()).expect("a string");
+    writeln!(text, "slip {:?}", state.detector.slip()).expect("a string");
     writeln!(text, "severity {severity:#?}").expect("a string");
     text
 }
