@@ -3,7 +3,7 @@
 use defmt::{Str, error, info, intern, warn};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_protocol::controller::{Cause, Fault, Faults, Shown};
+use touchdown_protocol::controller::{Cause, Fault, Shown};
 
 use crate::crash::Crash;
 use crate::platform::JournalEntry;
@@ -25,7 +25,7 @@ pub fn entry(entry: &JournalEntry<'_>) {
     match entry {
         JournalEntry::Notice(it) => notice(it),
         JournalEntry::Shown(it) => shown(*it),
-        JournalEntry::Faults(it) => faults(*it),
+        JournalEntry::Faults(it) => warn!("faults: {=u16:07b}", it.0),
     }
 }
 
@@ -76,10 +76,6 @@ fn shown(shown: Shown) {
         shown.mode as u8,
         Cause::byte_of(shown.cause)
     );
-}
-
-fn faults(faults: Faults) {
-    warn!("faults: {=u16:07b}", faults.0);
 }
 
 /// A fault that was found at power-on.

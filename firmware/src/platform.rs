@@ -51,14 +51,18 @@ pub trait Platform {
     /// Keeps a valid configuration for the next start.
     fn store(&mut self, block: &[u8]) -> Result<(), Refusal>;
 
-    /// Time since the last sample, us.
-    fn age_us(&mut self) -> u32;
+    /// Time since the last sample, us; 0 where nothing tells the time.
+    fn age_us(&mut self) -> u32 {
+        0
+    }
 
     /// What nobody can know before; 0 without a source of it.
-    fn unknown(&mut self) -> u64;
+    fn unknown(&mut self) -> u64 {
+        0
+    }
 
-    /// Forgets why it was reset: an order to clear was obeyed.
-    fn forget_reset(&mut self);
+    /// Forgets why it was reset, where that is kept: an order to clear was obeyed.
+    fn forget_reset(&mut self) {}
 
     /// Starts anew; a board that stops in another way may return.
     fn reset(&mut self);

@@ -233,15 +233,5 @@ impl Platform for Machine {
         Err(Refusal::NoStore)
     }
 
-    fn age_us(&mut self) -> u32 {
-        0
-    }
-
-    fn unknown(&mut self) -> u64 {
-        0
-    }
-
-    fn forget_reset(&mut self) {}
-
     fn reset(&mut self) {}
 }

@@ -2,8 +2,8 @@
 
 use semihosting::experimental::env;
 use semihosting::fs::File;
-use semihosting::io::{Read as _, Write as _};
-use touchdown_protocol::wire::{self, Played, Record, ReplayHead};
+use semihosting::io::{self, Read as _, Write as _};
+use touchdown_protocol::wire::{self, Played, ReplayHead};
 
 use super::nor::NorFile;
 use super::settings::{SettingsFile, fill};
@@ -19,8 +19,8 @@ const BLOCK_SAMPLES: usize = 18;
 pub struct Files {
     /// First.
     pub replay: Replay,
-    /// Second.
-    pub answer: Answer,
+    /// Second; it begins as an answer does.
+    pub answer: File,
     /// Third, of the log.
     pub log: Option<NorFile>,
     /// Fourth, of the stored configuration.
@@ -40,7 +40,7 @@ impl Files {
         };
         Ok(Self {
             replay: Replay::open(&replay)?,
-            answer: Answer::create(&answer)?,
+            answer: create_answer(&answer).map_err(|_| Failure::Answer)?,
             log: log.map(|name| NorFile::open(&name)).transpose()?,
             settings: settings.map(SettingsFile),
         })
@@ -69,20 +69,19 @@ impl Replay {
     /// The start of the file; to be called once, first.
     #[inline(never)]
     pub fn head(&mut self) -> Result<ReplayHead, Failure> {
+        self.read_head().ok_or(Failure::Replay)
+    }
+
+    fn read_head(&mut self) -> Option<ReplayHead> {
         let mut first = [0; 8];
         let mut head = [0; HEAD_BYTES];
-        self.file
-            .read_exact(&mut first)
-            .map_err(|_| Failure::Replay)?;
-        let [a, b, c, d, length @ ..] = first;
-        if [a, b, c, d] != wire::REPLAY_MAGIC {
-            return Err(Failure::Replay);
-        }
-        let head = head
-            .get_mut(..u32::from_le_bytes(length) as usize)
-            .ok_or(Failure::Replay)?;
-        self.file.read_exact(head).map_err(|_| Failure::Replay)?;
-        postcard::from_bytes(head).map_err(|_| Failure::Replay)
+        self.file.read_exact(&mut first).ok()?;
+        let (magic, length) = first.split_first_chunk()?;
+        let length = u32::from_le_bytes(length.try_into().ok()?);
+        let head = head.get_mut(..length as usize)?;
+        self.file.read_exact(head).ok()?;
+        let head = postcard::from_bytes(head).ok();
+        head.filter(|_| *magic == wire::REPLAY_MAGIC)
     }
 
     /// The next sample and what comes with it; `None` at the end of the file.
@@ -115,21 +114,8 @@ impl Replay {
     }
 }
 
-/// An answer file.
-pub struct Answer(File);
-
-impl Answer {
-    fn create(name: &Name) -> Result<Self, Failure> {
-        let mut file = File::create(name).map_err(|_| Failure::Answer)?;
-        file.write_all(&wire::ANSWER_MAGIC)
-            .map_err(|_| Failure::Answer)?;
-        Ok(Self(file))
-    }
-
-    /// Appends a record.
-    pub fn write(&mut self, record: &Record) -> Result<(), Failure> {
-        self.0
-            .write_all(&wire::encode_record(record))
-            .map_err(|_| Failure::Answer)
-    }
+fn create_answer(name: &Name) -> io::Result<File> {
+    let mut file = File::create(name)?;
+    file.write_all(&wire::ANSWER_MAGIC)?;
+    Ok(file)
 }

@@ -3,7 +3,6 @@
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::USART1;
-use touchdown_protocol::link::Frame;
 
 use crate::board::BAUD;
 use crate::outgoing::Outgoing;
@@ -11,21 +10,10 @@ use crate::outgoing::Outgoing;
 /// Bits of a byte on the line.
 const BITS: f32 = 10.0;
 
-/// Bytes on their way in and out.
-pub struct Bytes {
-    came: Queue<u8, 256>,
-    goes: Queue<u8, 64>,
-}
-
-impl Bytes {
-    /// None.
-    pub const fn empty() -> Self {
-        Self {
-            came: Queue::new(),
-            goes: Queue::new(),
-        }
-    }
-}
+/// Bytes on their way in.
+pub type Came = Queue<u8, 256>;
+/// Bytes on their way out.
+pub type Goes = Queue<u8, 64>;
 
 /// The end of the interrupt.
 pub struct Wire {
@@ -39,20 +27,26 @@ pub struct Wire {
 
 /// The end of the main loop.
 pub struct Line {
-    came: Consumer<'static, u8>,
+    /// Bytes that came.
+    pub came: Consumer<'static, u8>,
     goes: Producer<'static, u8>,
-    out: Outgoing,
+    /// Frames that wait.
+    pub out: Outgoing,
 }
 
 /// Both ends, with so many interrupts a second.
-pub fn open(usart: USART1, bytes: &'static mut Bytes, interrupts: f32) -> (Wire, Line) {
+pub fn open(
+    usart: USART1,
+    (came, goes): (&'static mut Came, &'static mut Goes),
+    interrupts: f32,
+) -> (Wire, Line) {
     // SAFETY: any value of 16 bits from 16 on is a divider: RM0090, USART_BRR.
     usart.brr().write(|w| unsafe { w.bits(16) });
     usart
         .cr1()
         .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
-    let (from_line, came) = bytes.came.split();
-    let (goes, to_line) = bytes.goes.split();
+    let (from_line, came) = came.split();
+    let (goes, to_line) = goes.split();
     let wire = Wire {
         usart,
         came: from_line,
@@ -89,17 +83,6 @@ impl Wire {
 }
 
 impl Line {
-    /// The next byte that came.
-    pub fn next(&mut self) -> Option<u8> {
-        self.came.dequeue()
-    }
-
-    /// Queues a frame; whether it had room.
-    #[must_use]
-    pub fn send(&mut self, frame: &Frame) -> bool {
-        self.out.push(frame)
-    }
-
     /// Hands over what waits; whether nothing waits any more.
     pub fn push(&mut self) -> bool {
         while self.goes.ready()

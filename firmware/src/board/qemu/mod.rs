@@ -14,16 +14,18 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::SCB;
 use defmt::{Debug2Format, Display2Format, error, info};
+use semihosting::fs::File;
+use semihosting::io::Write as _;
 use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
-use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::monitor::{Fingerprint, MonitorConfig};
 use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
 use touchdown_protocol::controller::Shown;
-use touchdown_protocol::wire::{Record, ReplayHead, Switching};
+use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
 
-use self::files::{Answer, Files, Replay};
-use self::line::{Bytes, Wire};
+use self::files::{Files, Replay};
+use self::line::{Came, Goes, Wire};
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
 use self::settings::SettingsFile;
@@ -75,7 +77,8 @@ pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 /// What outlives main's frame.
 pub struct Memory {
     monitor: memory::Memory,
-    bytes: Bytes,
+    came: Came,
+    goes: Goes,
 }
 
 impl Memory {
@@ -83,7 +86,8 @@ impl Memory {
     pub const fn empty() -> Self {
         Self {
             monitor: memory::Memory::empty(),
-            bytes: Bytes::empty(),
+            came: Came::new(),
+            goes: Goes::new(),
         }
     }
 }
@@ -97,7 +101,7 @@ static IS_OVER: AtomicBool = AtomicBool::new(false);
 
 /// What the tick has of the emulator.
 pub struct Emulated {
-    answer: Answer,
+    answer: File,
     shown: Option<Shown>,
     ticks: u64,
     block: InForce,
@@ -106,7 +110,8 @@ pub struct Emulated {
 
 impl Emulated {
     fn write(&mut self, record: &Record) {
-        self.failed |= self.answer.write(record).is_err();
+        let bytes = wire::encode_record(record);
+        self.failed |= self.answer.write_all(&bytes).is_err();
     }
 }
 
@@ -237,7 +242,8 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     }
     let forecast = memory::forecast_task(&settings.monitor).map_err(|_| Failure::Config)?;
     TICK.put(tick);
-    let (wire, line) = line::open(chip.USART1, &mut memory.bytes, abilities.sample_rate);
+    let queues = (&mut memory.came, &mut memory.goes);
+    let (wire, line) = line::open(chip.USART1, queues, abilities.sample_rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
         replay,
@@ -249,7 +255,16 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     SAMPLING.with(|it| start_timer(&it.timer, abilities.sample_rate));
     held::unmask(&mut core, Interrupt::TIM2);
     let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
-    Ok((below, EmulatorPlatform::new(line, abilities, file, log)))
+    let platform = EmulatorPlatform {
+        line,
+        abilities,
+        settings: file,
+        log,
+        fingerprint: Some(Fingerprint::default()),
+        heard: None,
+        was_over: false,
+    };
+    Ok((below, platform))
 }
 
 /// An interrupt each sample, at so many a second.

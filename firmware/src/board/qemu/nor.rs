@@ -7,7 +7,7 @@ use embedded_storage::nor_flash::{
     check_read, check_write,
 };
 use semihosting::fs::File;
-use semihosting::io::{Read, Seek, SeekFrom, Write};
+use semihosting::io::{self, Read, Seek, SeekFrom, Write};
 
 use super::{EMULATED_SLOTS, Failure};
 use crate::drop_log::bytes_of;
@@ -48,15 +48,16 @@ impl NorFile {
         self.failed
     }
 
-    fn put(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
-        let done = self.file.seek(SeekFrom::Start(offset.into())).is_ok()
-            && self.file.write_all(bytes).is_ok();
-        self.outcome(done)
-    }
-
-    fn outcome(&mut self, done: bool) -> Result<(), NorFlashErrorKind> {
-        self.failed |= !done;
-        done.then_some(()).ok_or(NorFlashErrorKind::Other)
+    /// Acts on the file at `offset`.
+    fn at(
+        &mut self,
+        offset: u32,
+        act: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> Result<(), NorFlashErrorKind> {
+        let there = self.file.seek(SeekFrom::Start(offset.into()));
+        let done = there.and_then(|_| act(&mut self.file));
+        self.failed |= done.is_err();
+        done.map_err(|_| NorFlashErrorKind::Other)
     }
 }
 
@@ -69,9 +70,7 @@ impl ReadNorFlash for NorFile {
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
         check_read(self, offset, bytes.len())?;
-        let done = self.file.seek(SeekFrom::Start(offset.into())).is_ok()
-            && self.file.read_exact(bytes).is_ok();
-        self.outcome(done)
+        self.at(offset, |file| file.read_exact(bytes))
     }
 
     fn capacity(&self) -> usize {
@@ -87,7 +86,7 @@ impl NorFlash for NorFile {
         check_erase(self, from, to)?;
         (from..to)
             .step_by(PAGE_BYTES)
-            .try_for_each(|page| self.put(page, &[0xff; PAGE_BYTES]))
+            .try_for_each(|page| self.at(page, |file| file.write_all(&[0xff; PAGE_BYTES])))
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
@@ -101,7 +100,7 @@ impl NorFlash for NorFile {
             held.iter_mut()
                 .zip(piece)
                 .for_each(|(held, new)| *held &= new);
-            self.put(start, held)?;
+            self.at(start, |file| file.write_all(held))?;
         }
         Ok(())
     }

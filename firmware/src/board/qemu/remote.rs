@@ -24,37 +24,19 @@ const DESERTED: Duration = Duration::from_secs(10);
 
 /// The line, the files and what is told at the end.
 pub struct EmulatorPlatform {
-    line: Line,
-    abilities: Abilities,
-    settings: Option<SettingsFile>,
-    log: Option<FileLog>,
-    /// Outside the tick: silicon has neither the time nor the use for it.
-    fingerprint: Option<Fingerprint>,
+    pub(super) line: Line,
+    pub(super) abilities: Abilities,
+    pub(super) settings: Option<SettingsFile>,
+    pub(super) log: Option<FileLog>,
+    /// Outside the tick: silicon has neither the time nor the use for it. None once it is told.
+    pub(super) fingerprint: Option<Fingerprint>,
     /// Since a byte came, or the last sample.
-    heard: Option<Instant>,
+    pub(super) heard: Option<Instant>,
     /// A whole turn ago there were no more samples.
-    was_over: bool,
+    pub(super) was_over: bool,
 }
 
 impl EmulatorPlatform {
-    /// Before the first sample.
-    pub fn new(
-        line: Line,
-        abilities: Abilities,
-        settings: Option<SettingsFile>,
-        log: Option<FileLog>,
-    ) -> Self {
-        Self {
-            line,
-            abilities,
-            settings,
-            log,
-            fingerprint: Some(Fingerprint::default()),
-            heard: None,
-            was_over: false,
-        }
-    }
-
     /// What a replay ends with.
     fn summarise(&mut self, fingerprint: Fingerprint) {
         self.hold(|tick| {
@@ -93,7 +75,7 @@ impl Platform for EmulatorPlatform {
     }
 
     fn receive(&mut self) -> Option<u8> {
-        let byte = self.line.next();
+        let byte = self.line.came.dequeue();
         if byte.is_some() {
             self.heard = None;
         }
@@ -101,7 +83,7 @@ impl Platform for EmulatorPlatform {
     }
 
     fn send(&mut self, frame: &Frame) -> bool {
-        self.line.send(frame)
+        self.line.out.push(frame)
     }
 
     fn is_idle(&mut self) -> bool {
@@ -120,17 +102,6 @@ impl Platform for EmulatorPlatform {
         let file = self.settings.as_ref().ok_or(Refusal::NoStore)?;
         file.store(block)
     }
-
-    // QEMU says nothing about time.
-    fn age_us(&mut self) -> u32 {
-        0
-    }
-
-    fn unknown(&mut self) -> u64 {
-        0
-    }
-
-    fn forget_reset(&mut self) {}
 
     fn write_down(&mut self, entry: &JournalEntry<'_>) {
         journal::entry(entry);
