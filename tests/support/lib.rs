@@ -21,6 +21,7 @@ pub mod led_rounds;
 pub mod machine_runs;
 pub mod minimal_scene;
 pub mod moment;
+pub mod monitor_run;
 pub mod plant;
 pub mod record;
 pub mod ring_scenes;

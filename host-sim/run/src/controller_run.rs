@@ -16,7 +16,7 @@ use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
-use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
+use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
 use crate::procedure::Procedure;
 use touchdown_files::ram_nor::RamNor;
 

@@ -2,7 +2,7 @@
 
 pub mod model;
 
-pub mod monitor_run;
+pub mod monitor_output;
 
 pub mod accuracy;
 pub mod controller_run;

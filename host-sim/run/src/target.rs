@@ -9,7 +9,7 @@ use touchdown_core::sensing::Sensing;
 use crate::controller_run;
 use crate::controller_trace::ControllerTrace;
 use crate::emulator::{Emulator, EmulatorError};
-use crate::monitor_run::{self, MonitorOutput};
+use crate::monitor_output::MonitorOutput;
 use crate::procedure::Procedure;
 use touchdown_base::failure::Failure;
 use touchdown_rotor::error::ConfigError;
@@ -29,19 +29,6 @@ impl Target {
         match self {
             Self::Host => None,
             Self::Qemu(emulator) => Some(emulator.image()),
-        }
-    }
-
-    /// Runs the monitor over `samples`.
-    pub fn run(
-        &self,
-        config: &MonitorConfig,
-        samples: impl Iterator<Item = Sample>,
-    ) -> Result<MonitorOutput, Failure> {
-        match self {
-            Self::Host => monitor_run::run(config, samples)
-                .map_err(|error| Failure::Usage(format!("monitor: {error}"))),
-            Self::Qemu(emulator) => Ok(emulator.run(config, samples)?),
         }
     }
 

@@ -7,7 +7,9 @@ use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_run::emulator::{Emulator, EmulatorError};
-use touchdown_run::monitor_run;
+use touchdown_run::monitor_output::MonitorOutput;
+use touchdown_run::procedure::Procedure;
+use touchdown_tests::monitor_run;
 
 const SAMPLES: u64 = 20_000;
 const SAMPLE_RATE: f32 = 20_000.0;
@@ -133,8 +135,14 @@ fn drop_of_a_tilted_rotor_on_a_turning_ring(index: u64) -> Sample {
     }
 }
 
-fn emulator() -> Emulator {
-    Emulator::find(None).unwrap_or_else(|error| panic!("{error}"))
+/// What the image says of these samples.
+fn on_target(
+    config: &MonitorConfig,
+    samples: impl Iterator<Item = Sample>,
+) -> Result<MonitorOutput, EmulatorError> {
+    let emulator = Emulator::find(None).unwrap_or_else(|error| panic!("{error}"));
+    let answer = emulator.control(config, &Procedure::default(), samples);
+    answer.map(|(output, _)| output)
 }
 
 /// Optical sensors on inner ring and cage.
@@ -155,7 +163,7 @@ fn config_with_tachometers() -> MonitorConfig {
 fn assert_same_on_both(config: &MonitorConfig, stream: fn(u64) -> Sample) -> Vec<Notice> {
     let samples = || (0..SAMPLES).map(stream);
     let desktop = monitor_run::run(config, samples()).unwrap();
-    let target = emulator().run(config, samples()).unwrap();
+    let target = on_target(config, samples()).unwrap();
     assert_eq!(target.notices, desktop.notices);
     assert_eq!(target.summary, desktop.summary);
     assert_eq!(target.summary.samples, SAMPLES);
@@ -201,16 +209,13 @@ fn one_flipped_count_changes_the_fingerprint() {
         sample
     };
     let desktop = monitor_run::run(&config(), (0..SAMPLES).map(drop_of_the_rotor)).unwrap();
-    let target = emulator()
-        .run(&config(), (0..SAMPLES).map(flipped))
-        .unwrap();
+    let target = on_target(&config(), (0..SAMPLES).map(flipped)).unwrap();
     assert_ne!(target.summary.state_hash, desktop.summary.state_hash);
 }
 
 #[test]
 fn image_logs_start_configuration_and_end() {
-    let log = emulator()
-        .run(&config(), (0..10).map(drop_of_the_rotor))
+    let log = on_target(&config(), (0..10).map(drop_of_the_rotor))
         .unwrap()
         .log;
     let [start, configuration, .., end] = &log[..] else {
@@ -225,9 +230,7 @@ fn image_logs_start_configuration_and_end() {
 fn impossible_configuration_is_refused_with_its_reason() {
     let mut config = config();
     config.sensing.resolution = -1.0;
-    let error = emulator()
-        .run(&config, (0..10).map(drop_of_the_rotor))
-        .unwrap_err();
+    let error = on_target(&config, (0..10).map(drop_of_the_rotor)).unwrap_err();
     let EmulatorError::Failed { status, log, .. } = &error else {
         panic!("{error}");
     };

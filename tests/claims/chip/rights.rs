@@ -18,8 +18,8 @@ use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::{self, Key, Settings};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Decoder, Nonce, Refusal, Reply, Request, State, encode, mac};
-use touchdown_protocol::wire::{Played, ReplayHead};
-use touchdown_run::emulator::{Answer, Emulator, Session, built, replay_head};
+use touchdown_protocol::wire::{Played, ReplayHead, Switching};
+use touchdown_run::emulator::{Emulator, Session, built, replay_head};
 use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
 use touchdown_tests::controller::{CLEARANCE, settings};
@@ -161,19 +161,19 @@ impl Wire {
     }
 }
 
-/// Switched on with what is stored in `folder`, or as if lifted before.
-fn session(folder: &Path, power_on: bool, samples: impl Iterator<Item = Sample>) -> (Session, Answer) {
+/// Switched on with what is stored in `folder`, or as if lifted before; each change of what it showed.
+fn session(folder: &Path, power_on: bool, samples: impl Iterator<Item = Sample>) -> (Session, Vec<Switching>) {
     let mut replay = replay_head(&ReplayHead::new(settings().monitor, power_on)).expect("a head");
     samples.for_each(|it| replay.extend(Played::from(it).encode()));
     fs::write(folder.join("replay"), replay).expect("a file");
     let _ = fs::remove_file(folder.join("answer"));
     let mut session = emulator().open(folder).unwrap_or_else(|error| panic!("{error}"));
-    let answer = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
-    (session, answer)
+    let (_, shown) = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
+    (session, shown)
 }
 
-fn runs(answer: &Answer) -> bool {
-    answer.shown.iter().any(|it| it.shown.outputs.run)
+fn runs(shown: &[Switching]) -> bool {
+    shown.iter().any(|it| it.shown.outputs.run)
 }
 
 const NO_RIGHT: Reply = Reply::Refused(Refusal::Busy(Busy::NoRight));
@@ -184,14 +184,14 @@ fn a_drop_outlives_the_power_until_it_is_cleared_by_right_and_a_recorded_right_i
     let at = folder.path();
     let stored = config_block::encode(&Settings { key: Some(KEY), ..settings() });
     fs::write(at.join("settings"), &stored).expect("a file");
-    let (mut dropped, answer) = session(at, false, samples(1.2, |time| fallen(time, 0.3)));
-    assert!(runs(&answer));
+    let (mut dropped, shown) = session(at, false, samples(1.2, |time| fallen(time, 0.3)));
+    assert!(runs(&shown));
     let state = Wire::of(&mut dropped).state();
     assert_eq!(state.mode, Mode::Dropped);
     dropped.cut().expect("a log");
     // Switched on, lifted, afloat: it remembers.
-    let (mut again, answer) = session(at, true, samples(1.3, lifted));
-    assert!(!runs(&answer), "{:?}", answer.shown);
+    let (mut again, shown) = session(at, true, samples(1.3, lifted));
+    assert!(!runs(&shown), "{shown:?}");
     let mut wire = Wire::of(&mut again);
     let remembered = wire.state();
     assert_eq!((remembered.mode, remembered.cause), (Mode::Dropped, state.cause));
@@ -202,8 +202,8 @@ fn a_drop_outlives_the_power_until_it_is_cleared_by_right_and_a_recorded_right_i
     std::thread::sleep(Duration::from_millis(500));
     again.cut().expect("a log");
     // Cleared: it runs. And drops.
-    let (mut third, answer) = session(at, true, samples(2.0, |time| lifted(time) + fallen(time, 1.3)));
-    assert!(runs(&answer), "{:?}", answer.shown);
+    let (mut third, shown) = session(at, true, samples(2.0, |time| lifted(time) + fallen(time, 1.3)));
+    assert!(runs(&shown), "{shown:?}");
     let recorded = wire.sent;
     let mut wire = Wire::of(&mut third);
     for ((frame, asks_state), sequence) in recorded.into_iter().zip(1..) {
@@ -242,15 +242,15 @@ fn without_a_whole_configuration_of_its_own_there_is_never_current() {
         }
         fs::write(at.join("replay"), replay).expect("a file");
         let mut session = emulator().open(at).unwrap_or_else(|error| panic!("{error}"));
-        let answer = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(runs(&answer), fault.is_none(), "{fault:?}");
+        let (output, shown) = session.answer(LONG).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(runs(&shown), fault.is_none(), "{fault:?}");
         let refusal = |it: &Notice| match it {
             Notice::Ordered(it) => Some(Refusal::of_code(it.refused)),
             _ => None,
         };
-        let refused: Vec<_> = answer.output.notices.iter().filter_map(refusal).collect();
+        let refused: Vec<_> = output.notices.iter().filter_map(refusal).collect();
         assert_eq!(refused, [fault.map(|_| Refusal::Busy(Busy::Configuration))], "{fault:?}");
-        let current = answer.shown.iter().any(|it| it.shown.outputs != Outputs::SAFE);
+        let current = shown.iter().any(|it| it.shown.outputs != Outputs::SAFE);
         assert_eq!(current, fault.is_none(), "{fault:?}");
         let faults = Wire::of(&mut session).state().faults;
         for it in [Fault::Unconfigured, Fault::ConfigDamaged] {
@@ -267,8 +267,8 @@ fn a_configuration_for_another_board_never_gives_current() {
         let mut other = settings();
         other.monitor.detector.sample_rate = rate;
         fs::write(at.join("settings"), config_block::encode(&other)).expect("a file");
-        let (mut session, answer) = session(at, false, samples(0.5, |_| 0.0));
-        assert_eq!(runs(&answer), fits, "{rate}");
+        let (mut session, shown) = session(at, false, samples(0.5, |_| 0.0));
+        assert_eq!(runs(&shown), fits, "{rate}");
         let faults = Wire::of(&mut session).state().faults;
         assert_eq!(faults.contains(Fault::ConfigMisfit), !fits, "{rate}");
     }

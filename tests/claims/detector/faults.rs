@@ -13,13 +13,13 @@ use touchdown_core::health::{Condition, FaultKind};
 use touchdown_core::sample::Sample;
 use touchdown_run::drop;
 use touchdown_run::matching::match_events;
-use touchdown_run::monitor_run;
-use touchdown_run::monitor_run::MonitorOutput;
+use touchdown_run::monitor_output::MonitorOutput;
 use touchdown_run::outcome::{Detection, Outcome};
 use touchdown_run::target::Target;
 use touchdown_scene::sensors::{Failing, Faults, Motion, SensorFault, Sensors};
 use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
+use touchdown_tests::monitor_run;
 
 const NAMES: [&str; 5] = ["ax", "ay", "bx", "by", "speed"];
 const RATE: f64 = 20_000.0;

@@ -11,12 +11,12 @@ use touchdown_protocol::wire::Played;
 use touchdown_files::recording::Reading;
 use touchdown_files::stream::{Columns, StreamWriter, to_row, to_sample};
 use touchdown_rotor::error::ConfigError;
-use touchdown_run::monitor_run;
 use touchdown_run::replay::{self, Orders};
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors, Tachometers};
 use touchdown_tests::even_rows::even_rows;
+use touchdown_tests::monitor_run;
 
 const RATE: f64 = 20_000.0;
 const CAGE_RATIO: f64 = 0.4;

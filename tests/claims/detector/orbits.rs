@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_run::monitor_run;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
+use touchdown_tests::monitor_run;
 
 const GRAVITY: f64 = 9.81;
 /// Levitated time, s.

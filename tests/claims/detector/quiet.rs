@@ -2,9 +2,9 @@
 
 use touchdown_core::event::{EventKind, Level, Notice};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_run::monitor_run;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
+use touchdown_tests::monitor_run;
 
 const CLEARANCE: f64 = 0.3e-3;
 

@@ -4,14 +4,16 @@ use super::row::Row;
 use super::watch::Drop;
 use super::{Findings, Group, Plan, campaign};
 use touchdown_base::failure::Failure;
+use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
 
 /// What two targets made of the same drops: samples, notices, and how many of notices, state and counters are not the same.
 type Agreement = [u64; 3];
 
 fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
-    let here = Target::Host.run(&drop.monitor, drop.samples()?)?;
-    let there = target.run(&drop.monitor, drop.samples()?)?;
+    let run =
+        |target: &Target| target.control(&drop.monitor, &Procedure::default(), drop.samples()?);
+    let ((here, _), (there, _)) = (run(&Target::Host)?, run(target)?);
     let (ours, theirs) = (here.summary, there.summary);
     let differences = [
         here.notices != there.notices,

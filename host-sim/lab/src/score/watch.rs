@@ -11,7 +11,7 @@ use super::levitated::Levitated;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact, PhaseKind};
 use touchdown_run::detection::detection;
-use touchdown_run::monitor_run::MonitorOutput;
+use touchdown_run::monitor_output::MonitorOutput;
 use touchdown_run::outcome::Detection;
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};

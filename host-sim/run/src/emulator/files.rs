@@ -8,7 +8,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::wire::{self, Played, Record, ReplayHead, Switching};
 
-use crate::monitor_run::{MOST_NOTICES, MonitorOutput};
+use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
 use crate::procedure::Procedure;
 
 /// Writes a replay file; how many samples it has.
@@ -40,17 +40,9 @@ pub fn replay_head(head: &ReplayHead) -> io::Result<Vec<u8>> {
     Ok([&wire::REPLAY_MAGIC[..], &length, &head].concat())
 }
 
-/// What the image answered.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
-    /// Of the monitor, its log still empty.
-    pub output: MonitorOutput,
-    /// Each change of what the controller showed.
-    pub shown: Vec<Switching>,
-}
-
-/// A whole answer; `None` for one that is damaged or not at its end.
-pub(super) fn decode_answer(bytes: &[u8]) -> Option<Answer> {
+/// What the image answered: what the monitor said, its log still empty, and each change of what the controller showed.
+/// `None` for an answer that is damaged or not at its end.
+pub(super) fn decode_answer(bytes: &[u8]) -> Option<(MonitorOutput, Vec<Switching>)> {
     let (records, []) = bytes
         .strip_prefix(&wire::ANSWER_MAGIC)?
         .as_chunks::<{ wire::NOTICE_BYTES }>()
@@ -73,16 +65,14 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<Answer> {
             Record::Severity(_) | Record::Summary(_) => return None,
         }
     }
-    Some(Answer {
-        output: MonitorOutput {
-            notices,
-            left_out,
-            severity,
-            summary,
-            log: Vec::new(),
-        },
-        shown,
-    })
+    let output = MonitorOutput {
+        notices,
+        left_out,
+        severity,
+        summary,
+        log: Vec::new(),
+    };
+    Some((output, shown))
 }
 
 #[cfg(test)]
@@ -128,11 +118,7 @@ mod tests {
             summary,
             log: Vec::new(),
         };
-        let answer = Answer {
-            output,
-            shown: vec![switching],
-        };
-        assert_eq!(decode_answer(&bytes), Some(answer));
+        assert_eq!(decode_answer(&bytes), Some((output, vec![switching])));
         bytes.pop();
         assert_eq!(decode_answer(&bytes), None);
     }

@@ -11,7 +11,7 @@ use std::process::ExitStatus;
 use std::time::Duration;
 
 use crate::controller_trace::ControllerTrace;
-use crate::monitor_run::MonitorOutput;
+use crate::monitor_output::MonitorOutput;
 use crate::procedure::Procedure;
 use defmt_decoder::{DecodeError, Table};
 use touchdown_base::interrupt::TemporaryFolder;
@@ -19,7 +19,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_files::link::LinkError;
 
-pub use self::files::{Answer, replay_head};
+pub use self::files::replay_head;
 use self::files::{decode_answer, write_replay};
 pub use self::session::{RESTART, Session};
 
@@ -67,9 +67,6 @@ pub enum EmulatorError {
         /// What QEMU said.
         qemu: String,
     },
-    /// Its answer is not what [`wire`] describes.
-    #[error("the image's answer is damaged")]
-    Damaged,
     /// It does not talk.
     #[error("the image: {0}")]
     Link(#[from] LinkError),
@@ -100,24 +97,6 @@ impl Emulator {
         &self.image
     }
 
-    /// Runs the image over `samples`.
-    pub fn run(
-        &self,
-        config: &MonitorConfig,
-        samples: impl Iterator<Item = Sample>,
-    ) -> Result<MonitorOutput, EmulatorError> {
-        let (folder, limit) = prepared(config, &Procedure::default(), samples)?;
-        let [clock, rate] = TIME;
-        let arguments = ["enable=on,target=native,arg=replay,arg=answer", clock, rate];
-        let log = self.execute(folder.path(), &arguments, limit)?;
-        let answer = read(&folder.path().join("answer"))?;
-        let answer = decode_answer(&answer).ok_or(EmulatorError::Damaged)?;
-        Ok(MonitorOutput {
-            log,
-            ..answer.output
-        })
-    }
-
     /// Runs the image over `samples` with a new drop log, and talks to it.
     pub fn control(
         &self,
@@ -125,9 +104,12 @@ impl Emulator {
         procedure: &Procedure,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(MonitorOutput, ControllerTrace), EmulatorError> {
-        let (folder, limit) = prepared(config, procedure, samples)?;
+        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let count = write_replay(&folder.path().join("replay"), config, procedure, samples)
+            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+        let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let mut session = self.open(folder.path())?;
-        let Answer { output, shown } = session.answer(limit)?;
+        let (output, shown) = session.answer(limit)?;
         let mut client = session.client()?;
         let (hello, state) = (client.hello()?, client.state()?);
         let conduct = ControllerTrace {
@@ -157,19 +139,6 @@ impl Emulator {
             }
         }
     }
-}
-
-/// A folder with the samples as a replay file, and the longest time that the image takes over them.
-fn prepared(
-    config: &MonitorConfig,
-    procedure: &Procedure,
-    samples: impl Iterator<Item = Sample>,
-) -> Result<(TemporaryFolder, Duration), EmulatorError> {
-    let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
-    let count = write_replay(&folder.path().join("replay"), config, procedure, samples)
-        .map_err(|e| EmulatorError::Io("write the replay file", e))?;
-    let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
-    Ok((folder, limit))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {

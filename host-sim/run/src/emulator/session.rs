@@ -8,11 +8,11 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{
-    Answer, Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, read,
-};
+use super::{Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, read};
+use crate::monitor_output::MonitorOutput;
 use touchdown_base::interrupt::{Registered, spawn};
 use touchdown_files::link::Client;
+use touchdown_protocol::wire::Switching;
 
 /// Exit status of an image that has stored a configuration and would be reset now.
 pub const RESTART: i32 = 7;
@@ -133,8 +133,11 @@ impl Session {
         }
     }
 
-    /// Its answer and the changes of the outputs, once all samples of a file are taken.
-    pub fn answer(&mut self, limit: Duration) -> Result<Answer, EmulatorError> {
+    /// What the monitor said, and each change of what the controller showed, once all samples of a file are taken.
+    pub fn answer(
+        &mut self,
+        limit: Duration,
+    ) -> Result<(MonitorOutput, Vec<Switching>), EmulatorError> {
         let start = Instant::now();
         loop {
             // Made before the first sample is read, but after QEMU is up.
