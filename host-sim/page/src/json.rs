@@ -174,7 +174,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         validity: validity(scene),
         detector: EventsJson {
             events: events(&outcome.detection),
-            health: outcome.detection.conditions,
+            health: outcome.detection.summary.conditions,
         },
         forecasts: &outcome.detection.forecasts,
         severity: outcome.detection.severity,
@@ -190,9 +190,9 @@ pub fn replay(replay: &Replay) -> serde_json::Result<String> {
         forecasts: &detection.forecasts,
         left_out: detection.left_out,
         severity: detection.severity,
-        samples: detection.samples,
-        faults: detection.faults,
-        health: detection.conditions,
+        samples: detection.summary.samples,
+        faults: detection.summary.faults,
+        health: detection.summary.conditions,
         controller: replay.conduct.told(replay.timebase),
     })
 }

@@ -14,20 +14,20 @@ use touchdown_scene::Scene;
 /// Writes the page; `drop` is the first drop, sample by sample.
 pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) -> String {
     let detection = &replay.detection;
-    let seconds = detection.samples as f64 / replay.rate;
+    let seconds = detection.summary.samples as f64 / replay.rate;
     let body = html! {
         p.kind { "Replay of a recording" }
         h1 { (name) }
         p { "Scene: " (scene.heading()) }
         @for warning in &replay.warnings { p.alarm { (warning) } }
         dl.figures {
-            (figure("Samples", &detection.samples.to_string()))
+            (figure("Samples", &detection.summary.samples.to_string()))
             (figure("Rate", &si(replay.rate, "Hz")))
             (figure("Length", &si(seconds, "s")))
             (figure("Events", &(detection.events.len() as u64 + detection.left_out).to_string()))
             (figure("Impacts of the last drop", &detection.severity.impacts.to_string()))
             (figure("Its hardest impact", &si(detection.severity.impact_speed_m_s, "m/s")))
-            (figure("Unusable channel values", &detection.faults.to_string()))
+            (figure("Unusable channel values", &detection.summary.faults.to_string()))
         }
         @if let Some(format) = &replay.format { p.note { (format) } }
         @if let Some(drop) = drop {
@@ -66,7 +66,7 @@ fn figure(name: &str, value: &str) -> Markup {
 fn whole(scene: &Scene, replay: &Replay) -> Markup {
     let envelope = &replay.envelope;
     let stretch = envelope.stride as f64 / replay.rate;
-    let end = replay.start + replay.detection.samples as f64 / replay.rate;
+    let end = replay.start + replay.detection.summary.samples as f64 / replay.rate;
     panels([replay.start, end], scene, replay, &|channel, line| {
         for (index, bucket) in envelope.buckets().enumerate() {
             let time = replay.start + (index as f64 + 0.5) * stretch;

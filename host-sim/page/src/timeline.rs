@@ -323,14 +323,14 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
 
 /// What the detector was fed, and the fingerprint by which two machines are compared.
 fn samples_line(detection: &Detection) -> String {
-    let conditions = (0..).zip(detection.conditions);
+    let conditions = (0..).zip(detection.summary.conditions);
     let bad: String = conditions
         .filter(|(_, condition)| *condition != Condition::Ok)
         .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it))
         .collect();
     format!(
         "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
-        detection.samples, detection.faults, detection.state_hash
+        detection.summary.samples, detection.summary.faults, detection.summary.state_hash
     )
 }
 

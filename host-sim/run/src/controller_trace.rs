@@ -115,7 +115,11 @@ impl ControllerTrace {
                 .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
                 .collect(),
             touches: state.touches,
-            alarms: self.alarms.iter().map(|it| alarm(it, timebase)).collect(),
+            alarms: self
+                .alarms
+                .iter()
+                .map(|it| AlarmAt::new(it, timebase.time(it.sample as f64)))
+                .collect(),
             orders: self.orders.iter().map(|it| order(it, timebase)).collect(),
             zones: ["a", "b", "c", "d"]
                 .into_iter()
@@ -134,11 +138,6 @@ impl ControllerTrace {
             },
         }
     }
-}
-
-/// An alarm with its time.
-pub fn alarm(alarm: &Alarm, timebase: Timebase) -> AlarmAt {
-    AlarmAt::new(alarm, timebase.time(alarm.sample as f64))
 }
 
 /// An order, with the time of the sample before which it came.
@@ -174,7 +173,15 @@ impl Controller {
         for episode in &self.log.dump.episodes {
             text += &logged(episode);
         }
-        text + &self.link.text()
+        let link = &self.link;
+        text + &format!(
+            "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
+            link.firmware,
+            link.sample_rate_hz,
+            link.counters.lost_samples,
+            link.counters.lost_notices,
+            link.counters.damaged_frames
+        )
     }
 }
 
@@ -193,17 +200,4 @@ fn logged(episode: &Episode) -> String {
         episode.samples.iter().flatten().count(),
         episode.events.len(),
     )
-}
-
-impl Link {
-    fn text(&self) -> String {
-        format!(
-            "link: firmware {}, {} Hz; lost: {} samples, {} notices; {} damaged frames\n",
-            self.firmware,
-            self.sample_rate_hz,
-            self.counters.lost_samples,
-            self.counters.lost_notices,
-            self.counters.damaged_frames
-        )
-    }
 }

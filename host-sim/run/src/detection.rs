@@ -32,15 +32,15 @@ pub fn declared(event: &Event, timebase: Timebase) -> DetectedEvent {
 
 /// Takes what a notice tells into `events`: a new one, or what became of the last one of its number.
 pub fn take(events: &mut Vec<DetectedEvent>, notice: &Notice, timebase: Timebase) {
-    let (number, sample) = match notice {
-        Notice::Declared(event) => return events.push(declared(event, timebase)),
-        Notice::Confirmed { number, sample } | Notice::Withdrawn { number, sample } => {
-            (*number, *sample)
+    let (Notice::Confirmed { number, sample } | Notice::Withdrawn { number, sample }) = notice
+    else {
+        if let Notice::Declared(event) = notice {
+            events.push(declared(event, timebase));
         }
-        _ => return,
+        return;
     };
-    if let Some(event) = events.iter_mut().rfind(|it| it.number == number) {
-        let time = Some(timebase.time(sample as f64));
+    if let Some(event) = events.iter_mut().rfind(|it| it.number == *number) {
+        let time = Some(timebase.time(*sample as f64));
         match notice {
             Notice::Confirmed { .. } => event.confirmed_s = time,
             _ => event.withdrawn_s = time,
@@ -106,10 +106,7 @@ pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
         forecasts,
         left_out: answer.left_out,
         severity: answer.severity.into(),
-        samples: answer.summary.samples,
-        faults: answer.summary.faults,
-        conditions: answer.summary.conditions,
-        state_hash: answer.summary.state_hash,
+        summary: answer.summary,
     }
 }
 

@@ -245,14 +245,7 @@ mod tests {
     fn judge(truth: &History, events: Vec<DetectedEvent>) -> Matches {
         let detection = Detection {
             events,
-            touches: Vec::new(),
-            forecasts: Vec::new(),
-            left_out: 0,
-            severity: crate::outcome::Severity::default(),
-            samples: 0,
-            faults: 0,
-            conditions: Default::default(),
-            state_hash: 0,
+            ..Detection::default()
         };
         match_events(truth, &detection)
     }

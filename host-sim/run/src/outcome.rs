@@ -10,8 +10,7 @@ use touchdown_base::history::{History, PhaseKind, RotorState};
 use touchdown_base::ledger::Ledger;
 use touchdown_base::spectrogram::Spectrogram;
 use touchdown_core::event::EventKind;
-use touchdown_core::health::Condition;
-use touchdown_core::sample::CHANNELS;
+use touchdown_core::monitor::Summary;
 use touchdown_files::drop_log::ChannelFault;
 use touchdown_truth::Moving;
 
@@ -123,7 +122,7 @@ impl From<touchdown_core::severity::Severity> for Severity {
 }
 
 /// What the detector said over a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Detection {
     /// In the order of declaration.
     pub events: Vec<DetectedEvent>,
@@ -135,14 +134,8 @@ pub struct Detection {
     pub left_out: u64,
     /// Of the last drop.
     pub severity: Severity,
-    /// Samples seen.
-    pub samples: u64,
-    /// Channel values that were unusable, or not used.
-    pub faults: u64,
-    /// What can be had of each channel at the end.
-    pub conditions: [Condition; CHANNELS],
-    /// Fingerprint of the detector's state over all ticks.
-    pub state_hash: u32,
+    /// What the run added up to.
+    pub summary: Summary,
 }
 
 /// A point of the true motion, for drawing.

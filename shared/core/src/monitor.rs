@@ -82,7 +82,7 @@ pub struct MonitorState {
 }
 
 /// What a whole run adds up to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     /// Samples seen.
     pub samples: u64,

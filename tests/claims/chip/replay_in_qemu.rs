@@ -37,7 +37,7 @@ fn every_built_in_scene_gives_the_same_bits() {
         let (detection, conduct) = (&target.detection, &target.conduct);
         println!(
             "{}: {:08x}, outputs {:?}",
-            scene.name, detection.state_hash, conduct.outputs
+            scene.name, detection.summary.state_hash, conduct.outputs
         );
         assert_eq!(*detection, desktop.detection, "{}", scene.name);
         assert!(!detection.events.is_empty(), "{}", scene.name);
@@ -75,7 +75,7 @@ fn a_drop_trips_in_the_tick_that_confirms_it_and_is_recorded_whole() {
     assert_eq!(episode.verdict, Verdict::Whole);
     assert_eq!(episode.samples.iter().flatten().count(), 4_450);
     assert_eq!(log.counters.expect("counters").landings, 1);
-    assert_eq!(outcome.conduct.state.sample + 1, outcome.detection.samples);
+    assert_eq!(outcome.conduct.state.sample + 1, outcome.detection.summary.samples);
 }
 
 #[test]

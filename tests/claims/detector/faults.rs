@@ -107,7 +107,7 @@ fn nothing_is_recognised_in_healthy_drops() {
                     "{} {rate} Hz {planes}: {told:?}",
                     scene.name
                 );
-                assert_eq!(detection.conditions, [Condition::Ok; 4]);
+                assert_eq!(detection.summary.conditions, [Condition::Ok; 4]);
                 drops += 1;
             }
         }
@@ -283,7 +283,7 @@ fn a_failing_channel_is_named_within_a_few_samples() {
                     assert_eq!((first, at), (kind, name), "{case}");
                     assert!((0..=within).contains(&age), "{case}");
                     assert_eq!(
-                        detection.conditions[channel],
+                        detection.summary.conditions[channel],
                         conditions[usize::from(planes == 1)],
                         "{case}"
                     );
@@ -350,7 +350,7 @@ fn a_spike_or_a_dropped_sample_is_told_and_is_no_event() {
                 assert_eq!(told, [(kind, NAMES[channel], 1)], "{case}");
                 assert_eq!(confirmed_falls(&outcome.detection), 1, "{case}");
                 assert_eq!(wrong_impacts(&outcome), healthy, "{case}");
-                assert_eq!(outcome.detection.conditions, [Condition::Ok; 4], "{case}");
+                assert_eq!(outcome.detection.summary.conditions, [Condition::Ok; 4], "{case}");
             }
         }
     }
@@ -413,7 +413,7 @@ fn a_wrong_axis_is_told_once_the_rotor_lies() {
                 assert_eq!((first, name), (kind, NAMES[channel]), "{case}");
                 // Two stretches of three swings (35 ms each) after 0.1 s of bounces.
                 assert!(age < 6_500, "{case}");
-                assert_eq!(detection.conditions[channel], condition, "{case}");
+                assert_eq!(detection.summary.conditions[channel], condition, "{case}");
                 if seed == 0 {
                     println!("{case}");
                 }

@@ -50,7 +50,7 @@ fn memory_does_not_grow_with_the_recording() {
         let mut file = fs::File::create(&path).unwrap();
         (0..blocks).for_each(|_| file.write_all(block.as_bytes()).unwrap());
         let replay = replay::recording(&path, &reading, &scene, &Target::Host, &Orders::default()).unwrap();
-        assert_eq!(replay.detection.samples, 20_000 * blocks);
+        assert_eq!(replay.detection.summary.samples, 20_000 * blocks);
         let json = json::replay(&replay).unwrap();
         (peak(), replay.detection.events.len(), json.len())
     };

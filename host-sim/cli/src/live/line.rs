@@ -6,8 +6,8 @@ use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;
+use touchdown_files::controller::AlarmAt;
 use touchdown_files::link::refused_why;
-use touchdown_run::controller_trace::alarm;
 use touchdown_run::detection::{declared, forecast, touch};
 
 /// The line without its end; `watched` has taken in what came before.
@@ -124,7 +124,10 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
         Notice::Confirmed { number, sample } => ("confirmed", fate(number, sample)),
         Notice::Withdrawn { number, sample } => ("withdrawn", fate(number, sample)),
         Notice::Outlook(outlook) => ("outlook", json!(forecast(outlook, timebase))),
-        Notice::Alarm(it) => ("alarm", json!(alarm(it, timebase))),
+        Notice::Alarm(it) => {
+            let time = timebase.time(it.sample as f64);
+            ("alarm", json!(AlarmAt::new(it, time)))
+        }
         Notice::Touch(it) => ("touch", json!(touch(it, timebase))),
         Notice::Ordered(it) => ("order", order(it, watched)),
     }

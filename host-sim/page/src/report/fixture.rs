@@ -4,10 +4,11 @@ use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
 use touchdown_base::machine::Start;
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
+use touchdown_core::monitor::Summary;
 use touchdown_protocol::link::{Hello, State, Text};
 use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
-use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, Severity, TracePoint};
+use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
 use touchdown_truth::reference::Reference;
@@ -155,13 +156,11 @@ fn detection(truth: &History) -> Detection {
     events.sort_by(|a, b| a.declared_s.total_cmp(&b.declared_s));
     Detection {
         events,
-        touches: Vec::new(),
-        forecasts: Vec::new(),
-        left_out: 0,
-        severity: Severity::default(),
-        samples: 25_000,
-        faults: 3,
-        conditions: Default::default(),
-        state_hash: 0,
+        summary: Summary {
+            samples: 25_000,
+            faults: 3,
+            ..Summary::default()
+        },
+        ..Detection::default()
     }
 }

@@ -18,13 +18,13 @@ pub fn health(outcome: &Outcome) -> Markup {
         .number("since, ms", |it| ms(it.0.onset_s))
         .number("told, ms", |it| ms(it.0.declared_s));
     let bad: Vec<String> = (0..)
-        .zip(detection.conditions)
+        .zip(detection.summary.conditions)
         .filter(|(_, condition)| *condition != Condition::Ok)
         .map(|(channel, condition)| format!("{} is {}", channel_name(channel), condition))
         .collect();
     html! {
         p {
-            (detection.samples) " samples, " (detection.faults) " values unusable or not used. "
+            (detection.summary.samples) " samples, " (detection.summary.faults) " values unusable or not used. "
             @if bad.is_empty() { "At the end every channel is sound." }
             @else { span.alarm { "At the end " (bad.join(", ")) "." } }
         }

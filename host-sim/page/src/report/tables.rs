@@ -24,8 +24,8 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
     let (hits, changes): (Vec<_>, Vec<_>) = all.partition(|it| it.1.event == EventKind::Impact);
     html! {
         p {
-            (detection.events.len()) " events in " (detection.samples) " samples, "
-            (matches.false_events.len()) " false, " (detection.faults) " unusable channel values."
+            (detection.events.len()) " events in " (detection.summary.samples) " samples, "
+            (matches.false_events.len()) " false, " (detection.summary.faults) " unusable channel values."
         }
         @if !changes.is_empty() { (listed("Events of the detector", &changes, matches)) }
         @if !hits.is_empty() {

@@ -5,7 +5,7 @@ use std::path::Path;
 use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::machine::Start;
 use touchdown_chart::text::si;
-use touchdown_run::outcome::{Detection, Outcome, Severity};
+use touchdown_run::outcome::{Detection, Outcome};
 
 /// Every element is closed by its own end tag, in order; `path` and the like must be, inside `svg`.
 fn assert_closed(page: &str) {
@@ -54,17 +54,7 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         truth,
         trace: Vec::new(),
         spectrogram: Default::default(),
-        detection: Detection {
-            events: Vec::new(),
-            touches: Vec::new(),
-            forecasts: Vec::new(),
-            left_out: 0,
-            severity: Severity::default(),
-            samples: 0,
-            faults: 0,
-            conditions: Default::default(),
-            state_hash: 0,
-        },
+        detection: Detection::default(),
         conduct: fixture::conduct(),
         timebase: touchdown_run::timebase::Timebase::new(0.0, 1.0),
     }
