@@ -152,7 +152,7 @@ fn events(detection: &Detection) -> Vec<EventJson<'_>> {
 
 /// `drop --json`.
 pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
-    let model = &outcome.model;
+    let model = &outcome.model.histories.whole;
     text(&DropJson {
         model: ModelJson {
             rung: scene.model.rung,
@@ -163,14 +163,14 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         history: history(model),
         end: end(scene, outcome),
         rings: rings(scene, outcome),
-        ring: outcome.ring.as_ref(),
-        energy: outcome.ledger.as_ref().map(|ledger| EnergyJson {
+        ring: outcome.model.ring.as_ref(),
+        energy: outcome.model.ledger.as_ref().map(|ledger| EnergyJson {
             ledger,
             imbalance_j: ledger.imbalance_j(),
         }),
         accuracy: outcome.accuracy.as_ref(),
         truth_given_up_s: outcome.given_up,
-        model_given_up_s: outcome.model_given_up,
+        model_given_up_s: outcome.model.given_up,
         validity: validity(scene),
         detector: EventsJson {
             events: events(&outcome.detection),
@@ -241,21 +241,21 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
 }
 
 fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
-    let rings = scene.rings().iter().zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.model.histories.rings);
     rings
         .enumerate()
-        .map(|(index, (ring, [model, _]))| RingJson {
+        .map(|(index, (ring, model))| RingJson {
             name: &ring.name,
             z_m: ring.place,
-            ring: outcome.seats.get(index),
+            ring: outcome.model.seats.get(index),
             history: history(model),
         })
         .collect()
 }
 
 fn end(scene: &Scene, outcome: &Outcome) -> EndJson {
-    let last = &outcome.model.end;
-    let stored = outcome.ledger.as_ref().map(Ledger::stored_j);
+    let last = &outcome.model.histories.whole.end;
+    let stored = outcome.model.ledger.as_ref().map(Ledger::stored_j);
     EndJson {
         state: state(last),
         energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), last)),

@@ -22,7 +22,7 @@ const SAME: f64 = 1e-12;
 
 /// A drop.
 pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
-    let matches = match_events(&outcome.truth, &outcome.detection);
+    let matches = match_events(&outcome.truth.whole, &outcome.detection);
     let mut text = heading(scene, paint);
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
@@ -70,7 +70,7 @@ fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         "phase", "from ms", "to ms", "detected", "onset ms", "latency ms"
     );
     let mut text = paint.bold(&head) + "\n";
-    let phases = &outcome.truth.phases;
+    let phases = &outcome.truth.whole.phases;
     for phase in phases.iter().take(LISTED) {
         text += &format!(
             "{:<12}{:>12}{:>12}",
@@ -127,7 +127,7 @@ fn fate(event: &DetectedEvent) -> &'static str {
 }
 
 fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let truth = &outcome.truth.impacts;
+    let truth = &outcome.truth.whole.impacts;
     if truth.is_empty() {
         return String::new();
     }
@@ -145,7 +145,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let found = matches.of_kind(EventKind::Impact);
     for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
         let off = if outcome.by_reference {
-            let model = outcome.model.impacts.get(index);
+            let model = outcome.model.histories.whole.impacts.get(index);
             model.map(|model| seconds(model.state.time - impact.state.time))
         } else {
             let known = outcome.accuracy.as_ref().map(|it| it.impacts[index]);
@@ -170,7 +170,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         };
         text.push('\n');
     }
-    text + &more(truth.len(), "impacts") + &forces(&outcome.model)
+    text + &more(truth.len(), "impacts") + &forces(&outcome.model.histories.whole)
 }
 
 /// The contact forces of the model's impacts, where it has any.
@@ -191,7 +191,7 @@ fn forces(model: &History) -> String {
 }
 
 fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let truth = outcome.truth.regime;
+    let truth = outcome.truth.whole.regime;
     let mut text = format!("\n{} {}", paint.bold("regime"), regime_name(truth));
     let Some(kind) = regime_event(truth) else {
         return text + "\n";
@@ -253,7 +253,7 @@ fn severity(detection: &Detection) -> String {
 /// Of a model or a truth that would take too long.
 pub fn given_up(outcome: &Outcome) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(at) = outcome.model_given_up {
+    if let Some(at) = outcome.model.given_up {
         let too = [", sensors and detector too", ""][usize::from(outcome.by_reference)];
         let line = format!(
             "model given up at {} ms{too}: it would take too long",
@@ -262,7 +262,7 @@ pub fn given_up(outcome: &Outcome) -> Vec<String> {
         lines.push(line);
     }
     if let Some(at) = outcome.given_up {
-        let (at, end) = (millis(at), millis(outcome.model.end.time));
+        let (at, end) = (millis(at), millis(outcome.model.histories.whole.end.time));
         lines.push(format!(
             "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
         ));
@@ -301,8 +301,11 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     for line in given_up(outcome) {
         text += &(paint.bad(&line) + "\n");
     }
-    if outcome.model.regime != outcome.truth.regime {
-        let line = format!("the model ends as {}", regime_name(outcome.model.regime));
+    if outcome.model.histories.whole.regime != outcome.truth.whole.regime {
+        let line = format!(
+            "the model ends as {}",
+            regime_name(outcome.model.histories.whole.regime)
+        );
         text += &(paint.bad(&line) + "\n");
     }
     if !matches.false_events.is_empty() {

@@ -36,9 +36,9 @@ pub fn run<W: Write>(
     let model = model.finish();
     let truth = model.histories.clone();
     let (mut outcome, stream) = outcome(scene, model, truth, sensed);
-    if outcome.model_given_up.is_none() {
-        let rings = outcome.rings.iter().map(|[model, _]| model);
-        outcome.accuracy = accuracy::estimate(scene, &outcome.model, rings);
+    if outcome.model.given_up.is_none() {
+        let Histories { whole, rings } = &outcome.model.histories;
+        outcome.accuracy = accuracy::estimate(scene, whole, rings.iter());
     }
     Ok((outcome, stream))
 }
@@ -157,18 +157,12 @@ fn outcome<W>(
     truth: Histories,
     sensed: Sensed<W>,
 ) -> (Outcome, io::Result<Option<W>>) {
-    let rings = model.histories.rings.into_iter().zip(truth.rings);
     let outcome = Outcome {
-        model: model.histories.whole,
-        truth: truth.whole,
+        model,
+        truth,
         accuracy: None,
         by_reference: false,
         given_up: None,
-        model_given_up: model.given_up,
-        ledger: model.ledger,
-        ring: model.ring,
-        seats: model.seats,
-        rings: rings.map(|(model, truth)| [model, truth]).collect(),
         trace: sensed.trace,
         spectrogram: sensed.spectrogram,
         detection: sensed.detection,

@@ -3,11 +3,11 @@
 
 use crate::accuracy::RunAccuracy;
 use crate::controller_trace::ControllerTrace;
-use crate::model::RingEnd;
+use crate::model::ModelRun;
 use crate::timebase::Timebase;
 use serde::Serialize;
-use touchdown_base::history::{History, PhaseKind, RotorState};
-use touchdown_base::ledger::Ledger;
+use touchdown_base::history::{PhaseKind, RotorState};
+use touchdown_base::rings::Histories;
 use touchdown_base::spectrogram::Spectrogram;
 use touchdown_core::event::EventKind;
 use touchdown_core::monitor::Summary;
@@ -155,25 +155,15 @@ pub struct TracePoint {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The model under test.
-    pub model: History,
+    pub model: ModelRun,
     /// What the sensors saw: the model's again, or the independent reference's.
-    pub truth: History,
+    pub truth: Histories,
     /// How far the model's numbers may be off; none where the reference tells, or where it is not known.
     pub accuracy: Option<RunAccuracy>,
     /// Whether the reference moved the rotor.
     pub by_reference: bool,
     /// When the reference was given up, s: it would take too long. The stream of the sensors ends there.
     pub given_up: Option<f64>,
-    /// When the model was, s; its end is there, and that of the stream where it moves the rotor.
-    pub model_given_up: Option<f64>,
-    /// The model's energy, where its rung keeps account of it.
-    pub ledger: Option<Ledger>,
-    /// The model's retainer ring at the end, where it moves or turns.
-    pub ring: Option<RingEnd>,
-    /// Each of the model's rings at the end, where the rotor tilts.
-    pub seats: Vec<RingEnd>,
-    /// Each ring, where the rotor tilts: the model's and the reference's.
-    pub rings: Vec<[History; 2]>,
     /// The true motion, thinned to a few thousand points: all of it in the interesting part.
     pub trace: Vec<TracePoint>,
     /// Of what the sensors of plane a gave.

@@ -22,7 +22,7 @@ fn dropped(name: &str, rate: f64, seed: u64) -> (Outcome, Matches) {
 
 fn watched(scene: &Scene) -> (Outcome, Matches) {
     let (outcome, _) = drop::by_reference::<Sink>(scene, &Target::Host, None).expect("a valid scene drops");
-    let matches = match_events(&outcome.truth, &outcome.detection);
+    let matches = match_events(&outcome.truth.whole, &outcome.detection);
     (outcome, matches)
 }
 
@@ -65,7 +65,7 @@ fn a_fall_is_declared_near_the_bound_and_confirmed() {
             assert!(
                 event
                     .confirmed_s
-                    .is_some_and(|t| t < outcome.truth.impacts[0].state.time)
+                    .is_some_and(|t| t < outcome.truth.whole.impacts[0].state.time)
             );
             assert!(event.withdrawn_s.is_none());
         }
@@ -87,6 +87,7 @@ fn impacts_are_found_dated_and_measured() {
         for (rate, outcome, matches) in campaign(name) {
             for (impact, event) in outcome
                 .truth
+                .whole
                 .impacts
                 .iter()
                 .zip(matches.of_kind(EventKind::Impact))
@@ -193,7 +194,7 @@ fn sliding_turns_to_rolling() {
         let rolling = matches.of_kind(EventKind::Rolling).next().expect("rolls");
         let error = rolling.onset_error_s.expect("declared").abs();
         assert!(error < 10e-3, "{rate} Hz: {error}");
-        assert_eq!(outcome.truth.regime, Regime::Pendulum);
+        assert_eq!(outcome.truth.whole.regime, Regime::Pendulum);
         assert!(names(&outcome.detection.events).contains(&EventKind::Pendulum));
     }
 }
@@ -201,7 +202,7 @@ fn sliding_turns_to_rolling() {
 #[test]
 fn a_cold_start_in_whirl_has_the_right_sign() {
     for (rate, outcome, _) in campaign("backward-whirl") {
-        assert_eq!(outcome.truth.regime, Regime::BackwardWhirl);
+        assert_eq!(outcome.truth.whole.regime, Regime::BackwardWhirl);
         let names = names(&outcome.detection.events);
         assert_eq!(names[0], EventKind::Sliding, "{rate} Hz");
         assert!(names.contains(&EventKind::BackwardWhirl), "{names:?}");
@@ -216,7 +217,7 @@ fn lift_offs_are_found() {
             let found = lift_off.latency_s;
             assert!(found.is_some_and(|t| t < 5e-3), "{rate} Hz: {lift_off:?}");
         }
-        assert!(outcome.truth.lift_offs.len() >= 2);
+        assert!(outcome.truth.whole.lift_offs.len() >= 2);
     }
 }
 
@@ -243,7 +244,7 @@ fn bought(rate: f64, instants: u8, seeds: std::ops::Range<u64>) -> Bought {
         let fall = matches.of_kind(EventKind::FreeFall).next();
         falls.push(fall.and_then(|it| it.latency_s).unwrap_or(f64::INFINITY));
         let clear = |speed: f64| 1.8 * speed >= 0.018;
-        for (_, event) in (outcome.truth.impacts.iter())
+        for (_, event) in (outcome.truth.whole.impacts.iter())
             .zip(matches.of_kind(EventKind::Impact))
             .filter(|(impact, _)| clear(impact.normal_speed))
         {

@@ -73,8 +73,8 @@ fn confirmed_falls(detection: &Detection) -> usize {
 /// Impacts of 10 mm/s and more (a jump of 18 mm/s at the rig's restitution) that were not found, and impacts
 /// that did not happen.
 fn wrong_impacts(outcome: &Outcome) -> (usize, usize) {
-    let matches = match_events(&outcome.truth, &outcome.detection);
-    let impacts = outcome.truth.impacts.iter();
+    let matches = match_events(&outcome.truth.whole, &outcome.detection);
+    let impacts = outcome.truth.whole.impacts.iter();
     let missed = impacts
         .zip(matches.of_kind(EventKind::Impact))
         .filter(|(impact, found)| impact.normal_speed >= 0.01 && found.detected.is_none())

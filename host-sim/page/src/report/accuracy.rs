@@ -32,7 +32,7 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
             @for line in crate::timeline::given_up(outcome) { " " strong { "The " (line) "." } }
         }
         @if outcome.by_reference { (against_reference(scene, outcome)) }
-        @else if let Some(accuracy) = &outcome.accuracy { (estimated(&outcome.model, accuracy)) }
+        @else if let Some(accuracy) = &outcome.accuracy { (estimated(&outcome.model.histories.whole, accuracy)) }
     }
 }
 
@@ -86,7 +86,7 @@ fn mm_s(speed: f64) -> String {
 
 /// Times and end state side by side, with differences.
 fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
-    let (model, truth) = (&outcome.model, &outcome.truth);
+    let (model, truth) = (&outcome.model.histories.whole, &outcome.truth.whole);
     let both = [model, truth];
     let first = |history: &History| Some(history.impacts.first()?.state.time);
     let mut rows = vec![

@@ -88,7 +88,7 @@ fn shown(trace: &[TracePoint], window: Window) -> &[TracePoint] {
 
 fn bands(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
     html! {
-        @for (phase, from, to) in visible(&outcome.truth.phases, x, factor) {
+        @for (phase, from, to) in visible(&outcome.truth.whole.phases, x, factor) {
             rect class={ "band " (<&str>::from(phase)) } x=(percent(from)) width=(percent(to - from))
                 y="0" height=(HEIGHT) {}
         }
@@ -101,9 +101,16 @@ fn marks(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
         let events = outcome.detection.events.iter();
         events.filter(wanted).map(|it| it.onset_s).collect()
     };
-    let changes: Vec<f64> = outcome.truth.phases.iter().map(|it| it.start_s).collect();
+    let changes: Vec<f64> = outcome
+        .truth
+        .whole
+        .phases
+        .iter()
+        .map(|it| it.start_s)
+        .collect();
     let hits: Vec<f64> = outcome
         .truth
+        .whole
         .impacts
         .iter()
         .map(|it| it.state.time)

@@ -2,12 +2,14 @@
 
 use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
 use touchdown_base::machine::Start;
+use touchdown_base::rings::Histories;
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
 use touchdown_core::monitor::Summary;
 use touchdown_protocol::link::{Hello, State, Text};
 use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
+use touchdown_run::model::ModelRun;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
@@ -77,21 +79,36 @@ pub fn outcome(scene: &Scene, start: &Start) -> Outcome {
     let end = reference.advance(scene.run.duration, &mut |it| recorder.take(it));
     let truth = recorder.finish(end, reference.still_speed());
     Outcome {
-        rings: Vec::new(),
-        ledger: None,
-        seats: Vec::new(),
-        ring: None,
         accuracy: None,
         by_reference: true,
         given_up: None,
-        model_given_up: None,
-        model: truth.clone(),
+        model: model(truth.clone()),
         detection: detection(&truth),
         conduct: conduct(),
         timebase: Timebase::new(-LEAD, RATE),
-        truth,
+        truth: histories(truth),
         trace,
         spectrogram: analyser.finish(),
+    }
+}
+
+/// Of a rotor that does not tilt.
+pub fn histories(whole: History) -> Histories {
+    Histories {
+        whole,
+        rings: Vec::new(),
+    }
+}
+
+/// A model of which nothing but the rotor moves.
+pub fn model(whole: History) -> ModelRun {
+    ModelRun {
+        histories: histories(whole),
+        given_up: None,
+        tried: 0,
+        ledger: None,
+        ring: None,
+        seats: Vec::new(),
     }
 }
 

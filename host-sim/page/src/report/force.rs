@@ -20,12 +20,12 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     // Fidelity `hertz` takes steel for what the scene does not give.
     let known = scene.materials.given || scene.model.rung == Fidelity::Hertz;
     let press = known.then(|| force::press(scene)).flatten();
-    let rings: Vec<(Option<&str>, &History, f64)> = if outcome.rings.is_empty() {
-        vec![(None, &outcome.truth, scene.retainer.restitution)]
+    let rings: Vec<(Option<&str>, &History, f64)> = if outcome.truth.rings.is_empty() {
+        vec![(None, &outcome.truth.whole, scene.retainer.restitution)]
     } else {
-        let rings = scene.rings().iter().zip(&outcome.rings);
+        let rings = scene.rings().iter().zip(&outcome.truth.rings);
         rings
-            .map(|(ring, [_, truth])| (Some(&*ring.name), truth, ring.retainer.restitution))
+            .map(|(ring, truth)| (Some(&*ring.name), truth, ring.retainer.restitution))
             .collect()
     };
     html! {

@@ -12,7 +12,7 @@ pub fn forecasts(outcome: &Outcome) -> Markup {
     if all.is_empty() {
         return html! { p { "None: no impact or contact was declared, or too little was known of the speed." } };
     }
-    let truth = &outcome.truth;
+    let truth = &outcome.truth.whole;
     let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
     let begun = truth.contact_starts.last().filter(|_| whirls);
     let table = table("Forecast of whirl", all)

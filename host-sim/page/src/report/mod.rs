@@ -36,9 +36,13 @@ use window::Window;
 
 /// Writes the page.
 pub fn render(scene: &Scene, outcome: &Outcome) -> String {
-    let matches = match_events(&outcome.truth, &outcome.detection);
-    let whole = Window::whole(&outcome.truth);
-    let window = Window::interesting(&outcome.truth, scene.retainer.clearance, scene.run.gravity);
+    let matches = match_events(&outcome.truth.whole, &outcome.detection);
+    let whole = Window::whole(&outcome.truth.whole);
+    let window = Window::interesting(
+        &outcome.truth.whole,
+        scene.retainer.clearance,
+        scene.run.gravity,
+    );
     let zoomed = window != whole;
     let (ring_moves, _) = moving::ring_moves(outcome);
     let body = html! {
@@ -65,7 +69,7 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
                 }
                 p.note {
                     @if ring_moves { "The rotor as seen from the ring, which moves. " }
-                    @else if !outcome.rings.is_empty() { "The centre of mass; its ends are below. " }
+                    @else if !outcome.truth.rings.is_empty() { "The centre of mass; its ends are below. " }
                     @else { "Rings: impacts. " }
                     "True motion over the whole run, in the colours of the timeline. Outer circle: clearance. Here and below, dots stand alone where the points of the trace are too far apart to be joined."
                 }
@@ -99,11 +103,11 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
         section { h2 { "Severity" } (severity::severity(outcome)) }
         section { h2 { "Sensors" } (health::health(outcome)) }
         section { h2 { "Accuracy of the model" } (accuracy::accuracy(scene, outcome)) }
-        @if let Some(ledger) = &outcome.ledger {
+        @if let Some(ledger) = &outcome.model.ledger {
             section { h2 { "Energy" } (energy::energy(ledger)) }
         }
         section { h2 { "Parameters" } (parameters::parameters(scene)) }
-        section { h2 { "Not modelled" } (parameters::limits(scene, outcome.model.has_forces())) }
+        section { h2 { "Not modelled" } (parameters::limits(scene, outcome.model.histories.whole.has_forces())) }
         section { h2 { "Versions" } (parameters::versions()) }
     };
     let title = format!("{} \u{2013} touchdown report", scene.heading());

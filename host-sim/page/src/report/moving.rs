@@ -15,10 +15,10 @@ const MICRO: f64 = 1e6;
 
 /// One orbit a ring of a rotor that tilts.
 pub fn ends(scene: &Scene, outcome: &Outcome) -> Markup {
-    let rings = scene.rings().iter().zip(&outcome.rings).enumerate();
+    let rings = scene.rings().iter().zip(&outcome.truth.rings).enumerate();
     html! {
         div.pair {
-            @for (index, (ring, [_, truth])) in rings {
+            @for (index, (ring, truth)) in rings {
                 section {
                     h2 { "Orbit in ring " (ring.name) }
                     (end(index, ring, truth, scene, outcome))

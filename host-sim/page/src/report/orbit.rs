@@ -32,8 +32,8 @@ pub struct Orbit<'a> {
 /// Draws the rotor's whole run; clearance in m, spin in rad/s.
 pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
     // A rotor that tilts hits with its ends.
-    let own = outcome.rings.is_empty();
-    let impacts = outcome.truth.impacts.iter().filter(|_| own);
+    let own = outcome.truth.rings.is_empty();
+    let impacts = outcome.truth.whole.impacts.iter().filter(|_| own);
     draw(&Orbit {
         title: "Orbit",
         clearance,

@@ -8,7 +8,7 @@ use touchdown_run::outcome::Outcome;
 
 /// Draws the figures side by side.
 pub fn severity(outcome: &Outcome) -> Markup {
-    let (seen, truth) = (&outcome.detection.severity, &outcome.truth);
+    let (seen, truth) = (&outcome.detection.severity, &outcome.truth.whole);
     let text = |value: f64| significant(value, 4);
     let speeds = truth.impacts.iter().map(|it| it.normal_speed);
     let impulses = || truth.impacts.iter().map(|it| it.normal_impulse);

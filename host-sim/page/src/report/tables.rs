@@ -79,7 +79,7 @@ fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> 
 
 /// The true impacts, whether they were detected, and the model's error at each.
 pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
-    let truth = &outcome.truth.impacts;
+    let truth = &outcome.truth.whole.impacts;
     if truth.is_empty() {
         return html! { p { "None." } };
     }
@@ -91,10 +91,10 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
         .iter()
         .zip(&hard)
         .filter(|(it, hard)| **hard && it.detected.is_some());
-    let forces = outcome.model.has_forces();
+    let forces = outcome.model.histories.whole.has_forces();
     let rows: Vec<Row<'_>> = (truth.iter().enumerate().zip(&found))
         .map(|((index, truth), found)| {
-            let model = outcome.model.impacts.get(index);
+            let model = outcome.model.histories.whole.impacts.get(index);
             (index, truth, model, model_errors(outcome, index), *found)
         })
         .collect();
@@ -117,12 +117,12 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
 
 /// Of the model's time, s, and of its speed, relative: against the reference, else estimated.
 fn model_errors(outcome: &Outcome, index: usize) -> Option<[f64; 2]> {
-    let truth = &outcome.truth.impacts[index];
+    let truth = &outcome.truth.whole.impacts[index];
     if !outcome.by_reference {
         let known = outcome.accuracy.as_ref()?.impacts[index]?;
         return Some([known.time_s, known.normal_speed_m_s / truth.normal_speed]);
     }
-    let model = outcome.model.impacts.get(index)?;
+    let model = outcome.model.histories.whole.impacts.get(index)?;
     Some([
         model.state.time - truth.state.time,
         model.normal_speed / truth.normal_speed - 1.0,

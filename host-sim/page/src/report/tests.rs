@@ -45,13 +45,8 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         accuracy: None,
         by_reference: true,
         given_up: None,
-        model_given_up: None,
-        ledger: None,
-        seats: Vec::new(),
-        ring: None,
-        rings: Vec::new(),
-        model: truth.clone(),
-        truth,
+        model: fixture::model(truth.clone()),
+        truth: fixture::histories(truth),
         trace: Vec::new(),
         spectrogram: Default::default(),
         detection: Detection::default(),
@@ -180,7 +175,7 @@ fn force_is_drawn_where_the_materials_are_known() {
     let page = render(&steel, &outcome);
     assert_sound(&page);
     assert!(page.contains("Force of the first impact"));
-    let first = &outcome.truth.impacts[0];
+    let first = &outcome.truth.whole.impacts[0];
     let impulse = si(first.normal_impulse, "N s");
     assert!(page.contains(&impulse), "{impulse}");
 }

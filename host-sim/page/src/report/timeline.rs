@@ -35,12 +35,10 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
         let hits = truth.impacts.iter().map(|it| it.state.time);
         (name, truth.phases.clone(), hits.collect())
     };
-    let rings = scene.rings().iter().zip(&outcome.rings);
+    let rings = scene.rings().iter().zip(&outcome.truth.rings);
     let mut rows: Vec<(String, Vec<Phase>, Vec<f64>)> =
-        vec![true_row(whose.to_owned(), &outcome.truth)];
-    rows.extend(
-        rings.map(|(ring, [_, truth])| true_row(format!("Truth, ring {}", ring.name), truth)),
-    );
+        vec![true_row(whose.to_owned(), &outcome.truth.whole)];
+    rows.extend(rings.map(|(ring, truth)| true_row(format!("Truth, ring {}", ring.name), truth)));
     rows.push(seen_row("Detector, by estimated onset", |it| it.onset_s));
     let declared = seen_row("Detector, as declared at the time", |it| it.declared_s);
     rows.push(declared);

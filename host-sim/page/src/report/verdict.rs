@@ -12,7 +12,7 @@ use touchdown_scene::names::regime_name;
 
 /// Draws the title, the verdict and the key figures.
 pub fn verdict(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
-    let truth = &outcome.truth;
+    let truth = &outcome.truth.whole;
     let contact = first_contact(truth);
     let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
     html! {
@@ -67,7 +67,7 @@ fn motion(truth: &History) -> String {
 
 fn detection(outcome: &Outcome, matches: &Matches) -> String {
     let falls = matches.of_kind(EventKind::FreeFall).next();
-    let first = outcome.truth.impacts.first().map(|it| it.state.time);
+    let first = outcome.truth.whole.impacts.first().map(|it| it.state.time);
     let mut text = match falls.map(|fall| fall.latency_s) {
         None => String::new(),
         Some(None) => "The detector missed the free fall.".to_owned(),
@@ -144,7 +144,7 @@ fn first_contact(truth: &History) -> (String, &'static str) {
 fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
     let fall = matches.of_kind(EventKind::FreeFall).next();
     let levitated =
-        outcome.truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
+        outcome.truth.whole.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
     let note = match fall.and_then(|fall| fall.detected) {
         None if levitated => "never declared".to_owned(),
         None => "no release in this run".to_owned(),
@@ -157,7 +157,7 @@ fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
 }
 
 fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
-    let kind = regime_event(outcome.truth.regime);
+    let kind = regime_event(outcome.truth.whole.regime);
     let regime = kind.and_then(|kind| matches.of_kind(kind).next());
     let note = match regime {
         Some(found) if found.detected.is_some() => "from the start of the last contact",

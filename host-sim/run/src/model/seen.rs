@@ -30,7 +30,7 @@ pub trait FollowedDrop {
 pub struct ModelRun {
     /// What happened.
     pub histories: Histories,
-    /// When it was given up, s: it would take too long.
+    /// When it was given up, s: it would take too long. Its end is there, and that of the stream where it moves the rotor.
     pub given_up: Option<f64>,
     /// Stretches of motion tried, of the rungs `support`, `two-plane` and `coupled`: what it has cost.
     pub tried: u64,
