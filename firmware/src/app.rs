@@ -78,7 +78,7 @@ impl App {
     pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
         Self {
-            state: monitor.start(),
+            state: MonitorState::default(),
             monitor,
             patrol: ConfigScrub::default(),
             coefficients: MemoryScrub::default(),
@@ -277,11 +277,6 @@ impl App {
     /// The monitor's state after the last tick.
     pub fn state(&self) -> &MonitorState {
         &self.state
-    }
-
-    /// What waits for an order to clear: a drop by its cause, or a fault.
-    pub fn latched(&self) -> Option<Cause> {
-        self.shown().latched()
     }
 
     /// The latched faults, after the last tick.

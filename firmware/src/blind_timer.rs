@@ -6,7 +6,7 @@ use touchdown_core::sample::count_in_a_row;
 const TIME: f32 = 1e-3;
 
 /// Counts blind samples.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct BlindTimer {
     limit: u32,
     /// In a row without a position.
@@ -22,9 +22,7 @@ impl BlindTimer {
     pub fn new(sample_rate: f32) -> Self {
         Self {
             limit: ((TIME * sample_rate) as u32).max(2),
-            dark: 0,
-            seen: 0,
-            missed: 0,
+            ..Self::default()
         }
     }
 

@@ -36,16 +36,12 @@ impl From<Sample> for Incoming {
     }
 }
 
-/// An arrival and its number, from 0, modulo 2^32; those that were lost have numbers too.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberedSample {
-    pub(crate) arrival: Incoming,
-    pub(crate) number: u32,
-}
+/// What came and its sample's number, from 0, modulo 2^32; those that were lost have numbers too.
+pub type Numbered = (Incoming, u32);
 
 /// Between sampling and tick: the samples that wait, and what the guard on top has taken back.
 pub struct Ring {
-    waiting: Queue<NumberedSample, RING>,
+    waiting: Queue<Numbered, RING>,
     gate: TripGate,
 }
 
@@ -89,7 +85,7 @@ pub struct Intake<'m> {
     state: GuardState,
     /// Number of the next sample.
     next: u32,
-    samples: Producer<'m, NumberedSample>,
+    samples: Producer<'m, Numbered>,
     gate: &'m TripGate,
 }
 
@@ -107,7 +103,7 @@ impl Intake<'_> {
         // Where there is no room it is lost, and the number of the next that has room tells it. The length is looked at so
         // that the compiler knows it is not 0, by which the queue divides.
         if self.samples.capacity() < RING {
-            let _ = self.samples.enqueue(NumberedSample { arrival, number });
+            let _ = self.samples.enqueue((arrival, number));
         }
         let verdict = self.state.verdict;
         (verdict.danger || verdict.lost || verdict.off) && self.gate.trip(number)
@@ -116,7 +112,7 @@ impl Intake<'_> {
 
 /// The end of the tick.
 pub struct Waiting<'m> {
-    waiting: Consumer<'m, NumberedSample>,
+    waiting: Consumer<'m, Numbered>,
     /// Before the outputs.
     pub gate: &'m TripGate,
 }
@@ -124,7 +120,7 @@ pub struct Waiting<'m> {
 impl Waiting<'_> {
     /// The oldest that waits.
     #[inline]
-    pub fn pop(&mut self) -> Option<NumberedSample> {
+    pub fn pop(&mut self) -> Option<Numbered> {
         if self.waiting.capacity() < RING {
             self.waiting.dequeue()
         } else {

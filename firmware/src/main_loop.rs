@@ -102,7 +102,7 @@ impl MainLoop {
             return true;
         }
         let (counted, latched) =
-            platform.hold(|tick| (tick.recorder.counted(), tick.app.latched()));
+            platform.hold(|tick| (tick.recorder.counted, tick.app.shown().latched()));
         let Some(mut log) = platform.log().take() else {
             self.log_due = u64::MAX;
             return true;

@@ -102,22 +102,21 @@ impl<'m, B: Board> TickTask<'m, B> {
             self.row += 1;
             return false;
         }
-        let Some(taken) = self.desk.waiting.pop() else {
+        let Some((arrival, number)) = self.desk.waiting.pop() else {
             return false;
         };
         if self.row == IN_A_ROW + LONGEST_WAIT {
             self.row = 0;
         }
         self.row += 1;
-        let lost = taken.number.wrapping_sub(self.next);
-        self.next = taken.number.wrapping_add(1);
-        let arrival = &taken.arrival;
-        (self.desk.number, self.desk.service) = (taken.number, arrival.service);
+        let lost = number.wrapping_sub(self.next);
+        self.next = number.wrapping_add(1);
+        (self.desk.number, self.desk.service) = (number, arrival.service);
         if arrival.clear {
             let notice = self.app.clear_as_ordered();
             self.hear(&notice);
         }
-        if self.desk.waiting.gate.is_overruled(taken.number) {
+        if self.desk.waiting.gate.is_overruled(number) {
             self.app.trip(Cause::Danger);
         }
         let (desk, notices) = (&mut self.desk, &mut self.notices);

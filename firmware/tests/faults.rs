@@ -619,7 +619,7 @@ fn a_drop_outlives_the_power_until_it_is_cleared() {
     let mut log = DropLog::<_, 4>::mount(chip).unwrap();
     let mut bench = Bench::watching();
     let store = |log: &mut DropLog<W25q<_, _>, 4>, app: &App| {
-        while log.work(Counted::default(), app.latched(), || None) == Ok(true) {}
+        while log.work(Counted::default(), app.shown().latched(), || None) == Ok(true) {}
     };
     store(&mut log, &bench.app);
     assert_eq!(log.counters().uncleared, None);

@@ -6,7 +6,7 @@ use common::rig::{IDENTITY, Read, Rig, config, read};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::{PARTS, RING_PARTS};
-use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::{Edges, Sample, TACHOMETERS};
 use touchdown_core::severity::Severity;
 use touchdown_core::tachometer::TachometersConfig;
@@ -131,7 +131,7 @@ fn the_second_of_two_drops_waits_and_the_third_is_counted() {
     for _ in 0..3 {
         (0..500).for_each(|tick| rig.drop_tick(tick, 450));
     }
-    assert_eq!(rig.recorder.counted().lost, 1);
+    assert_eq!(rig.recorder.counted.lost, 1);
     for trigger in [200, 700] {
         let read = read(&fetch(&mut rig));
         assert!(read.is_whole(&rig.fed));
@@ -141,7 +141,7 @@ fn the_second_of_two_drops_waits_and_the_third_is_counted() {
     // Both buffers are free again.
     (0..600).for_each(|tick| rig.drop_tick(tick, 450));
     assert!(read(&fetch(&mut rig)).is_whole(&rig.fed));
-    assert_eq!(rig.recorder.counted().lost, 1);
+    assert_eq!(rig.recorder.counted.lost, 1);
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn endless_contact_is_split_and_counted_once() {
     assert_eq!((first.notices, first.notices_lost), (64, 37 + 1));
     let second = ending(&fetch(&mut rig));
     assert_eq!((second.closing, second.landing), (Closing::Quiet, false));
-    assert_eq!(rig.recorder.counted().lost, 0);
+    assert_eq!(rig.recorder.counted.lost, 0);
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn newest_samples_can_be_looked_at_any_time() {
 fn ticks_are_numbered_as_the_monitor_does() {
     let config = config(20_000.0);
     let monitor = Monitor::try_new(&config).unwrap();
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let mut recorder = Recorder::new(memory, &config, IDENTITY);
     let mut declared = None;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use touchdown_base::history::History;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_run::ensemble::varied;
 use touchdown_scene::sensors::Sensors;
 use touchdown_scene::{BUILT_IN, Scene};
@@ -114,7 +114,7 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("valid sensors");
     let mut chain = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&told.monitor_config()).expect("a valid configuration");
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
     let mut seen = Seen {

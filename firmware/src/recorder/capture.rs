@@ -33,9 +33,9 @@ pub(super) struct Closed {
 
 /// What began an episode.
 #[derive(Clone, Copy, Debug)]
-struct Trigger {
+pub(super) struct Trigger {
     kind: EventKind,
-    tick: u64,
+    pub(super) tick: u64,
     /// Samples to be recorded, those before it included.
     planned: usize,
     /// A contact in it is a landing.
@@ -67,14 +67,15 @@ pub(super) struct Capture {
     /// Tick of the last sample.
     pub(super) newest: u64,
     pulses: Pulses,
-    trigger: Option<Trigger>,
-    closing: Option<Closed>,
+    pub(super) trigger: Option<Trigger>,
+    pub(super) closing: Option<Closed>,
     notices: Vec<[u8; NOTICE_BYTES], NOTICES>,
     notices_lost: u32,
     /// Whether the retainer was touched.
     pub(super) touched: bool,
     fastest: f32,
-    severity: Option<Severity>,
+    /// How severe the drop is so far.
+    pub(super) severity: Option<Severity>,
     fetched: Fetched,
 }
 
@@ -98,11 +99,6 @@ impl Capture {
     /// Whether the store has all of its episode.
     pub(super) fn is_fetched(&self) -> bool {
         self.fetched.endings == COPIES
-    }
-
-    /// Tick of the trigger.
-    pub(super) fn trigger(&self) -> u64 {
-        self.trigger.map_or(0, |it| it.tick)
     }
 
     /// The last samples, every `step`-th, oldest first.
@@ -200,14 +196,6 @@ impl Capture {
         if self.notices.len() < NOTICES / 2 {
             self.push(&Record::Notice(*notice));
         }
-    }
-
-    pub(super) fn end(&mut self, closed: Closed) {
-        self.closing = Some(closed);
-    }
-
-    pub(super) fn set_severity(&mut self, severity: &Severity) {
-        self.severity = Some(*severity);
     }
 
     /// The next block, if it is ready.

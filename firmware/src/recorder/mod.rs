@@ -184,7 +184,8 @@ pub struct Recorder<'m> {
     floated: bool,
     /// The last change of what the controller shows.
     switched: Switching,
-    counted: Counted,
+    /// What was counted since reset.
+    pub counted: Counted,
 }
 
 /// What was counted since reset.
@@ -273,7 +274,7 @@ impl<'m> Recorder<'m> {
     /// counts.
     pub fn set_severity(&mut self, severity: &Severity) {
         if let Some(capture) = self.open() {
-            capture.set_severity(severity);
+            capture.severity = Some(*severity);
         }
     }
 
@@ -305,11 +306,6 @@ impl<'m> Recorder<'m> {
         counts.map_or(Recent::default(), |(newest, samples)| {
             Recent::new(newest, step, samples)
         })
-    }
-
-    /// What was counted since reset.
-    pub fn counted(&self) -> Counted {
-        self.counted
     }
 
     /// The capture of the drop that goes on.
@@ -405,7 +401,7 @@ impl<'m> Recorder<'m> {
             latched: self.switched.shown.latched(),
         };
         if let Some(capture) = self.open() {
-            capture.end(closed);
+            capture.closing = Some(closed);
         }
         self.drop = Drop::None;
     }
@@ -419,7 +415,8 @@ impl<'m> Recorder<'m> {
             self.end(Closing::Quiet);
         } else if let Drop::Recorded(at) = self.drop
             && let Some(capture) = self.captures.get(at)
-            && self.tick - capture.trigger() >= self.plan.longest
+            && let Some(trigger) = capture.trigger
+            && self.tick - trigger.tick >= self.plan.longest
         {
             self.end(Closing::Longest);
         }

@@ -90,7 +90,9 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
                 .expect("a string");
         }
         if number % BLOCK_SAMPLES == 0 {
-            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
+            while log.work(recorder.counted, app.shown().latched(), || recorder.fetch()) == Ok(true)
+            {
+            }
         }
     }
     writeln!(text, "Clear at the end: {:?}", app.clear()).expect("a string");
@@ -98,7 +100,7 @@ fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     for sample in stream.samples.last().into_iter().cycle().take(quiet) {
         recorder.take(sample, &[]);
     }
-    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
+    while log.work(recorder.counted, app.shown().latched(), || recorder.fetch()) == Ok(true) {}
 }
 
 fn tell(log: &mut Episodes, text: &mut String) {

@@ -36,7 +36,7 @@ fn ticks(criterion: &mut Criterion) {
     let monitor = Monitor::try_new(&scene.monitor_config()).expect("valid scene");
     let samples = samples(&scene);
     let (levitated, dropped) = samples.split_at(scene.levitated_samples() as usize);
-    let mut armed = monitor.start();
+    let mut armed = MonitorState::default();
     follow(&monitor, &mut armed, levitated);
     assert!(armed.detector.is_armed());
     let mut group = criterion.benchmark_group("tick");

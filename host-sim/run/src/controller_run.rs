@@ -64,10 +64,12 @@ pub fn run(
         }
         fingerprint.take(app.state(), &forecast_task);
         if desk.ticks.is_multiple_of(BLOCK_SAMPLES as u64) {
-            while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
+            let latched = app.shown().latched();
+            while log.work(recorder.counted, latched, || recorder.fetch()) == Ok(true) {}
         }
     }
-    while log.work(recorder.counted(), app.latched(), || recorder.fetch()) == Ok(true) {}
+    let latched = app.shown().latched();
+    while log.work(recorder.counted, latched, || recorder.fetch()) == Ok(true) {}
     let answer = MonitorOutput {
         notices: desk.notices,
         left_out: desk.left_out,

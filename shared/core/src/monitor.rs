@@ -54,7 +54,7 @@ pub struct Seen {
     signals: Signals,
 }
 
-/// What the tick carries from sample to sample.
+/// What the tick carries from sample to sample; by default that before the first one.
 #[derive(Clone, Debug, Default)]
 pub struct MonitorState {
     /// Samples seen.
@@ -118,11 +118,6 @@ impl Monitor {
                 config.commissioned,
             )?,
         })
-    }
-
-    /// The state before the first sample.
-    pub fn start(&self) -> MonitorState {
-        MonitorState::default()
     }
 
     /// One tick: what it has to say. Bounded; cannot fail.

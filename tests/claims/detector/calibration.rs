@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use touchdown_calibrate::plane;
 use touchdown_core::event::{EventKind, Moment, Notice};
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::{Calibration, PlaneCalibration};
 use touchdown_tests::told_machine::config;
@@ -74,7 +74,7 @@ fn found(machine: &Machine, calibration: Option<Calibration>, counts: &[[u16; 4]
     let mut config = config(machine, machine.gap, RATE);
     config.sensing.calibration = calibration;
     let monitor = Monitor::try_new(&config).expect("a valid configuration");
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut onsets = Vec::new();
     for counts in counts {
         let sample = Sample {

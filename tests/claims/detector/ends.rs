@@ -7,7 +7,7 @@ use std::io::Sink;
 
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{Event, EventKind, Motion, Notice, Plane};
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_run::drop;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::target::Target;
@@ -50,7 +50,7 @@ fn watch_in(scene: &Scene, seconds: f64, ends: impl Fn(f64) -> [[f64; 2]; 2]) ->
     let sensors = Sensors::try_new(&scene.sensors, RATE).expect("valid sensors");
     let mut seen = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&scene.monitor_config()).expect("valid");
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut watched = Watched {
         events: Vec::new(),
         confirmed: Vec::new(),

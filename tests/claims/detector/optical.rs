@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::{Edges, Sample};
 use touchdown_core::tachometer::{Speed, Tachometers as Core, TachometersConfig};
 use touchdown_protocol::wire::Played;
@@ -384,7 +384,7 @@ fn the_slip_is_within_its_error() {
         };
         let (config, samples) = contact.samples();
         let monitor = Monitor::try_new(&config).expect("valid");
-        let mut state = monitor.start();
+        let mut state = MonitorState::default();
         let (mut within, mut all, mut worst) = (0_u32, 0_u32, 0.0_f64);
         for (k, sample) in samples.iter().enumerate() {
             monitor.update(&mut state, sample);

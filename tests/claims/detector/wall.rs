@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 use touchdown_core::event::{Notice, Plane};
 use touchdown_core::health::FaultKind;
-use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::Calibration;
 use touchdown_tests::told_machine::config;
@@ -58,7 +58,7 @@ fn told(rng: &mut Rng, config: &MonitorConfig, machine: &Machine, change: Change
         ..machine.clone()
     };
     let monitor = Monitor::try_new(config).expect("valid");
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut plant = Plant::new(&there, phases);
     let mut planes = Vec::new();
     while let Some(truth) = plant.next_sample(RATE) {

@@ -12,7 +12,7 @@ use rotor::{Held, Machine, Rotor};
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::guard::GuardConfig;
-use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::monitor::{Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::SensingConfig;
 use touchdown_tests::family::{Asked, seeds};
@@ -327,7 +327,7 @@ fn run(c: &Case, rng: &mut Rng, verbose: bool) -> Tally {
     let mut t = Tally::default();
     let rate = 20_000.0;
     let monitor = Monitor::try_new(&told_config(c, rate)).unwrap();
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let lead = 0.4;
     let lag = rng.uniform(0.0, 1.0) / rate; // release between two samples
     let n0 = (lead * rate) as i64;

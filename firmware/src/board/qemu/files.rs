@@ -7,7 +7,7 @@ use touchdown_protocol::wire::{self, Played, ReplayHead};
 
 use super::nor::NorFile;
 use super::settings::{SettingsFile, fill};
-use super::{Failure, Name};
+use super::{Failure, FileLog, Name};
 use crate::intake::Incoming;
 
 const COMMAND_LINE_BYTES: usize = 512;
@@ -22,7 +22,7 @@ pub struct Files {
     /// Second; it begins as an answer does.
     pub answer: File,
     /// Third, of the log.
-    pub log: Option<NorFile>,
+    pub log: Option<FileLog>,
     /// Fourth, of the stored configuration.
     pub settings: Option<SettingsFile>,
 }
@@ -41,7 +41,7 @@ impl Files {
         Ok(Self {
             replay: Replay::open(&replay)?,
             answer: create_answer(&answer).map_err(|_| Failure::Answer)?,
-            log: log.map(|name| NorFile::open(&name)).transpose()?,
+            log: log.map(|name| mount(&name)).transpose()?,
             settings: settings.map(SettingsFile),
         })
     }
@@ -112,6 +112,10 @@ impl Replay {
         }
         Ok(filled / wire::SAMPLE_BYTES)
     }
+}
+
+fn mount(name: &Name) -> Result<FileLog, Failure> {
+    FileLog::mount(NorFile::open(name)?).map_err(|_| Failure::Log)
 }
 
 fn create_answer(name: &Name) -> io::Result<File> {

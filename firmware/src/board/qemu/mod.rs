@@ -154,14 +154,12 @@ impl Sampling {
     fn take(&mut self) {
         self.timer.sr().modify(|_, w| w.uif().clear_bit());
         let is_free = self.in_real_time || self.given == DONE.load(Ordering::Acquire);
-        let next = if is_free && !IS_OVER.load(Ordering::Relaxed) {
-            self.replay
-                .next()
-                .unwrap_or_else(|failure| exit(failure as i32))
-        } else {
+        if !is_free || IS_OVER.load(Ordering::Relaxed) {
             self.wire.step(None);
             return;
-        };
+        }
+        let next = self.replay.next();
+        let next = next.unwrap_or_else(|failure| exit(failure as i32));
         let Some((arrival, scripted)) = next else {
             IS_OVER.store(true, Ordering::Release);
             return;
@@ -203,40 +201,29 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let (Some(mut core), Some(chip)) = (cortex_m::Peripherals::take(), Peripherals::take()) else {
         unreachable!("main runs once");
     };
-    let Files {
-        mut replay,
-        answer,
-        log,
-        settings: file,
-    } = Files::open()?;
-    let log = log
-        .map(|it| FileLog::mount(it).map_err(|_| Failure::Log))
-        .transpose()?;
-    let head = replay.head()?;
+    let mut files = Files::open()?;
+    let head = files.replay.head()?;
     let abilities = abilities(&head.config);
-    let (block, settings, found) = power_on(&head, file.as_ref()).check(&abilities);
+    let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);
-    let identity = Identity::new(
-        &block.told(&settings),
-        log.as_ref().map_or(0, |it| it.counters().boots),
-    );
+    let counters = files.log.as_ref().map(FileLog::counters);
+    let boots = counters.map_or(0, |it| it.boots);
+    let identity = Identity::new(&block.told(&settings), boots);
     let board = Emulated {
-        answer,
+        answer: files.answer,
         shown: None,
         ticks: 0,
         block,
         failed: false,
     };
-    let filled = memory
-        .monitor
-        .fill(&settings.monitor, found, identity, board);
+    let places = &mut memory.monitor;
+    let filled = places.fill(&settings.monitor, found, identity, board);
     let (intake, tick) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
     if head.powers_on {
-        tick.app
-            .recall(log.as_ref().and_then(|it| it.counters().uncleared));
+        tick.app.recall(counters.and_then(|it| it.uncleared));
     } else {
         tick.app.assume_lift();
     }
@@ -246,7 +233,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let (wire, line) = line::open(chip.USART1, queues, abilities.sample_rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
-        replay,
+        replay: files.replay,
         wire,
         intake,
         given: 0,
@@ -254,16 +241,16 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     });
     SAMPLING.with(|it| start_timer(&it.timer, abilities.sample_rate));
     held::unmask(&mut core, Interrupt::TIM2);
-    let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
     let platform = EmulatorPlatform {
         line,
         abilities,
-        settings: file,
-        log,
+        settings: files.settings,
+        log: files.log,
         fingerprint: Some(Fingerprint::default()),
         heard: None,
         was_over: false,
     };
+    let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
     Ok((below, platform))
 }
 

@@ -14,7 +14,7 @@ use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::forecast::{ForecastTask, Outlook};
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_rotor::error::ConfigError;
 
 use touchdown_base::failure::Failure;
@@ -93,7 +93,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
     let sensors = Sensors::try_new(&scene.sensors, rate)?;
     let mut seen = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&told.monitor_config())?;
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut forecast_task = ForecastTask::try_new(&told.monitor_config().detector)?;
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_base::evenly::direction;
 use touchdown_base::failure::Failure;
 use touchdown_core::event::{EventKind, Notice};
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::sensing::PLANES;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
@@ -210,7 +210,7 @@ pub fn listen(
     let rate = scene.run.sample_rate;
     let sensors = Sensors::try_new(&scene.sensors, rate).map_err(refused)?;
     let monitor = Monitor::try_new(&scene.monitor_config()).map_err(refused)?;
-    let (mut seen, mut state) = (sensors.start(seed), monitor.start());
+    let (mut seen, mut state) = (sensors.start(seed), MonitorState::default());
     let mut heard = Heard::default();
     for number in 0..(seconds * rate) as u64 {
         let motion = stretch.next(number as f64 / rate, 1.0 / rate);

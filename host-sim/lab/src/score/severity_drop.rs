@@ -1,6 +1,6 @@
 //! How hard a drop was, as the monitor adds it up, and by the reference.
 
-use touchdown_core::monitor::Monitor;
+use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::severity::Severity;
 use touchdown_rotor::error::ConfigError;
 
@@ -37,7 +37,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
     let sensors = Sensors::try_new(&scene.sensors, rate)?;
     let mut chain = sensors.start(scene.run.seed);
     let monitor = Monitor::try_new(&told.monitor_config())?;
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
     let (mut speed, mut load, mut whirl_load, mut end) = (0.0_f64, 0.0_f64, None, 0.0);

@@ -2,7 +2,7 @@
 
 use touchdown_core::detect::Phase;
 use touchdown_core::forecast::ForecastTask;
-use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig};
+use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_rotor::error::ConfigError;
 
@@ -109,7 +109,7 @@ impl Drop {
     /// Runs it.
     pub fn watch(&self) -> Result<Watched, Failure> {
         let monitor = Monitor::try_new(&self.monitor).map_err(refused)?;
-        let mut state = monitor.start();
+        let mut state = MonitorState::default();
         let mut forecast_task = ForecastTask::try_new(&self.monitor.detector).map_err(refused)?;
         let mut feed = Feed::new(self).map_err(refused)?;
         let (mut notices, mut instants) = (Vec::new(), Vec::new());

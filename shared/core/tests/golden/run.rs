@@ -16,7 +16,7 @@ pub fn text(stream: &Stream) -> String {
     let monitor = Monitor::try_new(&stream.config).expect("a valid configuration");
     let mut forecast_task =
         ForecastTask::try_new(&stream.config.detector).expect("a valid configuration");
-    let mut state = monitor.start();
+    let mut state = MonitorState::default();
     let mut fingerprint = Fingerprint::default();
     let (mut notices, mut marks) = (String::new(), String::new());
     for (number, sample) in (0..).zip(&stream.samples) {
