@@ -153,6 +153,7 @@ fn events(detection: &Detection) -> Vec<EventJson<'_>> {
 /// `drop --json`.
 pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
     let model = &outcome.model.histories.whole;
+    let stored = outcome.model.ledger.as_ref().map(Ledger::stored_j);
     text(&DropJson {
         model: ModelJson {
             rung: scene.model.rung,
@@ -161,7 +162,10 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
             left_out: scene.model.left_out.names(),
         },
         history: history(model),
-        end: end(scene, outcome),
+        end: EndJson {
+            state: state(&model.end),
+            energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), &model.end)),
+        },
         rings: rings(scene, outcome),
         ring: outcome.model.ring.as_ref(),
         energy: outcome.model.ledger.as_ref().map(|ledger| EnergyJson {
@@ -251,13 +255,4 @@ fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
             history: history(model),
         })
         .collect()
-}
-
-fn end(scene: &Scene, outcome: &Outcome) -> EndJson {
-    let last = &outcome.model.histories.whole.end;
-    let stored = outcome.model.ledger.as_ref().map(Ledger::stored_j);
-    EndJson {
-        state: state(last),
-        energy_j: stored.unwrap_or_else(|| energy(&scene.machine(), last)),
-    }
 }

@@ -301,11 +301,9 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     for line in given_up(outcome) {
         text += &(paint.bad(&line) + "\n");
     }
-    if outcome.model.histories.whole.regime != outcome.truth.whole.regime {
-        let line = format!(
-            "the model ends as {}",
-            regime_name(outcome.model.histories.whole.regime)
-        );
+    let regime = outcome.model.histories.whole.regime;
+    if regime != outcome.truth.whole.regime {
+        let line = format!("the model ends as {}", regime_name(regime));
         text += &(paint.bad(&line) + "\n");
     }
     if !matches.false_events.is_empty() {

@@ -35,7 +35,7 @@ pub fn run<W: Write>(
     let sensed = sensed(scene, target, stream, &mut |time| model.advance(time))?;
     let model = model.finish();
     let truth = model.histories.clone();
-    let (mut outcome, stream) = outcome(scene, model, truth, sensed);
+    let (mut outcome, stream) = outcome(model, truth, sensed);
     if outcome.model.given_up.is_none() {
         let Histories { whole, rings } = &outcome.model.histories;
         outcome.accuracy = accuracy::estimate(scene, whole, rings.iter());
@@ -56,7 +56,7 @@ pub fn by_reference<W: Write>(
         reference.given_up().is_none().then_some(state)
     })?;
     let given_up = reference.given_up();
-    let (outcome, stream) = outcome(scene, model, reference.finish(), sensed);
+    let (outcome, stream) = outcome(model, reference.finish(), sensed);
     let outcome = Outcome {
         by_reference: true,
         given_up,
@@ -152,7 +152,6 @@ fn columns(sensors: &SensorsConfig) -> Columns {
 
 /// The outcome where the model moved the rotor and nothing is known of its accuracy.
 fn outcome<W>(
-    scene: &Scene,
     model: ModelRun,
     truth: Histories,
     sensed: Sensed<W>,
@@ -167,7 +166,6 @@ fn outcome<W>(
         spectrogram: sensed.spectrogram,
         detection: sensed.detection,
         conduct: sensed.conduct,
-        timebase: Timebase::of(scene),
     };
     (outcome, sensed.stream)
 }

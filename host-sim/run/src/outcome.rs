@@ -4,7 +4,6 @@
 use crate::accuracy::RunAccuracy;
 use crate::controller_trace::ControllerTrace;
 use crate::model::ModelRun;
-use crate::timebase::Timebase;
 use serde::Serialize;
 use touchdown_base::history::{PhaseKind, RotorState};
 use touchdown_base::rings::Histories;
@@ -172,6 +171,4 @@ pub struct Outcome {
     pub detection: Detection,
     /// The controller.
     pub conduct: ControllerTrace,
-    /// Times of the samples.
-    pub timebase: Timebase,
 }

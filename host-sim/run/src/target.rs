@@ -28,7 +28,7 @@ impl Target {
     pub fn image(&self) -> Option<&Path> {
         match self {
             Self::Host => None,
-            Self::Qemu(emulator) => Some(emulator.image()),
+            Self::Qemu(emulator) => Some(&emulator.image),
         }
     }
 

@@ -106,7 +106,7 @@ struct Wire {
 
 impl Wire {
     fn of(session: &mut Session) -> Self {
-        let line = session.line().expect("a link");
+        let line = session.line.take().expect("a link");
         let wait = Some(Duration::from_millis(100));
         line.set_read_timeout(wait).expect("a socket");
         // What was told while it ran.

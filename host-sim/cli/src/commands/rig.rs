@@ -36,7 +36,7 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
     let log = folder.join("log");
     Gate::new()
         .reads("SCENE", [&args.scene])
-        .reads("--image", [emulator.image()])
+        .reads("--image", [&emulator.image])
         .makes_folder(&folder.display().to_string())
         .claims("--keep", FILES.map(|it| folder.join(it)))
         .open()?;

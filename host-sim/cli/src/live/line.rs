@@ -101,10 +101,8 @@ fn state(state: &State, watched: &Watched) -> Value {
 
 fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
     let timebase = watched.timebase();
-    let fate = |number: &u16, sample: &u64| {
-        let time = timebase.time(*sample as f64);
-        json!({ "number": number, "sample": sample, "time_s": time })
-    };
+    let time = |sample: u64| timebase.time(sample as f64);
+    let fate = |number: &u16, sample: &u64| json!({ "number": number, "sample": sample, "time_s": time(*sample) });
     match notice {
         Notice::Declared(event) => {
             let told = declared(event, timebase);
@@ -124,10 +122,7 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
         Notice::Confirmed { number, sample } => ("confirmed", fate(number, sample)),
         Notice::Withdrawn { number, sample } => ("withdrawn", fate(number, sample)),
         Notice::Outlook(outlook) => ("outlook", json!(forecast(outlook, timebase))),
-        Notice::Alarm(it) => {
-            let time = timebase.time(it.sample as f64);
-            ("alarm", json!(AlarmAt::new(it, time)))
-        }
+        Notice::Alarm(it) => ("alarm", json!(AlarmAt::new(it, time(it.sample)))),
         Notice::Touch(it) => ("touch", json!(touch(it, timebase))),
         Notice::Ordered(it) => ("order", order(it, watched)),
     }

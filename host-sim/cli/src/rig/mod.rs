@@ -156,7 +156,7 @@ impl Supply<'_> {
         let pipe = head.and_then(|head| Pipe::make(&folder.join("replay"), head));
         let pipe = pipe.map_err(|e| EmulatorError::Io("make a pipe", e))?;
         let mut session = self.emulator.open(folder)?;
-        if let Some(socket) = session.line() {
+        if let Some(socket) = session.line.take() {
             // Without a line the rig ends with its next order.
             let _ = self.line.send(LineOrder::Device(socket));
         }

@@ -4,15 +4,13 @@ use super::row::Row;
 use super::watch::Drop;
 use super::{Findings, Group, Plan, campaign};
 use touchdown_base::failure::Failure;
-use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
 
 /// What two targets made of the same drops: samples, notices, and how many of notices, state and counters are not the same.
 type Agreement = [u64; 3];
 
 fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
-    let run =
-        |target: &Target| target.control(&drop.monitor, &Procedure::default(), drop.samples()?);
+    let run = |it: &Target| it.control(&drop.monitor, &Default::default(), drop.samples()?);
     let ((here, _), (there, _)) = (run(&Target::Host)?, run(target)?);
     let (ours, theirs) = (here.summary, there.summary);
     let differences = [
@@ -20,8 +18,8 @@ fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
         ours.state_hash != theirs.state_hash,
         ours.samples != theirs.samples || ours.faults != theirs.faults,
     ];
-    let differences = differences.map(u64::from).iter().sum();
-    Ok([theirs.samples, there.notices.len() as u64, differences])
+    let count = differences.map(u64::from).iter().sum();
+    Ok([theirs.samples, there.notices.len() as u64, count])
 }
 
 /// Runs some cases of `group` on both, each with every seed.

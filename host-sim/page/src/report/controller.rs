@@ -4,14 +4,14 @@ use maud::{Markup, html};
 use touchdown_chart::table::table;
 use touchdown_chart::text::ms;
 use touchdown_core::event::Level;
-use touchdown_run::outcome::Outcome;
+use touchdown_run::controller_trace::ControllerTrace;
+use touchdown_run::timebase::Timebase;
 
 /// Draws them as a table, and the guard in two lines.
-pub fn controller(outcome: &Outcome) -> Markup {
-    let conduct = &outcome.conduct;
+pub fn controller(conduct: &ControllerTrace, timebase: Timebase) -> Markup {
     let level = |on: bool| if on { "on" } else { "off" }.to_owned();
     let table = table("Outputs of the controller", &conduct.outputs)
-        .number("From\nms", |it| ms(outcome.timebase.time(it.sample as f64)))
+        .number("From\nms", |it| ms(timebase.time(it.sample as f64)))
         .words("Run", |it| level(it.shown.outputs.run))
         .words("No brake", |it| level(it.shown.outputs.no_brake))
         .words("Permit", |it| level(it.shown.outputs.permit))

@@ -101,20 +101,9 @@ fn marks(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
         let events = outcome.detection.events.iter();
         events.filter(wanted).map(|it| it.onset_s).collect()
     };
-    let changes: Vec<f64> = outcome
-        .truth
-        .whole
-        .phases
-        .iter()
-        .map(|it| it.start_s)
-        .collect();
-    let hits: Vec<f64> = outcome
-        .truth
-        .whole
-        .impacts
-        .iter()
-        .map(|it| it.state.time)
-        .collect();
+    let truth = &outcome.truth.whole;
+    let changes: Vec<f64> = truth.phases.iter().map(|it| it.start_s).collect();
+    let hits: Vec<f64> = truth.impacts.iter().map(|it| it.state.time).collect();
     html! {
         @for at in strokes(&changes, x, factor) { line.true-mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
         @for at in strokes(&onsets(false), x, factor) { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }

@@ -2,7 +2,6 @@
 
 use touchdown_base::history::{History, PhaseKind, Recorder, RotorState};
 use touchdown_base::machine::Start;
-use touchdown_base::rings::Histories;
 use touchdown_base::spectrogram::Analyser;
 use touchdown_core::event::EventKind;
 use touchdown_core::monitor::Summary;
@@ -11,7 +10,6 @@ use touchdown_run::controller_trace::ControllerTrace;
 use touchdown_run::matching::regime_event;
 use touchdown_run::model::ModelRun;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome, TracePoint};
-use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
 use touchdown_truth::reference::Reference;
 
@@ -82,33 +80,12 @@ pub fn outcome(scene: &Scene, start: &Start) -> Outcome {
         accuracy: None,
         by_reference: true,
         given_up: None,
-        model: model(truth.clone()),
+        model: ModelRun::of_rotor(truth.clone()),
         detection: detection(&truth),
         conduct: conduct(),
-        timebase: Timebase::new(-LEAD, RATE),
-        truth: histories(truth),
+        truth: ModelRun::of_rotor(truth).histories,
         trace,
         spectrogram: analyser.finish(),
-    }
-}
-
-/// Of a rotor that does not tilt.
-pub fn histories(whole: History) -> Histories {
-    Histories {
-        whole,
-        rings: Vec::new(),
-    }
-}
-
-/// A model of which nothing but the rotor moves.
-pub fn model(whole: History) -> ModelRun {
-    ModelRun {
-        histories: histories(whole),
-        given_up: None,
-        tried: 0,
-        ledger: None,
-        ring: None,
-        seats: Vec::new(),
     }
 }
 

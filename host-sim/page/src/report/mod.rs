@@ -31,18 +31,16 @@ use spectrum::Spectra;
 use touchdown_chart::shell::page;
 use touchdown_run::matching::match_events;
 use touchdown_run::outcome::Outcome;
+use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
 use window::Window;
 
 /// Writes the page.
 pub fn render(scene: &Scene, outcome: &Outcome) -> String {
-    let matches = match_events(&outcome.truth.whole, &outcome.detection);
-    let whole = Window::whole(&outcome.truth.whole);
-    let window = Window::interesting(
-        &outcome.truth.whole,
-        scene.retainer.clearance,
-        scene.run.gravity,
-    );
+    let truth = &outcome.truth.whole;
+    let matches = match_events(truth, &outcome.detection);
+    let whole = Window::whole(truth);
+    let window = Window::interesting(truth, scene.retainer.clearance, scene.run.gravity);
     let zoomed = window != whole;
     let (ring_moves, _) = moving::ring_moves(outcome);
     let body = html! {
@@ -97,7 +95,7 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
             (spectra(whole, scene, outcome))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
-        section { h2 { "Controller" } (controller::controller(outcome)) }
+        section { h2 { "Controller" } (controller::controller(&outcome.conduct, Timebase::of(scene))) }
         section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(scene, outcome, &matches)) }
         section { h2 { "Severity" } (severity::severity(outcome)) }

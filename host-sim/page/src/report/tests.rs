@@ -5,6 +5,7 @@ use std::path::Path;
 use touchdown_base::history::{Recorder, RotorState};
 use touchdown_base::machine::Start;
 use touchdown_chart::text::si;
+use touchdown_run::model::ModelRun;
 use touchdown_run::outcome::{Detection, Outcome};
 
 /// Every element is closed by its own end tag, in order; `path` and the like must be, inside `svg`.
@@ -45,13 +46,12 @@ fn still(levitated: f64, duration: f64) -> Outcome {
         accuracy: None,
         by_reference: true,
         given_up: None,
-        model: fixture::model(truth.clone()),
-        truth: fixture::histories(truth),
+        model: ModelRun::of_rotor(truth.clone()),
+        truth: ModelRun::of_rotor(truth).histories,
         trace: Vec::new(),
         spectrogram: Default::default(),
         detection: Detection::default(),
         conduct: fixture::conduct(),
-        timebase: touchdown_run::timebase::Timebase::new(0.0, 1.0),
     }
 }
 

@@ -75,7 +75,8 @@ pub enum EmulatorError {
 /// An image and the means to run it.
 #[derive(Clone, Debug)]
 pub struct Emulator {
-    image: PathBuf,
+    /// The image.
+    pub image: PathBuf,
 }
 
 impl Emulator {
@@ -90,11 +91,6 @@ impl Emulator {
             return Err(EmulatorError::QemuMissing);
         }
         Ok(Self { image })
-    }
-
-    /// The image.
-    pub fn image(&self) -> &Path {
-        &self.image
     }
 
     /// Runs the image over `samples` with a new drop log, and talks to it.

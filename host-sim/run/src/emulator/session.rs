@@ -26,7 +26,8 @@ pub struct Session {
     emulator: Emulator,
     folder: PathBuf,
     child: Child,
-    line: Option<TcpStream>,
+    /// The link; who talks over it takes it.
+    pub line: Option<TcpStream>,
     _registered: Registered,
 }
 
@@ -149,15 +150,10 @@ impl Session {
         }
     }
 
-    /// The link; once.
-    pub fn line(&mut self) -> Option<TcpStream> {
-        self.line.take()
-    }
-
     /// Talks over the link; once.
     pub fn client(&mut self) -> Result<Client, EmulatorError> {
         let gone = || EmulatorError::Io("open the link", io::ErrorKind::NotConnected.into());
-        let line = self.line().ok_or_else(gone)?;
+        let line = self.line.take().ok_or_else(gone)?;
         Ok(Client::patient(Box::new(line)))
     }
 

@@ -44,7 +44,7 @@ pub struct ModelRun {
 
 impl ModelRun {
     /// Where nothing moves but the rotor.
-    pub(super) fn of_rotor(whole: History) -> Self {
+    pub fn of_rotor(whole: History) -> Self {
         Self {
             histories: Histories {
                 whole,

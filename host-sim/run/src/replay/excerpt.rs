@@ -4,12 +4,15 @@ use std::path::Path;
 
 use touchdown_core::sample::CHANNELS;
 
+use super::Replay;
 use touchdown_base::failure::Failure;
 use touchdown_files::recording::{Reading, Recording};
 use touchdown_scene::Scene;
 
 /// Most samples that are kept: 2.6 s at 100 kHz.
 const MOST: usize = 1 << 18;
+/// Before the first fall or impact, and after it, s.
+const AROUND: [f64; 2] = [0.02, 0.2];
 
 /// A part of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,25 +56,29 @@ impl Excerpt {
     }
 }
 
-/// The part of the recording at `path` from `from` to `to` (s), as much of it as is kept.
-pub fn excerpt(
+/// The recording at `path` about the first drop in it, as much of that as is kept.
+pub fn first_drop(
     path: &Path,
     reading: &Reading,
     scene: &Scene,
-    [from, to]: [f64; 2],
-) -> Result<Excerpt, Failure> {
+    replay: &Replay,
+) -> Result<Option<Excerpt>, Failure> {
+    let Some(event) = replay.first_drop() else {
+        return Ok(None);
+    };
     let recording = Recording::open(path, reading, scene)?;
     let (start, rate) = (recording.start, recording.rate);
     let index = |time: f64| ((time - start) * rate).ceil().max(0.0) as usize;
-    let first = index(from);
-    let count = (index(to) + 1).saturating_sub(first).min(MOST);
+    let first = index(event.onset_s - AROUND[0]);
+    let last = index(event.onset_s + AROUND[1]);
+    let count = (last + 1).saturating_sub(first).min(MOST);
     let mut positions = Vec::new();
     for row in recording.skip(first).take(count) {
         positions.push(row?.positions);
     }
-    Ok(Excerpt {
+    Ok(Some(Excerpt {
         start: start + first as f64 / rate,
         rate,
         positions,
-    })
+    }))
 }

@@ -9,7 +9,7 @@ use touchdown_core::event::EventKind;
 use touchdown_core::sample::Sample;
 
 pub use envelope::{Bucket, Envelope};
-pub use excerpt::{Excerpt, excerpt};
+pub use excerpt::{Excerpt, first_drop};
 
 use crate::controller_trace::ControllerTrace;
 use crate::detection::detection;
@@ -163,23 +163,6 @@ pub fn recording(
 
 /// A stream that says what had been learnt.
 const EPISODE: &str = "an episode of a drop log, from what the detector had learnt before it";
-
-/// Before the first fall or impact, and after it, s.
-const AROUND: [f64; 2] = [0.02, 0.2];
-
-/// The recording at `path` about the first drop in it.
-pub fn first_drop(
-    path: &Path,
-    reading: &Reading,
-    scene: &Scene,
-    replay: &Replay,
-) -> Result<Option<Excerpt>, Failure> {
-    let Some(event) = replay.first_drop() else {
-        return Ok(None);
-    };
-    let about = [event.onset_s - AROUND[0], event.onset_s + AROUND[1]];
-    excerpt(path, reading, scene, about).map(Some)
-}
 
 /// The samples of a recording, up to its first flaw; `see` is handed each row before.
 fn samples<'a>(
