@@ -135,10 +135,10 @@ fn check(
     let fitted = [0b0011, 0b1100].map(|it| config.fitted & it != 0);
     let there = NAMES.into_iter().zip(readings).zip(fitted);
     let planes: Vec<_> = there
-        .filter(|((_, it), fitted)| *fitted && !it.kept().is_empty())
+        .filter(|((_, it), fitted)| *fitted && !it.kept.is_empty())
         .map(|((name, readings), _)| Checked {
             name,
-            plane: plane(readings.kept(), resolution, clearance),
+            plane: plane(&readings.kept, resolution, clearance),
             readings,
         })
         .collect();
