@@ -1,5 +1,6 @@
-//! Text to settings that are valid, and back.
+//! Text to settings that are valid, and back; what two of them differ in.
 
+use serde::Serialize;
 use toml::de::DeTable;
 use touchdown_core::guard::GuardConfig;
 use touchdown_protocol::config_block::{Key, Settings};
@@ -21,9 +22,9 @@ pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
         let line = text.lines().count().max(1) as u64;
         return Err(InputError::at_line(name, line, rule));
     }
-    let checked = tables.settings().and_then(|settings| {
-        let valid = settings.validate();
-        valid.map_err(|it| key_of(&it)).map(|()| settings)
+    let checked = tables.settings().and_then(|it| match it.validate() {
+        Ok(()) => Ok(it),
+        Err(why) => Err(key_of(&why)),
     });
     checked.map_err(|flaw| {
         let is_secret = flaw.table == "link";
@@ -90,4 +91,46 @@ fn key_of(error: &ConfigError) -> Diagnostic {
         _ => return translate(error),
     };
     Diagnostic::new(table, key, error.to_string().replacen(parameter, key, 1))
+}
+
+/// A key that has another value.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Difference {
+    /// With its table, as `retainer.clearance_mm`.
+    pub key: String,
+    /// As it was written, where it was.
+    pub from: Option<String>,
+    /// As it is written, where it is.
+    pub to: Option<String>,
+}
+
+/// What changes from `old` to `new`, in the words of the file.
+pub fn differences(old: &Settings, new: &Settings) -> Vec<Difference> {
+    let [old, new] = [old, new].map(|it| lines(&text(it)));
+    let value = |lines: &[(String, String)], key: &str| {
+        let line = lines.iter().find(|(it, _)| it == key);
+        line.map(|(_, value)| value.clone())
+    };
+    let gone = old.iter().filter(|(key, _)| value(&new, key).is_none());
+    let all = new.iter().chain(gone).map(|(key, _)| Difference {
+        from: value(&old, key),
+        to: value(&new, key),
+        key: key.clone(),
+    });
+    all.filter(|it| it.from != it.to).collect()
+}
+
+/// Key and value of each line: none of ours goes over two.
+fn lines(text: &str) -> Vec<(String, String)> {
+    let mut table = "";
+    let mut lines = Vec::new();
+    for line in text.lines() {
+        if let Some((key, value)) = line.split_once(" = ") {
+            let key = key.trim_start_matches("# ");
+            lines.push((format!("{table}.{key}"), value.to_owned()));
+        } else {
+            table = line.trim_matches(['[', ']']);
+        }
+    }
+    lines
 }
