@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use crc::{CRC_32_ISO_HDLC, Crc};
-use object::elf::{FileHeader32, PT_LOAD, SHF_ALLOC};
-use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
+use object::elf::{PT_LOAD, SHF_ALLOC};
+use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{LittleEndian, Object, ObjectSection, SectionFlags};
 
 use crate::files;
@@ -43,7 +43,7 @@ fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
     for section in others.filter(is_loaded) {
         let held = section.file_range().filter(|&(_, size)| size > 0);
         let Some((offset, size)) = held else { continue };
-        let start = programmed_at(elf, offset)?;
+        let start = programmed_at(&file, offset)?;
         for number in [start, u32::try_from(size)?] {
             numbers.extend(number.to_le_bytes());
         }
@@ -61,16 +61,13 @@ fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
 }
 
 /// Address in flash of what the file has at `offset`.
-fn programmed_at(elf: &[u8], offset: u64) -> anyhow::Result<u32> {
-    let header = FileHeader32::<LittleEndian>::parse(elf)?;
-    let endian = LittleEndian;
-    let segments = header.program_headers(endian, elf)?.iter();
+fn programmed_at(file: &ElfFile32<'_, LittleEndian>, offset: u64) -> anyhow::Result<u32> {
+    let (endian, offset) = (file.endian(), u32::try_from(offset)?);
+    let segments = file.elf_program_headers().iter();
     let mut loaded = segments.filter(|it| it.p_type(endian) == PT_LOAD);
-    let segment = loaded.find(|it| {
-        let start = u64::from(it.p_offset(endian));
-        (start..start + u64::from(it.p_filesz(endian))).contains(&offset)
+    let at = loaded.find_map(|it| {
+        let into = offset.checked_sub(it.p_offset(endian))?;
+        (into < it.p_filesz(endian)).then(|| it.p_paddr(endian) + into)
     });
-    let segment = segment.context("a section is in no segment")?;
-    let into = u32::try_from(offset)? - segment.p_offset(endian);
-    Ok(segment.p_paddr(endian) + into)
+    at.context("a section is in no segment")
 }
