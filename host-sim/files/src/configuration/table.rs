@@ -86,18 +86,12 @@ struct LinkTable {
 
 impl From<&Settings> for Tables {
     fn from(settings: &Settings) -> Self {
-        let Settings {
-            monitor, wiring, ..
-        } = settings;
-        let DetectorConfig {
-            sample_rate,
-            machine,
-            tuning,
-        } = monitor.detector;
+        let (monitor, wiring) = (&settings.monitor, &settings.wiring);
+        let (detector, sensing) = (&monitor.detector, &monitor.sensing);
+        let machine = &detector.machine;
         let mass = shortest(machine.mass, 1.0);
         let radius = shortest(machine.rotor_radius, MILLI);
         let per_inertia = 1.0 / (mass * (MILLI * radius) * (MILLI * radius));
-        let sensing = &monitor.sensing;
         let fitted = (0..CHANNELS as u8).filter(|it| monitor.fitted >> it & 1 != 0);
         Self {
             rotor: RotorTable {
@@ -113,7 +107,7 @@ impl From<&Settings> for Tables {
             },
             run: RunTable {
                 gravity_m_s2: shortest(machine.gravity, 1.0),
-                sample_rate_hz: shortest(sample_rate, 1.0),
+                sample_rate_hz: shortest(detector.sample_rate, 1.0),
             },
             sensors: SensorsTable {
                 channels: fitted.map(|it| channel_name(it).to_owned()).collect(),
@@ -125,7 +119,7 @@ impl From<&Settings> for Tables {
                 levitation_signal: wiring.levitation,
             },
             ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
-            detector: tuning,
+            detector: detector.tuning,
             link: None,
             calibration: sensing.calibration.as_ref().map(record),
             guard: monitor.guard,
