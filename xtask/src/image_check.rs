@@ -18,24 +18,9 @@ const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Writes it, where the image has a place for it.
 pub fn write(image: &Path) -> anyhow::Result<()> {
     let mut elf = files::bytes(image)?;
-    let Some((at, check)) = check(&elf)? else {
-        return Ok(());
-    };
-    elf[at..at + check.len()].copy_from_slice(&check);
-    fs::write(image, elf).with_context(|| format!("cannot write {}", image.display()))
-}
-
-/// Whether it has a place in the chip's memory.
-pub fn is_loaded<'a>(section: &impl ObjectSection<'a>) -> bool {
-    let allocated = u64::from(SHF_ALLOC);
-    matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & allocated != 0)
-}
-
-/// Offset in the file, and what belongs there.
-fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
-    let file = ElfFile32::<LittleEndian>::parse(elf)?;
+    let file = ElfFile32::<LittleEndian>::parse(&*elf)?;
     let Some(section) = file.section_by_name(SECTION) else {
-        return Ok(None);
+        return Ok(());
     };
     let (at, size) = section.file_range().context("the check has no bytes")?;
     let (mut numbers, mut contents) = (vec![], vec![]);
@@ -44,9 +29,7 @@ fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
         let held = section.file_range().filter(|&(_, size)| size > 0);
         let Some((offset, size)) = held else { continue };
         let start = programmed_at(&file, offset)?;
-        for number in [start, u32::try_from(size)?] {
-            numbers.extend(number.to_le_bytes());
-        }
+        numbers.extend([start, u32::try_from(size)?].map(u32::to_le_bytes).concat());
         contents.extend(section.data()?);
     }
     let room = usize::try_from(size)? - 4;
@@ -57,7 +40,15 @@ fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
     numbers.resize(room, 0);
     let checksum = CRC.checksum(&[&numbers[..], &contents].concat());
     let check = [&checksum.to_le_bytes()[..], &numbers].concat();
-    Ok(Some((usize::try_from(at)?, check)))
+    let at = usize::try_from(at)?;
+    elf[at..at + check.len()].copy_from_slice(&check);
+    fs::write(image, elf).with_context(|| format!("cannot write {}", image.display()))
+}
+
+/// Whether it has a place in the chip's memory.
+pub fn is_loaded<'a>(section: &impl ObjectSection<'a>) -> bool {
+    let allocated = u64::from(SHF_ALLOC);
+    matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & allocated != 0)
 }
 
 /// Address in flash of what the file has at `offset`.
