@@ -10,7 +10,7 @@
 //! ellipse, hyperbola, and parabola" (2001), for the fit; K. Kanatani, "Ellipse fitting with hyperaccuracy" (2006), for
 //! the bias that noise on a curve makes.
 
-use crate::linear::{Matrix, Vector, least_squares};
+use crate::linear::{Vector, least_squares};
 
 /// Steps after which a fit that has not settled is given up.
 const MOST_STEPS: usize = 40;
@@ -39,7 +39,7 @@ pub struct Fitted {
     /// The curve.
     pub ellipse: Ellipse,
     /// Covariance of its parameters for noise of 1 m.
-    pub cofactor: Matrix,
+    pub cofactor: [Vector; 5],
     /// Angle (rad) and residual (m) of each reading.
     pub residuals: Vec<[f64; 2]>,
     /// Mean square of the residuals, m^2.
@@ -132,10 +132,8 @@ impl Ellipse {
             variance = squares / (count - 5.0).max(1.0);
             self.0.iter_mut().zip(step).for_each(|(it, by)| *it += by);
             self = self.sound()?;
-            let settled = (0..5).all(|k| {
-                let least = 1e-4 * (variance * cofactor[k][k]).sqrt() + 1e-13;
-                step[k].abs() <= least
-            });
+            let least = |k: usize| 1e-4 * (variance * cofactor[k][k]).sqrt() + 1e-13;
+            let settled = (0..5).all(|k| step[k].abs() <= least(k));
             if settled && (variance - before).abs() <= 1e-4 * variance {
                 return Some(Fitted {
                     ellipse: self,

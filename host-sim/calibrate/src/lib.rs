@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use ellipse::Ellipse;
+use ellipse::Fitted;
 use linear::variance;
 
 /// Standard deviations that hold 95 % of a normal distribution.
@@ -85,33 +85,25 @@ pub struct Plane {
     pub on_wall: usize,
     /// Samples used.
     pub samples: usize,
-    /// Why it must not be used.
-    pub refused: Option<String>,
-    /// The curve.
+    /// The curve through the readings on the wall.
     #[serde(skip)]
-    pub ellipse: Ellipse,
-    /// Angle (rad) and residual (m) of each reading on the wall.
-    #[serde(skip)]
-    pub residuals: Vec<[f64; 2]>,
+    pub fitted: Fitted,
 }
 
 /// A plane of a recording.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Checked {
     /// a or b.
+    #[serde(skip)]
     pub name: &'static str,
-    /// What was found, or why nothing was.
-    pub plane: Result<Plane, String>,
+    /// What was found, if anything was.
+    #[serde(flatten)]
+    pub plane: Option<Plane>,
+    /// Why it must not be used.
+    pub refused: Option<String>,
     /// What it was found in.
+    #[serde(skip)]
     pub readings: Readings,
-}
-
-impl Checked {
-    /// Why the plane's values must not be used.
-    pub fn refused(&self) -> Option<&String> {
-        let plane = self.plane.as_ref();
-        plane.map_or_else(Some, |it| it.refused.as_ref())
-    }
 }
 
 /// Finds zero, gain and skew of a plane whose converter has this resolution, m; why that cannot be. An ellipse alone does
@@ -140,7 +132,7 @@ pub fn plane(
         Some(r) => ([over(2, r), over(3, r)], given(r)),
         None => ([given(1.0), gain_ratio], over(2, 1.0)),
     };
-    let mut found = Plane {
+    Ok(Plane {
         zero_m: [over(0, 1.0), over(1, 1.0)],
         gain,
         gain_ratio,
@@ -151,17 +143,14 @@ pub fn plane(
         arc_deg: arc(&fitted.residuals),
         on_wall: fitted.residuals.len(),
         samples: readings.len(),
-        refused: None,
-        ellipse: fitted.ellipse,
-        residuals: fitted.residuals,
-    };
-    found.refused = found.why_not();
-    Ok(found)
+        fitted,
+    })
 }
 
 impl Plane {
-    fn why_not(&self) -> Option<String> {
-        let [_, _, a, b, _] = self.ellipse.0;
+    /// Why it must not be used, if so.
+    pub fn why_not(&self) -> Option<String> {
+        let [_, _, a, b, _] = self.fitted.ellipse.0;
         let amplitude = 0.5 * (a + b);
         let of_itself = |it: Value| it.error / it.value;
         let errors = [

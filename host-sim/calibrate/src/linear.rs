@@ -4,8 +4,6 @@ use std::array::from_fn;
 
 /// Of the unknowns, or of their factors in an equation.
 pub type Vector = [f64; 5];
-/// Of five rows.
-pub type Matrix = [Vector; 5];
 
 /// The unknowns that equations (factors and right side) of equal weight agree on best, and their covariance for right
 /// sides of variance 1; `None` where the equations leave an unknown open.
@@ -13,7 +11,7 @@ pub type Matrix = [Vector; 5];
 /// Gauss and Jordan's elimination inverts the normal matrix.
 pub fn least_squares(
     equations: impl IntoIterator<Item = (Vector, f64)>,
-) -> Option<(Vector, Matrix)> {
+) -> Option<(Vector, [Vector; 5])> {
     // The normal matrix, and on its right the unit matrix, which becomes the inverse.
     let mut lines: [[f64; 10]; 5] = from_fn(|row| from_fn(|k| f64::from(k == row + 5)));
     let mut right = [0.0; 5];
@@ -45,7 +43,7 @@ pub fn least_squares(
 }
 
 /// Variance of what grows with the unknowns by `growth`, where they have this covariance.
-pub fn variance(covariance: &Matrix, growth: &Vector) -> f64 {
+pub fn variance(covariance: &[Vector; 5], growth: &Vector) -> f64 {
     dot(growth, &covariance.map(|row| dot(&row, growth)))
 }
 

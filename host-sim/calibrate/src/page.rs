@@ -7,6 +7,7 @@ use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_chart::shell;
 use touchdown_chart::table::table;
 
+use crate::ellipse::Ellipse;
 use crate::{Checked, Plane, Value};
 
 /// Points of a curve, and most that are drawn of the readings.
@@ -52,10 +53,9 @@ pub fn text(checked: &Checked) -> String {
     let mut text = format!("{head:<26}{:>12}{:>13}\n", "value", "95 % error");
     for [name, value, error, unit] in checked.plane.iter().flat_map(rows) {
         let line = format!("  {name:<24}{value:>12}{error:>13}  {unit}");
-        text += line.trim_end();
-        text.push('\n');
+        text = text + line.trim_end() + "\n";
     }
-    if let Some(why) = checked.refused() {
+    if let Some(why) = &checked.refused {
         text += &format!("  refused: {why}\n");
     }
     text
@@ -66,17 +66,14 @@ pub fn page(title: &str, planes: &[Checked]) -> String {
     let body = html! {
         h1 { (title) }
         p { "Zero, gain and skew of the sensors from a rotor that was led round the retainer." }
-        @for Checked { name, plane, readings } in planes {
+        @for Checked { name, plane, refused, readings } in planes {
             h2 { "Plane " (name) }
-            @match plane {
-                Err(why) => p { "Refused: " (why) },
-                Ok(plane) => {
-                    @if let Some(why) = &plane.refused { p { "Refused: " (why) } }
-                    (table("values", &rows(plane)).names("", |it| it[0].clone()).number("value", |it| it[1].clone())
-                        .number("95 % error", |it| it[2].clone()).words("unit", |it| it[3].clone()).draw())
-                    (orbit(plane, &readings.kept))
-                    (residuals(plane))
-                },
+            @if let Some(why) = refused { p { "Refused: " (why) } }
+            @if let Some(plane) = plane {
+                (table("values", &rows(plane)).names("", |it| it[0].clone()).number("value", |it| it[1].clone())
+                    .number("95 % error", |it| it[2].clone()).words("unit", |it| it[3].clone()).draw())
+                (orbit(&plane.fitted.ellipse, &readings.kept))
+                (residuals(plane))
             }
         }
     };
@@ -84,8 +81,8 @@ pub fn page(title: &str, planes: &[Checked]) -> String {
 }
 
 /// Readings and the curve through those on the wall.
-fn orbit(plane: &Plane, readings: &[[f64; 2]]) -> Markup {
-    let [u, v, a, b, _] = plane.ellipse.0;
+fn orbit(ellipse: &Ellipse, readings: &[[f64; 2]]) -> Markup {
+    let [u, v, a, b, _] = ellipse.0;
     let axis = |zero: f64, label| {
         let (zero, far) = (1e6 * zero, 1.2e6 * a.max(b));
         Axis::new(zero - far, zero + far, label, 6.0)
@@ -99,7 +96,7 @@ fn orbit(plane: &Plane, readings: &[[f64; 2]]) -> Markup {
     };
     let micro = |[u, v]: [f64; 2]| (1e6 * u, 1e6 * v);
     let turn = (0..=POINTS).map(|it| it as f64 / POINTS as f64 * TAU);
-    let curve = turn.map(|it| micro(plane.ellipse.point(it)));
+    let curve = turn.map(|it| micro(ellipse.point(it)));
     let dots = dots(&chart, readings, micro);
     html! {
         ul.legend { (key("sensed", "readings")) (key("limit", "wall")) }
@@ -117,7 +114,7 @@ fn residuals(plane: &Plane) -> Markup {
         y: &Axis::new(-far, far, "residual, outward, \u{b5}m", 6.0),
         height: 220.0,
     };
-    chart.plain(&dots(&chart, &plane.residuals, |[angle, it]| {
+    chart.plain(&dots(&chart, &plane.fitted.residuals, |[angle, it]| {
         (angle.to_degrees().rem_euclid(360.0), 1e6 * it)
     }))
 }

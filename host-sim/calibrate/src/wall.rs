@@ -60,16 +60,14 @@ pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<Fitted, String> {
 
 /// Median of five neighbours, by channel: no spikes.
 fn medians(readings: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let of = |five: &[[f64; 2]], k: usize| median(five.iter().map(|it| it[k]));
-    let windows = readings.windows(5);
-    windows.map(|it| [of(it, 0), of(it, 1)]).collect()
+    let of = |five: &[[f64; 2]]| [0, 1].map(|k| median(five.iter().map(|it| it[k])));
+    readings.windows(5).map(of).collect()
 }
 
 /// Of a channel, m, from second differences: slow motion leaves none.
 fn noise(readings: &[[f64; 2]]) -> f64 {
-    let second = |it: &[[f64; 2]], k: usize| (it[0][k] - 2.0 * it[1][k] + it[2][k]).abs();
-    let windows = readings.windows(3);
-    OF_MEDIAN * median(windows.flat_map(|it| [second(it, 0), second(it, 1)])) / 6_f64.sqrt()
+    let second = |it: &[[f64; 2]]| [0, 1].map(|k| (it[0][k] - 2.0 * it[1][k] + it[2][k]).abs());
+    OF_MEDIAN * median(readings.windows(3).flat_map(second)) / 6_f64.sqrt()
 }
 
 /// The upper one of two in the middle; 0 of none.
@@ -96,12 +94,9 @@ fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
     let some: Vec<_> = readings.iter().step_by(every).collect();
     let score = |it: &Ellipse| {
         let distances = some.iter().map(|reading| it.foot(**reading).distance);
-        let (mut on, mut outside) = (0, 0);
-        for distance in distances {
-            on += usize::from(distance.abs() <= FAR * noise);
-            outside += usize::from(distance > FAR * noise);
-        }
-        (outside as f64 <= OUTSIDE * some.len() as f64).then_some(on)
+        let (outside, others): (Vec<_>, Vec<_>) = distances.partition(|it| *it > FAR * noise);
+        let on = others.iter().filter(|it| **it >= -FAR * noise).count();
+        (outside.len() as f64 <= OUTSIDE * some.len() as f64).then_some(on)
     };
     // Any sequence that visits all choices alike.
     let mut state = 1_u64;

@@ -1,9 +1,10 @@
 //! `touchdown calibrate`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use chrono::Utc;
-use serde_json::{Map, Value, json};
+use serde_json::json;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration};
 use touchdown_protocol::config_block::{Settings, Wiring};
@@ -51,26 +52,23 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
             "date": text_of_day(date),
             "machine": name,
             "scale": args.scale,
-            "planes": planes.iter().map(told).collect::<Map<_, _>>(),
+            "planes": planes.iter().map(|it| (it.name, it)).collect::<BTreeMap<_, _>>(),
         }))
     })?;
     out.put("--report", || page::page(&title, &planes))?;
     let mut text: String = planes.iter().map(page::text).collect();
-    let refused = planes.iter().find_map(|it| Some((it.name, it.refused()?)));
-    if let Some((name, why)) = refused {
-        let rule = format!("{}: plane {name}: {why}", shown(&args.recording));
+    let why = |it: &Checked| Some(format!("plane {}: {}", it.name, it.refused.as_ref()?));
+    if let Some(why) = planes.iter().find_map(why) {
         out.leave("--write");
         out.finish(&text)?;
-        return Err(Failure::Check(rule));
+        return Err(Failure::Check(format!("{}: {why}", shown(&args.recording))));
     }
-    text += &record(&mut settings.monitor, date, args.scale, &planes);
+    text += &record(&mut settings.monitor, date, &planes);
     if let Some(file) = &args.write {
         let valid = settings.validate();
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
     }
-    out.put("--write", || {
-        configuration::record_text(&settings, name.to_owned())
-    })?;
+    out.put("--write", || configuration::record_text(&settings, name))?;
     out.finish(&text)
 }
 
@@ -119,8 +117,7 @@ fn check(
     // What the converter shows, neither at 0 nor at full scale.
     let shown = 0.5..f64::from(sensing.full_scale) - 0.5;
     let is_shown = |it: &f64| shown.contains(&(it / resolution + f64::from(sensing.zero_count)));
-    let reading = args.reading.load()?;
-    let mut recording = Recording::open(Path::new(&args.recording), &reading, scene)?;
+    let mut recording = Recording::open(Path::new(&args.recording), &args.reading.load()?, scene)?;
     let mut readings: [Readings; PLANES] = Default::default();
     for row in recording.by_ref() {
         let row = row?;
@@ -136,10 +133,17 @@ fn check(
     warn(&recording.warnings());
     let planes: Vec<_> = (NAMED.into_iter().zip(readings))
         .filter(|((_, channels), it)| config.fitted & channels != 0 && !it.kept.is_empty())
-        .map(|((name, _), readings)| Checked {
-            name,
-            plane: plane(&readings.kept, resolution, clearance),
-            readings,
+        .map(|((name, _), readings)| {
+            let (refused, plane) = match plane(&readings.kept, resolution, clearance) {
+                Ok(plane) => (plane.why_not(), Some(plane)),
+                Err(why) => (Some(why), None),
+            };
+            Checked {
+                name,
+                plane,
+                refused,
+                readings,
+            }
         })
         .collect();
     if planes.is_empty() {
@@ -150,7 +154,7 @@ fn check(
 }
 
 /// Puts what was found on record; what is worth a warning.
-fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checked]) -> String {
+fn record(monitor: &mut MonitorConfig, date: u32, planes: &[Checked]) -> String {
     // A plane that the recording lacks keeps what it had.
     let mut calibration = Calibration {
         date,
@@ -158,7 +162,7 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checke
     };
     let mut radii = Vec::new();
     for it in planes {
-        let Ok(found) = &it.plane else { continue };
+        let Some(found) = &it.plane else { continue };
         calibration.planes[usize::from(it.name == NAMED[1].0)] = PlaneCalibration {
             zero: found.zero_m.map(|it| it.value as f32),
             gain: found.gain.map(|it| it.value as f32),
@@ -168,9 +172,7 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checke
     }
     monitor.sensing.calibration = Some(calibration);
     monitor.commissioned = true;
-    if scale == Scale::Clearance {
-        return String::new();
-    }
+    // Of radii that were given, what was given.
     let mean = radii.iter().sum::<f64>() / radii.len() as f64;
     monitor.detector.machine.clearance = mean as f32;
     let apart = radii.iter().map(|it| (it / mean - 1.0).abs());
@@ -183,15 +185,6 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checke
          than wall_tolerance\n",
         100.0 * apart
     )
-}
-
-/// Name of a plane, and what was found, as JSON.
-fn told(it: &Checked) -> (String, Value) {
-    let told = match &it.plane {
-        Ok(plane) => json!(plane),
-        Err(why) => json!({ "refused": why }),
-    };
-    (it.name.to_owned(), told)
 }
 
 /// In UTC, as [`day`] has it.

@@ -27,12 +27,11 @@ pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
         Err(why) => Err(key_of(&why)),
     });
     checked.map_err(|flaw| {
-        let is_secret = flaw.table == "link";
         let error = InputError::at_span(name, text, flaw.span(text), flaw.rule);
-        if is_secret {
-            error.of_named_file()
-        } else {
-            error
+        match flaw.table {
+            // A secret.
+            "link" => error.of_named_file(),
+            _ => error,
         }
     })
 }
@@ -42,10 +41,8 @@ fn cut_short(text: &str) -> Option<String> {
     let root = DeTable::parse(text).ok()?;
     let tables = root.get_ref().iter();
     let (name, table) = tables.max_by_key(|(name, _)| name.span().start)?;
-    let keys = table
-        .get_ref()
-        .as_table()
-        .filter(|_| name.get_ref() == LAST);
+    let keys = table.get_ref().as_table();
+    let keys = keys.filter(|_| name.get_ref() == LAST);
     let all = toml::Table::try_from(GuardConfig::default()).unwrap_or_default();
     let why = match keys.map(|keys| all.keys().find(|it| !keys.contains_key(it.as_str()))) {
         None => format!("the last table must be [{LAST}]"),
@@ -69,10 +66,10 @@ pub fn text(settings: &Settings) -> String {
 }
 
 /// The same with the machine's name on the record of its commissioning check.
-pub fn record_text(settings: &Settings, machine: String) -> String {
+pub fn record_text(settings: &Settings, machine: &str) -> String {
     let mut tables = Tables::from(settings);
     if let Some(it) = &mut tables.calibration {
-        it.machine = Some(machine);
+        it.machine = Some(machine.to_owned());
     }
     toml::to_string(&tables).unwrap_or_default()
 }
