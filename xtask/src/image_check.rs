@@ -33,10 +33,7 @@ pub fn write(image: &Path) -> anyhow::Result<()> {
         contents.extend(section.data()?);
     }
     let room = usize::try_from(size)? - 4;
-    ensure!(
-        numbers.len() <= room,
-        "more sections than the check has room for"
-    );
+    ensure!(numbers.len() <= room, "it has no room for all sections");
     numbers.resize(room, 0);
     let checksum = CRC.checksum(&[&numbers[..], &contents].concat());
     let check = [&checksum.to_le_bytes()[..], &numbers].concat();
