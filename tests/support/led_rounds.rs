@@ -189,7 +189,7 @@ pub fn run(runs: u64, first_seed: u64) -> Summary {
         .collect();
     let why = |it: &(u64, Result<Plane, String>, Truth)| {
         let why = match &it.1 {
-            Ok(plane) => plane.refused.clone(),
+            Ok(plane) => plane.why_not(),
             Err(why) => Some(why.clone()),
         };
         Some(format!("seed {}: {}", it.0, why?))

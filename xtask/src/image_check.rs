@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use crc::{CRC_32_ISO_HDLC, Crc};
-use object::elf::{FileHeader32, PT_LOAD, SHF_ALLOC};
-use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
+use object::elf::{PT_LOAD, SHF_ALLOC};
+use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{LittleEndian, Object, ObjectSection, SectionFlags};
 
 use crate::files;
@@ -18,9 +18,26 @@ const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Writes it, where the image has a place for it.
 pub fn write(image: &Path) -> anyhow::Result<()> {
     let mut elf = files::bytes(image)?;
-    let Some((at, check)) = check(&elf)? else {
+    let file = ElfFile32::<LittleEndian>::parse(&*elf)?;
+    let Some(section) = file.section_by_name(SECTION) else {
         return Ok(());
     };
+    let (at, size) = section.file_range().context("the check has no bytes")?;
+    let (mut numbers, mut contents) = (vec![], vec![]);
+    let others = file.sections().filter(|it| it.name() != Ok(SECTION));
+    for section in others.filter(is_loaded) {
+        let held = section.file_range().filter(|&(_, size)| size > 0);
+        let Some((offset, size)) = held else { continue };
+        let start = programmed_at(&file, offset)?;
+        numbers.extend([start, u32::try_from(size)?].map(u32::to_le_bytes).concat());
+        contents.extend(section.data()?);
+    }
+    let room = usize::try_from(size)? - 4;
+    ensure!(numbers.len() <= room, "it has no room for all sections");
+    numbers.resize(room, 0);
+    let checksum = CRC.checksum(&[&numbers[..], &contents].concat());
+    let check = [&checksum.to_le_bytes()[..], &numbers].concat();
+    let at = usize::try_from(at)?;
     elf[at..at + check.len()].copy_from_slice(&check);
     fs::write(image, elf).with_context(|| format!("cannot write {}", image.display()))
 }
@@ -31,46 +48,14 @@ pub fn is_loaded<'a>(section: &impl ObjectSection<'a>) -> bool {
     matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & allocated != 0)
 }
 
-/// Offset in the file, and what belongs there.
-fn check(elf: &[u8]) -> anyhow::Result<Option<(usize, Vec<u8>)>> {
-    let file = ElfFile32::<LittleEndian>::parse(elf)?;
-    let Some(section) = file.section_by_name(SECTION) else {
-        return Ok(None);
-    };
-    let (at, size) = section.file_range().context("the check has no bytes")?;
-    let (mut numbers, mut contents) = (vec![], vec![]);
-    let others = file.sections().filter(|it| it.name() != Ok(SECTION));
-    for section in others.filter(is_loaded) {
-        let held = section.file_range().filter(|&(_, size)| size > 0);
-        let Some((offset, size)) = held else { continue };
-        let start = programmed_at(elf, offset)?;
-        for number in [start, u32::try_from(size)?] {
-            numbers.extend(number.to_le_bytes());
-        }
-        contents.extend(section.data()?);
-    }
-    let room = usize::try_from(size)? - 4;
-    ensure!(
-        numbers.len() <= room,
-        "more sections than the check has room for"
-    );
-    numbers.resize(room, 0);
-    let checksum = CRC.checksum(&[&numbers[..], &contents].concat());
-    let check = [&checksum.to_le_bytes()[..], &numbers].concat();
-    Ok(Some((usize::try_from(at)?, check)))
-}
-
 /// Address in flash of what the file has at `offset`.
-fn programmed_at(elf: &[u8], offset: u64) -> anyhow::Result<u32> {
-    let header = FileHeader32::<LittleEndian>::parse(elf)?;
-    let endian = LittleEndian;
-    let segments = header.program_headers(endian, elf)?.iter();
+fn programmed_at(file: &ElfFile32<'_, LittleEndian>, offset: u64) -> anyhow::Result<u32> {
+    let (endian, offset) = (file.endian(), u32::try_from(offset)?);
+    let segments = file.elf_program_headers().iter();
     let mut loaded = segments.filter(|it| it.p_type(endian) == PT_LOAD);
-    let segment = loaded.find(|it| {
-        let start = u64::from(it.p_offset(endian));
-        (start..start + u64::from(it.p_filesz(endian))).contains(&offset)
+    let at = loaded.find_map(|it| {
+        let into = offset.checked_sub(it.p_offset(endian))?;
+        (into < it.p_filesz(endian)).then(|| it.p_paddr(endian) + into)
     });
-    let segment = segment.context("a section is in no segment")?;
-    let into = u32::try_from(offset)? - segment.p_offset(endian);
-    Ok(segment.p_paddr(endian) + into)
+    at.context("a section is in no segment")
 }

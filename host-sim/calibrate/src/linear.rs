@@ -1,52 +1,52 @@
-//! Five equations.
+//! Least squares of five unknowns.
 
-/// Of five numbers.
+use std::array::from_fn;
+
+/// Of the unknowns, or of their factors in an equation.
 pub type Vector = [f64; 5];
-/// Of five rows.
-pub type Matrix = [Vector; 5];
 
-/// The inverse, by Gauss and Jordan; `None` where there is none.
-pub fn inverse(mut matrix: Matrix) -> Option<Matrix> {
-    let unit = |row: usize| std::array::from_fn(|k| f64::from(u8::from(k == row)));
-    let mut inverse: Matrix = std::array::from_fn(unit);
+/// The unknowns that equations (factors and right side) of equal weight agree on best, and their covariance for right
+/// sides of variance 1; `None` where the equations leave an unknown open.
+///
+/// Gauss and Jordan's elimination inverts the normal matrix.
+pub fn least_squares(
+    equations: impl IntoIterator<Item = (Vector, f64)>,
+) -> Option<(Vector, [Vector; 5])> {
+    // The normal matrix, and on its right the unit matrix, which becomes the inverse.
+    let mut lines: [[f64; 10]; 5] = from_fn(|row| from_fn(|k| f64::from(k == row + 5)));
+    let mut right = [0.0; 5];
+    for (factors, value) in equations {
+        for (row, factor) in factors.iter().enumerate() {
+            let line = lines[row].iter_mut().zip(factors);
+            line.for_each(|(it, other)| *it += factor * other);
+            right[row] += factor * value;
+        }
+    }
     for column in 0..5 {
-        let size = |row: &usize| matrix[*row][column].abs();
+        let size = |row: &usize| lines[*row][column].abs();
         let pivot = (column..5).max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        matrix.swap(column, pivot);
-        inverse.swap(column, pivot);
-        let scale = 1.0 / matrix[column][column];
+        lines.swap(column, pivot);
+        let scale = 1.0 / lines[column][column];
         if !scale.is_finite() {
             return None;
         }
-        for k in 0..5 {
-            matrix[column][k] *= scale;
-            inverse[column][k] *= scale;
+        let pivot = lines[column].map(|it| it * scale);
+        for line in &mut lines {
+            let factor = line[column];
+            let taken = line.iter_mut().zip(pivot);
+            taken.for_each(|(it, pivot)| *it -= factor * pivot);
         }
-        for row in (0..5).filter(|row| *row != column) {
-            let factor = matrix[row][column];
-            for k in 0..5 {
-                matrix[row][k] -= factor * matrix[column][k];
-                inverse[row][k] -= factor * inverse[column][k];
-            }
-        }
+        lines[column] = pivot;
     }
-    Some(inverse)
+    let inverse = lines.map(|line| from_fn(|k| line[k + 5]));
+    Some((inverse.map(|row| dot(&row, &right)), inverse))
 }
 
-/// Matrix times vector.
-pub fn times(matrix: &Matrix, vector: &Vector) -> Vector {
-    matrix.map(|row| dot(&row, vector))
+/// Variance of what grows with the unknowns by `growth`, where they have this covariance.
+pub fn variance(covariance: &[Vector; 5], growth: &Vector) -> f64 {
+    dot(growth, &covariance.map(|row| dot(&row, growth)))
 }
 
-/// Product of two vectors.
-pub fn dot(a: &Vector, b: &Vector) -> f64 {
+fn dot(a: &Vector, b: &Vector) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Adds `row` times itself to `matrix`, and `row` times `right` to `sum`.
-pub fn add(matrix: &mut Matrix, sum: &mut Vector, row: &Vector, right: f64) {
-    for (line, a) in matrix.iter_mut().zip(row) {
-        line.iter_mut().zip(row).for_each(|(it, b)| *it += a * b);
-    }
-    sum.iter_mut().zip(row).for_each(|(it, a)| *it += a * right);
 }

@@ -43,32 +43,30 @@ pub struct PlaneTable {
 impl CalibrationTable {
     /// For the monitor.
     pub fn check(&self) -> Result<Calibration, Diagnostic> {
-        let plane = |name, table: &Option<PlaneTable>| match table {
-            Some(table) => table.check(name),
-            None => Ok(PlaneCalibration::default()),
+        let date = day(&self.date).ok_or_else(|| {
+            let rule = format!("date must be a day as \"2026-12-31\", is \"{}\"", self.date);
+            KEYS.broken("date", rule)
+        })?;
+        let plane = |name, table: &Option<PlaneTable>| {
+            let checked = table.as_ref().map(|it| it.check(name));
+            checked.unwrap_or(Ok(PlaneCalibration::default()))
         };
-        Ok(Calibration {
-            date: day(&self.date).ok_or_else(|| {
-                let rule = format!("date must be a day as \"2026-12-31\", is \"{}\"", self.date);
-                KEYS.broken("date", rule)
-            })?,
-            planes: [plane("a", &self.a)?, plane("b", &self.b)?],
-        })
+        let planes = [plane("a", &self.a)?, plane("b", &self.b)?];
+        Ok(Calibration { date, planes })
     }
 }
 
 impl PlaneTable {
     fn check(&self, plane: &'static str) -> Result<PlaneCalibration, Diagnostic> {
-        let held = |name, value, range| {
-            let value = KEYS.between(plane, value, range);
-            value.map_err(|it| KEYS.broken(plane, format!("{name} of plane {}", it.rule)))
-        };
-        for gain in self.gain {
-            held("gain", gain, 0.2..=5.0)?;
-        }
-        held("skew_deg", self.skew_deg, -28.0..=28.0)?;
-        for zero in self.zero_um {
-            held("zero_um", zero, -1e6..=1e6)?;
+        for (name, values, range) in [
+            ("gain", &self.gain[..], 0.2..=5.0),
+            ("skew_deg", &[self.skew_deg], -28.0..=28.0),
+            ("zero_um", &self.zero_um, -1e6..=1e6),
+        ] {
+            for value in values {
+                let held = KEYS.between(plane, *value, range.clone());
+                held.map_err(|it| KEYS.broken(plane, format!("{name} of plane {}", it.rule)))?;
+            }
         }
         Ok(PlaneCalibration {
             zero: self.zero_um.map(|zero| (MICRO * zero) as f32),
@@ -83,14 +81,9 @@ pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// The number 20261231 of the text 2026-12-31, if it can be a day.
 pub fn day(text: &str) -> Option<u32> {
-    let [year, month, day] = text.split('-').collect::<Vec<_>>().try_into().ok()?;
-    let number = |text: &str, digits: usize| {
-        let is_number = text.len() == digits && text.bytes().all(|it| it.is_ascii_digit());
-        text.parse::<u32>().ok().filter(|_| is_number)
-    };
-    let (year, month, day) = (number(year, 4)?, number(month, 2)?, number(day, 2)?);
-    let can_be = (1..=12).contains(&month) && (1..=31).contains(&day);
-    can_be.then_some(10_000 * year + 100 * month + day)
+    let day = text.replace('-', "").parse().ok()?;
+    let can_be = (1..=12).contains(&(day / 100 % 100)) && (1..=31).contains(&(day % 100));
+    (can_be && text.len() == 10 && text_of_day(day) == text).then_some(day)
 }
 
 /// The text of such a number.

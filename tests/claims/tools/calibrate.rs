@@ -35,7 +35,7 @@ fn what_cannot_be_known_is_refused() {
     let mut refusal = |arc: f64, noise: f64| {
         let readings = readings(&mut rng, &truth, arc, noise);
         match touchdown_calibrate::plane(&readings, RESOLUTION, scale) {
-            Ok(plane) => plane.refused.unwrap_or_default(),
+            Ok(plane) => plane.why_not().unwrap_or_default(),
             Err(why) => why,
         }
     };

@@ -15,6 +15,7 @@ use touchdown_lab::paper::DROPS;
 use touchdown_lab::score::{GROUPS, Plan};
 use touchdown_run::emulator::Emulator;
 use touchdown_run::target::Target;
+use touchdown_scene::calibration::day;
 use touchdown_scene::limits::CLEARANCE_MM;
 use touchdown_sweep::Part;
 
@@ -480,7 +481,7 @@ pub(super) struct CalibrateArgs {
     #[arg(long, value_enum, default_value_t)]
     pub scale: Scale,
     /// Day of the check; today (UTC) without
-    #[arg(long, value_name = "YYYY-MM-DD", value_parser = super::calibrate::date)]
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = |it: &str| day(it).ok_or("a day as 2026-12-31"))]
     pub date: Option<u32>,
     /// What was found as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]

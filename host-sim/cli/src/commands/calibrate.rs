@@ -1,12 +1,12 @@
 //! `touchdown calibrate`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use chrono::Utc;
-use serde::Serialize;
-use serde_json::{Map, json};
+use serde_json::json;
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
+use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration};
 use touchdown_protocol::config_block::{Settings, Wiring};
 
 use super::args::{CalibrateArgs, Scale};
@@ -23,7 +23,8 @@ use touchdown_scene::Scene;
 use touchdown_scene::calibration::{day, text_of_day};
 use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
 
-const NAMES: [&str; PLANES] = ["a", "b"];
+/// Name and channels of each plane.
+const NAMED: [(&str, u8); PLANES] = [("a", 0b0011), ("b", 0b1100)];
 
 /// Finds zero, gain and skew of each plane, says them, and writes them into a configuration.
 pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
@@ -47,25 +48,27 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let planes = check(args, &settings.monitor, &scene, believed)?;
     let title = format!("Commissioning check: {name}");
     out.json("--json", || {
-        json::text(&told(name, date, args.scale, &planes))
+        json::text(&json!({
+            "date": text_of_day(date),
+            "machine": name,
+            "scale": args.scale,
+            "planes": planes.iter().map(|it| (it.name, it)).collect::<BTreeMap<_, _>>(),
+        }))
     })?;
     out.put("--report", || page::page(&title, &planes))?;
     let mut text: String = planes.iter().map(page::text).collect();
-    let refused = planes.iter().find_map(|it| Some((it.name, it.refused()?)));
-    if let Some((name, why)) = refused {
-        let rule = format!("{}: plane {name}: {why}", shown(&args.recording));
+    let why = |it: &Checked| Some(format!("plane {}: {}", it.name, it.refused.as_ref()?));
+    if let Some(why) = planes.iter().find_map(why) {
         out.leave("--write");
         out.finish(&text)?;
-        return Err(Failure::Check(rule));
+        return Err(Failure::Check(format!("{}: {why}", shown(&args.recording))));
     }
-    text += &record(&mut settings.monitor, date, args.scale, &planes);
+    text += &record(&mut settings.monitor, date, &planes);
     if let Some(file) = &args.write {
         let valid = settings.validate();
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
     }
-    out.put("--write", || {
-        configuration::record_text(&settings, name.to_owned())
-    })?;
+    out.put("--write", || configuration::record_text(&settings, name))?;
     out.finish(&text)
 }
 
@@ -84,10 +87,8 @@ fn machine(args: &CalibrateArgs) -> Result<(Settings, Scene), Failure> {
         return Ok((settings, scene));
     };
     let settings = super::config::load(name)?;
-    let (sensing, machine) = (
-        &settings.monitor.sensing,
-        &settings.monitor.detector.machine,
-    );
+    let told = &settings.monitor;
+    let (sensing, machine) = (&told.sensing, &told.detector.machine);
     let counts = u32::from(sensing.full_scale) + 1;
     let bits = counts.next_power_of_two().trailing_zeros().max(4);
     let mut scene = Scene::load("rig")?;
@@ -95,11 +96,7 @@ fn machine(args: &CalibrateArgs) -> Result<(Settings, Scene), Failure> {
     scene.retainer.clearance = f64::from(machine.clearance);
     scene.rotor.spin = f64::from(machine.spin);
     scene.sensors = SensorsConfig {
-        planes: if settings.monitor.fitted & 0b1100 == 0 {
-            1
-        } else {
-            2
-        },
+        planes: 1 + u8::from(told.fitted & NAMED[1].1 != 0),
         bits,
         range: f64::from(sensing.resolution) * f64::from(1 << (bits - 1)),
         mounting_angle: sensing.mounting_angle.map(f64::from),
@@ -116,8 +113,11 @@ fn check(
     clearance: Option<f64>,
 ) -> Result<Vec<Checked>, Failure> {
     let sensing = &config.sensing;
-    let reading = args.reading.load()?;
-    let mut recording = Recording::open(Path::new(&args.recording), &reading, scene)?;
+    let resolution = f64::from(sensing.resolution);
+    // What the converter shows, neither at 0 nor at full scale.
+    let shown = 0.5..f64::from(sensing.full_scale) - 0.5;
+    let is_shown = |it: &f64| shown.contains(&(it / resolution + f64::from(sensing.zero_count)));
+    let mut recording = Recording::open(Path::new(&args.recording), &args.reading.load()?, scene)?;
     let mut readings: [Readings; PLANES] = Default::default();
     for row in recording.by_ref() {
         let row = row?;
@@ -125,21 +125,25 @@ fn check(
         for (plane, position) in positions.iter().enumerate() {
             let angle = f64::from(sensing.mounting_angle[plane]);
             let along = to_sensor_axes(*position, angle);
-            if along.iter().all(|it| is_inside(sensing, *it)) {
+            if along.iter().all(is_shown) {
                 readings[plane].push(along);
             }
         }
     }
     warn(&recording.warnings());
-    let resolution = f64::from(sensing.resolution);
-    let fitted = [0b0011, 0b1100].map(|it| config.fitted & it != 0);
-    let there = NAMES.into_iter().zip(readings).zip(fitted);
-    let planes: Vec<_> = there
-        .filter(|((_, it), fitted)| *fitted && !it.kept().is_empty())
-        .map(|((name, readings), _)| Checked {
-            name,
-            plane: plane(readings.kept(), resolution, clearance),
-            readings,
+    let planes: Vec<_> = (NAMED.into_iter().zip(readings))
+        .filter(|((_, channels), it)| config.fitted & channels != 0 && !it.kept.is_empty())
+        .map(|((name, _), readings)| {
+            let (refused, plane) = match plane(&readings.kept, resolution, clearance) {
+                Ok(plane) => (plane.why_not(), Some(plane)),
+                Err(why) => (Some(why), None),
+            };
+            Checked {
+                name,
+                plane,
+                refused,
+                readings,
+            }
         })
         .collect();
     if planes.is_empty() {
@@ -149,26 +153,17 @@ fn check(
     Ok(planes)
 }
 
-/// Whether the converter shows this reading, m, neither at 0 nor at full scale.
-fn is_inside(sensing: &SensingConfig, reading: f64) -> bool {
-    let count = reading / f64::from(sensing.resolution) + f64::from(sensing.zero_count);
-    count >= 0.5 && count < f64::from(sensing.full_scale) - 0.5
-}
-
 /// Puts what was found on record; what is worth a warning.
-fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checked]) -> String {
+fn record(monitor: &mut MonitorConfig, date: u32, planes: &[Checked]) -> String {
     // A plane that the recording lacks keeps what it had.
     let mut calibration = Calibration {
         date,
         ..monitor.sensing.calibration.unwrap_or_default()
     };
     let mut radii = Vec::new();
-    for (name, slot) in NAMES.into_iter().zip(&mut calibration.planes) {
-        let checked = planes.iter().find(|it| it.name == name);
-        let Some(Ok(found)) = checked.map(|it| &it.plane) else {
-            continue;
-        };
-        *slot = PlaneCalibration {
+    for it in planes {
+        let Some(found) = &it.plane else { continue };
+        calibration.planes[usize::from(it.name == NAMED[1].0)] = PlaneCalibration {
             zero: found.zero_m.map(|it| it.value as f32),
             gain: found.gain.map(|it| it.value as f32),
             skew: found.skew_rad.value as f32,
@@ -177,15 +172,11 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checke
     }
     monitor.sensing.calibration = Some(calibration);
     monitor.commissioned = true;
-    if scale == Scale::Clearance {
-        return String::new();
-    }
+    // Of radii that were given, what was given.
     let mean = radii.iter().sum::<f64>() / radii.len() as f64;
     monitor.detector.machine.clearance = mean as f32;
-    let apart = radii
-        .iter()
-        .map(|it| (it / mean - 1.0).abs())
-        .fold(0.0, f64::max);
+    let apart = radii.iter().map(|it| (it / mean - 1.0).abs());
+    let apart = apart.fold(0.0, f64::max);
     if apart <= f64::from(monitor.detector.tuning.wall_tolerance) {
         return String::new();
     }
@@ -196,31 +187,9 @@ fn record(monitor: &mut MonitorConfig, date: u32, scale: Scale, planes: &[Checke
     )
 }
 
-/// As JSON.
-fn told(machine: &str, date: u32, scale: Scale, planes: &[Checked]) -> impl Serialize {
-    let planes = planes.iter().map(|it| {
-        let told = match &it.plane {
-            Ok(plane) => json!(plane),
-            Err(why) => json!({ "refused": why }),
-        };
-        (it.name.to_owned(), told)
-    });
-    json!({
-        "date": text_of_day(date),
-        "machine": machine,
-        "scale": scale,
-        "planes": planes.collect::<Map<_, _>>(),
-    })
-}
-
 /// In UTC, as [`day`] has it.
 fn today() -> u32 {
     day(&Utc::now().format("%Y-%m-%d").to_string()).unwrap_or_default()
-}
-
-/// A day on the command line.
-pub(super) fn date(text: &str) -> Result<u32, String> {
-    day(text).ok_or_else(|| "a day as 2026-12-31".to_owned())
 }
 
 #[cfg(test)]

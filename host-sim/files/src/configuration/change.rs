@@ -25,19 +25,15 @@ pub fn put(port: &Port, mut client: Client, settings: &Settings) -> Result<(), L
     let mut line = Some(client);
     loop {
         thread::sleep(LOOK);
-        let mut client = match line.take() {
-            Some(client) => Ok(client),
-            None => port.open().map(Client::new),
-        };
-        let found = client.as_mut().map_err(|it| it.to_string());
-        let found = found.and_then(|it| it.settings().map_err(|it| it.to_string()));
+        let client = line.take().map_or_else(|| port.open().map(Client::new), Ok);
+        let found = client.and_then(|mut it| Ok((it.settings()?, it)));
         let why = match found {
-            Ok(it) if it == settings => return Ok(()),
-            Ok(_) => {
-                line = client.ok();
+            Ok((it, _)) if it == settings => return Ok(()),
+            Ok((_, client)) => {
+                line = Some(client);
                 "it still has the old one".to_owned()
             }
-            Err(why) => why,
+            Err(why) => why.to_string(),
         };
         if Instant::now() > end {
             return Err(LinkError::Away(why));

@@ -1,5 +1,6 @@
-//! Text to settings that are valid, and back.
+//! Text to settings that are valid, and back; what two of them differ in.
 
+use serde::Serialize;
 use toml::de::DeTable;
 use touchdown_core::guard::GuardConfig;
 use touchdown_protocol::config_block::{Key, Settings};
@@ -21,17 +22,16 @@ pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
         let line = text.lines().count().max(1) as u64;
         return Err(InputError::at_line(name, line, rule));
     }
-    let checked = tables.settings().and_then(|settings| {
-        let valid = settings.validate();
-        valid.map_err(|it| key_of(&it)).map(|()| settings)
+    let checked = tables.settings().and_then(|it| match it.validate() {
+        Ok(()) => Ok(it),
+        Err(why) => Err(key_of(&why)),
     });
     checked.map_err(|flaw| {
-        let is_secret = flaw.table == "link";
         let error = InputError::at_span(name, text, flaw.span(text), flaw.rule);
-        if is_secret {
-            error.of_named_file()
-        } else {
-            error
+        match flaw.table {
+            // A secret.
+            "link" => error.of_named_file(),
+            _ => error,
         }
     })
 }
@@ -41,10 +41,8 @@ fn cut_short(text: &str) -> Option<String> {
     let root = DeTable::parse(text).ok()?;
     let tables = root.get_ref().iter();
     let (name, table) = tables.max_by_key(|(name, _)| name.span().start)?;
-    let keys = table
-        .get_ref()
-        .as_table()
-        .filter(|_| name.get_ref() == LAST);
+    let keys = table.get_ref().as_table();
+    let keys = keys.filter(|_| name.get_ref() == LAST);
     let all = toml::Table::try_from(GuardConfig::default()).unwrap_or_default();
     let why = match keys.map(|keys| all.keys().find(|it| !keys.contains_key(it.as_str()))) {
         None => format!("the last table must be [{LAST}]"),
@@ -68,10 +66,10 @@ pub fn text(settings: &Settings) -> String {
 }
 
 /// The same with the machine's name on the record of its commissioning check.
-pub fn record_text(settings: &Settings, machine: String) -> String {
+pub fn record_text(settings: &Settings, machine: &str) -> String {
     let mut tables = Tables::from(settings);
     if let Some(it) = &mut tables.calibration {
-        it.machine = Some(machine);
+        it.machine = Some(machine.to_owned());
     }
     toml::to_string(&tables).unwrap_or_default()
 }
@@ -90,4 +88,46 @@ fn key_of(error: &ConfigError) -> Diagnostic {
         _ => return translate(error),
     };
     Diagnostic::new(table, key, error.to_string().replacen(parameter, key, 1))
+}
+
+/// A key that has another value.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Difference {
+    /// With its table, as `retainer.clearance_mm`.
+    pub key: String,
+    /// As it was written, where it was.
+    pub from: Option<String>,
+    /// As it is written, where it is.
+    pub to: Option<String>,
+}
+
+/// What changes from `old` to `new`, in the words of the file.
+pub fn differences(old: &Settings, new: &Settings) -> Vec<Difference> {
+    let [old, new] = [old, new].map(|it| lines(&text(it)));
+    let value = |lines: &[(String, String)], key: &str| {
+        let line = lines.iter().find(|(it, _)| it == key);
+        line.map(|(_, value)| value.clone())
+    };
+    let gone = old.iter().filter(|(key, _)| value(&new, key).is_none());
+    let all = new.iter().chain(gone).map(|(key, _)| Difference {
+        from: value(&old, key),
+        to: value(&new, key),
+        key: key.clone(),
+    });
+    all.filter(|it| it.from != it.to).collect()
+}
+
+/// Key and value of each line: none of ours goes over two.
+fn lines(text: &str) -> Vec<(String, String)> {
+    let mut table = "";
+    let mut lines = Vec::new();
+    for line in text.lines() {
+        if let Some((key, value)) = line.split_once(" = ") {
+            let key = key.trim_start_matches("# ");
+            lines.push((format!("{table}.{key}"), value.to_owned()));
+        } else {
+            table = line.trim_matches(['[', ']']);
+        }
+    }
+    lines
 }

@@ -7,9 +7,8 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
-use touchdown_protocol::config_block::{Key, Settings, Wiring};
+use touchdown_protocol::config_block::{Settings, Wiring};
 
-use super::decimal::shortest;
 use crate::link::{KEY_RULE, parse_key};
 use touchdown_scene::calibration::{CalibrationTable, DEGREE, PlaneTable, text_of_day};
 use touchdown_scene::check::gravity;
@@ -19,6 +18,9 @@ use touchdown_scene::machine::{retainer, rotor};
 use touchdown_scene::names::channel_name;
 use touchdown_scene::rule::{MICRO, MILLI, RPM};
 use touchdown_scene::{list, machine_config};
+
+/// Digits that tell every f32 from its neighbours.
+const DIGITS: usize = 9;
 
 /// A configuration in the file's units.
 #[derive(Deserialize, Serialize)]
@@ -84,18 +86,12 @@ struct LinkTable {
 
 impl From<&Settings> for Tables {
     fn from(settings: &Settings) -> Self {
-        let Settings {
-            monitor, wiring, ..
-        } = settings;
-        let DetectorConfig {
-            sample_rate,
-            machine,
-            tuning,
-        } = monitor.detector;
+        let (monitor, wiring) = (&settings.monitor, &settings.wiring);
+        let (detector, sensing) = (&monitor.detector, &monitor.sensing);
+        let machine = &detector.machine;
         let mass = shortest(machine.mass, 1.0);
         let radius = shortest(machine.rotor_radius, MILLI);
         let per_inertia = 1.0 / (mass * (MILLI * radius) * (MILLI * radius));
-        let sensing = &monitor.sensing;
         let fitted = (0..CHANNELS as u8).filter(|it| monitor.fitted >> it & 1 != 0);
         Self {
             rotor: RotorTable {
@@ -111,7 +107,7 @@ impl From<&Settings> for Tables {
             },
             run: RunTable {
                 gravity_m_s2: shortest(machine.gravity, 1.0),
-                sample_rate_hz: shortest(sample_rate, 1.0),
+                sample_rate_hz: shortest(detector.sample_rate, 1.0),
             },
             sensors: SensorsTable {
                 channels: fitted.map(|it| channel_name(it).to_owned()).collect(),
@@ -123,7 +119,7 @@ impl From<&Settings> for Tables {
                 levitation_signal: wiring.levitation,
             },
             ball_bearing: monitor.tachometers.as_ref().map(BallBearingTable::from),
-            detector: tuning,
+            detector: detector.tuning,
             link: None,
             calibration: sensing.calibration.as_ref().map(record),
             guard: monitor.guard,
@@ -171,6 +167,8 @@ impl Tables {
         let sensors = &self.sensors;
         let calibration = self.calibration.as_ref();
         let calibration = calibration.map(CalibrationTable::check).transpose()?;
+        let key = self.link.as_ref().and_then(|it| it.key.as_deref());
+        let no_key = || Diagnostic::new("link", "key", KEY_RULE);
         Ok(Settings {
             monitor: MonitorConfig {
                 fitted: sensors.fitted()?,
@@ -194,16 +192,8 @@ impl Tables {
                 pulses_per_turn: sensors.pulses_per_turn,
                 levitation: sensors.levitation_signal,
             },
-            key: self.link.as_ref().map_or(Ok(None), LinkTable::key)?,
+            key: key.map(|it| parse_key(it).ok_or_else(no_key)).transpose()?,
         })
-    }
-}
-
-impl LinkTable {
-    fn key(&self) -> Result<Option<Key>, Diagnostic> {
-        let flaw = || Diagnostic::new("link", "key", KEY_RULE);
-        let key = self.key.as_deref();
-        key.map(|it| parse_key(it).ok_or_else(flaw)).transpose()
     }
 }
 
@@ -211,20 +201,16 @@ impl SensorsTable {
     /// A bit for each channel.
     fn fitted(&self) -> Result<u8, Diagnostic> {
         let rule = "channels must be \"ax\" and \"ay\", \"bx\" and \"by\", or all four, each once";
-        let flaw = || Diagnostic::new("sensors", "channels", rule);
-        let mut fitted = 0;
-        for name in &self.channels {
+        let bit = |name: &String| {
             let channel = (0..CHANNELS as u8).find(|it| channel_name(*it) == name);
-            let bit = 1 << channel.ok_or_else(flaw)?;
-            if fitted & bit != 0 {
-                return Err(flaw());
-            }
-            fitted |= bit;
-        }
-        [0b0011, 0b1100, 0b1111]
-            .contains(&fitted)
-            .then_some(fitted)
-            .ok_or_else(flaw)
+            channel.map(|it| 1_u8 << it)
+        };
+        let mut bits = self.channels.iter().map(bit);
+        let fitted = bits.try_fold(0, |all, it| {
+            it.filter(|it| all & it == 0).map(|it| all | it)
+        });
+        let can_be = fitted.filter(|it| [0b0011, 0b1100, 0b1111].contains(it));
+        can_be.ok_or_else(|| Diagnostic::new("sensors", "channels", rule))
     }
 }
 
@@ -237,5 +223,30 @@ impl BallBearingTable {
             edge_error: (MILLI * self.edge_error_mrad) as f32,
             window: (MILLI * self.window_ms) as f32,
         }
+    }
+}
+
+/// The number with the fewest digits which, times `scale` (SI in a unit of the file), is `value` again.
+fn shortest(value: f32, scale: f64) -> f64 {
+    let exact = f64::from(value) / scale;
+    let rounded = |digits: usize| format!("{exact:.digits$e}").parse().unwrap_or(exact);
+    let mut tries = (0..DIGITS).map(rounded);
+    let found = tries.find(|it| (it * scale) as f32 == value);
+    found.unwrap_or(exact)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_a_person_would_write_them() {
+        assert_eq!(shortest(0.3e-3, 1e-3), 0.3);
+        assert_eq!(
+            shortest(-3_141.592_7, std::f64::consts::TAU / 60.0),
+            -30_000.0
+        );
+        assert_eq!(shortest(0.0, 1e-3), 0.0);
+        assert_eq!(shortest(2_000e-6 / 4_096.0, 1e-6), 0.488_281_3);
     }
 }
