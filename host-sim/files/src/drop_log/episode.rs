@@ -12,7 +12,7 @@ use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
-use touchdown_protocol::wire::Record;
+use touchdown_protocol::wire::{Record, decode_record};
 
 use crate::controller::{AlarmAt, OutputsFrom};
 use crate::link::refused_why;
@@ -118,7 +118,7 @@ impl Episode {
                 Item::Ending(it) => ending = Some(it),
                 Item::Learnt(part) => parts.push(part),
                 Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
-                Item::Events(it) => records.extend(it.records().flatten()),
+                Item::Events(it) => records.extend(it.iter().filter_map(decode_record)),
                 Item::Pulses(it) => take_pulses(&mut pulses, &it),
                 Item::Waveform(it) => take_samples(&mut samples, &it),
             }
