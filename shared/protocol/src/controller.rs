@@ -4,21 +4,9 @@ use serde::{Deserialize, Serialize};
 use strum::{FromRepr, IntoStaticStr, VariantArray};
 
 /// What the controller is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, FromRepr, VariantArray)]
 #[repr(u8)]
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    Hash,
-    FromRepr,
-    VariantArray,
-    IntoStaticStr,
-    Serialize,
-    Deserialize,
-)]
+#[derive(IntoStaticStr, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum Mode {
@@ -36,10 +24,9 @@ pub enum Mode {
 }
 
 /// Why the outputs are as they are; a trip's stays until cleared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr)]
 #[repr(u8)]
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr, IntoStaticStr, Serialize, Deserialize,
-)]
+#[derive(IntoStaticStr, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum Cause {
