@@ -57,11 +57,8 @@ pub enum Cause {
 
 impl Cause {
     /// In a byte: 0 for none, else one more than its code.
-    pub const fn byte_of(cause: Option<Self>) -> u8 {
-        match cause {
-            None => 0,
-            Some(cause) => 1 + cause as u8,
-        }
+    pub fn byte_of(cause: Option<Self>) -> u8 {
+        cause.map_or(0, |it| 1 + it as u8)
     }
 
     /// From that byte. A cause that is not known here is one all the same.
@@ -124,11 +121,8 @@ impl Outputs {
     }
 
     /// From [`Self::bits`]; `None` where a bit beyond them is set.
-    pub const fn from_bits(bits: u8) -> Option<Self> {
-        if bits >> 4 != 0 {
-            return None;
-        }
-        Some(Self {
+    pub fn from_bits(bits: u8) -> Option<Self> {
+        (bits >> 4 == 0).then_some(Self {
             run: bits & 1 != 0,
             no_brake: bits & 2 != 0,
             permit: bits & 4 != 0,

@@ -32,10 +32,11 @@ pub enum Item<'a> {
 }
 
 /// Whether an episode is all there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No block at all.
+    #[default]
     Empty,
     /// All that was recorded is there and right.
     Whole,
@@ -48,11 +49,13 @@ pub enum Verdict {
 /// What is wrong with a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[derive(strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum DamageKind {
-    /// Neither erased nor a block.
-    Broken,
     /// Its block is not there.
     Missing,
+    /// Neither erased nor a block.
+    Broken,
     /// A block of another episode, or a second time.
     Stray,
     /// A right block whose content is of no known kind or version.
