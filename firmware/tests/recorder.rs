@@ -16,7 +16,7 @@ use touchdown_protocol::controller::{self, Cause, Mode};
 use touchdown_protocol::log::block::{BLOCK_BYTES, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::{Item, Reader, Verdict};
-use touchdown_protocol::wire::Record;
+use touchdown_protocol::wire::{Record, decode_record};
 
 /// All blocks that are ready, sealed one after another.
 fn fetch(rig: &mut Rig) -> Vec<u8> {
@@ -196,7 +196,7 @@ fn an_episode_has_mode_and_cause_of_its_time() {
     let mut records = Vec::new();
     for item in Reader::new(&bytes) {
         if let Item::Events(it) = item {
-            records.extend(it.records().flatten());
+            records.extend(it.iter().filter_map(decode_record));
         }
     }
     let switched = records.iter().filter_map(|it| match it {

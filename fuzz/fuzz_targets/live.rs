@@ -8,21 +8,21 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Settings, Wiring};
-use touchdown_protocol::link::Reply;
+use touchdown_protocol::link::{Hello, Reply};
 use touchdown_protocol::wire::{Record, decode_record};
 use touchdown_firmware::board::default_config;
 use touchdown_files::drop_log::Episode;
-use touchdown_sim::live::{Greeting, Said, Update, View, Watched, draw, line};
+use touchdown_sim::live::{Said, Update, View, Watched, draw, line};
 
 /// Lines and columns of the terminal.
 const SIZE: [u16; 2] = [90, 40];
 
 fn greeting(settings: Settings, sample_rate: f32) -> Said {
-    Said::Connected(Greeting {
-        firmware: "fuzz".to_owned(),
+    let hello = Hello {
+        firmware: "fuzz".try_into().expect("short"),
         sample_rate,
-        settings,
-    })
+    };
+    Said::Connected(hello, settings)
 }
 
 fn said(reply: Reply) -> Option<Said> {

@@ -11,6 +11,7 @@ use touchdown_protocol::link::{Chunk, Log};
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::reader::{Item, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::Counts;
+use touchdown_protocol::wire::decode_record;
 
 use super::chip::random;
 
@@ -144,8 +145,8 @@ pub fn read(bytes: &[u8]) -> Read {
                 }
             }
             Item::Events(events) => {
-                assert!(events.records().all(|it| it.is_some()));
-                read.notices += events.records().count();
+                assert!(events.iter().all(|it| decode_record(it).is_some()));
+                read.notices += events.len();
             }
             Item::Learnt(_) | Item::Pulses(_) | Item::Severity(..) | Item::Ending(_) => {}
         }

@@ -66,33 +66,26 @@ pub struct Wiring {
 }
 
 /// Why bytes are not a valid configuration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
 pub enum BlockError {
     /// Nothing was ever stored.
+    #[strum(to_string = "nothing is stored")]
     Blank,
     /// Another magic or version.
+    #[strum(to_string = "not a configuration of this version")]
     Version,
     /// Shorter than its length says, or longer than a block can be.
+    #[strum(to_string = "the length is wrong")]
     Length,
     /// The checksum is wrong.
+    #[strum(to_string = "the checksum is wrong")]
     Checksum,
     /// The body is none of this version.
+    #[strum(to_string = "the body is none of this version")]
     Body,
     /// A parameter breaks its rule.
+    #[strum(transparent)]
     Refused(ConfigError),
-}
-
-impl fmt::Display for BlockError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Blank => f.write_str("nothing is stored"),
-            Self::Version => f.write_str("not a configuration of this version"),
-            Self::Length => f.write_str("the length is wrong"),
-            Self::Checksum => f.write_str("the checksum is wrong"),
-            Self::Body => f.write_str("the body is none of this version"),
-            Self::Refused(error) => error.fmt(f),
-        }
-    }
 }
 
 impl core::error::Error for BlockError {}

@@ -4,21 +4,9 @@ use serde::{Deserialize, Serialize};
 use strum::{FromRepr, IntoStaticStr, VariantArray};
 
 /// What the controller is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, FromRepr, VariantArray)]
 #[repr(u8)]
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    Hash,
-    FromRepr,
-    VariantArray,
-    IntoStaticStr,
-    Serialize,
-    Deserialize,
-)]
+#[derive(IntoStaticStr, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum Mode {
@@ -36,10 +24,9 @@ pub enum Mode {
 }
 
 /// Why the outputs are as they are; a trip's stays until cleared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr)]
 #[repr(u8)]
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr, IntoStaticStr, Serialize, Deserialize,
-)]
+#[derive(IntoStaticStr, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum Cause {
@@ -70,11 +57,8 @@ pub enum Cause {
 
 impl Cause {
     /// In a byte: 0 for none, else one more than its code.
-    pub const fn byte_of(cause: Option<Self>) -> u8 {
-        match cause {
-            None => 0,
-            Some(cause) => 1 + cause as u8,
-        }
+    pub fn byte_of(cause: Option<Self>) -> u8 {
+        cause.map_or(0, |it| 1 + it as u8)
     }
 
     /// From that byte. A cause that is not known here is one all the same.
@@ -137,11 +121,8 @@ impl Outputs {
     }
 
     /// From [`Self::bits`]; `None` where a bit beyond them is set.
-    pub const fn from_bits(bits: u8) -> Option<Self> {
-        if bits >> 4 != 0 {
-            return None;
-        }
-        Some(Self {
+    pub fn from_bits(bits: u8) -> Option<Self> {
+        (bits >> 4 == 0).then_some(Self {
             run: bits & 1 != 0,
             no_brake: bits & 2 != 0,
             permit: bits & 4 != 0,

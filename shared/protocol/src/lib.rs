@@ -5,6 +5,8 @@
 
 pub mod controller;
 
+mod layout;
+
 pub mod wire;
 
 pub mod config_block;

@@ -139,7 +139,7 @@ fn what_is_written_is_read() {
         panic!("no events");
     };
     assert_eq!(
-        events.records().collect::<Vec<_>>(),
+        events.iter().map(wire::decode_record).collect::<Vec<_>>(),
         [Some(Record::Notice(IMPACT))]
     );
     assert_eq!(items[5], Item::Severity(1, &[9, 8, 7]));
@@ -364,7 +364,7 @@ fn account(bytes: &[u8]) -> Report {
     for item in &mut reader {
         items += 1;
         if let Item::Events(events) = item {
-            let _ = events.records().count();
+            let _ = events.iter().map(wire::decode_record).count();
         }
         if let Item::Waveform(waveform) = item {
             let _ = waveform.samples().count();

@@ -9,9 +9,9 @@ use touchdown_protocol::controller::{Fault, Faults, Mode, Outputs};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_protocol::link;
-use touchdown_protocol::link::State;
+use touchdown_protocol::link::{Hello, State};
 use touchdown_protocol::log::counters::Counters;
-use touchdown_sim::live::{Greeting, Said, Update, View, Watched, draw, line};
+use touchdown_sim::live::{Said, Update, View, Watched, draw, line};
 use touchdown_tests::controller::{SAMPLE_RATE, circle, event, settings, state};
 use touchdown_tests::episode::{COUNTERS, header};
 
@@ -28,11 +28,11 @@ fn watched(updates: &[(f64, Said)]) -> Watched {
 }
 
 fn greeting() -> Said {
-    Said::Connected(Greeting {
-        firmware: "0.1.0".to_owned(),
+    let hello = Hello {
+        firmware: "0.1.0".try_into().unwrap(),
         sample_rate: SAMPLE_RATE,
-        settings: settings(),
-    })
+    };
+    Said::Connected(hello, settings())
 }
 
 fn dropped() -> State {

@@ -587,18 +587,12 @@ pub(super) enum ExportFormat {
 
 /// `K/N`.
 fn part(text: &str) -> Result<Part, String> {
+    let numbers = text.split_once('/');
+    let numbers = numbers.and_then(|(part, parts)| Some((part.parse().ok()?, parts.parse().ok()?)));
+    let right = numbers.filter(|(part, parts)| (1..=*parts).contains(part) && *parts <= Part::MOST);
     let rule = || format!("K/N with 1 <= K <= N <= {}, as in 2/8", Part::MOST);
-    let (part, parts) = text.split_once('/').ok_or_else(rule)?;
-    let [part, parts] = [part, parts].map(|it| it.parse::<u64>().map_err(|_| rule()));
-    let part = Part {
-        part: part?,
-        parts: parts?,
-    };
-    if (1..=part.parts).contains(&part.part) && part.parts <= Part::MOST {
-        Ok(part)
-    } else {
-        Err(rule())
-    }
+    let (part, parts) = right.ok_or_else(rule)?;
+    Ok(Part { part, parts })
 }
 
 #[derive(Args, Clone, Debug)]

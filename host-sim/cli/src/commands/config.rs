@@ -47,11 +47,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
     let is_own = !client.state().map_err(at)?.faults.lasting();
     let (config, changed, told) = match wanted {
         None => {
-            let state = if is_own {
-                ""
-            } else {
-                "\n# the defaults: not configured, no current"
-            };
+            let defaults = "\n# the defaults: not configured, no current";
+            let state = if is_own { "" } else { defaults };
             let head = format!("# {port}, firmware {firmware}{state}\n\n");
             (before, Vec::new(), head + &text(&before))
         }

@@ -91,7 +91,7 @@ impl Session<'_> {
     fn take(&mut self, update: &Update) -> Result<Option<String>, Failure> {
         let known = self.watched.link.clone();
         self.watched.take(update);
-        self.heard |= matches!(update.said, Said::Connected(_));
+        self.heard |= matches!(update.said, Said::Connected(..));
         if self.watched.link == known && matches!(update.said, Said::Lost(_)) {
             return Ok(None);
         }
@@ -106,10 +106,9 @@ impl Session<'_> {
     fn lines(&mut self) -> Result<(), Failure> {
         let mut out = io::stdout();
         while self.watcher.now() < self.end {
-            let Some(update) = self.watcher.next(LOOK) else {
-                continue;
-            };
-            let Some(line) = self.take(&update)? else {
+            let update = self.watcher.next(LOOK);
+            let line = update.map(|it| self.take(&it)).transpose()?;
+            let Some(line) = line.flatten() else {
                 continue;
             };
             match out.write_all(line.as_bytes()) {
@@ -154,10 +153,7 @@ impl Session<'_> {
                     return Ok(());
                 }
                 KeyCode::Char(' ') => {
-                    held = match held {
-                        Some(_) => None,
-                        None => Some((self.watched.clone(), now)),
-                    };
+                    held = held.is_none().then(|| (self.watched.clone(), now));
                     view.held = held.is_some();
                 }
                 KeyCode::Char('p') => view.plane = 1 - view.plane,

@@ -9,7 +9,7 @@ use touchdown_base::failure::Failure;
 use touchdown_base::paint::Paint;
 use touchdown_core::event::Act;
 use touchdown_files::drop_log::{
-    Dump, Episode, Wanted, comtrade, fetch, is_sound, list, read, show, stream,
+    Dump, Episode, EpisodeRange, comtrade, fetch, is_sound, list, read, show, stream,
 };
 use touchdown_files::link::Port;
 use touchdown_page::json::text;
@@ -60,13 +60,13 @@ fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {
 /// Lists all episodes.
 fn all(DumpArgs { file, json }: &DumpArgs) -> Result<Dump, Failure> {
     let out = gate(file, json)?;
-    let dump = source(file, Wanted::All)?;
+    let dump = source(file, |all| all)?;
     tell(out, &dump, |paint| list(&dump, paint))?;
     Ok(dump)
 }
 
 /// The log in a file, or as much of a controller's as is wanted.
-fn source(name: &str, wanted: Wanted) -> Result<Dump, Failure> {
+fn source(name: &str, wanted: impl FnOnce(EpisodeRange) -> EpisodeRange) -> Result<Dump, Failure> {
     let Some(port) = Port::if_no_file(name) else {
         return Ok(read(name)?);
     };
@@ -84,7 +84,10 @@ fn tell(
 }
 
 fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure> {
-    let dump = source(file, number.map_or(Wanted::Newest, Wanted::Number))?;
+    let dump = source(file, |all| {
+        let wanted = number.unwrap_or(*all.end());
+        wanted..=wanted
+    })?;
     let mut all = dump.episodes.into_iter().rev();
     let found = match number {
         Some(number) => all.find(|it| it.sequence == *number),

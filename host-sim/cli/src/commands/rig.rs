@@ -62,20 +62,16 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
 
 fn obey(rig: &Rig, lines: &Receiver<String>) -> Result<(), Failure> {
     while !rig.has_stopped() {
-        let line = match lines.recv_timeout(LOOK) {
-            Ok(line) => line,
+        match lines.recv_timeout(LOOK) {
+            Ok(line) => match order(&line) {
+                Ok(None) if line.trim() == "quit" => return Ok(()),
+                Ok(None) => {}
+                Ok(Some(order)) => drop(rig.order(order)),
+                Err(rule) => print(&format!("{}: {rule}\n", line.trim()))?,
+            },
             // Nobody types: it goes on until it is killed.
-            Err(RecvTimeoutError::Disconnected) => {
-                thread::sleep(LOOK);
-                continue;
-            }
-            Err(RecvTimeoutError::Timeout) => continue,
-        };
-        match order(&line) {
-            Ok(None) if line.trim() == "quit" => return Ok(()),
-            Ok(None) => {}
-            Ok(Some(order)) => drop(rig.order(order)),
-            Err(rule) => print(&format!("{}: {rule}\n", line.trim()))?,
+            Err(RecvTimeoutError::Disconnected) => thread::sleep(LOOK),
+            Err(RecvTimeoutError::Timeout) => {}
         }
     }
     Ok(())
@@ -103,8 +99,7 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
         ["drop"] => Order::Drop,
         ["repair"] => Order::Repair,
         ["cut"] => Order::Cut,
-        ["service", "on"] => Order::Service(true),
-        ["service", "off"] => Order::Service(false),
+        ["service", state @ ("on" | "off")] => Order::Service(state == "on"),
         ["noise", part] => match part.parse() {
             Ok(part) if (0.0..=1.0).contains(&part) => Order::Noise(part),
             _ => return Err("noise is a part from 0 to 1"),

@@ -1,11 +1,12 @@
 //! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use touchdown_core::event::{Notice, Ordered};
 use touchdown_protocol::link::State;
 
 use super::update::{Said, Update};
 use super::watched::Watched;
+use touchdown_base::plain;
 use touchdown_files::controller::AlarmAt;
 use touchdown_files::link::refused_why;
 use touchdown_run::detection::{declared, forecast, touch};
@@ -13,13 +14,13 @@ use touchdown_run::detection::{declared, forecast, touch};
 /// The line without its end; `watched` has taken in what came before.
 pub fn line(update: &Update, watched: &Watched) -> String {
     let (said, what) = match &update.said {
-        Said::Connected(greeting) => (
+        Said::Connected(hello, settings) => (
             "connected",
             json!({
                 "port": watched.port,
-                "firmware": greeting.firmware,
-                "sample_rate_hz": greeting.sample_rate,
-                "clearance_m": greeting.settings.monitor.detector.machine.clearance,
+                "firmware": plain::shown(&hello.firmware),
+                "sample_rate_hz": hello.sample_rate,
+                "clearance_m": settings.monitor.detector.machine.clearance,
             }),
         ),
         Said::Lost(why) => ("lost", json!({ "port": watched.port, "why": why })),
@@ -63,13 +64,15 @@ pub fn line(update: &Update, watched: &Watched) -> String {
         ),
         Said::Damaged(count) => ("damaged", json!({ "frames": count })),
     };
-    let mut all = Map::new();
-    all.insert("at_s".to_owned(), json!(update.at));
-    all.insert("said".to_owned(), json!(said));
-    if let Value::Object(what) = what {
-        all.extend(what);
-    }
-    Value::Object(all).to_string()
+    let when = json!({ "at_s": update.at, "said": said });
+    joined(&[when, what]).to_string()
+}
+
+/// The keys of all, in one object.
+fn joined(parts: &[Value]) -> Value {
+    let keys = parts.iter().filter_map(Value::as_object).flatten();
+    keys.map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
 }
 
 /// To a tenth of a nanometre, far below any count.
@@ -80,7 +83,7 @@ fn shown(metres: f64) -> f64 {
 fn state(state: &State, watched: &Watched) -> Value {
     let faults = state.faults.iter();
     let sample = (state.sample != u64::MAX).then_some(state.sample);
-    let parts = [
+    joined(&[
         json!(state.outputs),
         json!(state.counters),
         json!({
@@ -93,10 +96,7 @@ fn state(state: &State, watched: &Watched) -> Value {
             "touches": state.touches,
             "faults": faults.map(<&str>::from).collect::<Vec<_>>(),
         }),
-    ];
-    let keys = parts.iter().filter_map(Value::as_object).flatten();
-    keys.map(|(key, value)| (key.clone(), value.clone()))
-        .collect()
+    ])
 }
 
 fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
@@ -106,17 +106,12 @@ fn notice(notice: &Notice, watched: &Watched) -> (&'static str, Value) {
     match notice {
         Notice::Declared(event) => {
             let told = declared(event, timebase);
-            let what = json!({
-                "number": event.number,
-                "event": told.event,
-                "onset_s": told.onset_s,
-                "declared_s": told.declared_s,
-                "sample": told.sample,
-                "plane": told.plane,
-                "motion": told.motion,
-                "normal_speed_m_s": told.normal_speed_m_s,
-                "fault": told.fault,
-            });
+            let more = json!({ "number": event.number, "fault": told.fault });
+            let mut what = joined(&[json!(told), more]);
+            // Its fate comes later, in a line of its own.
+            if let Some(keys) = what.as_object_mut() {
+                keys.retain(|key, _| key != "confirmed_s" && key != "withdrawn_s");
+            }
             ("event", what)
         }
         Notice::Confirmed { number, sample } => ("confirmed", fate(number, sample)),

@@ -18,7 +18,7 @@ mod watched;
 mod watcher;
 
 pub use line::line;
-pub use update::{Greeting, Said, Update};
+pub use update::{Said, Update};
 pub use view::{View, draw};
 pub use watched::{Link, Watched};
 pub use watcher::Watcher;

@@ -24,9 +24,8 @@ pub(super) fn orbit(
 ) {
     let name = ["a", "b"].get(plane).unwrap_or(&"?");
     let clearance = watched
-        .greeting
-        .as_ref()
-        .map(|it| f64::from(it.settings.monitor.detector.machine.clearance))
+        .settings
+        .map(|it| f64::from(it.monitor.detector.machine.clearance))
         .filter(|it| *it > 0.0);
     let title = clearance.map_or_else(
         || format!(" orbit, plane {name} "),
@@ -56,21 +55,10 @@ pub(super) fn orbit(
         .x_bounds([-x, x])
         .y_bounds([-y, y])
         .paint(|context| {
-            context.draw(&Circle {
-                x: 0.0,
-                y: 0.0,
-                radius: 1.0,
-                color: colour(Color::DarkGray),
-            });
-            context.draw(&Points {
-                coords: old,
-                color: colour(Color::Blue),
-            });
+            context.draw(&Circle::new(0.0, 0.0, 1.0, colour(Color::DarkGray)));
+            context.draw(&Points::new(old, colour(Color::Blue)));
             context.layer();
-            context.draw(&Points {
-                coords: new,
-                color: colour(Color::LightYellow),
-            });
+            context.draw(&Points::new(new, colour(Color::LightYellow)));
         });
     frame.render_widget(canvas, area);
     frame.buffer_mut().set_style(inside, Style::default());

@@ -2,7 +2,7 @@
 
 use touchdown_core::event::Notice;
 use touchdown_protocol::config_block::Settings;
-use touchdown_protocol::link::{Recent, State};
+use touchdown_protocol::link::{Hello, Recent, State};
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::header::Header;
 
@@ -18,8 +18,8 @@ pub struct Update {
 /// What was heard.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Said {
-    /// The line is open, and a controller answers.
-    Connected(Greeting),
+    /// The line is open, and a controller answers; it has this configuration.
+    Connected(Hello, Settings),
     /// The line is not open any more, or cannot be opened, and why.
     Lost(String),
     /// What goes on.
@@ -34,15 +34,4 @@ pub enum Said {
     Lifetime(Counters),
     /// So many frames came damaged on this line so far.
     Damaged(u32),
-}
-
-/// Who answered.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Greeting {
-    /// Version of the firmware.
-    pub firmware: String,
-    /// Samples per second, Hz.
-    pub sample_rate: f32,
-    /// Its configuration.
-    pub settings: Settings,
 }

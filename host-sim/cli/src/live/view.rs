@@ -40,18 +40,10 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
     frame.render_widget(Paragraph::new(headline(watched, now, pen)), head);
     orbit(frame, left, watched, view.plane, view.paint);
     list(frame, status, " now ", status_lines(watched, now, pen));
-    list(
-        frame,
-        events,
-        " events: onset s, what, mm/s ",
-        watched.events().map(|it| event_line(it, pen)).collect(),
-    );
-    list(
-        frame,
-        episodes,
-        " episodes: number, at s, trigger ",
-        episode_lines(watched),
-    );
+    let (title, lines) = (" events: onset s, what, mm/s ", watched.events());
+    list(frame, events, title, lines.map(|it| event_line(it, pen)));
+    let title = " episodes: number, at s, trigger ";
+    list(frame, episodes, title, episode_lines(watched));
     let mut keys = KEYS.to_owned();
     if view.held {
         keys += "   HELD";
@@ -78,16 +70,16 @@ impl Pen {
 }
 
 fn headline(watched: &Watched, now: f64, pen: Pen) -> Line<'static> {
-    let mut spans = vec![Pen::bold(format!(" touchdown live {}  ", watched.port))];
-    spans.push(match &watched.link {
+    let link = match &watched.link {
         Link::New => Span::raw("connecting"),
         Link::Up(since) => pen.of(Color::Green, format!("connected for {:.0} s", now - since)),
         Link::Down(since, why) => pen.of(
             Color::Red,
             format!("NOT CONNECTED for {:.0} s: {why}", now - since),
         ),
-    });
-    Line::from(spans)
+    };
+    let head = format!(" touchdown live {}  ", watched.port);
+    Line::from(vec![Pen::bold(head), link])
 }
 
 fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
@@ -98,7 +90,7 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     let rate = watched
         .sample_rate()
         .map_or("-".to_owned(), |it| format!("{it:.0}"));
-    let nominal = watched.greeting.as_ref().map_or(0.0, |it| it.sample_rate);
+    let nominal = watched.hello.as_ref().map_or(0.0, |it| it.sample_rate);
     let frames = watched.frame_rate(now);
     let age = watched.age(now).unwrap_or(f64::INFINITY);
     let text = format!("{age:.2} s");
@@ -115,28 +107,20 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     let (samples, notices) = (counters.lost_samples, counters.lost_notices);
     let unusable = counters.unusable_values;
     let pair = |pair: [(&str, bool); 2]| pair.map(|it| output(it, pen));
+    let relays = pair([("run", it.run), ("no brake", it.no_brake)]);
+    let rates = format!("{rate} of {nominal:.0} samples/s, {frames:.0} frames/s");
+    let damaged = format!("{there} frames there, {here} here{restarts}");
     let mut lines = vec![
         row("phase", [phase(state, pen)]),
         row("mode", [mode(state, pen)]),
-        row(
-            "outputs",
-            pair([("run", it.run), ("no brake", it.no_brake)]),
-        ),
+        row("outputs", relays),
         row("", pair([("permit", it.permit), ("ready", it.ready)])),
         row("faults", [faults(state, pen)]),
-        row(
-            "rates",
-            [format!(
-                "{rate} of {nominal:.0} samples/s, {frames:.0} frames/s"
-            )],
-        ),
+        row("rates", [rates]),
         row("data age", [age]),
         row("lost", [format!("{samples} samples, {notices} notices")]),
         row("unusable", [format!("{unusable} values")]),
-        row(
-            "damaged",
-            [format!("{there} frames there, {here} here{restarts}")],
-        ),
+        row("damaged", [damaged]),
     ];
     lines.extend(lifetime(watched));
     lines
@@ -159,18 +143,9 @@ fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
     };
     let (landings, weight) = (it.landings, it.weight as f64 / 1e3);
     let (touches, boots, lost) = (it.touches, it.boots, it.lost);
-    vec![
-        row(
-            "lifetime",
-            [format!("{landings} landings, weight {weight:.3}{cut}")],
-        ),
-        row(
-            "",
-            [format!(
-                "{touches} touches, {boots} times on, {lost} drops lost"
-            )],
-        ),
-    ]
+    let landings = format!("{landings} landings, weight {weight:.3}{cut}");
+    let times = format!("{touches} touches, {boots} times on, {lost} drops lost");
+    vec![row("lifetime", [landings]), row("", [times])]
 }
 
 fn phase(state: &State, pen: Pen) -> Span<'static> {
@@ -226,28 +201,28 @@ fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {
     Line::from(vec![time, name, Span::raw(fate), Span::raw(speed)])
 }
 
-fn episode_lines(watched: &Watched) -> Vec<Line<'static>> {
-    let lines = watched.episodes().map(|(number, header)| {
-        Line::raw(header.map_or_else(
-            || format!("{number:>5}  header lost"),
-            |it| {
-                let at = it.trigger as f64 / f64::from(it.sample_rate);
-                let trigger = <&str>::from(it.trigger_kind);
-                format!("{number:>5} {at:>11.3}  {trigger}, boot {}", it.boot)
-            },
-        ))
-    });
-    lines.collect()
+fn episode_lines(watched: &Watched) -> impl Iterator<Item = Line<'static>> {
+    watched.episodes().map(|(number, header)| {
+        let Some(it) = header else {
+            return Line::raw(format!("{number:>5}  header lost"));
+        };
+        let at = it.trigger as f64 / f64::from(it.sample_rate);
+        let trigger = <&str>::from(it.trigger_kind);
+        let boot = it.boot;
+        Line::raw(format!("{number:>5} {at:>11.3}  {trigger}, boot {boot}"))
+    })
 }
 
-fn list(frame: &mut Frame<'_>, area: Rect, title: &'static str, lines: Vec<Line<'static>>) {
-    let lines = if lines.is_empty() {
-        vec![Line::raw("none")]
-    } else {
-        lines
-    };
-    frame.render_widget(
-        Paragraph::new(lines).block(Block::bordered().title(title)),
-        area,
-    );
+fn list(
+    frame: &mut Frame<'_>,
+    area: Rect,
+    title: &'static str,
+    lines: impl IntoIterator<Item = Line<'static>>,
+) {
+    let mut lines: Vec<_> = lines.into_iter().collect();
+    if lines.is_empty() {
+        lines.push(Line::raw("none"));
+    }
+    let block = Block::bordered().title(title);
+    frame.render_widget(Paragraph::new(lines).block(block), area);
 }

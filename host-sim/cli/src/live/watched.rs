@@ -5,12 +5,13 @@ use std::collections::{BTreeMap, VecDeque};
 use touchdown_core::event::Notice;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_core::sensing::{PLANES, Sensing};
-use touchdown_protocol::link::{Recent, State};
+use touchdown_protocol::config_block::Settings;
+use touchdown_protocol::link::{Hello, Recent, State};
 use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
-use super::update::{Greeting, Said, Update};
+use super::update::{Said, Update};
 use touchdown_run::detection;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::timebase::Timebase;
@@ -42,7 +43,9 @@ pub struct Watched {
     /// The line.
     pub link: Link,
     /// Who answered last.
-    pub greeting: Option<Greeting>,
+    pub hello: Option<Hello>,
+    /// Its configuration.
+    pub settings: Option<Settings>,
     sensing: Option<Sensing>,
     /// With the time at which it was heard.
     state: Option<(f64, State)>,
@@ -75,12 +78,13 @@ impl Watched {
         let at = update.at;
         if !matches!(update.said, Said::Lost(_) | Said::Damaged(_)) {
             self.frames.push_back(at);
-            forget(&mut self.frames, |it| *it < at - WINDOW);
+            self.frames.retain(|it| *it >= at - WINDOW);
         }
         match &update.said {
-            Said::Connected(greeting) => {
-                self.sensing = Sensing::try_new(&greeting.settings.monitor.sensing).ok();
-                self.greeting = Some(greeting.clone());
+            Said::Connected(hello, settings) => {
+                self.sensing = Sensing::try_new(&settings.monitor.sensing).ok();
+                self.hello = Some(hello.clone());
+                self.settings = Some(*settings);
                 self.link = Link::Up(at);
                 self.states.clear();
             }
@@ -111,7 +115,7 @@ impl Watched {
         }
         self.state = Some((at, *state));
         self.states.push_back((at, state.sample));
-        forget(&mut self.states, |it| it.0 < at - WINDOW);
+        self.states.retain(|it| it.0 >= at - WINDOW);
     }
 
     fn note(&mut self, notice: &Notice) {
@@ -130,18 +134,16 @@ impl Watched {
             self.newest += 1;
         }
         for trail in &mut self.trails {
-            while trail.len() > TRAIL {
-                trail.pop_front();
-            }
+            trail.drain(..trail.len().saturating_sub(TRAIL));
         }
     }
 
     /// Displacement in each plane, m, oldest first.
     pub fn positions(&self, recent: &Recent) -> Vec<[Option<[f64; 2]>; PLANES]> {
-        let (Some(sensing), Some(greeting)) = (&self.sensing, &self.greeting) else {
+        let (Some(sensing), Some(settings)) = (&self.sensing, &self.settings) else {
             return Vec::new();
         };
-        let fitted = greeting.settings.monitor.fitted;
+        let fitted = settings.monitor.fitted;
         let position = |counts: [u16; 4]| {
             let there = (0..).zip(counts).filter(|(_, it)| *it != NO_VALUE);
             let valid = there.fold(0, |bits, (channel, _)| bits | 1 << channel);
@@ -206,13 +208,7 @@ impl Watched {
 
     /// Samples to seconds since the controller's start.
     pub fn timebase(&self) -> Timebase {
-        let rate = self.greeting.as_ref().map_or(1.0, |it| it.sample_rate);
+        let rate = self.hello.as_ref().map_or(1.0, |it| it.sample_rate);
         Timebase::new(0.0, f64::from(rate))
-    }
-}
-
-fn forget<T>(from: &mut VecDeque<T>, is_old: impl Fn(&T) -> bool) {
-    while from.front().is_some_and(&is_old) {
-        from.pop_front();
     }
 }

@@ -4,8 +4,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::update::{Greeting, Said, Update};
-use touchdown_base::plain::shown;
+use super::update::{Said, Update};
 use touchdown_files::drop_log::Episode;
 use touchdown_files::link::{Client, LinkError, Port, Told};
 
@@ -73,16 +72,10 @@ type Tell<'a> = &'a mut dyn FnMut(Said) -> Result<(), Option<LinkError>>;
 fn session(port: &Port, tell: Tell<'_>) -> Result<(), Option<LinkError>> {
     let mut client = Client::new(port.open()?);
     let hello = client.hello()?;
-    let settings = client.settings()?;
-    tell(Said::Connected(Greeting {
-        firmware: shown(&hello.firmware).into_owned(),
-        sample_rate: hello.sample_rate,
-        settings,
-    }))?;
     let step = (SPAN * hello.sample_rate / POSITIONS).clamp(1.0, 1e4) as u16;
-    let mut positions = Due::every(RECENT);
-    let mut log = Due::every(LOG);
+    tell(Said::Connected(hello, client.settings()?))?;
     let mut heard = Instant::now();
+    let (mut positions_due, mut log_due) = (heard, heard);
     let (mut known, mut lifetime) = (None, None);
     let mut damaged = 0;
     loop {
@@ -92,16 +85,17 @@ fn session(port: &Port, tell: Tell<'_>) -> Result<(), Option<LinkError>> {
                 Told::State(state) => Said::State(state),
                 Told::Notice(notice) => Said::Notice(notice),
             })?;
-            if positions.is_due() || log.is_due() {
+            if positions_due.min(log_due) <= heard {
                 break;
             }
         }
-        if positions.is_due() {
-            positions.put_off();
+        let now = Instant::now();
+        if positions_due <= now {
+            positions_due = now + RECENT;
             tell(Said::Recent(client.recent(step)?))?;
         }
-        if log.is_due() {
-            log.put_off();
+        if log_due <= now {
+            log_due = now + LOG;
             known = look(&mut client, known, tell)?;
             let counters = client.lifetime()?;
             if counters != lifetime {
@@ -140,25 +134,4 @@ fn look(
         }
     }
     Ok(told)
-}
-
-/// When to do something again.
-struct Due {
-    every: Duration,
-    at: Instant,
-}
-
-impl Due {
-    fn every(every: Duration) -> Self {
-        let at = Instant::now();
-        Self { every, at }
-    }
-
-    fn is_due(&self) -> bool {
-        self.at <= Instant::now()
-    }
-
-    fn put_off(&mut self) {
-        self.at = Instant::now() + self.every;
-    }
 }

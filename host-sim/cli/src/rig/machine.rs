@@ -111,13 +111,11 @@ impl<'a> Machine<'a> {
     /// Where it is in the next sample; spin, time since the release and angles of the bearing where it falls.
     fn step(&mut self) -> (f64, f64, Moving) {
         let rate = self.scene.run.sample_rate;
-        let spin = self.scene.rotor.spin;
         match mem::replace(&mut self.stage, Stage::Lies) {
-            Stage::Lies => (spin, 0.0, Moving::Nothing),
+            Stage::Lies => {}
             Stage::Floats => {
                 self.stage = Stage::Floats;
                 self.place = self.floating;
-                (spin, 0.0, Moving::Nothing)
             }
             Stage::Moves { from, samples, up } => {
                 let part = samples as f64 / (LIFT * rate);
@@ -131,7 +129,6 @@ impl<'a> Machine<'a> {
                     true => Stage::Floats,
                     false => Stage::Lies,
                 };
-                (spin, 0.0, Moving::Nothing)
             }
             Stage::Falls(mut truth, samples) => {
                 let time = samples as f64 / rate;
@@ -143,9 +140,10 @@ impl<'a> Machine<'a> {
                 } else {
                     self.go(false);
                 }
-                (state.rotor.spin, time, state.moving)
+                return (state.rotor.spin, time, state.moving);
             }
         }
+        (self.scene.rotor.spin, 0.0, Moving::Nothing)
     }
 }
 

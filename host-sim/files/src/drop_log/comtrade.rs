@@ -18,12 +18,8 @@ pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
     let fitted: Vec<usize> = (0..CHANNELS)
         .filter(|it| header.fitted & (1 << it) != 0)
         .collect();
-    let mut cfg = format!(
-        "{STATION},{DEVICE}{},1999\r\n{},{}A,0D\r\n",
-        episode.sequence,
-        fitted.len(),
-        fitted.len()
-    );
+    let (number, count) = (episode.sequence, fitted.len());
+    let mut cfg = format!("{STATION},{DEVICE}{number},1999\r\n{count},{count}A,0D\r\n");
     let record = header.calibration.unwrap_or_default();
     for (number, &channel) in fitted.iter().enumerate() {
         let plane = &record.planes[channel / 2];

@@ -12,7 +12,7 @@ use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
 use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
-use touchdown_protocol::wire::Record;
+use touchdown_protocol::wire::{Record, decode_record};
 
 use crate::controller::{AlarmAt, OutputsFrom};
 use crate::link::refused_why;
@@ -20,7 +20,7 @@ use crate::stream::{of_field, to_field};
 use touchdown_scene::names::channel_name;
 
 /// An episode.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Episode {
     /// Its number; 0 where no block tells.
     pub sequence: u32,
@@ -67,7 +67,7 @@ pub struct Episode {
 }
 
 /// Whether an episode was recorded to its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum Completeness {
@@ -75,6 +75,7 @@ pub enum Completeness {
     #[strum(serialize = "complete")]
     Yes,
     /// Power went before its end.
+    #[default]
     #[strum(serialize = "cut off")]
     CutOff,
     /// Still being written, or cut off by a loss of power after which nothing has been switched on yet.
@@ -109,51 +110,32 @@ impl Episode {
     /// From the pages of a slot, or of a file.
     pub fn of(pages: &[u8]) -> Self {
         let mut reader = Reader::new(pages);
-        let (mut header, mut ending, mut severity) = (None, None, None);
-        let (mut records, mut samples, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut pulses = Vec::new();
+        let mut episode = Self::default();
+        let (mut records, mut parts) = (Vec::new(), Vec::new());
         for item in reader.by_ref() {
             match item {
-                Item::Header(it) => header = Some(it),
-                Item::Ending(it) => ending = Some(it),
+                Item::Header(it) => episode.header = Some(it),
+                Item::Ending(it) => episode.ending = Some(it),
                 Item::Learnt(part) => parts.push(part),
-                Item::Severity(version, bytes) => severity = Some((version, bytes.to_vec())),
-                Item::Events(it) => records.extend(it.records().flatten()),
-                Item::Pulses(it) => take_pulses(&mut pulses, &it),
-                Item::Waveform(it) => take_samples(&mut samples, &it),
+                Item::Severity(version, bytes) => {
+                    episode.severity = Some((version, bytes.to_vec()));
+                }
+                Item::Events(it) => records.extend(it.iter().filter_map(decode_record)),
+                Item::Pulses(it) => take_pulses(&mut episode.pulses, &it),
+                Item::Waveform(it) => take_samples(&mut episode.samples, &it),
             }
         }
-        let mut damage = Vec::new();
-        let report = reader.finish(|it| damage.push(it));
-        let mut episode = Self {
-            sequence: report.sequence.unwrap_or(0),
-            slot: None,
-            locked: false,
-            verdict: report.verdict(),
-            complete: if report.ended {
-                Completeness::Yes
-            } else {
-                Completeness::CutOff
-            },
-            damaged: report.verdict() == Verdict::Damaged,
-            damage,
-            flaws: Vec::new(),
-            events: Vec::new(),
-            outputs: Vec::new(),
-            alarms: Vec::new(),
-            orders: Vec::new(),
-            learnt: learnt(&parts),
-            ending,
-            report,
-            severity,
-            samples_with_pulses: (header.as_ref())
-                .filter(|it| it.pulsed != 0)
-                .map(|_| pulses.iter().flatten().count()),
-            header,
-            samples,
-            pulses,
-        };
-        if let Some(header) = header {
+        episode.report = reader.finish(|it| episode.damage.push(it));
+        episode.sequence = episode.report.sequence.unwrap_or(0);
+        episode.verdict = episode.report.verdict();
+        episode.damaged = episode.verdict == Verdict::Damaged;
+        if episode.report.ended {
+            episode.complete = Completeness::Yes;
+        }
+        episode.learnt = learnt(&parts);
+        if let Some(header) = episode.header {
+            let known = episode.pulses.iter().flatten().count();
+            episode.samples_with_pulses = (header.pulsed != 0).then_some(known);
             impossible(&header)
                 .into_iter()
                 .for_each(|it| episode.flaw(it));

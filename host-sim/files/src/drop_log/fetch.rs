@@ -1,23 +1,21 @@
 //! The log, fetched from the controller over the link.
 
+use std::ops::RangeInclusive;
+
 use super::dump::Dump;
 use super::episode::Episode;
 use crate::link::{Client, LinkError, Port};
 use touchdown_base::progress::Progress;
 
-/// Which episodes are wanted: one takes 5 s at 115 200 baud.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
-    /// All.
-    All,
-    /// The newest.
-    Newest,
-    /// That of this number.
-    Number(u32),
-}
+/// EpisodeRange of episodes.
+pub type EpisodeRange = RangeInclusive<u32>;
 
-/// Fetches what is wanted and there, and the lifetime counters.
-pub fn fetch(port: &Port, wanted: Wanted) -> Result<Dump, LinkError> {
+/// Fetches those of all episodes that are wanted and there, of which one takes 5 s at 115 200 baud, and the lifetime
+/// counters.
+pub fn fetch(
+    port: &Port,
+    wanted: impl FnOnce(EpisodeRange) -> EpisodeRange,
+) -> Result<Dump, LinkError> {
     let mut client = Client::new(port.open()?);
     client.hello()?;
     let counters = client.lifetime()?;
@@ -25,13 +23,8 @@ pub fn fetch(port: &Port, wanted: Wanted) -> Result<Dump, LinkError> {
     let Some((first, last)) = client.episodes()? else {
         return Ok(Dump { counters, episodes });
     };
-    // Numbers between may be gone; what is beyond the largest flash is never there.
-    let numbers = match wanted {
-        Wanted::All => first.max(last.saturating_sub(MOST - 1))..=last,
-        Wanted::Newest => last..=last,
-        Wanted::Number(number) => number..=number,
-    };
-    for number in numbers {
+    // EpisodeRange between may be gone; what is beyond the largest flash is never there.
+    for number in wanted(first.max(last.saturating_sub(MOST - 1))..=last) {
         let mut progress = None;
         let bytes = client.episode(number, |done, total| {
             progress

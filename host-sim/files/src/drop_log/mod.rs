@@ -10,7 +10,7 @@ mod text;
 pub use comtrade::comtrade;
 pub use dump::{Dump, read};
 pub use episode::{ChannelFault, Completeness, Episode, Event};
-pub use fetch::{Wanted, fetch};
+pub use fetch::{EpisodeRange, fetch};
 pub use text::{list, show};
 
 use std::io::Write;

@@ -1,5 +1,6 @@
 //! The log for people.
 
+use strum::VariantArray;
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::reader::DamageKind;
 
@@ -67,15 +68,10 @@ fn damage(episode: &Episode) -> String {
     if !episode.damaged {
         return String::new();
     }
-    let kinds = [
-        (DamageKind::Missing, "missing"),
-        (DamageKind::Broken, "broken"),
-        (DamageKind::Stray, "stray"),
-        (DamageKind::Unknown, "unknown"),
-    ];
     let mut parts = Vec::new();
-    for (kind, name) in kinds {
-        let pages = episode.damage.iter().filter(|it| it.what == kind);
+    for kind in DamageKind::VARIANTS {
+        let (name, all) = (<&str>::from(kind), episode.damage.iter());
+        let pages = all.filter(|it| it.what == *kind);
         let pages: Vec<_> = pages.map(|it| it.page.to_string()).collect();
         if !pages.is_empty() {
             let word = if pages.len() == 1 { "page" } else { "pages" };
@@ -83,11 +79,9 @@ fn damage(episode: &Episode) -> String {
         }
     }
     parts.extend(episode.flaws.iter().cloned());
-    if episode.report.rest > 0 {
-        parts.push(format!(
-            "{} bytes behind the last page",
-            episode.report.rest
-        ));
+    let rest = episode.report.rest;
+    if rest > 0 {
+        parts.push(format!("{rest} bytes behind the last page"));
     }
     format!("  damaged: {}", parts.join("; "))
 }
@@ -132,15 +126,12 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         ));
     }
     for event in &episode.events {
-        let speed = if event.normal_speed_m_s > 0.0 {
-            format!("{:.2}", event.normal_speed_m_s * 1e3)
-        } else {
-            "-".to_owned()
+        let speed = match event.normal_speed_m_s {
+            it if it > 0.0 => format!("{:.2}", it * 1e3),
+            _ => "-".to_owned(),
         };
-        let fault = event
-            .fault
-            .map(|it| format!("  {} {}", it.channel, it.kind));
-        let fault = fault.unwrap_or_default();
+        let fault = event.fault;
+        let fault = fault.map_or(String::new(), |it| format!("  {} {}", it.channel, it.kind));
         text += &format!(
             "{:<16}{:>12.4}{:>14.4}{speed:>10}{fault}\n",
             <&str>::from(event.event),

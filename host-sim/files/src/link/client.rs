@@ -158,10 +158,8 @@ impl Client {
     pub fn set_block(&mut self, block: &Block) -> Result<(), LinkError> {
         let taken = self.ask(&Request::Stage(block.clone()))?;
         let (_, settings) = config_block::decode(block).map_err(LinkError::Config)?;
-        let (true, Some(checksum)) = (
-            taken == Reply::Config(config_block::blanked(block, settings.key.is_some())),
-            block.last_chunk(),
-        ) else {
+        let sent = Reply::Config(config_block::blanked(block, settings.key.is_some()));
+        let Some(checksum) = block.last_chunk().filter(|_| taken == sent) else {
             return Err(LinkError::Senseless);
         };
         self.order_about(Act::Commit(u32::from_le_bytes(*checksum)), block)

@@ -95,12 +95,13 @@ impl Server {
         match self.decoder.take::<Request>(byte)? {
             Ok(received) => {
                 let reply = self.answer(received.message, device);
+                let reply = reply.unwrap_or_else(Reply::Refused);
                 frame::encode(received.sequence, &reply)
             }
             // In its version: so a desktop of another one learns who is there.
             Err(FrameError::Hello(version, sequence)) => {
-                let reply = self.answer(Request::Hello, device);
-                frame::encode_as(version, sequence, &reply)
+                let hello = Reply::Hello(self.hello());
+                frame::encode_as(version, sequence, &hello)
             }
             Err(_) => {
                 self.damaged = self.damaged.saturating_add(1);
@@ -125,46 +126,44 @@ impl Server {
         frame::encode(self.sequence, reply)
     }
 
+    fn hello(&self) -> Hello {
+        Hello {
+            firmware: shortened(self.firmware),
+            sample_rate: self.sample_rate,
+        }
+    }
+
     fn state_of(&self, device: &mut impl Device) -> State {
         let mut state = device.state();
         state.counters.damaged_frames = self.damaged;
         state
     }
 
-    fn answer(&mut self, request: Request, device: &mut impl Device) -> Reply {
-        let done = |result: Result<(), Refusal>| match result {
-            Ok(()) => Reply::Done,
-            Err(refusal) => Reply::Refused(refusal),
-        };
-        match request {
-            Request::Hello => Reply::Hello(Hello {
-                firmware: shortened(self.firmware),
-                sample_rate: self.sample_rate,
-            }),
+    fn answer(&mut self, request: Request, device: &mut impl Device) -> Result<Reply, Refusal> {
+        Ok(match request {
+            Request::Hello => Reply::Hello(self.hello()),
             Request::State => Reply::State(self.state_of(device)),
             Request::ReadConfig => {
                 let keyed = self.right.key.is_some();
                 Reply::Config(config_block::blanked(&device.config(), keyed))
             }
-            Request::Stage(bytes) => self.stage(&bytes).unwrap_or_else(Reply::Refused),
+            Request::Stage(bytes) => self.stage(&bytes)?,
             Request::Challenge => {
                 let boot = lifetime(device).map_or(0, |it| it.boots);
                 let (now, unknown) = (device.state().sample, device.unknown());
                 let nonce = self.right.challenge(now, boot, unknown);
                 Reply::Challenge(nonce, self.right.key.is_some())
             }
-            Request::Order { mac, act } => done(self.order(&mac, act, device)),
+            Request::Order { mac, act } => self.order(&mac, act, device).map(|()| Reply::Done)?,
             Request::Episodes => Reply::Episodes(device.log().and_then(|it| it.episodes())),
             Request::Fetch { episode, offset } => {
                 let mut bytes = Chunk::new();
-                match log(device).and_then(|it| it.fetch(episode, offset, &mut bytes)) {
-                    Ok(total) => Reply::Chunk { total, bytes },
-                    Err(refusal) => Reply::Refused(refusal),
-                }
+                let total = log(device)?.fetch(episode, offset, &mut bytes)?;
+                Reply::Chunk { total, bytes }
             }
             Request::Lifetime => Reply::Lifetime(lifetime(device)),
             Request::Recent { step } => Reply::Recent(device.recent(step.max(1))),
-        }
+        })
     }
 
     fn stage(&mut self, bytes: &[u8]) -> Result<Reply, Refusal> {

@@ -1,12 +1,14 @@
 //! What is counted over the monitor's life, apart from the episodes.
 
 use super::ending::Ending;
-use super::fields::{Fields, Row};
 use crate::controller::Cause;
+use crate::layout::{Offset, layout};
 use touchdown_core::checksum::CRC;
 
 /// Bytes of a record of the counters.
 pub const COUNTERS_BYTES: usize = 64;
+/// Before the checksum.
+const BODY_BYTES: usize = COUNTERS_BYTES - 4;
 
 /// Faster than any rotor hits: a wrong index must not fill up the sum.
 const GREATEST_INDEX: f32 = 1e4;
@@ -36,6 +38,11 @@ pub struct Counters {
     pub uncleared: Option<Cause>,
 }
 
+layout!(Counters {
+    generation = 4, boots = 8, episodes = 12, landings = 16, unweighed = 20, lost = 24, weight = 28, touches = 36,
+    uncleared = 40,
+});
+
 impl Counters {
     /// Counts episode `sequence`, with its ending if it has one. Cut off, it is taken for a landing. A landing while a
     /// trip is `latched` is a drop.
@@ -57,40 +64,20 @@ impl Counters {
 
     /// As bytes.
     pub fn encode(&self) -> [u8; COUNTERS_BYTES] {
-        let mut bytes: [u8; COUNTERS_BYTES] = Row::new()
-            .put(&MAGIC)
-            .put(&self.generation.to_le_bytes())
-            .put(&self.boots.to_le_bytes())
-            .put(&self.episodes.to_le_bytes())
-            .put(&self.landings.to_le_bytes())
-            .put(&self.unweighed.to_le_bytes())
-            .put(&self.lost.to_le_bytes())
-            .put(&self.weight.to_le_bytes())
-            .put(&self.touches.to_le_bytes())
-            .put(&[Cause::byte_of(self.uncleared)])
-            .bytes();
-        let checksum = CRC.checksum(&bytes[..COUNTERS_BYTES - 4]);
-        bytes[COUNTERS_BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
+        let mut bytes = [0; COUNTERS_BYTES];
+        Offset::put(0, &MAGIC, &mut bytes);
+        Offset::put(0, self, &mut bytes);
+        let checksum = CRC.checksum(&bytes[..BODY_BYTES]);
+        Offset::put(BODY_BYTES, &checksum, &mut bytes);
         bytes
     }
 
     /// From bytes; `None` if they are no whole record.
     pub fn decode(bytes: &[u8; COUNTERS_BYTES]) -> Option<Self> {
-        let (body, end) = bytes.split_at(COUNTERS_BYTES - 4);
-        let mut fields = Fields(body);
-        if end != CRC.checksum(body).to_le_bytes() || fields.bytes()? != MAGIC {
+        let (body, end) = bytes.split_at(BODY_BYTES);
+        if end != CRC.checksum(body).to_le_bytes() || !body.starts_with(&MAGIC) {
             return None;
         }
-        Some(Self {
-            generation: fields.u32()?,
-            boots: fields.u32()?,
-            episodes: fields.u32()?,
-            landings: fields.u32()?,
-            unweighed: fields.u32()?,
-            lost: fields.u32()?,
-            weight: fields.u64()?,
-            touches: fields.u32()?,
-            uncleared: Cause::of_byte(fields.u8()?),
-        })
+        Offset::get(0, body)
     }
 }

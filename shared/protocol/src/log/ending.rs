@@ -1,7 +1,7 @@
 //! The last block of an episode: it is complete.
 
-use super::fields::{Fields, Row};
 use crate::controller::Cause;
+use crate::layout::{Offset, codes, layout};
 
 /// Bytes of an ending.
 pub const ENDING_BYTES: usize = 29;
@@ -47,34 +47,23 @@ pub struct Ending {
     pub latched: Option<Cause>,
 }
 
+codes!(Closing);
+
+layout!(Ending {
+    closing = 0, landing = 1, blocks = 2, samples = 4, notices = 8, notices_lost = 12, index = 16, last = 20,
+    latched = 28,
+});
+
 impl Ending {
     /// As bytes.
     pub fn encode(&self) -> [u8; ENDING_BYTES] {
-        Row::new()
-            .put(&[self.closing as u8, u8::from(self.landing)])
-            .put(&self.blocks.to_le_bytes())
-            .put(&self.samples.to_le_bytes())
-            .put(&self.notices.to_le_bytes())
-            .put(&self.notices_lost.to_le_bytes())
-            .put(&self.index.to_le_bytes())
-            .put(&self.last.to_le_bytes())
-            .put(&[Cause::byte_of(self.latched)])
-            .bytes()
+        let mut bytes = [0; ENDING_BYTES];
+        Offset::put(0, self, &mut bytes);
+        bytes
     }
 
     /// From bytes; `None` if they are too few or the reason is unknown.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
-        let mut fields = Fields(bytes);
-        Some(Self {
-            closing: Closing::from_repr(fields.u8()?)?,
-            landing: fields.u8()? != 0,
-            blocks: fields.u16()?,
-            samples: fields.u32()?,
-            notices: fields.u32()?,
-            notices_lost: fields.u32()?,
-            index: fields.f32()?,
-            last: fields.u64()?,
-            latched: fields.u8().and_then(Cause::of_byte),
-        })
+        Offset::get(0, bytes)
     }
 }

@@ -2,14 +2,16 @@
 
 use heapless::Vec;
 
-use super::fields::{Fields, Row};
 use super::{FORMAT, FORMAT_WITH_PULSES, FORMAT_WITHOUT_PULSES};
+use crate::layout::{Offset, layout};
 use touchdown_core::event::EventKind;
-use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
+use touchdown_core::sensing::{Calibration, PLANES, SensingConfig};
 
 /// Bytes of a header, and of one up to format 3.
 pub const HEADER_BYTES: usize = 120;
 const PLAIN_BYTES: usize = 68;
+/// Offset of [`Header::pulsed`]: all before it is in every format.
+const PULSED: usize = 64;
 
 /// What an episode is a record of.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -51,6 +53,12 @@ pub struct Header {
     pub calibration: Option<Calibration>,
 }
 
+layout!(Header {
+    decimation = 2, full_scale = 4, fitted = 6, trigger_kind = 7, firmware = 8, config_hash = 24, boot = 28,
+    trigger = 32, first = 40, planned = 48, sample_rate = 52, resolution = 56, zero_count = 60, pulsed = PULSED,
+    mounting_angle = 72, calibration = CalibrationAt,
+});
+
 impl Header {
     /// Whether the channels read displacements along the scene's axes by `resolution` and `zero_count` alone.
     pub fn is_plain(&self) -> bool {
@@ -75,85 +83,44 @@ impl Header {
             (true, 0) => (FORMAT_WITHOUT_PULSES, PLAIN_BYTES),
             (true, _) => (FORMAT_WITH_PULSES, PLAIN_BYTES),
         };
-        let record = self.calibration.unwrap_or_default();
-        let mut row = Row::<HEADER_BYTES>::new()
-            .put(&format.to_le_bytes())
-            .put(&self.decimation.to_le_bytes())
-            .put(&self.full_scale.to_le_bytes())
-            .put(&[self.fitted, self.trigger_kind as u8])
-            .put(&self.firmware)
-            .put(&self.config_hash.to_le_bytes())
-            .put(&self.boot.to_le_bytes())
-            .put(&self.trigger.to_le_bytes())
-            .put(&self.first.to_le_bytes())
-            .put(&self.planned.to_le_bytes())
-            .put(&self.sample_rate.to_le_bytes())
-            .put(&self.resolution.to_le_bytes())
-            .put(&self.zero_count.to_le_bytes())
-            .put(&[self.pulsed, u8::from(self.calibration.is_some()), 0, 0])
-            .put(&record.date.to_le_bytes());
-        for value in self
-            .mounting_angle
-            .iter()
-            .chain(record.planes.iter().flat_map(values))
-        {
-            row = row.put(&value.to_le_bytes());
-        }
-        let mut bytes = Vec::from(row.bytes());
+        let mut bytes = [0; HEADER_BYTES];
+        Offset::put(0, &format, &mut bytes);
+        Offset::put(0, self, &mut bytes);
+        let mut bytes = Vec::from(bytes);
         bytes.truncate(length);
         bytes
     }
 
     /// From bytes; `None` if they are too few, of another format or of an unknown trigger.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
-        let mut fields = Fields(bytes);
-        let format = fields.u16()?;
-        if !(1..=FORMAT).contains(&format) {
-            return None;
-        }
-        let decimation = fields.u16()?;
-        let full_scale = fields.u16()?;
-        let fitted = fields.u8()?;
-        let trigger_kind = EventKind::from_repr(fields.u8()?)?;
-        let mut header = Self {
-            decimation,
-            full_scale,
-            fitted,
-            trigger_kind,
-            firmware: fields.bytes()?,
-            config_hash: fields.u32()?,
-            boot: fields.u32()?,
-            trigger: fields.u64()?,
-            first: fields.u64()?,
-            planned: fields.u32()?,
-            sample_rate: fields.f32()?,
-            resolution: fields.f32()?,
-            zero_count: fields.f32()?,
-            pulsed: (fields.u8())
-                .filter(|_| format >= FORMAT_WITH_PULSES)
-                .unwrap_or(0),
-            mounting_angle: [0.0; PLANES],
-            calibration: None,
+        let length = match Offset::get(0, bytes)? {
+            1 | FORMAT_WITHOUT_PULSES => PULSED,
+            FORMAT_WITH_PULSES => PULSED + 1,
+            FORMAT => HEADER_BYTES,
+            _ => return None,
         };
-        if format == FORMAT {
-            let [is_calibrated, ..] = fields.bytes::<3>()?;
-            let date = fields.u32()?;
-            header.mounting_angle = [fields.f32()?, fields.f32()?];
-            let planes = [plane(&mut fields)?, plane(&mut fields)?];
-            header.calibration = (is_calibrated != 0).then_some(Calibration { date, planes });
-        }
-        Some(header)
+        // What an earlier format does not have is 0.
+        let mut whole = [0; HEADER_BYTES];
+        let known = whole.iter_mut().zip(bytes.get(..length)?);
+        known.for_each(|(to, byte)| *to = *byte);
+        Offset::get(0, &whole)
     }
 }
 
-fn values(PlaneCalibration { zero, gain, skew }: &PlaneCalibration) -> [&f32; 5] {
-    [&zero[0], &zero[1], &gain[0], &gain[1], skew]
-}
+/// Whether there is a record, here; its day and its planes stand around the angles.
+struct CalibrationAt;
 
-fn plane(fields: &mut Fields<'_>) -> Option<PlaneCalibration> {
-    Some(PlaneCalibration {
-        zero: [fields.f32()?, fields.f32()?],
-        gain: [fields.f32()?, fields.f32()?],
-        skew: fields.f32()?,
-    })
+impl Offset<Option<Calibration>> for CalibrationAt {
+    fn put(self, value: &Option<Calibration>, bytes: &mut [u8]) {
+        let Calibration { date, planes } = value.unwrap_or_default();
+        Offset::put(65, &value.is_some(), bytes);
+        Offset::put(68, &date, bytes);
+        Offset::put(80, &planes, bytes);
+    }
+
+    fn get(self, bytes: &[u8]) -> Option<Option<Calibration>> {
+        let (date, planes) = (Offset::get(68, bytes)?, Offset::get(80, bytes)?);
+        let is_there: bool = Offset::get(65, bytes)?;
+        Some(is_there.then_some(Calibration { date, planes }))
+    }
 }

@@ -7,7 +7,6 @@
 pub mod block;
 pub mod counters;
 pub mod ending;
-mod fields;
 pub mod header;
 pub mod learnt;
 pub mod marks;

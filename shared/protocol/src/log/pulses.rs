@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::block::{Block, Kind, PAYLOAD_BYTES};
-use super::fields::Fields;
+use crate::layout::Offset;
 use touchdown_core::sample::{Edges, TACHOMETERS};
 
 /// Version of the blocks.
@@ -93,10 +93,9 @@ impl<'a> Pulses<'a> {
     /// From a block's bytes; `None` if they are of another version, or no whole number of pulses in their order.
     pub fn decode(bytes: &'a [u8]) -> Option<Self> {
         let (head, rest) = bytes.split_first_chunk::<HEAD_BYTES>()?;
-        let mut fields = Fields(head);
-        let (version, there) = (fields.u8()?, fields.u8()?);
-        let (from, to) = (fields.u16()?, fields.u16()?);
-        let counts: [u16; TACHOMETERS] = [fields.u16()?, fields.u16()?];
+        let [version, there]: [u8; 2] = Offset::get(0, head)?;
+        let [from, to]: [u16; 2] = Offset::get(2, head)?;
+        let counts: [u16; TACHOMETERS] = Offset::get(6, head)?;
         let (records, []) = rest.as_chunks() else {
             return None;
         };

@@ -5,7 +5,7 @@ use super::ending::Ending;
 use super::header::Header;
 use super::pulses::Pulses;
 use super::waveform::Waveform;
-use crate::wire::{self, NOTICE_BYTES, Record};
+use crate::wire::NOTICE_BYTES;
 
 /// Most blocks of an episode.
 pub const MOST_BLOCKS: usize = 256;
@@ -23,30 +23,20 @@ pub enum Item<'a> {
     Waveform(Waveform<'a>),
     /// Pulses.
     Pulses(Pulses<'a>),
-    /// Notices, and changes of what the controller shows.
-    Events(Events<'a>),
+    /// Notices, and changes of what the controller shows: [`crate::wire::decode_record`].
+    Events(&'a [[u8; NOTICE_BYTES]]),
     /// How severe it was: a version and that version's bytes.
     Severity(u8, &'a [u8]),
     /// What it added up to; comes twice.
     Ending(Ending),
 }
 
-/// Records of a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Events<'a>(&'a [[u8; NOTICE_BYTES]]);
-
-impl<'a> Events<'a> {
-    /// Notices and changes of what the controller shows; `None` for a record that is not known.
-    pub fn records(&self) -> impl Iterator<Item = Option<Record>> + use<'a> {
-        self.0.iter().map(wire::decode_record)
-    }
-}
-
 /// Whether an episode is all there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No block at all.
+    #[default]
     Empty,
     /// All that was recorded is there and right.
     Whole,
@@ -59,11 +49,13 @@ pub enum Verdict {
 /// What is wrong with a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[derive(strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum DamageKind {
-    /// Neither erased nor a block.
-    Broken,
     /// Its block is not there.
     Missing,
+    /// Neither erased nor a block.
+    Broken,
     /// A block of another episode, or a second time.
     Stray,
     /// A right block whose content is of no known kind or version.
@@ -252,7 +244,7 @@ fn read<'a>(sealed: &Sealed<'a>) -> Option<Item<'a>> {
         Kind::Waveform => Waveform::decode(bytes).map(Item::Waveform),
         Kind::Pulses => Pulses::decode(bytes).map(Item::Pulses),
         Kind::Events => match bytes.as_chunks() {
-            (records, []) => Some(Item::Events(Events(records))),
+            (records, []) => Some(Item::Events(records)),
             _ => None,
         },
         Kind::Severity => {

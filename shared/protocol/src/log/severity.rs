@@ -11,13 +11,10 @@ pub const SEVERITY_BYTES: usize = 1 + 3 + 7 * 4;
 
 /// Severity to payload.
 pub fn encode(severity: &Severity) -> Vec<u8, SEVERITY_BYTES> {
-    let mut bytes = [0; SEVERITY_BYTES - 1];
+    let mut bytes = [0; SEVERITY_BYTES];
     // It always fits.
-    let body = postcard::to_slice(severity, &mut bytes).map_or(&[][..], |body| &*body);
-    let mut payload = Vec::new();
-    let _ = payload.push(VERSION);
-    let _ = payload.extend_from_slice(body);
-    payload
+    let payload = postcard::to_slice(&(VERSION, severity), &mut bytes);
+    payload.map_or(Vec::new(), |it| it.iter().copied().collect())
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Raw counts: 16 bits each, for 12-bit and 16-bit converters alike.
 
 use super::block::{Block, Kind, PAYLOAD_BYTES};
+use crate::layout::Offset;
 use touchdown_core::sample::{CHANNELS, Sample};
 
 /// The counts of one sample.
@@ -63,11 +64,6 @@ impl<'a> Waveform<'a> {
 
 /// The samples in `bytes`, [`COUNTS_BYTES`] each; what is left over at the end is none.
 pub fn counts_of(bytes: &[u8]) -> impl ExactSizeIterator<Item = Counts> + use<'_> {
-    bytes.chunks_exact(COUNTS_BYTES).map(|sample| {
-        let mut counts = [0; CHANNELS];
-        for (count, pair) in counts.iter_mut().zip(sample.as_chunks().0) {
-            *count = u16::from_le_bytes(*pair);
-        }
-        counts
-    })
+    let samples = bytes.chunks_exact(COUNTS_BYTES);
+    samples.map(|it| Offset::get(0, it).unwrap_or_default())
 }
