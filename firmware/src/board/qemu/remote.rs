@@ -103,6 +103,10 @@ impl Platform for EmulatorPlatform {
         file.store(block)
     }
 
+    fn unknown(&mut self) -> u64 {
+        0
+    }
+
     fn write_down(&mut self, entry: &JournalEntry<'_>) {
         journal::entry(entry);
     }
