@@ -71,7 +71,7 @@ pub(crate) struct FlightTest {
     near: f32,
     /// How far the wall may be from where an impact was, m.
     uneven: f32,
-    /// Acceleration towards the wall that a bounce feels, m/s^2.
+    /// Acceleration towards the wall that a bounce feels, m/s^2, and a fall at least.
     slowest: f32,
     /// Over the horizon of the jumps, 1/s.
     per_horizon: f32,
@@ -236,7 +236,7 @@ impl FlightTest {
             per_horizon: 1.0 / tuning.impact_horizon,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
-            turn_in_fall: TAU * sqrt(0.5 * machine.gravity / machine.clearance),
+            turn_in_fall: TAU * sqrt(0.5 * slowest / machine.clearance),
         }
     }
 
@@ -748,9 +748,13 @@ mod tests {
     use crate::detect::series::tests::MACHINE;
 
     fn test(sample_rate: f32) -> FlightTest {
+        test_of(MACHINE, sample_rate)
+    }
+
+    fn test_of(machine: MachineConfig, sample_rate: f32) -> FlightTest {
         let config = DetectorConfig {
             sample_rate,
-            machine: MACHINE,
+            machine,
             tuning: Tuning::default(),
         };
         FlightTest::new(&config, 25.3)
@@ -790,6 +794,43 @@ mod tests {
     #[test]
     fn runout_is_louder() {
         assert!(level(20_000.0, 3e-6) > 4.0 * WHITE_LEVEL);
+    }
+
+    /// Without gravity a fall has no end, but a shaft that hardly turns shows no unbalance in it: taken for a circle of
+    /// millimetres it let the track diverge.
+    #[test]
+    fn a_shaft_that_hardly_turns_has_no_unbalance_without_gravity_either() {
+        let machine = MachineConfig {
+            gravity: 0.0,
+            ..MACHINE
+        };
+        let test = test_of(machine, 20_000.0);
+        let mut seed = 1;
+        for spin in [0.1, 1.0, 10.0] {
+            let mut flight = Airborne::default();
+            let mut measurement = Measurement {
+                now: Moment::default(),
+                position: [0.0, -0.95 * machine.clearance],
+                variance: 5.8e-12,
+                spin,
+            };
+            test.start(&mut flight, &measurement, Some(machine.clearance), 1.0);
+            for sample in 1..4_000_u16 {
+                let rises = 1e-3 * f32::from(sample) / 20_000.0;
+                measurement.now = Moment::of_sample(u64::from(sample));
+                measurement.position = [
+                    2.4e-6 * white(&mut seed),
+                    -0.95 * machine.clearance + rises + 2.4e-6 * white(&mut seed),
+                ];
+                let landing = test.take(&mut flight, &measurement, None);
+                assert!(landing.is_none(), "{spin} rad/s: {landing:?} at {sample}");
+                let speed = length(flight.track.velocity);
+                assert!(
+                    speed < UNKNOWN_SPEED,
+                    "{spin} rad/s: {speed} m/s at {sample}"
+                );
+            }
+        }
     }
 
     /// One landing on a soft mount may show nothing of it.
