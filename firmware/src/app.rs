@@ -78,7 +78,7 @@ impl App {
     pub(crate) fn new(monitor: Monitor, config: &MonitorConfig, found: Faults) -> Self {
         let sample_rate = config.detector.sample_rate;
         Self {
-            state: MonitorState::default(),
+            state: monitor.start(),
             monitor,
             patrol: ConfigScrub::default(),
             coefficients: MemoryScrub::default(),

@@ -120,6 +120,11 @@ impl Monitor {
         })
     }
 
+    /// The state before the first sample.
+    pub fn start(&self) -> MonitorState {
+        MonitorState::default()
+    }
+
     /// One tick: what it has to say. Bounded; cannot fail.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Notices {
         let mut notices = Notices::new();

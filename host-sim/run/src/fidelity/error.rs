@@ -14,10 +14,8 @@ pub fn error(output: Output, history: &History, truth: &History, scene: &Scene) 
     match output {
         Output::Regime if history.regime == truth.regime => 0.0,
         Output::Regime => f64::INFINITY,
-        Output::ImpactTime => impacts(history, truth, |a, b| (a.state.time - b.state.time).abs()),
-        Output::ImpactSpeed => impacts(history, truth, |a, b| {
-            relative(a.normal_speed, b.normal_speed)
-        }),
+        Output::ImpactTime => impact_times(&history.impacts, &truth.impacts),
+        Output::ImpactSpeed => impact_speeds(history, truth),
         Output::Phases => phases(history, truth),
         Output::WhirlLoad => relative(load(history, scene), load(truth, scene)),
         Output::PeakForce => force(history, truth, scene, |ours, real| {
@@ -46,13 +44,36 @@ fn relative(ours: f64, theirs: f64) -> f64 {
     }
 }
 
-fn impacts(history: &History, truth: &History, apart: impl Fn(&Impact, &Impact) -> f64) -> f64 {
+/// Of the first impacts that are true the farthest from any of ours, and of ours until then the farthest from any true one:
+/// bounces that follow each other more closely than that may be one.
+fn impact_times(ours: &[Impact], truth: &[Impact]) -> f64 {
+    let first = &truth[..truth.len().min(IMPACTS)];
+    let end = match first.last() {
+        Some(last) if first.len() < truth.len() => last.state.time,
+        _ => f64::INFINITY,
+    };
+    let till_then = &ours[..ours.partition_point(|it| it.state.time <= end)];
+    farthest(first, ours).max(farthest(till_then, truth))
+}
+
+/// Greatest time from one of `these` to the nearest of `those`, s.
+fn farthest(these: &[Impact], those: &[Impact]) -> f64 {
+    let alone = |it: &Impact| {
+        let apart = |other: &Impact| (other.state.time - it.state.time).abs();
+        those.iter().map(apart).fold(f64::INFINITY, f64::min)
+    };
+    these.iter().map(alone).fold(0.0, f64::max)
+}
+
+fn impact_speeds(history: &History, truth: &History) -> f64 {
     let expected = truth.impacts.len().min(IMPACTS);
     if history.impacts.len() < expected {
         return f64::INFINITY;
     }
     let pairs = history.impacts.iter().zip(&truth.impacts).take(expected);
-    pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max)
+    pairs
+        .map(|(a, b)| relative(a.normal_speed, b.normal_speed))
+        .fold(0.0, f64::max)
 }
 
 fn phases(history: &History, truth: &History) -> f64 {
@@ -77,4 +98,42 @@ fn load(history: &History, scene: &Scene) -> f64 {
     }
     let [u, v] = history.end.velocity;
     scene.rotor.mass * (u * u + v * v) / scene.retainer.clearance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchdown_base::history::RotorState;
+
+    fn at(times: &[f64]) -> Vec<Impact> {
+        let impact = |&time: &f64| Impact {
+            state: RotorState {
+                time,
+                ..RotorState::default()
+            },
+            normal_speed: 0.1,
+            normal_impulse: 1.0,
+            pulse: None,
+        };
+        times.iter().map(impact).collect()
+    }
+
+    #[test]
+    fn impact_times_are_apart_from_the_nearest_either_way() {
+        let error = |ours: &[f64], truth: &[f64]| impact_times(&at(ours), &at(truth));
+        let is = |error: f64, right: f64| (error - right).abs() < 1e-12;
+        assert!(is(error(&[1.0, 2.0], &[1.0, 2.0]), 0.0));
+        assert!(is(error(&[1.1, 2.0], &[1.0, 2.0]), 0.1));
+        // A bounce in no time is one with the next, one that lasts is not.
+        assert!(is(error(&[1.0], &[1.0, 1.001]), 1e-3));
+        assert!(is(error(&[1.0], &[1.0, 1.5]), 0.5));
+        assert!(is(error(&[1.0, 1.5], &[1.0]), 0.5));
+        assert!(is(error(&[], &[]), 0.0));
+        assert_eq!(error(&[], &[1.0]), f64::INFINITY);
+        assert_eq!(error(&[1.0], &[]), f64::INFINITY);
+        // The first ten.
+        let many: Vec<f64> = (0..12).map(f64::from).collect();
+        assert!(is(error(&many[..10], &many), 0.0));
+        assert!(is(error(&many[..9], &many), 1.0));
+    }
 }
