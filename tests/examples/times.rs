@@ -8,7 +8,7 @@ use clap::Parser;
 use touchdown_scene::BUILT_IN;
 use touchdown_tests::record::record;
 
-const COMMAND: &str = "cargo run --release -p touchdown-tests --example times --";
+const COMMAND: &str = "cargo run --release -p touchdown-tests --example times";
 
 /// Times whole commands for each built-in scene, one after the other
 #[derive(Parser)]

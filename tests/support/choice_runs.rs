@@ -69,8 +69,8 @@ fn planted_parts(rng: &mut Rng, effects: &[bool]) -> Verdict {
         tables += &table(rng, kind, mass, radius, length, *has_effect);
         planted.push((kind, *has_effect));
     }
-    // Falls from the centre to the nearer wall: after more of them a part without effect decides where a drop goes.
-    let duration = rng.uniform(2.2, 2.8) * (2e-3 * clearance / 9.81).sqrt();
+    // Falls from the centre to the nearer wall.
+    let duration = rng.uniform(3.5, 4.5) * (2e-3 * clearance / 9.81).sqrt();
     let text = format!(
         "[rotor]\nmass_kg = {mass}\nradius_mm = {radius}\nspeed_rpm = {speed}\n\
          [retainer]\nclearance_mm = {clearance}\nfriction = {friction}\nrestitution = {restitution}\n\
