@@ -1,10 +1,13 @@
 //! Rung `coupled`: what it keeps, what it is in the cases of the other rungs, its order, and the extremes.
 
+use touchdown_lab::limits::machine;
 use touchdown_models::{
     ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, MountConfig, Placement,
     RaceConfig,
 };
 use touchdown_rotor::{Change, Precision, Touch};
+use touchdown_run::model::coupled::watch;
+use touchdown_scene::Scene;
 use touchdown_tests::rotors::{built, ring, rotor};
 
 fn mode(speed: f64, damping_ratio: f64, mass: f64) -> ModeConfig<f64> {
@@ -399,6 +402,23 @@ fn five_hundred_machines_neither_gain_energy_nor_leave_their_gaps() {
         most[1][0] < 0.1 && most[1][1] < 0.02 && most[1][2] < 1e-2,
         "{most:?}"
     );
+}
+
+/// Their whirl on both walls presses by less than the rounding of its path, at the normals that a stretch begins with: the
+/// walls opened and closed in turn for ever, and stretches became so short that an impulse was infinite.
+#[test]
+fn two_ends_that_whirl_on_their_walls_stay_finite_in_f32() {
+    for number in [1504, 688] {
+        let mut scene = Scene::parse("machine", &machine(number)).expect("a valid scene");
+        scene.model.precision = touchdown_scene::Precision::F32;
+        let mut whirls = 0.0_f64;
+        watch(&scene, &mut |view| {
+            assert!(view.energy.total().is_finite(), "machine {number}");
+            whirls = whirls.max(view.energy.motion / view.energy.spin);
+        })
+        .expect("a valid scene");
+        assert!(whirls > 1.0, "machine {number}: {whirls}");
+    }
 }
 
 /// A ring without mount and bearing is one that a hard spring holds, and that does not turn.

@@ -190,8 +190,10 @@ impl<R: Real, const N: usize> Links<R, N> {
         for trial in 0..TRIALS {
             self.solve_linear();
             let mut holds = true;
+            // A wall that its own rounding opens and closes stays open.
+            let least = if trial < TOGETHER { R::ZERO } else { close };
             for place in 0..self.count {
-                let Some(grip) = self.corrected(place, close) else {
+                let Some(grip) = self.corrected(place, close, least) else {
                     continue;
                 };
                 if let Some(link) = self.get_mut(place) {
@@ -216,15 +218,15 @@ impl<R: Real, const N: usize> Links<R, N> {
         })
     }
 
-    /// What a link does rather; none where it is right.
-    fn corrected(&self, place: usize, close: R) -> Option<Grip<R>> {
+    /// What a link does rather; none where it is right. An open one is closed by a motion into the wall above `least`.
+    fn corrected(&self, place: usize, close: R, least: R) -> Option<Grip<R>> {
         let link = self.get(place)?;
         let motion = self.motion(place);
         let slip = link.normal.cross(motion) + self.surface(place);
         let most = link.friction * link.pressed;
         match link.grip {
             Grip::Open => {
-                let through = link.normal.dot(motion) - link.wanted > R::ZERO;
+                let through = link.normal.dot(motion) - link.wanted > least;
                 through.then(|| Link::sliding(link.friction, slip))
             }
             _ if link.pressed < R::ZERO => Some(Grip::Open),
