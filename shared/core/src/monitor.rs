@@ -97,26 +97,19 @@ pub struct Summary {
 impl Monitor {
     /// Checks `config` and prepares the tick.
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+        let detector = &config.detector;
+        let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
+        let tachometers = config.tachometers;
+        let tachometers = tachometers.map(|it| Tachometers::try_new(&it, rate));
         Ok(Self {
             sensing: Sensing::try_new(&config.sensing)?,
-            tachometers: config
-                .tachometers
-                .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
-                .transpose()?,
-            detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
-            health: Health::new(&config.detector, &config.sensing, config.fitted),
-            spin: SpinCheck::new(&config.detector),
-            severeness: SeverityModel::new(&config.detector),
-            touches: Touches::new(
-                config.detector.machine.clearance,
-                config.detector.sample_rate,
-            ),
-            guard: Guard::try_new(
-                &config.guard,
-                &config.detector,
-                config.fitted,
-                config.commissioned,
-            )?,
+            tachometers: tachometers.transpose()?,
+            detector: Detector::try_new(detector, config.sensing.resolution)?,
+            health: Health::new(detector, &config.sensing, config.fitted),
+            spin: SpinCheck::new(detector),
+            severeness: SeverityModel::new(detector),
+            touches: Touches::new(clearance, rate),
+            guard: Guard::try_new(config)?,
         })
     }
 
