@@ -30,17 +30,12 @@ pub struct App {
     faults: Faults,
     /// Whether the rotor lies still enough on the retainer to be lifted.
     lies_still: bool,
-    tested: Tested,
+    /// What the self-test has seen: the whole configuration, and the rotor.
+    config_tested: bool,
+    sensors_tested: bool,
     /// What trips, of the notices since the last look.
     told: Option<Cause>,
     lost: u32,
-}
-
-/// What the self-test has seen.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tested {
-    config: bool,
-    sensors: bool,
 }
 
 impl App {
@@ -87,7 +82,8 @@ impl App {
             safety: Safety::default(),
             faults: found,
             lies_still: false,
-            tested: Tested::default(),
+            config_tested: false,
+            sensors_tested: false,
             told: None,
             lost: 0,
         }
@@ -109,9 +105,10 @@ impl App {
             self.learn_memory();
         }
         self.monitor.take(&mut self.state, sample, missed, notices);
-        self.hear(board, notices);
-        if !missed {
-            self.act(board, lost);
+        if missed {
+            self.hear(board, notices);
+        } else {
+            self.follow(board, notices, lost);
             board.feed();
         }
     }
@@ -121,19 +118,11 @@ impl App {
         self.monitor.forecast_input(&self.state, wants_input)
     }
 
-    /// What follows from the notices of a tick, outputs included.
+    /// What follows from the notices of a tick, outputs included, after `lost` samples and one that was taken.
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
         self.hear(board, notices);
-        self.act(board, lost);
-    }
-
-    /// After `lost` samples and one that was taken.
-    fn act(&mut self, board: &mut impl Board, lost: u32) {
-        let places = self.state.places();
-        let is_proven = self.safety.is_proven();
-        self.lies_still = self
-            .permit
-            .take(places, self.state.detector.phases(), is_proven);
+        let (places, phases) = (self.state.places(), self.state.detector.phases());
+        self.lies_still = self.permit.take(places, phases, self.safety.is_proven());
         self.watch_itself(board.config(), places.is_some(), lost);
         let was_latched = self.safety.is_latched();
         self.safety.step(&Findings {
@@ -141,7 +130,7 @@ impl App {
             told: self.told.take(),
             sees_all: !self.state.lacks,
             faulted: self.faults.trip(),
-            tested: self.tested.config && self.tested.sensors,
+            tested: self.config_tested && self.sensors_tested,
             lies: self.state.detector.phase().is_contact(),
             lies_still: self.lies_still,
         });
@@ -181,9 +170,9 @@ impl App {
         if is_blind && (self.safety.is_proven() || self.safety.is_latched()) {
             self.latch(Fault::SensorsLost);
         }
-        self.tested.sensors |= self.blind.has_seen();
+        self.sensors_tested |= self.blind.has_seen();
         match self.patrol.step(block) {
-            Some(true) => self.tested.config = true,
+            Some(true) => self.config_tested = true,
             Some(false) => self.latch(Fault::ConfigChanged),
             None => {}
         }
@@ -210,12 +199,12 @@ impl App {
         }
         self.state.forget_wall();
         let had = core::mem::replace(&mut self.faults, Faults::NONE);
-        if self.safety.mode() == Mode::Watching && !had.trip() {
+        if self.shown().mode == Mode::Watching && !had.trip() {
             return Ok(());
         }
         self.safety.clear();
         self.state.guard.proof.restart();
-        self.tested = Tested::default();
+        (self.config_tested, self.sensors_tested) = (false, false);
         self.blind.forget();
         Ok(())
     }
@@ -232,7 +221,7 @@ impl App {
 
     /// Whether the controller may be reset to take another configuration.
     pub fn may_restart(&self) -> Result<(), Busy> {
-        match self.safety.mode() {
+        match self.shown().mode {
             _ if self.drop_runs() => Err(Busy::DropRuns),
             Mode::Watching => Err(Busy::Watching),
             Mode::Dropped => Err(Busy::Latched),
@@ -242,11 +231,7 @@ impl App {
 
     /// Whether the rotor falls, bounces, slides or whirls.
     pub fn drop_runs(&self) -> bool {
-        let floats = matches!(
-            self.state.detector.phase(),
-            Phase::Starting | Phase::Levitated
-        );
-        !floats && !self.lies_still
+        self.state.detector.phase() >= Phase::FreeFall && !self.lies_still
     }
 
     /// With its next tick it trips by `cause`, if levitation is proven: the guard on top has tripped.
@@ -256,14 +241,15 @@ impl App {
 
     /// What goes on, for the link; the last tick was `age_us` ago.
     pub fn report(&self, age_us: u32, lost_notices: u32) -> State {
+        let shown = self.shown();
         State {
             sample: self.state.samples.wrapping_sub(1),
             age_us,
             phase: self.state.detector.phase(),
-            mode: self.safety.mode(),
-            cause: self.safety.cause(),
+            mode: shown.mode,
+            cause: shown.cause,
             touches: self.state.touch.count,
-            outputs: self.shown().outputs,
+            outputs: shown.outputs,
             faults: self.faults,
             counters: Counters {
                 lost_samples: self.lost,
@@ -287,12 +273,7 @@ impl App {
     /// Outputs, mode and cause after the last tick.
     pub fn shown(&self) -> Shown {
         let armed = self.state.detector.is_armed();
-        let outputs = self.safety.outputs(self.faults, self.lies_still, armed);
-        Shown {
-            outputs,
-            mode: self.safety.mode(),
-            cause: self.safety.cause(),
-        }
+        self.safety.shown(self.faults, self.lies_still, armed)
     }
 }
 

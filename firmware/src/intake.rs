@@ -63,12 +63,7 @@ impl Ring {
         let gate = &self.gate;
         let intake = Intake {
             sensing: Sensing::try_new(&config.sensing)?,
-            guard: Guard::try_new(
-                &config.guard,
-                &config.detector,
-                config.fitted,
-                config.commissioned,
-            )?,
+            guard: Guard::try_new(config)?,
             state: GuardState::default(),
             next: 0,
             samples,

@@ -7,6 +7,7 @@ use touchdown_core::detect::{DetectorConfig, Phase};
 use touchdown_core::event::{EventKind, Notice, Plane};
 use touchdown_core::sample::count_in_a_row;
 use touchdown_core::sensing::PLANES;
+use touchdown_core::vector::square;
 
 /// Sine of the largest swing from the bottom, 30 degrees.
 const SWING: f32 = 0.5;
@@ -53,13 +54,13 @@ impl LiftInterlock {
     /// For the detector's machine and the fitted channels (one bit each).
     pub fn new(detector: &DetectorConfig, fitted: u8) -> Self {
         let (rate, clearance) = (detector.sample_rate, detector.machine.clearance);
-        let square = |part: f32| (part * clearance) * (part * clearance);
+        let square_of = |part: f32| (part * clearance) * (part * clearance);
         Self {
             samples: (TIME * rate) as u32,
             slow_samples: (SLOW_TIME * rate) as u32,
             gain: 1.0 / (AVERAGE * rate).max(1.0),
-            nearest_square: square(NEAREST_WALL),
-            slow_square: square(SLOW),
+            nearest_square: square_of(NEAREST_WALL),
+            slow_square: square_of(SLOW),
             has_weight: detector.machine.gravity > 0.0,
             seen: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             rests: [false; PLANES],
@@ -111,18 +112,14 @@ impl LiftInterlock {
     fn follow(&mut self, at: usize, place: [f32; 2]) -> (bool, bool) {
         let it = &mut self.ends[at];
         let [x, y] = place;
-        let square = x * x + y * y;
-        let is_low = y < 0.0 && x * x <= SWING * SWING * square && square >= self.nearest_square;
+        let out = x * x + y * y;
+        let is_low = y < 0.0 && x * x <= SWING * SWING * out && out >= self.nearest_square;
         count_in_a_row(&mut it.within, is_low);
         for (mean, value) in it.place.iter_mut().zip(place) {
             *mean += self.gain * (value - *mean);
         }
-        let apart = |a: [f32; 2], b: [f32; 2]| {
-            let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-            dx * dx + dy * dy
-        };
-        let is_slow = apart(it.place, it.anchor) <= self.slow_square
-            && apart(place, it.place) < self.nearest_square;
+        let is_slow = square(it.place, it.anchor) <= self.slow_square
+            && square(place, it.place) < self.nearest_square;
         count_in_a_row(&mut it.slow, is_slow);
         let is_anchored = is_slow && it.anchored < self.slow_samples;
         count_in_a_row(&mut it.anchored, is_anchored);

@@ -3,7 +3,7 @@
 //! `tests/safety.rs` explores every state and every input.
 
 use touchdown_core::guard::Verdict;
-use touchdown_protocol::controller::{Cause, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Cause, Faults, Mode, Outputs, Shown};
 
 /// What a tick shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,21 +25,12 @@ pub struct Findings {
 }
 
 /// Mode, cause and proof.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Safety {
     mode: Mode,
-    cause: Option<Cause>,
+    /// Of no meaning while it watches.
+    cause: Cause,
     proven: bool,
-}
-
-impl Default for Safety {
-    fn default() -> Self {
-        Self {
-            mode: Mode::SelfTest,
-            cause: Some(Cause::NoProof),
-            proven: false,
-        }
-    }
 }
 
 impl Safety {
@@ -61,68 +52,51 @@ impl Safety {
             return;
         }
         if findings.told == Some(Cause::Whirl) {
-            self.cause = findings.told;
+            self.cause = Cause::Whirl;
         } else if self.whirls() && findings.lies_still {
-            self.cause = Some(Cause::NoProof);
+            self.cause = Cause::NoProof;
         }
         if findings.told.is_some() {
             return;
         }
         self.proven |= findings.guard.floats && guard.is_none();
         if self.mode == Mode::SelfTest && findings.tested {
-            let cause = self.cause.filter(|_| self.whirls());
-            (self.mode, self.cause) = (Mode::Arming, cause.or(Some(Cause::NoProof)));
+            self.mode = Mode::Arming;
+            if !self.whirls() {
+                self.cause = Cause::NoProof;
+            }
         } else if self.mode == Mode::Arming && self.proven && findings.sees_all && !findings.lies {
-            (self.mode, self.cause) = (Mode::Watching, None);
+            (self.mode, self.cause) = (Mode::Watching, Cause::NoProof);
         }
     }
 
     /// As it was before power went, latched by `cause`.
     pub fn recall(&mut self, cause: Cause) {
-        (self.mode, self.cause) = (Mode::Dropped, Some(cause));
+        (self.mode, self.cause) = (Mode::Dropped, cause);
     }
 
     /// An order to clear: all begins anew. It gives no right to run: that takes a new proof.
     pub fn clear(&mut self) {
-        (self.mode, self.cause) = (Mode::SelfTest, Some(Cause::Order));
+        (self.mode, self.cause) = (Mode::SelfTest, Cause::Order);
         self.proven = false;
     }
 
-    /// The outputs, by the table of docs/build/firmware.md: of `faults` that are latched, a rotor that lies still enough on
-    /// the retainer to be lifted or not, and a detector that is `armed` or not. A fault that trips rules, whatever the
-    /// mode says.
-    pub fn outputs(&self, faults: Faults, lies_still: bool, armed: bool) -> Outputs {
-        if faults.trip() {
-            return Outputs::SAFE;
+    /// Mode, cause and outputs, these by the table of docs/build/firmware.md: of `faults` that are latched, a rotor that
+    /// lies still enough on the retainer to be lifted or not, and a detector that is `armed` or not. A fault that trips
+    /// rules, whatever the mode says.
+    pub fn shown(&self, faults: Faults, lies_still: bool, armed: bool) -> Shown {
+        let is = |mode| self.mode == mode && !faults.trip();
+        let watches = is(Mode::Watching);
+        Shown {
+            outputs: Outputs {
+                run: watches,
+                no_brake: watches || is(Mode::Arming) && !self.whirls(),
+                permit: lies_still && (is(Mode::Arming) || is(Mode::Dropped)),
+                ready: watches && armed && faults.is_empty(),
+            },
+            mode: self.mode,
+            cause: (self.mode != Mode::Watching).then_some(self.cause),
         }
-        match self.mode {
-            Mode::SelfTest | Mode::Faulted => Outputs::SAFE,
-            Mode::Arming => Outputs {
-                no_brake: !self.whirls(),
-                permit: lies_still,
-                ..Outputs::SAFE
-            },
-            Mode::Watching => Outputs {
-                run: true,
-                no_brake: true,
-                permit: false,
-                ready: armed && faults.is_empty(),
-            },
-            Mode::Dropped => Outputs {
-                permit: lies_still,
-                ..Outputs::SAFE
-            },
-        }
-    }
-
-    /// What it is doing.
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// Why; none while it watches.
-    pub fn cause(&self) -> Option<Cause> {
-        self.cause
     }
 
     /// Whether the rotor has been proven to float, and nothing has tripped since.
@@ -132,8 +106,8 @@ impl Safety {
 
     /// Whether it whirled before it was proven to float, and has neither lain still nor floated since: that takes the
     /// brake, but no order.
-    pub fn whirls(&self) -> bool {
-        !self.is_latched() && self.cause == Some(Cause::Whirl)
+    fn whirls(&self) -> bool {
+        !self.is_latched() && self.cause == Cause::Whirl
     }
 
     /// Whether a trip waits for an order to clear.
@@ -144,7 +118,7 @@ impl Safety {
     /// The first cause stays.
     fn latch(&mut self, mode: Mode, cause: Cause) {
         if !self.is_latched() {
-            self.cause = Some(cause);
+            self.cause = cause;
         }
         (self.mode, self.proven) = (mode, false);
     }
@@ -152,15 +126,10 @@ impl Safety {
 
 /// What the guard finds, if it trips.
 fn beyond(guard: &Verdict) -> Option<Cause> {
-    if guard.danger {
-        Some(Cause::Danger)
-    } else if guard.off {
-        Some(Cause::LevitationOff)
-    } else if guard.lost {
-        Some(Cause::PositionsLost)
-    } else {
-        None
-    }
+    let danger = guard.danger.then_some(Cause::Danger);
+    let off = guard.off.then_some(Cause::LevitationOff);
+    let lost = guard.lost.then_some(Cause::PositionsLost);
+    danger.or(off).or(lost)
 }
 
 #[cfg(test)]
@@ -198,7 +167,7 @@ mod tests {
                     let [lies_still, whirls, armed] = [1, 2, 4].map(|it| bits & it != 0);
                     let safety = Safety {
                         mode,
-                        cause: whirls.then_some(Cause::Whirl),
+                        cause: if whirls { Cause::Whirl } else { Cause::NoProof },
                         proven: false,
                     };
                     let is_on = |cell: &String| match cell.as_str() {
@@ -213,7 +182,7 @@ mod tests {
                     let expected: u8 = on.map(|(bit, cell)| u8::from(is_on(cell)) << bit).sum();
                     // All but the overrun, which has code 0, trip.
                     let expected = if faults.0 > 1 { 0 } else { expected };
-                    let outputs = safety.outputs(faults, lies_still, armed);
+                    let outputs = safety.shown(faults, lies_still, armed).outputs;
                     assert_eq!(
                         outputs.bits(),
                         expected,

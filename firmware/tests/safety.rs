@@ -16,7 +16,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::{default_config, default_settings};
 use touchdown_firmware::safety::{Findings, Safety};
 use touchdown_protocol::config_block;
-use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs};
+use touchdown_protocol::controller::{Cause, Fault, Faults, Mode, Outputs, Shown};
 
 const WINDOW: u8 = 4;
 const OFF: u8 = 3;
@@ -94,13 +94,13 @@ fn inputs() -> Vec<Input> {
 }
 
 impl World {
-    fn outputs(&self, faulted: bool) -> Outputs {
+    fn shown(&self, faulted: bool) -> Shown {
         let faults = if faulted {
             Faults::NONE.with(Fault::Crash)
         } else {
             Faults::NONE
         };
-        self.safety.outputs(faults, true, true)
+        self.safety.shown(faults, true, true)
     }
 
     fn step(mut self, input: &Input) -> Self {
@@ -151,12 +151,12 @@ impl World {
         });
         self.tested |= input.tested;
         let whirls = input.told == Some(Cause::Whirl);
-        let ends = input.still || self.safety.mode() == Mode::Watching;
+        let ends = input.still || self.shown(false).mode == Mode::Watching;
         self.whirled = whirls || self.whirled && !ends;
         let trips = guard.danger || guard.lost || guard.off;
         if self.safety.is_latched() {
             self.shown = false;
-            self.latched = self.latched.or(self.safety.cause());
+            self.latched = self.latched.or(self.shown(false).cause);
         } else if guard.floats && !trips {
             self.shown = true;
         }
@@ -166,7 +166,11 @@ impl World {
 
     /// What holds after each tick.
     fn check(&self, before: &Self, input: &Input, guard: &Verdict) {
-        let outputs = self.outputs(input.faulted);
+        let Shown {
+            outputs,
+            mode,
+            cause,
+        } = self.shown(input.faulted);
         let because = |why: &str| panic!("{why}: {before:?}, {input:?} -> {self:?}");
         let run = outputs.run;
         if run && (self.in_danger >= 3 || guard.danger) {
@@ -187,7 +191,7 @@ impl World {
         if run && !self.shown {
             because("runs without proof");
         }
-        if run && !before.outputs(false).run && !input.sees_all {
+        if run && !before.shown(false).outputs.run && !input.sees_all {
             because("begins to run with a sensor that does not work");
         }
         if run && self.latched.is_some() {
@@ -202,10 +206,10 @@ impl World {
         if run && outputs.permit {
             because("runs and permits a lift");
         }
-        if (self.safety.mode() == Mode::Watching) != self.safety.cause().is_none() {
+        if (mode == Mode::Watching) != cause.is_none() {
             because("watching and a cause");
         }
-        if self.latched.is_some() && self.safety.cause() != self.latched {
+        if self.latched.is_some() && cause != self.latched {
             because("the first cause is gone");
         }
         // What was proven to float and does not, has tripped; so has what the detector tells.
@@ -255,7 +259,10 @@ fn every_state_of_the_safety_machine_is_safe_and_none_is_a_trap() {
     );
     assert!(worlds.len() > 1_000, "the search found too little");
     // From every state the machine can be brought to run again.
-    let mut runs: Vec<bool> = worlds.iter().map(|it| it.outputs(false).run).collect();
+    let mut runs: Vec<bool> = worlds
+        .iter()
+        .map(|it| it.shown(false).outputs.run)
+        .collect();
     let mut open: Vec<usize> = (0..worlds.len()).filter(|it| runs[*it]).collect();
     assert!(!open.is_empty(), "it never runs");
     while let Some(state) = open.pop() {

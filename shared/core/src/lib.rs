@@ -23,4 +23,4 @@ pub mod severity;
 mod spin;
 pub mod tachometer;
 pub mod touch;
-mod vector;
+pub mod vector;

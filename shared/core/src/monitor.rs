@@ -48,11 +48,7 @@ pub struct Monitor {
 }
 
 /// What the sensors say in a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    reading: Reading,
-    signals: Signals,
-}
+pub type Seen = (Reading, Signals);
 
 /// What the tick carries from sample to sample; by default that before the first one.
 #[derive(Clone, Debug, Default)]
@@ -97,26 +93,19 @@ pub struct Summary {
 impl Monitor {
     /// Checks `config` and prepares the tick.
     pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+        let detector = &config.detector;
+        let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
+        let tachometers = config.tachometers;
+        let tachometers = tachometers.map(|it| Tachometers::try_new(&it, rate));
         Ok(Self {
             sensing: Sensing::try_new(&config.sensing)?,
-            tachometers: config
-                .tachometers
-                .map(|it| Tachometers::try_new(&it, config.detector.sample_rate))
-                .transpose()?,
-            detector: Detector::try_new(&config.detector, config.sensing.resolution)?,
-            health: Health::new(&config.detector, &config.sensing, config.fitted),
-            spin: SpinCheck::new(&config.detector),
-            severeness: SeverityModel::new(&config.detector),
-            touches: Touches::new(
-                config.detector.machine.clearance,
-                config.detector.sample_rate,
-            ),
-            guard: Guard::try_new(
-                &config.guard,
-                &config.detector,
-                config.fitted,
-                config.commissioned,
-            )?,
+            tachometers: tachometers.transpose()?,
+            detector: Detector::try_new(detector, config.sensing.resolution)?,
+            health: Health::new(detector, &config.sensing, config.fitted),
+            spin: SpinCheck::new(detector),
+            severeness: SeverityModel::new(detector),
+            touches: Touches::new(clearance, rate),
+            guard: Guard::try_new(config)?,
         })
     }
 
@@ -157,8 +146,8 @@ impl Monitor {
     #[inline]
     pub fn guard(&self, state: &mut MonitorState, sample: &Sample) -> [Option<[f32; 2]>; PLANES] {
         let places = self.sensing.planes(sample);
-        let levitated = sample.levitated;
-        self.guard.update(&mut state.guard, places, levitated);
+        self.guard
+            .update(&mut state.guard, places, sample.levitated);
         places
     }
 
@@ -196,9 +185,10 @@ impl Monitor {
         let (is_unused, spin_fault) = self.spin.update(spin, sample.spin, state.samples);
         state.faults += u64::from(is_unused);
         state.levitated = sample.levitated;
-        let spin = state.spin.believed;
-        let retainer = self.retainer(state, sample);
-        state.samples += 1;
+        let signals = Signals {
+            spin_fault,
+            ..self.signals(state, sample)
+        };
         state.planes = if reading.is_own() {
             reading.planes
         } else {
@@ -206,38 +196,44 @@ impl Monitor {
         };
         state.lacks = reading.unusable != 0;
         state.faults += u64::from(reading.unusable.count_ones());
-        let signals = Signals {
-            spin,
-            spin_fault,
-            retainer,
-            levitated: sample.levitated,
-        };
-        Seen { reading, signals }
+        (reading, signals)
     }
 
     /// In place of the third part, of a sample that was never taken.
     #[inline(never)]
     fn miss(&self, state: &mut MonitorState, missed: &Sample) -> Seen {
-        let signals = Signals {
-            spin: state.spin.believed,
-            retainer: self.retainer(state, missed),
-            levitated: missed.levitated,
-            spin_fault: None,
-        };
-        state.samples += 1;
         state.planes = [None; PLANES];
-        Seen {
-            reading: Reading::default(),
-            signals,
+        (Reading::default(), self.signals(state, missed))
+    }
+
+    /// What the detector is told of a sample beside the position; then the next one is due.
+    #[inline]
+    fn signals(&self, state: &mut MonitorState, sample: &Sample) -> Signals {
+        let spin = state.spin.believed;
+        let mut retainer = Retainer::Fixed;
+        if let Some(tachometers) = &self.tachometers {
+            let rings = &mut state.tachometers;
+            state.inner_ring = tachometers.update(rings, state.samples, &sample.edges);
+            if let Some(spin) = spin {
+                let bore = state.inner_ring.map(|speed| tachometers.bore(speed, spin));
+                retainer = Retainer::Turning(bore);
+            }
+        }
+        state.samples += 1;
+        Signals {
+            spin,
+            retainer,
+            levitated: sample.levitated,
+            spin_fault: None,
         }
     }
 
     /// Fourth part: the detector.
     #[inline]
     pub fn detect(&self, state: &mut MonitorState, seen: &Seen, notices: &mut Notices) {
-        let detector = &mut state.detector;
+        let (reading, signals) = seen;
         self.detector
-            .update(detector, &seen.reading, &seen.signals, notices);
+            .update(&mut state.detector, reading, signals, notices);
     }
 
     /// Last part: what it does to the machine.
@@ -267,20 +263,6 @@ impl Monitor {
     /// A slice of the forecast after a tick, where the two take turns.
     pub fn look(&self, state: &MonitorState, forecast_task: &mut ForecastTask) -> Option<Notice> {
         forecast_task.work(&self.forecast_input(state, forecast_task.wants_input()))
-    }
-
-    fn retainer(&self, state: &mut MonitorState, sample: &Sample) -> Retainer {
-        let Some(tachometers) = &self.tachometers else {
-            return Retainer::Fixed;
-        };
-        let edges = &sample.edges;
-        state.inner_ring = tachometers.update(&mut state.tachometers, state.samples, edges);
-        match state.spin.believed {
-            Some(spin) => {
-                Retainer::Turning(state.inner_ring.map(|speed| tachometers.bore(speed, spin)))
-            }
-            None => Retainer::Fixed,
-        }
     }
 }
 

@@ -95,7 +95,7 @@ impl Touches {
             return true;
         };
         let distance = length(place) * self.per_clearance;
-        if distance < CLEAR && it.is_clear() {
+        if distance < CLEAR && it.seen && !it.at_wall && it.count == 0 {
             (it.distance, it.age) = (distance, 0);
             return true;
         }
@@ -198,13 +198,5 @@ impl Touches {
                 *short = short.saturating_add(1);
             }
         }
-    }
-}
-
-impl PlaneTouch {
-    /// Whether it is clear of the wall, and was in the last sample.
-    #[inline]
-    fn is_clear(&self) -> bool {
-        self.seen && !self.at_wall && self.count == 0
     }
 }

@@ -18,7 +18,7 @@ pub(crate) fn length([x, y]: [f32; 2]) -> f32 {
 }
 
 /// Square of the distance, m^2.
-pub(crate) fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
+pub fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     dx * dx + dy * dy
 }

@@ -24,13 +24,14 @@ pub enum Mode {
 }
 
 /// Why the outputs are as they are; a trip's stays until cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, FromRepr)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, FromRepr)]
 #[repr(u8)]
 #[derive(IntoStaticStr, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum Cause {
     /// Levitation has not been proven.
+    #[default]
     #[strum(serialize = "no proof of levitation")]
     NoProof = 0,
     /// A plane was beyond the danger limit.

@@ -42,6 +42,8 @@ pub(super) struct PlaneLimits {
     newest: u8,
     counts: u32,
     told: u32,
+    /// Whether a sample was taken.
+    seen: bool,
 }
 
 /// What a sample with these five flags adds: of the copies 5 bits apart, copy k has flag k at bit 6 k, and no other flag there.
@@ -70,8 +72,10 @@ impl Limits {
     }
 
     /// Square of the least distance that is beyond something, m^2.
+    #[inline]
     pub(super) fn least(&self) -> f32 {
-        f32::from_bits(self.squares.into_iter().fold(u32::MAX, u32::min))
+        let [_, _, alert_fallen, _] = self.squares;
+        f32::from_bits(alert_fallen)
     }
 
     /// What a sample is; square of its distance, m^2.
@@ -86,36 +90,24 @@ impl Limits {
             | u8::from(is_below) << 4
     }
 
-    /// Takes what a plane's sample is; the alarms that it completes.
+    /// Takes what a plane's sample is; the alarms that it completes. The first one counts as if it had been so for a
+    /// millisecond; beyond danger it completes only that alarm.
     #[inline]
     pub(super) fn take(&self, it: &mut PlaneLimits, flags: u8) -> u32 {
-        it.newest = if it.newest == 0 {
-            self.length
-        } else {
-            it.newest
-        } - 1;
-        if let Some(oldest) = it.samples.get_mut(usize::from(it.newest & 31)) {
-            it.counts = (it.counts + adds(flags)) - adds(*oldest);
-            *oldest = flags;
+        if !it.seen {
+            (it.seen, it.samples) = (true, [flags; 32]);
+            it.counts = u32::from(self.length) * adds(flags);
+            it.told = self.beyond(it) >> PITCH & ALERT;
         }
+        it.newest = it.newest.checked_sub(1).unwrap_or(self.length - 1);
+        let oldest = &mut it.samples[usize::from(it.newest & 31)];
+        it.counts = (it.counts + adds(flags)) - adds(*oldest);
+        *oldest = flags;
         let beyond = self.beyond(it);
         let alarms = beyond & (ALERT | DANGER);
         let risen = alarms & !it.told;
         it.told = alarms | it.told & beyond >> TO_FALLEN;
         risen
-    }
-
-    /// The first sample: as if it had been so for a millisecond. Only the higher alarm.
-    #[cold]
-    pub(super) fn begin(&self, it: &mut PlaneLimits, flags: u8) -> u32 {
-        it.samples = [flags; 32];
-        it.counts = u32::from(self.length) * adds(flags);
-        it.told = self.beyond(it) & (ALERT | DANGER);
-        if it.told & DANGER == 0 {
-            it.told
-        } else {
-            DANGER
-        }
     }
 
     /// What the plane is.
@@ -126,10 +118,10 @@ impl Limits {
 }
 
 impl PlaneLimits {
-    /// Whether no sample of the last millisecond was beyond anything.
+    /// Whether samples were taken, and none of the last millisecond was beyond anything.
     #[inline]
     pub(super) fn is_clear(&self) -> bool {
-        self.counts == 0
+        self.seen && self.counts == 0
     }
 }
 
@@ -157,6 +149,7 @@ mod tests {
                 (31, ALERT | DANGER | BELOW),
             ] {
                 let mut it = PlaneLimits::default();
+                limits.take(&mut it, 0);
                 let mut taken = 0;
                 while limits.beyond(&it) & kind != kind {
                     limits.take(&mut it, flags);

@@ -1,22 +1,14 @@
 //! The guard: simple limits on the distance of each plane from the told centre, in every mode from the
 //! first sample on. It learns nothing and believes nobody: neither the sensors' health nor the detector.
-//!
-//! | file | says |
-//! |---|---|
-//! | `channels` | whether each channel is seen to work |
-//! | `limits` | when a plane is beyond a limit |
-//! | `proof` | whether the rotor has been seen to float |
 
-mod channels;
 mod limits;
 mod proof;
 
-use self::channels::{Channels, ChannelsState};
 use self::limits::{ALERT, BELOW, DANGER, Limits, PlaneLimits};
 use self::proof::Proof;
 pub use self::proof::ProofState;
-use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
+use crate::monitor::MonitorConfig;
 use crate::sample::{Sample, count_in_a_row};
 use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
@@ -46,29 +38,12 @@ impl Default for GuardConfig {
     }
 }
 
-impl GuardConfig {
-    fn validate(&self) -> Result<(), ConfigError> {
-        if !(0.2..=0.9).contains(&self.alert) {
-            return Err(ConfigError::OutOfRange("alert", "0.2 to 0.9"));
-        }
-        if !(self.danger > self.alert && self.danger <= 0.95) {
-            return Err(ConfigError::OutOfRange("danger", "above alert, to 0.95"));
-        }
-        Ok(())
-    }
-}
-
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
-    /// Square of the distance within which a plane is beyond nothing, m^2.
-    clear_square: f32,
     per_clearance: f32,
     limits: Limits,
-    channels: Channels,
     proof: Proof,
-    /// Which planes are fitted.
-    has: [bool; PLANES],
     /// Samples without a place that each plane may have in a row; any number where it is not fitted.
     most_lost: [u32; PLANES],
 }
@@ -77,7 +52,6 @@ pub struct Guard {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GuardState {
     planes: [PlaneState; PLANES],
-    channels: ChannelsState,
     /// Of levitation.
     pub proof: ProofState,
     /// Samples until one counts for the limits.
@@ -93,7 +67,6 @@ pub struct GuardState {
 #[derive(Clone, Copy, Debug, Default)]
 struct PlaneState {
     limits: PlaneLimits,
-    seen: bool,
     /// Samples in a row without a place.
     lost: u32,
     /// Alarms that are still to be told, samples since then, and the square of the distance then, m^2.
@@ -116,30 +89,29 @@ pub struct Verdict {
 }
 
 impl Guard {
-    /// Checks `config`; that of the detector must be valid. `fitted` has a bit for each channel; `commissioned` says
-    /// whether a commissioning check is on record.
-    pub fn try_new(
-        config: &GuardConfig,
-        detector: &DetectorConfig,
-        fitted: u8,
-        commissioned: bool,
-    ) -> Result<Self, ConfigError> {
-        config.validate()?;
-        if !matches!(fitted, 0b0011 | 0b1100 | 0b1111) {
-            return Err(ConfigError::OutOfRange("fitted", "one plane or two"));
+    /// Checks what is its own of `config`; the detector's part must be valid.
+    pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
+        let GuardConfig { alert, danger } = config.guard;
+        if !(0.2..=0.9).contains(&alert) {
+            return Err(ConfigError::OutOfRange("alert", "0.2 to 0.9"));
         }
+        if !(danger > alert && danger <= 0.95) {
+            return Err(ConfigError::OutOfRange("danger", "above alert, to 0.95"));
+        }
+        let detector = &config.detector;
         let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
-        let has = [0b0011, 0b1100].map(|channels| fitted & channels != 0);
         let most_lost = ((LOST_TIME * rate) as u32).max(2) - 1;
-        let limits = Limits::new(config, clearance, rate);
+        let most_lost = match config.fitted {
+            0b0011 => [most_lost, u32::MAX],
+            0b1100 => [u32::MAX, most_lost],
+            0b1111 => [most_lost; PLANES],
+            _ => return Err(ConfigError::OutOfRange("fitted", "one plane or two")),
+        };
         Ok(Self {
-            clear_square: limits.least(),
             per_clearance: 1.0 / clearance,
-            limits,
-            channels: Channels::new(fitted, rate),
-            proof: Proof::new(config, detector, commissioned),
-            has,
-            most_lost: has.map(|has| if has { most_lost } else { u32::MAX }),
+            limits: Limits::new(&config.guard, clearance, rate),
+            proof: Proof::new(config),
+            most_lost,
         })
     }
 
@@ -153,11 +125,7 @@ impl Guard {
         levitated: Option<bool>,
     ) {
         let counts = state.wait == 0;
-        state.wait = if counts {
-            self.limits.stride
-        } else {
-            state.wait
-        } - 1;
+        state.wait = state.wait.checked_sub(1).unwrap_or(self.limits.stride - 1);
         let [of_a, of_b] = &mut state.planes;
         let [floor_a, floor_b] = state.proof.floors();
         let [a, b] = places;
@@ -177,31 +145,26 @@ impl Guard {
     /// Takes a plane's place, m, which may count; what the plane is beyond.
     #[inline]
     fn see(&self, it: &mut PlaneState, place: Option<[f32; 2]>, floor: f32, counts: bool) -> u32 {
-        if let Some([x, y]) = place {
-            let square = x * x + y * y;
-            let is_near = square >= self.clear_square || y < floor;
-            if is_near || !it.seen || !it.limits.is_clear() {
-                return self.look(it, square, y < floor, counts);
-            }
-            it.lost = 0;
-            return 0;
+        let Some([x, y]) = place else {
+            it.lost = it.lost.saturating_add(1);
+            return self.limits.beyond(&it.limits);
+        };
+        it.lost = 0;
+        let square = x * x + y * y;
+        let is_near = square >= self.limits.least() || y < floor;
+        if is_near || !it.limits.is_clear() {
+            self.look(it, square, y < floor, counts)
+        } else {
+            0
         }
-        it.lost = it.lost.saturating_add(1);
-        self.limits.beyond(&it.limits)
     }
 
     /// Likewise, near a limit, or not long after.
     #[inline(never)]
     fn look(&self, it: &mut PlaneState, square: f32, is_below: bool, counts: bool) -> u32 {
-        it.lost = 0;
-        let flags = self.limits.flags(square, is_below);
         if counts {
-            let alarms = if it.seen {
-                self.limits.take(&mut it.limits, flags)
-            } else {
-                it.seen = true;
-                self.limits.begin(&mut it.limits, flags)
-            };
+            let flags = self.limits.flags(square, is_below);
+            let alarms = self.limits.take(&mut it.limits, flags);
             if alarms != 0 {
                 (it.alarms, it.late, it.square) = (alarms, 0, square);
             }
@@ -220,15 +183,9 @@ impl Guard {
         number: u64,
         notices: &mut Notices,
     ) {
-        self.channels.take(&mut state.channels, &sample.counts);
-        if state.channels.frozen {
-            state.verdict.lost = true;
-            state.proof.restart();
-        } else {
-            let proof = &mut state.proof;
-            let floats = self.proof.take(proof, places, self.has, sample.levitated);
-            state.verdict.floats = floats && !state.is_alert;
-        }
+        let floats = self.proof.take(&mut state.proof, places, sample);
+        state.verdict.floats = floats && !state.is_alert;
+        state.verdict.lost |= state.proof.frozen;
         let [a, b] = &mut state.planes;
         if a.alarms != 0 {
             b.late += u8::from(b.alarms != 0);

@@ -3,12 +3,15 @@
 //! Distance alone does not show it: with gap, zero and gain told wrong the wall reads as near as a floating rotor
 //! reads far. A rotor on the wall lies where it is lowest, one that floats has been lifted from there. The two places
 //! give a floor that needs nothing told: below it the rotor is on its way back to where it lay.
+//!
+//! Each channel that is fitted has to be seen to work: a stuck one reads as the stillest of rotors.
 
-use super::GuardConfig;
-use crate::config::DetectorConfig;
+use crate::monitor::MonitorConfig;
+use crate::sample::{CHANNELS, Sample};
 use crate::sensing::PLANES;
 
-/// Time at or below a height that makes it one where the rotor was, s: longer than most bursts of disturbance.
+/// Time at or below a height that makes it one where the rotor was, s: longer than most bursts of disturbance. A channel
+/// that tells one count for so long is frozen: noise or orbit of a count changes it sooner.
 const HELD: f32 = 0.01;
 /// Times that, which a floating rotor stays: 0.1 s.
 const HELDS: u8 = 10;
@@ -19,8 +22,10 @@ const HEIGHT: f32 = 0.25;
 const FLOOR: f32 = 0.35;
 /// Part of the clearance that it stays within, of its mean place.
 const SPREAD: f32 = 0.2;
-/// Samples of a turn: each plane's place is taken in one, and judged in another.
-const TURN: u16 = 4;
+/// Samples of a turn: each channel is looked at in one; each plane's place is taken in one, and judged in another.
+const TURN: u16 = CHANNELS as u16;
+/// The channels of each plane, a bit each.
+const OF_PLANE: [u8; PLANES] = [0b0011, 0b1100];
 
 /// Coefficients; m.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +33,8 @@ pub(super) struct Proof {
     /// Whether weight shows where the rotor lies.
     has_weight: bool,
     commissioned: bool,
+    /// A bit for each channel.
+    fitted: u8,
     /// Whole turns.
     held_samples: u16,
     /// 1 over a plane's samples of a stay.
@@ -54,12 +61,18 @@ struct PlaneProof {
     floats: bool,
 }
 
-/// What was seen of the planes.
+/// What was seen of channels and planes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ProofState {
     samples: u16,
     helds: u8,
     planes: [PlaneProof; PLANES],
+    /// Of a look at the channels: samples, the counts at its begin, and which channels have told another one since then.
+    looked: u16,
+    counts: [u16; CHANNELS],
+    moved: u8,
+    /// Whether a channel told one count throughout the last look.
+    pub(super) frozen: bool,
 }
 
 impl Default for PlaneProof {
@@ -78,32 +91,35 @@ impl Default for PlaneProof {
 }
 
 impl Proof {
-    pub(super) fn new(config: &GuardConfig, detector: &DetectorConfig, commissioned: bool) -> Self {
-        let clearance = detector.machine.clearance;
-        let turns = ((HELD * detector.sample_rate) as u16 / TURN).max(4);
+    pub(super) fn new(config: &MonitorConfig) -> Self {
+        let clearance = config.detector.machine.clearance;
+        let turns = ((HELD * config.detector.sample_rate) as u16 / TURN).max(4);
         let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
-            has_weight: detector.machine.gravity > 0.0,
-            commissioned,
+            has_weight: config.detector.machine.gravity > 0.0,
+            commissioned: config.commissioned,
+            fitted: config.fitted,
             held_samples: TURN * turns,
             scale: 1.0 / (f32::from(turns) * f32::from(HELDS)),
             height: HEIGHT * clearance,
             spread_square: square(SPREAD),
-            alert_square: square(config.alert),
+            alert_square: square(config.guard.alert),
         }
     }
 
-    /// Takes each plane's place, m; whether this sample completes a proof. Every plane that is fitted has to deliver.
+    /// Takes a sample and each plane's place in it, m; whether it completes a proof. Every plane that is fitted has to
+    /// deliver, and no channel may be frozen.
     #[inline]
     pub(super) fn take(
         &self,
         state: &mut ProofState,
         [a, b]: &[Option<[f32; 2]>; PLANES],
-        has @ [has_a, has_b]: [bool; PLANES],
-        levitated: Option<bool>,
+        sample: &Sample,
     ) -> bool {
-        let delivers = (a.is_some() || !has_a) && (b.is_some() || !has_b);
-        if !delivers || levitated == Some(false) {
+        self.look(state, &sample.counts);
+        let [of_a, of_b] = OF_PLANE.map(|channels| self.fitted & channels != 0);
+        let delivers = (a.is_some() || !of_a) && (b.is_some() || !of_b);
+        if state.frozen || !delivers || sample.levitated == Some(false) {
             state.restart();
             return false;
         }
@@ -117,21 +133,34 @@ impl Proof {
             (2, ..) if state.samples + 1 == self.held_samples => self.judge(of_a),
             (3, ..) if state.samples == self.held_samples => {
                 self.judge(of_b);
-                return self.end_part(state, has, levitated);
+                return self.end_part(state, sample.levitated);
             }
             _ => {}
         }
         false
     }
 
+    /// Takes the counts of a sample.
+    #[inline]
+    fn look(&self, state: &mut ProofState, counts: &[u16; CHANNELS]) {
+        let channel = state.looked % TURN;
+        let [now, then] = [counts, &state.counts].map(|it| it[usize::from(channel)]);
+        if state.looked < TURN {
+            state.counts[usize::from(channel)] = now;
+            state.moved &= !(1 << channel);
+        } else {
+            state.moved |= u8::from(now != then) << channel;
+        }
+        state.looked += 1;
+        if state.looked == self.held_samples {
+            state.looked = 0;
+            state.frozen = self.fitted & !state.moved != 0;
+        }
+    }
+
     /// At the end of a part of a stay: whether it completes a proof.
     #[inline(never)]
-    fn end_part(
-        &self,
-        state: &mut ProofState,
-        has: [bool; PLANES],
-        levitated: Option<bool>,
-    ) -> bool {
+    fn end_part(&self, state: &mut ProofState, levitated: Option<bool>) -> bool {
         state.samples = 0;
         state.helds += 1;
         if state.helds < HELDS {
@@ -139,8 +168,8 @@ impl Proof {
         }
         state.helds = 0;
         let shows = self.has_weight || self.commissioned && levitated == Some(true);
-        let mut planes = state.planes.iter().zip(has);
-        let floats = shows && planes.all(|(it, fitted)| it.floats || !fitted);
+        let mut planes = state.planes.iter().zip(OF_PLANE);
+        let floats = shows && planes.all(|(it, of)| it.floats || self.fitted & of == 0);
         if floats {
             state.planes.iter_mut().for_each(|it| self.put_floor(it));
         }
@@ -184,9 +213,6 @@ impl PlaneProof {
     /// Takes a place, m, the first of a part or of the whole stay.
     #[inline]
     fn take(&mut self, place: [f32; 2], is_new: bool, begins: bool) {
-        if is_new {
-            self.highest = place[1];
-        }
         if begins {
             (self.sum, self.least, self.most) = ([0.0; 2], place, place);
         }
@@ -201,7 +227,7 @@ impl PlaneProof {
                 *most = value;
             }
         }
-        if place[1] > self.highest {
+        if is_new || place[1] > self.highest {
             self.highest = place[1];
         }
     }
