@@ -91,13 +91,18 @@ impl Limits {
     }
 
     /// Takes what a plane's sample is; the alarms that it completes. The first one counts as if it had been so for a
-    /// millisecond; beyond danger it completes only that alarm.
+    /// millisecond, and completes only the higher alarm.
     #[inline]
     pub(super) fn take(&self, it: &mut PlaneLimits, flags: u8) -> u32 {
         if !it.seen {
             (it.seen, it.samples) = (true, [flags; 32]);
             it.counts = u32::from(self.length) * adds(flags);
-            it.told = self.beyond(it) >> PITCH & ALERT;
+            it.told = self.beyond(it) & (ALERT | DANGER);
+            return if it.told & DANGER == 0 {
+                it.told
+            } else {
+                DANGER
+            };
         }
         it.newest = it.newest.checked_sub(1).unwrap_or(self.length - 1);
         let oldest = &mut it.samples[usize::from(it.newest & 31)];

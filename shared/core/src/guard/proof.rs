@@ -117,9 +117,9 @@ impl Proof {
         sample: &Sample,
     ) -> bool {
         self.look(state, &sample.counts);
-        let [of_a, of_b] = OF_PLANE.map(|channels| self.fitted & channels != 0);
-        let delivers = (a.is_some() || !of_a) && (b.is_some() || !of_b);
-        if state.frozen || !delivers || sample.levitated == Some(false) {
+        let [of_a, of_b] = OF_PLANE;
+        let delivered = if a.is_some() { of_a } else { 0 } | if b.is_some() { of_b } else { 0 };
+        if state.frozen || self.fitted & !delivered != 0 || sample.levitated == Some(false) {
             state.restart();
             return false;
         }
