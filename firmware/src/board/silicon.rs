@@ -27,7 +27,6 @@ use crate::memory::{self, Memory};
 use crate::overrun::Overruns;
 use crate::platform::{Platform, SampleSource};
 use crate::power_on::{InForce, PowerOn};
-use crate::recorder::Identity;
 use crate::tick::TickTask;
 use crate::w25q::W25q;
 
@@ -204,19 +203,17 @@ impl<C: Chip> ChipTasks<C> {
         (pins, watchdog): (C::Pins, C::Watchdog),
         log: Option<&ChipLog<C>>,
     ) -> Option<(Intake<'static>, MainLoop)> {
-        let identity = Identity::new(
-            &block.told(settings),
-            log.map_or(0, |it| it.counters().boots),
-        );
+        let counters = log.map(ChipLog::<C>::counters);
+        let boot = counters.map_or(0, |it| it.boots);
         let board = ChipBoard::<C> {
             pins,
             watchdog,
             block,
         };
         let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
-        let filled = memory.fill(&settings.monitor, found, identity, board);
+        let filled = memory.fill(settings, found, boot, board);
         let (intake, tick) = filled.inspect_err(refused).ok()?;
-        tick.app.recall(log.and_then(|it| it.counters().uncleared));
+        tick.app.recall(counters.and_then(|it| it.uncleared));
         let forecast = memory::forecast_task(&settings.monitor)
             .inspect_err(refused)
             .ok()?;

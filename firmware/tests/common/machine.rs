@@ -21,7 +21,7 @@ use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::link::{Frame, Refusal};
 
 use super::chip::{Bus, Chip, NoDelay, flash};
-use super::rig::IDENTITY;
+use super::rig::BOOT;
 
 /// All times in ns. A sample, and a byte of the line.
 pub const PERIOD: u64 = 50_000;
@@ -110,7 +110,7 @@ pub fn started(
         pins: Rc::clone(&pins),
     };
     let memory = Box::leak(Box::new(Memory::empty()));
-    let filled = memory.fill(&config, Faults::NONE, IDENTITY, desk);
+    let filled = memory.fill(&config.into(), Faults::NONE, BOOT, desk);
     let (intake, tick) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));
     let machine = Machine {

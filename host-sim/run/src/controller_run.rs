@@ -7,9 +7,9 @@ use touchdown_core::sample::Sample;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
 use touchdown_firmware::drop_log::{DropLog, bytes_of};
-use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::tick::tick;
-use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::Hello;
 use touchdown_protocol::wire::Switching;
@@ -31,16 +31,12 @@ pub fn run(
     let mut log =
         RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
     let mut desk = Desk {
-        block: config_block::encode(&Settings {
-            monitor: *config,
-            wiring: Wiring::default(),
-            key: None,
-        }),
+        block: config_block::encode(&(*config).into()),
         ..Desk::default()
     };
     let mut memory = Box::new(Memory::EMPTY);
-    let identity = Identity::new(&desk.block, log.counters().boots);
-    let mut recorder = Recorder::new(&mut memory, config, identity);
+    let boot = log.counters().boots;
+    let mut recorder = Recorder::new(&mut memory, config, &desk.block, boot);
     let mut app = App::try_new(config, Faults::NONE)?;
     match &procedure.learnt {
         Some(learnt) => app.resume(learnt),

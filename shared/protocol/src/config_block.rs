@@ -33,6 +33,17 @@ pub struct Settings {
     pub key: Option<Key>,
 }
 
+/// Neither speed nor levitation is wired, and there is no key.
+impl From<MonitorConfig> for Settings {
+    fn from(monitor: MonitorConfig) -> Self {
+        Self {
+            monitor,
+            wiring: Wiring::default(),
+            key: None,
+        }
+    }
+}
+
 /// A key of the right to order.
 #[derive(Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Key(pub [u8; KEY_BYTES]);

@@ -20,7 +20,7 @@ use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
-use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
+use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
 
@@ -37,7 +37,6 @@ use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory;
 use crate::power_on::{InForce, PowerOn};
-use crate::recorder::Identity;
 use crate::tick::TickTask;
 
 /// TIM2's clock in QEMU, Hz.
@@ -207,8 +206,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);
     let counters = files.log.as_ref().map(FileLog::counters);
-    let boots = counters.map_or(0, |it| it.boots);
-    let identity = Identity::new(&block.told(&settings), boots);
+    let boot = counters.map_or(0, |it| it.boots);
     let board = Emulated {
         answer: files.answer,
         shown: None,
@@ -217,7 +215,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         failed: false,
     };
     let places = &mut memory.monitor;
-    let filled = places.fill(&settings.monitor, found, identity, board);
+    let filled = places.fill(&settings, found, boot, board);
     let (intake, tick) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -278,11 +276,7 @@ fn abilities(replayed: &MonitorConfig) -> Abilities {
 fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
     PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
-        fallback: Settings {
-            monitor: head.config,
-            wiring: Wiring::default(),
-            key: None,
-        },
+        fallback: head.config.into(),
         is_configured: head.is_configured,
         is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
         crash: None,
