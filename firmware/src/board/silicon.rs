@@ -12,6 +12,7 @@ use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::link::Refusal;
+use touchdown_protocol::wire::Incoming;
 use touchdown_rotor::error::ConfigError;
 
 use super::bus::{Bus, SpiRegisters};
@@ -21,7 +22,7 @@ use super::line::LineRegisters;
 use super::slots::{self, ConfigFlash};
 use super::{Abilities, Board, SAMPLE_RATE_HZ, image, record};
 use crate::drop_log::DropLog;
-use crate::intake::{Incoming, Intake};
+use crate::intake::Intake;
 use crate::main_loop::MainLoop;
 use crate::memory::{self, Memory};
 use crate::overrun::Overruns;

@@ -9,7 +9,7 @@ use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_firmware::board::{Abilities, Board, default_config, default_settings};
 use touchdown_firmware::drop_log::DropLog;
-use touchdown_firmware::intake::{Incoming, Intake};
+use touchdown_firmware::intake::Intake;
 use touchdown_firmware::main_loop::MainLoop;
 use touchdown_firmware::memory::Memory;
 use touchdown_firmware::outgoing::Outgoing;
@@ -19,6 +19,7 @@ use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::link::{Frame, Refusal};
+use touchdown_protocol::wire::Incoming;
 
 use super::chip::{Bus, Chip, NoDelay, flash};
 use super::rig::BOOT;

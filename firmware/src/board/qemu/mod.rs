@@ -201,7 +201,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         unreachable!("main runs once");
     };
     let mut files = Files::open()?;
-    let head = files.replay.head()?;
+    let head = files.replay.head().ok_or(Failure::Replay)?;
     let abilities = abilities(&head.config);
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);

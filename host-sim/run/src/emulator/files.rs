@@ -6,7 +6,7 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire::{self, Played, Record, ReplayHead, Switching};
+use touchdown_protocol::wire::{self, Incoming, Record, ReplayHead, Switching};
 
 use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
 use crate::procedure::Procedure;
@@ -22,11 +22,11 @@ pub(super) fn write_replay(
     file.write_all(&replay_head(&ReplayHead::new(*config, procedure.power_on))?)?;
     let mut count = 0;
     for sample in samples {
-        let played = Played {
+        let incoming = Incoming {
             clear: procedure.clears(count),
             ..sample.into()
         };
-        file.write_all(&played.encode())?;
+        file.write_all(&wire::encode_sample(&incoming, None))?;
         count += 1;
     }
     file.flush()?;
