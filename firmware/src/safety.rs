@@ -106,7 +106,7 @@ impl Safety {
                 run: true,
                 no_brake: true,
                 permit: false,
-                ready: armed && faults.is_empty(),
+                ready: armed && faults == Faults::NONE,
             },
             Mode::Dropped => Outputs {
                 permit: lies_still,

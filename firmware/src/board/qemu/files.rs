@@ -40,7 +40,9 @@ impl Files {
         Ok(Self {
             replay: Replay::open(&replay)?,
             answer: create_answer(&answer).map_err(|_| Failure::Answer)?,
-            log: log.map(|name| mount(&name)).transpose()?,
+            log: log
+                .map(|name| mount(&name).ok_or(Failure::Log))
+                .transpose()?,
             settings: settings.map(SettingsFile),
         })
     }
@@ -103,8 +105,8 @@ impl Replay {
     }
 }
 
-fn mount(name: &Name) -> Result<FileLog, Failure> {
-    FileLog::mount(NorFile::open(name)?).map_err(|_| Failure::Log)
+fn mount(name: &Name) -> Option<FileLog> {
+    FileLog::mount(NorFile::open(name)?).ok()
 }
 
 fn create_answer(name: &Name) -> io::Result<File> {

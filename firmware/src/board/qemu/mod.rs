@@ -58,15 +58,8 @@ pub enum Failure {
     Log = 6,
 }
 
-/// How a run ended well; the exit status.
-#[derive(Clone, Copy, Debug)]
-#[repr(u8)]
-enum End {
-    /// No sample is left.
-    Done = 0,
-    /// A configuration was stored and waits for a start: silicon would reset.
-    Restart = 7,
-}
+/// Exit status once a configuration was stored, which waits for a start: silicon would reset.
+const RESTART: i32 = 7;
 
 /// The name of a file of the desktop.
 type Name = heapless::CString<256>;
@@ -122,11 +115,8 @@ impl Board for Emulated {
     fn drive(&mut self, shown: Shown) {
         if self.shown != Some(shown) {
             self.shown = Some(shown);
-            let switching = Switching {
-                sample: self.ticks,
-                shown,
-            };
-            self.write(&Record::Switching(switching));
+            let sample = self.ticks;
+            self.write(&Record::Switching(Switching { sample, shown }));
         }
         self.ticks += 1;
     }
@@ -214,8 +204,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         block,
         failed: false,
     };
-    let places = &mut memory.monitor;
-    let filled = places.fill(&settings, found, boot, board);
+    let filled = memory.monitor.fill(&settings, found, boot, board);
     let (intake, tick) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
