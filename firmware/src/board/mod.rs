@@ -86,8 +86,7 @@ pub const SAMPLE_RATE_HZ: u32 = 20_000;
 #[cfg(target_os = "none")]
 const BAUD: u32 = 115_200;
 
-/// Settings of a board on which none are stored: the default configuration, and neither speed nor
-/// levitation wired.
+/// Settings of a board on which none are stored: the default configuration, and neither speed nor levitation wired.
 pub fn default_settings() -> Settings {
     default_config().into()
 }

@@ -10,7 +10,7 @@ use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::{Block, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::header::Header;
-use touchdown_protocol::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::log::waveform::{self, Counts, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_protocol::log::{learnt, reader, severity};
 use touchdown_protocol::wire::{self, NOTICE_BYTES, Record};
 
@@ -116,25 +116,24 @@ impl Capture {
     pub(super) fn record(
         &mut self,
         buffer: &mut [Counts; CAPACITY],
-        counts: Counts,
+        ring: &mut Ring,
+        sample: &Sample,
         plan: &Plan,
         tick: u64,
     ) {
+        let is_history = self.trigger.is_none();
+        if plan.header.pulsed != 0 {
+            self.pulses.take(ring, self.held, sample, is_history);
+        }
         if let Some(place) = buffer.get_mut(wrapped(self.first + self.held)) {
-            *place = counts;
+            *place = waveform::counts(sample);
         }
         self.newest = tick;
         self.held += 1;
         self.fresh += 1;
-        if self.trigger.is_none() && self.fresh == plan.before {
+        if is_history && self.fresh == plan.before {
             self.mark();
         }
-    }
-
-    /// What the pulse channels show at the sample that is recorded next.
-    pub(super) fn pulse(&mut self, ring: &mut Ring, sample: &Sample) {
-        let is_history = self.trigger.is_none();
-        self.pulses.take(ring, self.held, sample, is_history);
     }
 
     /// A mark behind the last sample; what was before the last mark goes.

@@ -22,7 +22,7 @@ use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::ending::Closing;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::PULSE_BYTES;
-use touchdown_protocol::log::waveform::{self, Counts};
+use touchdown_protocol::log::waveform::Counts;
 use touchdown_protocol::wire::{Record, Switching};
 use touchdown_rotor::real;
 
@@ -264,8 +264,7 @@ impl<'m> Recorder<'m> {
         block
     }
 
-    /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call
-    /// counts.
+    /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call counts.
     pub fn set_severity(&mut self, severity: &Severity) {
         if let Some(capture) = self.open() {
             capture.severity = Some(*severity);
@@ -318,11 +317,7 @@ impl<'m> Recorder<'m> {
             && let Some(buffer) = self.buffers.get_mut(at)
         {
             let capture = &mut buffer.capture;
-            if self.plan.header.pulsed != 0 {
-                capture.pulse(buffer.pulses, sample);
-            }
-            let counts = waveform::counts(sample);
-            capture.record(buffer.counts, counts, &self.plan, self.tick);
+            capture.record(buffer.counts, buffer.pulses, sample, &self.plan, self.tick);
             if capture.is_full() {
                 let other = (at + 1) % BUFFERS;
                 self.recording = self.is_idle(other).then_some(other);

@@ -16,7 +16,7 @@ use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
-use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
+use crate::monitor_output::MonitorOutput;
 use crate::procedure::Procedure;
 use touchdown_files::ram_nor::RamNor;
 
@@ -47,7 +47,7 @@ pub fn run(
     let mut notices = Notices::new();
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
-        if procedure.clears(desk.ticks) {
+        if procedure.clear_at.contains(&desk.ticks) {
             let notice = app.clear_as_ordered();
             desk.report(&notice);
             recorder.hear(&notice);
@@ -67,11 +67,9 @@ pub fn run(
     let latched = app.shown().latched();
     while log.work(recorder.counted, latched, || recorder.fetch()) == Ok(true) {}
     let answer = MonitorOutput {
-        notices: desk.notices,
-        left_out: desk.left_out,
         severity: app.state().severity.so_far,
         summary: fingerprint.summary(app.state()),
-        log: Vec::new(),
+        ..desk.said
     };
     // As the link would answer.
     let hello = Hello {
@@ -90,25 +88,18 @@ pub fn run(
 #[derive(Default)]
 struct Desk {
     block: Block,
-    notices: Vec<Notice>,
-    left_out: u64,
-    shown: Option<Shown>,
+    said: MonitorOutput,
     switchings: Vec<Switching>,
     ticks: u64,
 }
 
 impl Board for Desk {
     fn report(&mut self, notice: &Notice) {
-        if self.notices.len() < MOST_NOTICES {
-            self.notices.push(*notice);
-        } else {
-            self.left_out += 1;
-        }
+        self.said.hear(*notice);
     }
 
     fn drive(&mut self, shown: Shown) {
-        if self.shown != Some(shown) {
-            self.shown = Some(shown);
+        if self.switchings.last().is_none_or(|it| it.shown != shown) {
             let sample = self.ticks;
             self.switchings.push(Switching { sample, shown });
         }

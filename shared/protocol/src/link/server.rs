@@ -90,8 +90,7 @@ impl Server {
         }
     }
 
-    /// Takes a byte from the line; the answer, where it ends a request. A damaged request is counted
-    /// and not answered.
+    /// Takes a byte from the line; the answer, where it ends a request. A damaged request is counted and not answered.
     pub fn take(&mut self, byte: u8, device: &mut impl Device) -> Option<Frame> {
         match self.decoder.take::<Request>(byte)? {
             Ok(received) => {
