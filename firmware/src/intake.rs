@@ -7,34 +7,13 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use heapless::spsc::{Consumer, Producer, Queue};
 use touchdown_core::guard::{Guard, GuardState};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sample::Sample;
 use touchdown_core::sensing::Sensing;
 use touchdown_protocol::controller::Outputs;
+use touchdown_protocol::wire::Incoming;
 use touchdown_rotor::error::ConfigError;
 
 /// Samples that can wait, and one: 0.75 ms at 20 kHz.
 pub const RING: usize = 16;
-
-/// What came with a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Incoming {
-    /// Of the sensors.
-    pub sample: Sample,
-    /// Whether the service input is on.
-    pub service: bool,
-    /// Whether an order to clear comes before it, as a replay may say.
-    pub clear: bool,
-}
-
-impl From<Sample> for Incoming {
-    fn from(sample: Sample) -> Self {
-        Self {
-            sample,
-            service: false,
-            clear: false,
-        }
-    }
-}
 
 /// What came and its sample's number, from 0, modulo 2^32; those that were lost have numbers too.
 pub type Numbered = (Incoming, u32);

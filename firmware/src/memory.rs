@@ -7,13 +7,14 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_protocol::config_block::{self, Settings};
 use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
 
 use crate::app::App;
 use crate::board::Board;
 use crate::intake::{Intake, Ring};
-use crate::recorder::{self, Identity, Recorder};
+use crate::recorder::{self, Recorder};
 use crate::tick::{Outbox, TickTask};
 
 /// Places for them, for a static.
@@ -38,17 +39,19 @@ impl Memory {
         }
     }
 
-    /// What takes a sample as it comes, and the task that does the rest; `found` is what was wrong at power-on.
+    /// What takes a sample as it comes, and the task that does the rest; `found` is what was wrong at power-on, which was
+    /// number `boot`.
     pub fn fill<B: Board>(
         &'static mut self,
-        config: &MonitorConfig,
+        settings: &Settings,
         found: Faults,
-        identity: Identity,
+        boot: u32,
         board: B,
     ) -> Result<(Intake<'static>, TickTask<'static, B>), ConfigError> {
-        let app = application(&mut self.app, config, found)?;
-        let recorder = recorder(&mut self.recorder, &mut self.samples, config, identity);
-        let (intake, waiting) = self.ring.split(config)?;
+        let app = application(&mut self.app, &settings.monitor, found)?;
+        let (place, samples) = (&mut self.recorder, &mut self.samples);
+        let recorder = recorder(place, samples, settings, board.config(), boot);
+        let (intake, waiting) = self.ring.split(&settings.monitor)?;
         let tick = TickTask::new(app, recorder, board, &mut self.outbox, waiting);
         Ok((intake, tick))
     }
@@ -77,8 +80,11 @@ pub fn forecast_task(config: &MonitorConfig) -> Result<ForecastTask, ConfigError
 fn recorder<'a, 'm>(
     place: &'a mut MaybeUninit<Recorder<'m>>,
     samples: &'m mut recorder::Memory,
-    config: &MonitorConfig,
-    identity: Identity,
+    settings: &Settings,
+    block: &[u8],
+    boot: u32,
 ) -> &'a mut Recorder<'m> {
-    place.write(Recorder::new(samples, config, identity))
+    // The log tells the checksum, which would tell of the key.
+    let told = config_block::blanked(block, settings.key.is_some());
+    place.write(Recorder::new(samples, &settings.monitor, &told, boot))
 }

@@ -9,20 +9,12 @@ use touchdown_core::checksum::CRC;
 pub const WORD_BYTES: usize = size_of::<u32>();
 
 /// Checks a value where it lies over and over, a word a step, against what it was when [`MemoryScrub::learn`] saw it.
+#[derive(Default)]
 pub struct MemoryScrub {
     at: usize,
-    digest: Digest<'static, u32>,
+    /// Of what was taken in of this pass.
+    digest: Option<Digest<'static, u32>>,
     known: Option<u32>,
-}
-
-impl Default for MemoryScrub {
-    fn default() -> Self {
-        Self {
-            at: 0,
-            digest: CRC.digest(),
-            known: None,
-        }
-    }
 }
 
 /// A clone of what is checked has its own bytes between the fields: it is learnt anew.
@@ -53,13 +45,14 @@ impl MemoryScrub {
         // SAFETY: `at` is within the value, which has whole words. Between its fields may be bytes that nobody wrote: a
         // volatile access takes them as they are.
         let word = unsafe { words.add(self.at).read_volatile() };
-        self.digest.update(&word.to_le_bytes());
+        let digest = self.digest.get_or_insert_with(|| CRC.digest());
+        digest.update(&word.to_le_bytes());
         self.at += 1;
         if self.at < Self::steps::<T>() {
             return None;
         }
         self.at = 0;
-        let checksum = core::mem::replace(&mut self.digest, CRC.digest()).finalize();
+        let checksum = self.digest.take()?.finalize();
         Some(*self.known.get_or_insert(checksum) == checksum)
     }
 

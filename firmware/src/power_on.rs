@@ -40,11 +40,6 @@ impl InForce {
             Self::Held(block) => block,
         }
     }
-
-    /// Without its key: the log tells the checksum, which would tell of it.
-    pub fn told(&self, settings: &Settings) -> Block {
-        config_block::blanked(self.bytes(), settings.key.is_some())
-    }
 }
 
 impl PowerOn {

@@ -92,7 +92,7 @@ impl Safety {
                 run: watches,
                 no_brake: watches || is(Mode::Arming) && !self.whirls(),
                 permit: lies_still && (is(Mode::Arming) || is(Mode::Dropped)),
-                ready: watches && armed && faults.is_empty(),
+                ready: watches && armed && faults == Faults::NONE,
             },
             mode: self.mode,
             cause: (self.mode != Mode::Watching).then_some(self.cause),

@@ -22,9 +22,8 @@ pub struct Speed {
     /// Spin times the ticks between two captures, rad.
     scale: f32,
     longest: u32,
-    /// Ticks, counted on from the timer's.
+    /// Ticks, counted on from the timer's, which are the lower half.
     now: u32,
-    timer: u16,
     last: Option<u32>,
     spin: Option<f32>,
 }
@@ -37,7 +36,6 @@ impl Speed {
             scale: timer_hz * if forward { step } else { -step },
             longest: (LONGEST * timer_hz) as u32,
             now: 0,
-            timer: 0,
             last: None,
             spin: None,
         }
@@ -46,13 +44,11 @@ impl Speed {
     /// Takes the timer and what it captured since the last sample; the spin, rad/s. To be called more
     /// than once a turn of the timer.
     pub fn take(&mut self, timer: u16, captured: Option<u16>) -> Option<f32> {
-        let gone = timer.wrapping_sub(self.timer);
+        let gone = timer.wrapping_sub(self.now as u16);
         self.now = self.now.wrapping_add(u32::from(gone));
-        self.timer = timer;
         if let Some(captured) = captured {
-            let edge = self
-                .now
-                .wrapping_sub(u32::from(timer.wrapping_sub(captured)));
+            let since = timer.wrapping_sub(captured);
+            let edge = self.now.wrapping_sub(since.into());
             let way = self.last.map(|last| edge.wrapping_sub(last));
             let way = way.filter(|&way| (1..=self.longest).contains(&way));
             self.spin = way.map(|way| self.scale / way as f32);

@@ -4,6 +4,7 @@ mod common;
 
 use common::desk::Desk;
 use common::falling::{DURATION, RATE, sample};
+use common::rig::{BLOCK, BOOT};
 use proptest::prelude::*;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_firmware::app::App;
@@ -29,7 +30,7 @@ struct Outcome {
 fn drop(lost: impl Fn(usize) -> bool) -> Outcome {
     let config = default_config();
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut recorder = Recorder::new(memory, &config, common::rig::IDENTITY);
+    let mut recorder = Recorder::new(memory, &config, &BLOCK, BOOT);
     let mut app = App::try_new(&config, Faults::NONE).expect("a valid configuration");
     app.assume_lift();
     let mut desk = Desk(config_block::encode(&default_settings()));

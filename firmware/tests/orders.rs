@@ -5,7 +5,7 @@ mod common;
 
 use common::chip::{Bus, Chip, NoDelay, flash, random};
 use common::desk::Desk;
-use common::rig::{IDENTITY, Rig, config};
+use common::rig::{BLOCK, BOOT, Rig, config};
 use touchdown_core::event::{Act, EventKind, Notice, Notices, Ordered};
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
@@ -99,7 +99,8 @@ impl Controller {
             recorder: Recorder::new(
                 Box::leak(Box::new(Memory::EMPTY)),
                 &config(RATE as f32),
-                IDENTITY,
+                &BLOCK,
+                BOOT,
             ),
             log: mounted(flash),
             bus,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::rig::{IDENTITY, Read, Rig, config, read};
+use common::rig::{BLOCK, BOOT, Read, Rig, config, read};
 use touchdown_core::detect::Phase;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::{PARTS, RING_PARTS};
@@ -63,7 +63,8 @@ fn fifty_milliseconds_before_and_as_much_after_as_there_is_room() {
     assert_eq!((header.planned, header.decimation), (CAPACITY as u32, 1));
     assert_eq!(read.samples.len(), CAPACITY);
     assert_eq!(header.trigger_kind, EventKind::FreeFall);
-    assert_eq!(header.config_hash, IDENTITY.config_hash);
+    assert_eq!(&header.firmware, b"touchdown 0.1.0\0");
+    assert_eq!((header.config_hash, header.boot), (0xc0ff_ee00, BOOT));
 }
 
 #[test]
@@ -94,7 +95,7 @@ fn other_rates_are_thinned_out_or_shorter() {
 #[test]
 fn channels_without_a_value_are_marked() {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut recorder = Recorder::new(memory, &config(1_000.0), IDENTITY);
+    let mut recorder = Recorder::new(memory, &config(1_000.0), &BLOCK, BOOT);
     let sample = Sample {
         counts: [1, 2, 3, 4],
         valid: 0b0101,
@@ -372,7 +373,7 @@ fn ticks_are_numbered_as_the_monitor_does() {
     let monitor = Monitor::try_new(&config).unwrap();
     let mut state = MonitorState::default();
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut recorder = Recorder::new(memory, &config, IDENTITY);
+    let mut recorder = Recorder::new(memory, &config, &BLOCK, BOOT);
     let mut declared = None;
     for tick in 0..12_000_u32 {
         // Levitated in the centre, then 9.81 m/s^2 downwards from tick 8000 on.
@@ -423,7 +424,7 @@ fn shown(tick: u16, every: [u16; TACHOMETERS]) -> Shown {
 fn ring_dropped(config: &MonitorConfig, every: [u16; TACHOMETERS], fetched: u16) -> Vec<u8> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let mut rig = Rig::new(20_000.0, 1);
-    rig.recorder = Recorder::new(memory, config, IDENTITY);
+    rig.recorder = Recorder::new(memory, config, &BLOCK, BOOT);
     rig.recorder
         .set_phase(Phase::Levitated, controller::Shown::default());
     let mut blocks = Vec::new();

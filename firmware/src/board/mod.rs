@@ -30,7 +30,7 @@ use touchdown_core::event::Notice;
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::SensingConfig;
-use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::Shown;
 
 /// A board, as a tick sees it. No call may block.
@@ -86,14 +86,9 @@ pub const SAMPLE_RATE_HZ: u32 = 20_000;
 #[cfg(target_os = "none")]
 const BAUD: u32 = 115_200;
 
-/// Settings of a board on which none are stored: the default configuration, and neither speed nor
-/// levitation wired.
+/// Settings of a board on which none are stored: the default configuration, and neither speed nor levitation wired.
 pub fn default_settings() -> Settings {
-    Settings {
-        monitor: default_config(),
-        wiring: Wiring::default(),
-        key: None,
-    }
+    default_config().into()
 }
 
 /// Default configuration: the rig of the source paper, four channels of 12 bit over +-1000 um.

@@ -12,6 +12,7 @@ use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::link::Refusal;
+use touchdown_protocol::wire::Incoming;
 use touchdown_rotor::error::ConfigError;
 
 use super::bus::{Bus, SpiRegisters};
@@ -21,13 +22,12 @@ use super::line::LineRegisters;
 use super::slots::{self, ConfigFlash};
 use super::{Abilities, Board, SAMPLE_RATE_HZ, image, record};
 use crate::drop_log::DropLog;
-use crate::intake::{Incoming, Intake};
+use crate::intake::Intake;
 use crate::main_loop::MainLoop;
 use crate::memory::{self, Memory};
 use crate::overrun::Overruns;
 use crate::platform::{Platform, SampleSource};
 use crate::power_on::{InForce, PowerOn};
-use crate::recorder::Identity;
 use crate::tick::TickTask;
 use crate::w25q::W25q;
 
@@ -204,19 +204,17 @@ impl<C: Chip> ChipTasks<C> {
         (pins, watchdog): (C::Pins, C::Watchdog),
         log: Option<&ChipLog<C>>,
     ) -> Option<(Intake<'static>, MainLoop)> {
-        let identity = Identity::new(
-            &block.told(settings),
-            log.map_or(0, |it| it.counters().boots),
-        );
+        let counters = log.map(ChipLog::<C>::counters);
+        let boot = counters.map_or(0, |it| it.boots);
         let board = ChipBoard::<C> {
             pins,
             watchdog,
             block,
         };
         let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
-        let filled = memory.fill(&settings.monitor, found, identity, board);
+        let filled = memory.fill(settings, found, boot, board);
         let (intake, tick) = filled.inspect_err(refused).ok()?;
-        tick.app.recall(log.and_then(|it| it.counters().uncleared));
+        tick.app.recall(counters.and_then(|it| it.uncleared));
         let forecast = memory::forecast_task(&settings.monitor)
             .inspect_err(refused)
             .ok()?;

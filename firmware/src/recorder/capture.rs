@@ -10,7 +10,7 @@ use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::{Block, Kind};
 use touchdown_protocol::log::ending::{Closing, Ending};
 use touchdown_protocol::log::header::Header;
-use touchdown_protocol::log::waveform::{Counts, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::log::waveform::{self, Counts, SAMPLES_PER_BLOCK, Waveform};
 use touchdown_protocol::log::{learnt, reader, severity};
 use touchdown_protocol::wire::{self, NOTICE_BYTES, Record};
 
@@ -63,7 +63,7 @@ pub(super) struct Capture {
     /// Samples since the last mark; the first sample is at the mark before, or at none.
     fresh: usize,
     /// Which of the two snapshots is that of the first sample.
-    pub(super) oldest: usize,
+    oldest: usize,
     /// Tick of the last sample.
     pub(super) newest: u64,
     pulses: Pulses,
@@ -116,25 +116,24 @@ impl Capture {
     pub(super) fn record(
         &mut self,
         buffer: &mut [Counts; CAPACITY],
-        counts: Counts,
+        ring: &mut Ring,
+        sample: &Sample,
         plan: &Plan,
         tick: u64,
     ) {
+        let is_history = self.trigger.is_none();
+        if plan.header.pulsed != 0 {
+            self.pulses.take(ring, self.held, sample, is_history);
+        }
         if let Some(place) = buffer.get_mut(wrapped(self.first + self.held)) {
-            *place = counts;
+            *place = waveform::counts(sample);
         }
         self.newest = tick;
         self.held += 1;
         self.fresh += 1;
-        if self.trigger.is_none() && self.fresh == plan.before {
+        if is_history && self.fresh == plan.before {
             self.mark();
         }
-    }
-
-    /// What the pulse channels show at the sample that is recorded next.
-    pub(super) fn pulse(&mut self, ring: &mut Ring, sample: &Sample) {
-        let is_history = self.trigger.is_none();
-        self.pulses.take(ring, self.held, sample, is_history);
     }
 
     /// A mark behind the last sample; what was before the last mark goes.
@@ -203,14 +202,14 @@ impl Capture {
         &mut self,
         buffer: &[Counts; CAPACITY],
         ring: &Ring,
-        learnt: Option<&Learnt>,
+        learnt: &[&mut Learnt; 2],
         plan: &Plan,
     ) -> Option<Block> {
         let trigger = self.trigger.filter(|_| self.held > 0)?;
         let complete = self.is_full() && self.fetched.samples == self.held;
         let block = self
             .header(&trigger, plan)
-            .or_else(|| self.learnt(learnt?))
+            .or_else(|| self.learnt(learnt))
             .or_else(|| self.waveform(buffer))
             .or_else(|| self.pulses(ring, plan))
             .or_else(|| self.events(complete && self.closing.is_some()))
@@ -228,30 +227,19 @@ impl Capture {
             return None;
         }
         self.fetched.headers += 1;
-        let sensing = &plan.sensing;
-        let recorded = (self.held as u64).saturating_sub(1) * u64::from(plan.decimation);
+        let recorded = (self.held as u64).saturating_sub(1) * u64::from(plan.header.decimation);
         let header = Header {
-            firmware: plan.identity.firmware,
-            config_hash: plan.identity.config_hash,
-            boot: plan.identity.boot,
-            sample_rate: plan.sample_rate,
-            decimation: plan.decimation,
-            fitted: plan.fitted,
             trigger_kind: trigger.kind,
             trigger: trigger.tick,
             first: self.newest - recorded.min(self.newest),
             planned: trigger.planned as u32,
-            resolution: sensing.resolution,
-            zero_count: sensing.zero_count,
-            full_scale: sensing.full_scale,
-            pulsed: plan.pulsed,
-            mounting_angle: sensing.mounting_angle,
-            calibration: sensing.calibration,
+            ..plan.header
         };
         Some(Block::of(Kind::Header, &header.encode()))
     }
 
-    fn learnt(&mut self, learnt: &Learnt) -> Option<Block> {
+    fn learnt(&mut self, snapshots: &[&mut Learnt; 2]) -> Option<Block> {
+        let learnt = snapshots.get(self.oldest).filter(|it| it.is_known())?;
         let block = learnt::part(learnt, self.fetched.learnt)?;
         self.fetched.learnt += 1;
         Some(block)
@@ -273,7 +261,7 @@ impl Capture {
 
     fn pulses(&mut self, ring: &Ring, plan: &Plan) -> Option<Block> {
         let is_last = self.is_full();
-        (plan.pulsed != 0).then(|| self.pulses.fetch(ring, self.held, is_last))?
+        (plan.header.pulsed != 0).then(|| self.pulses.fetch(ring, self.held, is_last))?
     }
 
     /// A whole block, or at the end what is left.
@@ -319,13 +307,9 @@ impl Capture {
 
 /// Whether it tells of the retainer.
 pub(super) fn touches(notice: &Notice) -> bool {
-    let Notice::Declared(event) = notice else {
-        return false;
-    };
-    !matches!(
-        event.kind,
-        EventKind::FreeFall | EventKind::Levitated | EventKind::SensorFault
-    )
+    use EventKind::{FreeFall, Levitated, SensorFault};
+    matches!(notice, Notice::Declared(event)
+        if !matches!(event.kind, FreeFall | Levitated | SensorFault))
 }
 
 /// A place in the ring; `place` is below twice its size.

@@ -15,19 +15,19 @@ use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::learnt::Learnt;
 use touchdown_core::monitor::{MonitorConfig, MonitorState};
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_core::sensing::SensingConfig;
 use touchdown_core::severity::Severity;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::link::Recent;
 use touchdown_protocol::log::block::Block;
 use touchdown_protocol::log::ending::Closing;
+use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::pulses::PULSE_BYTES;
-use touchdown_protocol::log::waveform::{self, Counts};
+use touchdown_protocol::log::waveform::Counts;
 use touchdown_protocol::wire::{Record, Switching};
 use touchdown_rotor::real;
 
 use self::capture::{Capture, Closed};
-use self::pulses::{ROOM, Ring};
+use self::pulses::Ring;
 
 /// Samples of a buffer.
 pub const CAPACITY: usize = 4_450;
@@ -47,65 +47,57 @@ const LONGEST: f32 = 10.0;
 const GRAVITY: f32 = 9.806_65;
 
 /// The buffers: 79 kB, all zero at first, for a static.
-pub struct Memory {
-    counts: [[Counts; CAPACITY]; BUFFERS],
-    pulses: [Ring; BUFFERS],
-    // Without values of their own: these would take as much flash.
-    learnt: Snapshots<MaybeUninit<Learnt>>,
-}
+pub struct Memory([Room; BUFFERS]);
 
-/// What had been learnt at the last two marks of each buffer.
-type Snapshots<T> = [[T; 2]; BUFFERS];
+/// Room of a buffer.
+struct Room {
+    counts: [Counts; CAPACITY],
+    pulses: Ring,
+    // Without values of their own: these would take as much flash.
+    learnt: [MaybeUninit<Learnt>; 2],
+}
 
 impl Memory {
     /// Empty buffers.
-    pub const EMPTY: Self = Self {
-        counts: [[[0; 4]; CAPACITY]; BUFFERS],
-        pulses: [[[0; PULSE_BYTES]; ROOM]; BUFFERS],
-        learnt: [const { [const { MaybeUninit::uninit() }; 2] }; BUFFERS],
+    pub const EMPTY: Self = {
+        const ROOM: Room = Room {
+            counts: [[0; 4]; CAPACITY],
+            pulses: [[0; PULSE_BYTES]; pulses::ROOM],
+            learnt: [const { MaybeUninit::uninit() }; 2],
+        };
+        Self([ROOM; BUFFERS])
     };
 }
 
-/// What the recorder is told of the machine: the same in every header.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Identity {
-    /// The firmware's name and version, filled up with zeros.
-    pub firmware: [u8; 16],
-    /// Checksum of the configuration in force.
-    pub config_hash: u32,
-    /// Times switched on.
-    pub boot: u32,
+/// A buffer, and what is in it.
+struct Buffer<'m> {
+    counts: &'m mut [Counts; CAPACITY],
+    pulses: &'m mut Ring,
+    /// What had been learnt at the last two marks.
+    learnt: [&'m mut Learnt; 2],
+    capture: Capture,
 }
 
-impl Identity {
-    /// This firmware with this configuration block.
-    pub fn new(block: &[u8], boot: u32) -> Self {
-        let mut firmware = [0; 16];
-        let name = concat!("touchdown ", env!("CARGO_PKG_VERSION"));
-        firmware
-            .iter_mut()
-            .zip(name.bytes())
-            .for_each(|(to, from)| *to = from);
+impl<'m> Buffer<'m> {
+    fn new(room: &'m mut Room) -> Self {
         Self {
-            firmware,
-            config_hash: block.last_chunk().map_or(0, |end| u32::from_le_bytes(*end)),
-            boot,
+            counts: &mut room.counts,
+            pulses: &mut room.pulses,
+            learnt: room.learnt.each_mut().map(nothing_learnt),
+            capture: Capture::default(),
         }
     }
 }
 
-/// Numbers of samples and ticks that follow from the configuration.
+/// What follows from the configuration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plan {
-    identity: Identity,
-    fitted: u8,
-    sample_rate: f32,
-    sensing: SensingConfig,
-    decimation: u16,
-    /// Pulse channels that are recorded, bit i: where every tick's sample is.
-    pulsed: u8,
+    /// Of every episode, but for its trigger and its samples. Pulses are recorded where every tick's sample is.
+    header: Header,
+    /// Samples.
     before: usize,
     after: usize,
+    /// Ticks.
     quiet: u64,
     longest: u64,
     /// Speed of a fall through the clearance under standard gravity, however the rotor lies, m/s.
@@ -113,22 +105,36 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Of a configuration that the monitor has accepted.
-    fn new(config: &MonitorConfig, identity: Identity) -> Self {
-        let rate = config.detector.sample_rate;
+    fn new(config: &MonitorConfig, block: &[u8], boot: u32) -> Self {
+        let (rate, sensing) = (config.detector.sample_rate, &config.sensing);
         // Rounded up: a higher rate is thinned out until it fits.
         let whole = (rate / FASTEST) as u16;
         let decimation = whole.saturating_add(u16::from(f32::from(whole) * FASTEST < rate));
         let samples = |time: f32| (time * rate / f32::from(decimation)) as usize;
-        let before = samples(BEFORE).clamp(1, CAPACITY / 4);
+        let mut firmware = [0; 16];
+        let name = concat!("touchdown ", env!("CARGO_PKG_VERSION"));
+        let letters = firmware.iter_mut().zip(name.bytes());
+        letters.for_each(|(to, from)| *to = from);
         Self {
-            identity,
-            fitted: config.fitted,
-            sample_rate: rate,
-            sensing: config.sensing,
-            decimation,
-            pulsed: if decimation == 1 { pulsed(config) } else { 0 },
-            before,
+            header: Header {
+                firmware,
+                config_hash: block.last_chunk().map_or(0, |end| u32::from_le_bytes(*end)),
+                boot,
+                sample_rate: rate,
+                decimation,
+                fitted: config.fitted,
+                trigger_kind: EventKind::FreeFall,
+                trigger: 0,
+                first: 0,
+                planned: 0,
+                resolution: sensing.resolution,
+                zero_count: sensing.zero_count,
+                full_scale: sensing.full_scale,
+                pulsed: if decimation == 1 { pulsed(config) } else { 0 },
+                mounting_angle: sensing.mounting_angle,
+                calibration: sensing.calibration,
+            },
+            before: samples(BEFORE).clamp(1, CAPACITY / 4),
             after: samples(AFTER).max(1),
             quiet: (QUIET * rate) as u64,
             longest: (LONGEST * rate) as u64,
@@ -166,11 +172,8 @@ enum Drop {
 
 /// Records drops.
 pub struct Recorder<'m> {
-    counts: &'m mut [[Counts; CAPACITY]; BUFFERS],
-    pulses: &'m mut [Ring; BUFFERS],
-    learnt: Snapshots<&'m mut Learnt>,
+    buffers: [Buffer<'m>; BUFFERS],
     plan: Plan,
-    captures: [Capture; BUFFERS],
     tick: u64,
     /// Ticks until a sample is recorded.
     skip: u16,
@@ -198,15 +201,12 @@ pub struct Counted {
 }
 
 impl<'m> Recorder<'m> {
-    /// For samples that the monitor takes with `config`, which it has accepted.
-    pub fn new(memory: &'m mut Memory, config: &MonitorConfig, identity: Identity) -> Self {
-        let learnt = memory.learnt.each_mut();
+    /// For samples that the monitor takes with `config`, which it has accepted. The header of an episode tells the checksum
+    /// of the configuration `block` and the number of this power-on.
+    pub fn new(memory: &'m mut Memory, config: &MonitorConfig, block: &[u8], boot: u32) -> Self {
         Self {
-            counts: &mut memory.counts,
-            pulses: &mut memory.pulses,
-            learnt: learnt.map(|places| places.each_mut().map(nothing_learnt)),
-            plan: Plan::new(config, identity),
-            captures: Default::default(),
+            buffers: memory.0.each_mut().map(Buffer::new),
+            plan: Plan::new(config, block, boot),
             tick: 0,
             skip: 0,
             recording: Some(0),
@@ -222,7 +222,7 @@ impl<'m> Recorder<'m> {
     /// One sample and what the monitor said to it. Bounded; writes RAM only.
     pub fn take(&mut self, sample: &Sample, notices: &[Notice]) {
         if self.skip == 0 {
-            self.skip = self.plan.decimation;
+            self.skip = self.plan.header.decimation;
             self.record(sample);
         }
         self.skip -= 1;
@@ -236,10 +236,10 @@ impl<'m> Recorder<'m> {
     /// The monitor's state after the tick, after the tick's [`Self::take`]: now and then what it has learnt is kept.
     pub fn keep(&mut self, state: &MonitorState) {
         // Of a tick's state, every tick's samples are needed.
-        if self.plan.decimation == 1
-            && let Some(at) = self.recording
-            && let Some(due) = self.captures.get(at).and_then(Capture::due)
-            && let Some(place) = self.learnt.get_mut(at).and_then(|it| it.get_mut(due))
+        if self.plan.header.decimation == 1
+            && let Some(buffer) = self.recording.and_then(|at| self.buffers.get_mut(at))
+            && let Some(due) = buffer.capture.due()
+            && let Some(place) = buffer.learnt.get_mut(due)
         {
             place.update(state);
         }
@@ -252,26 +252,19 @@ impl<'m> Recorder<'m> {
         if self.is_idle(self.fetching) && !self.is_idle(next) {
             self.fetching = next;
         }
-        let at = self.fetching;
-        let (capture, counts) = (self.captures.get_mut(at)?, self.counts.get(at)?);
-        let pulses = self.pulses.get(at)?;
-        let learnt = self.learnt.get_mut(at)?;
-        let first = learnt
-            .get(capture.oldest)
-            .map(|it| &**it)
-            .filter(|it| it.is_known());
-        let block = capture.fetch(counts, pulses, first, &self.plan);
+        let buffer = self.buffers.get_mut(self.fetching)?;
+        let capture = &mut buffer.capture;
+        let block = capture.fetch(buffer.counts, buffer.pulses, &buffer.learnt, &self.plan);
         if capture.is_fetched() {
             capture.clear();
-            learnt.iter_mut().for_each(|it| it.forget());
+            buffer.learnt.iter_mut().for_each(|it| it.forget());
             // Where samples had nowhere to go, they have now.
-            self.recording.get_or_insert(at);
+            self.recording.get_or_insert(self.fetching);
         }
         block
     }
 
-    /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call
-    /// counts.
+    /// How severe the present drop is, before the tick's [`Self::take`], which may end it. The last call counts.
     pub fn set_severity(&mut self, severity: &Severity) {
         if let Some(capture) = self.open() {
             capture.severity = Some(*severity);
@@ -298,45 +291,37 @@ impl<'m> Recorder<'m> {
 
     /// The newest samples, every `step`-th of those recorded; none while both buffers are in use.
     pub fn recent(&self, step: u16) -> Recent {
-        let counts = self.recording.and_then(|at| {
-            let (capture, buffer) = (self.captures.get(at)?, self.counts.get(at)?);
-            Some((capture.newest, capture.recent(buffer, step)))
-        });
-        let step = u32::from(step) * u32::from(self.plan.decimation);
-        counts.map_or(Recent::default(), |(newest, samples)| {
-            Recent::new(newest, step, samples)
-        })
+        let Some(buffer) = self.recording.and_then(|at| self.buffers.get(at)) else {
+            return Recent::default();
+        };
+        let ticks = u32::from(step) * u32::from(self.plan.header.decimation);
+        let capture = &buffer.capture;
+        Recent::new(capture.newest, ticks, capture.recent(buffer.counts, step))
     }
 
     /// The capture of the drop that goes on.
     fn open(&mut self) -> Option<&mut Capture> {
         match self.drop {
-            Drop::Recorded(at) => self.captures.get_mut(at),
+            Drop::Recorded(at) => self.buffers.get_mut(at).map(|it| &mut it.capture),
             Drop::None | Drop::Lost => None,
         }
     }
 
     fn is_idle(&self, at: usize) -> bool {
-        self.captures.get(at).is_none_or(Capture::is_idle)
+        let buffer = self.buffers.get(at);
+        buffer.is_none_or(|it| it.capture.is_idle())
     }
 
     fn record(&mut self, sample: &Sample) {
-        let Some(at) = self.recording else {
-            return;
-        };
-        let (Some(capture), Some(buffer)) = (self.captures.get_mut(at), self.counts.get_mut(at))
-        else {
-            return;
-        };
-        if self.plan.pulsed != 0
-            && let Some(ring) = self.pulses.get_mut(at)
+        if let Some(at) = self.recording
+            && let Some(buffer) = self.buffers.get_mut(at)
         {
-            capture.pulse(ring, sample);
-        }
-        capture.record(buffer, waveform::counts(sample), &self.plan, self.tick);
-        if capture.is_full() {
-            let other = (at + 1) % BUFFERS;
-            self.recording = self.is_idle(other).then_some(other);
+            let capture = &mut buffer.capture;
+            capture.record(buffer.counts, buffer.pulses, sample, &self.plan, self.tick);
+            if capture.is_full() {
+                let other = (at + 1) % BUFFERS;
+                self.recording = self.is_idle(other).then_some(other);
+            }
         }
     }
 
@@ -364,26 +349,24 @@ impl<'m> Recorder<'m> {
         }
         self.last_notice = self.tick;
         self.floated &= !capture::touches(notice);
-        let levitated =
-            matches!(notice, Notice::Declared(event) if event.kind == EventKind::Levitated);
-        let withdrawn = matches!(notice, Notice::Withdrawn { .. });
-        let mut untouched = true;
+        let mut touched = false;
         if let Some(capture) = self.open() {
             capture.note(notice);
-            untouched = !capture.touched;
+            touched = capture.touched;
         }
-        if levitated {
-            self.end(Closing::Levitated);
-        } else if withdrawn && untouched {
-            self.end(Closing::Withdrawn);
+        match notice {
+            Notice::Declared(it) if it.kind == EventKind::Levitated => self.end(Closing::Levitated),
+            Notice::Withdrawn { .. } if !touched => self.end(Closing::Withdrawn),
+            _ => {}
         }
     }
 
     fn begin(&mut self, kind: EventKind) {
         self.drop = Drop::Lost;
         if let Some(at) = self.recording
-            && let Some(capture) = self.captures.get_mut(at)
+            && let Some(buffer) = self.buffers.get_mut(at)
         {
+            let capture = &mut buffer.capture;
             capture.begin(kind, self.tick, self.floated, &self.plan);
             self.drop = Drop::Recorded(at);
             // As it was when it began.
@@ -411,13 +394,10 @@ impl<'m> Recorder<'m> {
         if self.drop == Drop::None {
             return;
         }
+        let trigger = self.open().and_then(|it| it.trigger);
         if self.tick - self.last_notice >= self.plan.quiet {
             self.end(Closing::Quiet);
-        } else if let Drop::Recorded(at) = self.drop
-            && let Some(capture) = self.captures.get(at)
-            && let Some(trigger) = capture.trigger
-            && self.tick - trigger.tick >= self.plan.longest
-        {
+        } else if trigger.is_some_and(|it| self.tick - it.tick >= self.plan.longest) {
             self.end(Closing::Longest);
         }
     }
@@ -425,13 +405,10 @@ impl<'m> Recorder<'m> {
 
 /// What begins an episode: a fall, or any contact.
 fn trigger(notice: &Notice) -> Option<EventKind> {
-    let Notice::Declared(event) = notice else {
-        return None;
-    };
-    match event.kind {
-        EventKind::LiftOff | EventKind::Rest | EventKind::Levitated | EventKind::SensorFault => {
-            None
-        }
-        kind => Some(kind),
+    use EventKind::{Levitated, LiftOff, Rest, SensorFault};
+    match notice {
+        Notice::Declared(event) => Some(event.kind)
+            .filter(|kind| !matches!(kind, LiftOff | Rest | Levitated | SensorFault)),
+        _ => None,
     }
 }

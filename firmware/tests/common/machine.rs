@@ -9,7 +9,7 @@ use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
 use touchdown_firmware::board::{Abilities, Board, default_config, default_settings};
 use touchdown_firmware::drop_log::DropLog;
-use touchdown_firmware::intake::{Incoming, Intake};
+use touchdown_firmware::intake::Intake;
 use touchdown_firmware::main_loop::MainLoop;
 use touchdown_firmware::memory::Memory;
 use touchdown_firmware::outgoing::Outgoing;
@@ -19,9 +19,10 @@ use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::link::{Frame, Refusal};
+use touchdown_protocol::wire::Incoming;
 
 use super::chip::{Bus, Chip, NoDelay, flash};
-use super::rig::IDENTITY;
+use super::rig::BOOT;
 
 /// All times in ns. A sample, and a byte of the line.
 pub const PERIOD: u64 = 50_000;
@@ -110,7 +111,7 @@ pub fn started(
         pins: Rc::clone(&pins),
     };
     let memory = Box::leak(Box::new(Memory::empty()));
-    let filled = memory.fill(&config, Faults::NONE, IDENTITY, desk);
+    let filled = memory.fill(&config.into(), Faults::NONE, BOOT, desk);
     let (intake, tick) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));
     let machine = Machine {

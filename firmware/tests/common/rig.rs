@@ -5,7 +5,7 @@ use touchdown_core::event::{Event, EventKind, Moment, Motion, Notice, Plane};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::board::default_config;
-use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::link::{Chunk, Log};
 use touchdown_protocol::log::header::Header;
@@ -15,11 +15,10 @@ use touchdown_protocol::wire::decode_record;
 
 use super::chip::random;
 
-pub const IDENTITY: Identity = Identity {
-    firmware: *b"touchdown 0.1.0\0",
-    config_hash: 0xc0ff_ee00,
-    boot: 7,
-};
+/// Of the configuration block its end, the checksum.
+pub const BLOCK: [u8; 4] = 0xc0ff_ee00_u32.to_le_bytes();
+/// Times switched on.
+pub const BOOT: u32 = 7;
 
 /// The rig's configuration at `rate`.
 pub fn config(rate: f32) -> MonitorConfig {
@@ -51,7 +50,7 @@ impl Rig {
     pub fn switched_on(rate: f32, seed: u64) -> Self {
         let memory = Box::leak(Box::new(Memory::EMPTY));
         Self {
-            recorder: Recorder::new(memory, &config(rate), IDENTITY),
+            recorder: Recorder::new(memory, &config(rate), &BLOCK, BOOT),
             fed: Vec::new(),
             trigger: EventKind::FreeFall,
             seed: seed | 1,

@@ -9,11 +9,10 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::BLOCK_SAMPLES;
 use touchdown_firmware::drop_log::DropLog;
-use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::tick::tick;
 use touchdown_firmware::w25q::W25q;
 use touchdown_protocol::config_block;
-use touchdown_protocol::config_block::{Settings, Wiring};
 use touchdown_protocol::controller::Faults;
 use touchdown_protocol::link::Log;
 use touchdown_protocol::log::block::BLOCK_BYTES;
@@ -59,17 +58,9 @@ fn mount(chip: Chip) -> (Episodes, Bus) {
 
 fn run(stream: &Stream, log: &mut Episodes, text: &mut String) {
     let config: &MonitorConfig = &stream.config;
-    let mut desk = Desk(config_block::encode(&Settings {
-        monitor: *config,
-        wiring: Wiring::default(),
-        key: None,
-    }));
+    let mut desk = Desk(config_block::encode(&(*config).into()));
     let mut memory = Box::new(Memory::EMPTY);
-    let mut recorder = Recorder::new(
-        &mut memory,
-        config,
-        Identity::new(&desk.0, log.counters().boots),
-    );
+    let mut recorder = Recorder::new(&mut memory, config, &desk.0, log.counters().boots);
     let mut app = App::try_new(config, Faults::NONE).expect("a valid configuration");
     app.assume_lift();
     let mut forecast_task = ForecastTask::try_new(&config.detector).expect("a valid configuration");

@@ -7,16 +7,16 @@ use touchdown_core::sample::Sample;
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{BLOCK_SAMPLES, Board, EMULATED_SLOTS};
 use touchdown_firmware::drop_log::{DropLog, bytes_of};
-use touchdown_firmware::recorder::{Identity, Memory, Recorder};
+use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::tick::tick;
-use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::Hello;
 use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
 use crate::controller_trace::ControllerTrace;
-use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
+use crate::monitor_output::MonitorOutput;
 use crate::procedure::Procedure;
 use touchdown_files::ram_nor::RamNor;
 
@@ -31,16 +31,12 @@ pub fn run(
     let mut log =
         RamLog::mount(RamNor(vec![0xff; bytes_of(EMULATED_SLOTS)])).expect("room for the slots");
     let mut desk = Desk {
-        block: config_block::encode(&Settings {
-            monitor: *config,
-            wiring: Wiring::default(),
-            key: None,
-        }),
+        block: config_block::encode(&(*config).into()),
         ..Desk::default()
     };
     let mut memory = Box::new(Memory::EMPTY);
-    let identity = Identity::new(&desk.block, log.counters().boots);
-    let mut recorder = Recorder::new(&mut memory, config, identity);
+    let boot = log.counters().boots;
+    let mut recorder = Recorder::new(&mut memory, config, &desk.block, boot);
     let mut app = App::try_new(config, Faults::NONE)?;
     match &procedure.learnt {
         Some(learnt) => app.resume(learnt),
@@ -51,7 +47,7 @@ pub fn run(
     let mut notices = Notices::new();
     let mut fingerprint = Fingerprint::default();
     for sample in samples {
-        if procedure.clears(desk.ticks) {
+        if procedure.clear_at.contains(&desk.ticks) {
             let notice = app.clear_as_ordered();
             desk.report(&notice);
             recorder.hear(&notice);
@@ -71,11 +67,9 @@ pub fn run(
     let latched = app.shown().latched();
     while log.work(recorder.counted, latched, || recorder.fetch()) == Ok(true) {}
     let answer = MonitorOutput {
-        notices: desk.notices,
-        left_out: desk.left_out,
         severity: app.state().severity.so_far,
         summary: fingerprint.summary(app.state()),
-        log: Vec::new(),
+        ..desk.said
     };
     // As the link would answer.
     let hello = Hello {
@@ -94,25 +88,18 @@ pub fn run(
 #[derive(Default)]
 struct Desk {
     block: Block,
-    notices: Vec<Notice>,
-    left_out: u64,
-    shown: Option<Shown>,
+    said: MonitorOutput,
     switchings: Vec<Switching>,
     ticks: u64,
 }
 
 impl Board for Desk {
     fn report(&mut self, notice: &Notice) {
-        if self.notices.len() < MOST_NOTICES {
-            self.notices.push(*notice);
-        } else {
-            self.left_out += 1;
-        }
+        self.said.hear(*notice);
     }
 
     fn drive(&mut self, shown: Shown) {
-        if self.shown != Some(shown) {
-            self.shown = Some(shown);
+        if self.switchings.last().is_none_or(|it| it.shown != shown) {
             let sample = self.ticks;
             self.switchings.push(Switching { sample, shown });
         }

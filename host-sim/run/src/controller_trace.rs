@@ -48,6 +48,7 @@ pub struct Controller {
 
 #[derive(Debug, Serialize)]
 struct OrderAt {
+    /// Of the sample before which it came, s.
     time_s: f64,
     order: &'static str,
     done: bool,
@@ -81,18 +82,18 @@ impl ControllerTrace {
         hello: Hello,
         state: State,
     ) -> Self {
-        let alarm = |notice: &Notice| match notice {
-            Notice::Alarm(alarm) => Some(*alarm),
-            _ => None,
-        };
-        let order = |notice: &Notice| match notice {
-            Notice::Ordered(order) => Some(*order),
-            _ => None,
-        };
+        let (mut alarms, mut orders) = (Vec::new(), Vec::new());
+        for notice in notices {
+            match *notice {
+                Notice::Alarm(alarm) => alarms.push(alarm),
+                Notice::Ordered(order) => orders.push(order),
+                _ => {}
+            }
+        }
         Self {
             outputs,
-            alarms: notices.iter().filter_map(alarm).collect(),
-            orders: notices.iter().filter_map(order).collect(),
+            alarms,
+            orders,
             zones: [0; 4],
             flash: Vec::new(),
             hello,
@@ -108,23 +109,28 @@ impl ControllerTrace {
 
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
-        let switchings = self.outputs.iter();
+        let time = |sample: u64| timebase.time(sample as f64);
+        let outputs = self.outputs.iter();
+        let outputs = outputs.map(|it| OutputsFrom::new(it, time(it.sample)));
+        let alarms = self.alarms.iter();
+        let alarms = alarms.map(|it| AlarmAt::new(it, time(it.sample)));
+        let orders = self.orders.iter().map(|it| {
+            let why = refused_why(it.refused);
+            OrderAt {
+                time_s: time(it.sample.wrapping_add(1)),
+                order: it.act.into(),
+                done: why.is_none(),
+                why,
+            }
+        });
+        let zones = ["a", "b", "c", "d"].into_iter().zip(self.zone_parts());
         let state = &self.state;
         Controller {
-            outputs: switchings
-                .map(|it| OutputsFrom::new(it, timebase.time(it.sample as f64)))
-                .collect(),
+            outputs: outputs.collect(),
             touches: state.touches,
-            alarms: self
-                .alarms
-                .iter()
-                .map(|it| AlarmAt::new(it, timebase.time(it.sample as f64)))
-                .collect(),
-            orders: self.orders.iter().map(|it| order(it, timebase)).collect(),
-            zones: ["a", "b", "c", "d"]
-                .into_iter()
-                .zip(self.zone_parts())
-                .collect(),
+            alarms: alarms.collect(),
+            orders: orders.collect(),
+            zones: zones.collect(),
             log: Log {
                 checksum: CRC.checksum(&self.flash),
                 dump: Dump::of(&self.flash),
@@ -140,17 +146,6 @@ impl ControllerTrace {
     }
 }
 
-/// An order, with the time of the sample before which it came.
-fn order(order: &Ordered, timebase: Timebase) -> OrderAt {
-    let why = refused_why(order.refused);
-    OrderAt {
-        time_s: timebase.time(order.sample.wrapping_add(1) as f64),
-        order: order.act.into(),
-        done: why.is_none(),
-        why,
-    }
-}
-
 impl Controller {
     /// For the terminal, in 80 columns.
     pub fn text(&self, paint: Paint) -> String {
@@ -163,12 +158,8 @@ impl Controller {
             dangers.count()
         );
         for it in &self.orders {
-            text += &format!(
-                "{} at {:.4} ms: {}\n",
-                it.order,
-                it.time_s * 1e3,
-                it.why.as_deref().unwrap_or("done")
-            );
+            let (time, came) = (it.time_s * 1e3, it.why.as_deref().unwrap_or("done"));
+            text += &format!("{} at {time:.4} ms: {came}\n", it.order);
         }
         for episode in &self.log.dump.episodes {
             text += &logged(episode);

@@ -79,16 +79,19 @@ fn add_speeds(touches: &mut [TouchEvent], events: &[DetectedEvent]) {
 
 /// The events of `answer`; a free fall has its confirmation or withdrawal with it.
 pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
-    let mut events: Vec<DetectedEvent> = Vec::new();
-    let mut forecasts = Vec::new();
-    let mut touches: Vec<TouchEvent> = Vec::new();
+    let mut found = Detection {
+        left_out: answer.left_out,
+        severity: answer.severity.into(),
+        summary: answer.summary,
+        ..Detection::default()
+    };
     for notice in &answer.notices {
         match *notice {
-            Notice::Outlook(outlook) => forecasts.push(forecast(&outlook, timebase)),
+            Notice::Outlook(outlook) => found.forecasts.push(forecast(&outlook, timebase)),
             // One that has ended is told a second time; none begins before.
-            Notice::Touch(it) if it.end.is_none() => touches.push(touch(&it, timebase)),
+            Notice::Touch(it) if it.end.is_none() => found.touches.push(touch(&it, timebase)),
             Notice::Touch(it) => {
-                if let Some(last) = touches.last_mut() {
+                if let Some(last) = found.touches.last_mut() {
                     *last = TouchEvent {
                         sample: last.sample,
                         declared_s: last.declared_s,
@@ -96,18 +99,11 @@ pub fn detection(answer: &MonitorOutput, timebase: Timebase) -> Detection {
                     };
                 }
             }
-            _ => take(&mut events, notice, timebase),
+            _ => take(&mut found.events, notice, timebase),
         }
     }
-    add_speeds(&mut touches, &events);
-    Detection {
-        events,
-        touches,
-        forecasts,
-        left_out: answer.left_out,
-        severity: answer.severity.into(),
-        summary: answer.summary,
-    }
+    add_speeds(&mut found.touches, &found.events);
+    found
 }
 
 /// What an outlook foretells.

@@ -5,10 +5,10 @@ use touchdown_core::monitor::Summary;
 use touchdown_core::severity::Severity;
 
 /// Notices that are kept; a recording of any length has to fit.
-pub const MOST_NOTICES: usize = 100_000;
+const MOST_NOTICES: usize = 100_000;
 
 /// What the monitor said over a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MonitorOutput {
     /// In the order of the ticks.
     pub notices: Vec<Notice>,
@@ -20,4 +20,15 @@ pub struct MonitorOutput {
     pub summary: Summary,
     /// What the target printed.
     pub log: Vec<String>,
+}
+
+impl MonitorOutput {
+    /// Takes the next notice, while there is room.
+    pub(crate) fn hear(&mut self, notice: Notice) {
+        if self.notices.len() < MOST_NOTICES {
+            self.notices.push(notice);
+        } else {
+            self.left_out += 1;
+        }
+    }
 }

@@ -1,5 +1,4 @@
-//! What a drop gives: the model's history, the reference's, what the sensors saw and what the
-//! detector said.
+//! What a drop gives: the model's history, the reference's, what the sensors saw and what the detector said.
 
 use crate::accuracy::RunAccuracy;
 use crate::controller_trace::ControllerTrace;

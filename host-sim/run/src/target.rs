@@ -42,8 +42,9 @@ impl Target {
         let refused = |error: ConfigError| Failure::Usage(format!("monitor: {error}"));
         let mut zones = [0; 4];
         let sensing = Sensing::try_new(&config.sensing).map_err(refused)?;
+        let clearance = f64::from(config.detector.machine.clearance);
         let samples = samples.inspect(|sample| {
-            if let Some(zone) = procedure.zone(config, &sensing, sample) {
+            if let Some(zone) = procedure.zone(clearance, sensing.planes(sample)) {
                 zones[zone] += 1;
             }
         });

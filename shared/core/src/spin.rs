@@ -85,8 +85,11 @@ impl SpinCheck {
     #[inline(never)]
     fn judge(&self, it: &mut SpinState, reading: Option<f32>, sample: u64) -> Option<Found> {
         let reading = reading.filter(|spin| spin.is_finite());
-        if let (Some(new), Some(known)) = (reading, it.believed)
-            && (new - known).abs() > self.most_change
+        let change = reading.zip(it.believed);
+        let change = change.map_or(0.0, |(new, known)| (new - known).abs());
+        let jumps = change > self.most_change;
+        if let Some(known) = it.believed
+            && jumps
             && it.odd < self.longest
             && f32::from(it.odd) * known.abs() < self.angle
         {
@@ -97,13 +100,8 @@ impl SpinCheck {
         let known = core::mem::replace(&mut it.believed, reading)?;
         let (kind, due) = match reading {
             None if known.abs() > self.most_change => (FaultKind::Missing, &mut it.gone_due),
-            Some(new) if (new - known).abs() > self.most_change => {
-                if (new - known).abs() <= self.impact {
-                    return None;
-                }
-                (FaultKind::Shift, &mut it.odd_due)
-            }
-            Some(_) if was_odd > 0 => (FaultKind::Spike, &mut it.odd_due),
+            Some(_) if jumps && change > self.impact => (FaultKind::Shift, &mut it.odd_due),
+            Some(_) if !jumps && was_odd > 0 => (FaultKind::Spike, &mut it.odd_due),
             _ => return None,
         };
         let is_new = sample >= *due;

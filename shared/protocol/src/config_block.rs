@@ -33,6 +33,17 @@ pub struct Settings {
     pub key: Option<Key>,
 }
 
+/// Neither speed nor levitation is wired, and there is no key.
+impl From<MonitorConfig> for Settings {
+    fn from(monitor: MonitorConfig) -> Self {
+        Self {
+            monitor,
+            wiring: Wiring::default(),
+            key: None,
+        }
+    }
+}
+
 /// A key of the right to order.
 #[derive(Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Key(pub [u8; KEY_BYTES]);
@@ -131,20 +142,16 @@ pub fn decode(bytes: &[u8]) -> Result<(&[u8], Settings), BlockError> {
     let rest = bytes.strip_prefix(&MAGIC).ok_or(BlockError::Version)?;
     let (length, _) = rest.split_first_chunk().ok_or(BlockError::Length)?;
     let end = HEAD + usize::from(u16::from_le_bytes(*length)) + TAIL;
-    if end > BLOCK_BYTES {
-        return Err(BlockError::Length);
-    }
-    let block = bytes.get(..end).ok_or(BlockError::Length)?;
+    let block = bytes.get(..end).filter(|it| it.len() <= BLOCK_BYTES);
+    let block = block.ok_or(BlockError::Length)?;
     let (checked, checksum) = block.split_last_chunk().ok_or(BlockError::Length)?;
     if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
         return Err(BlockError::Checksum);
     }
     let body = checked.get(HEAD..).ok_or(BlockError::Length)?;
-    let (settings, left) =
-        postcard::take_from_bytes::<Settings>(body).map_err(|_| BlockError::Body)?;
-    if !left.is_empty() {
+    let Ok((settings, [])) = postcard::take_from_bytes::<Settings>(body) else {
         return Err(BlockError::Body);
-    }
+    };
     settings.validate().map_err(BlockError::Refused)?;
     Ok((block, settings))
 }
@@ -163,19 +170,11 @@ impl Settings {
 pub const SLICE_BYTES: usize = 4;
 
 /// Checks a block over and over, a slice a tick.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct ConfigScrub {
     at: usize,
-    digest: Digest<'static, u32>,
-}
-
-impl Default for ConfigScrub {
-    fn default() -> Self {
-        Self {
-            at: 0,
-            digest: CRC.digest(),
-        }
-    }
+    /// Of what was taken in of this pass.
+    digest: Option<Digest<'static, u32>>,
 }
 
 impl ConfigScrub {
@@ -186,13 +185,15 @@ impl ConfigScrub {
         };
         let left = checked.get(self.at..).unwrap_or(&[]);
         let slice = left.get(..SLICE_BYTES).unwrap_or(left);
-        self.digest.update(slice);
+        let digest = self.digest.get_or_insert_with(|| CRC.digest());
+        digest.update(slice);
         self.at += slice.len();
         if self.at < checked.len() {
             return None;
         }
-        let digest = core::mem::take(self).digest;
-        Some(digest.finalize() == u32::from_le_bytes(*checksum))
+        self.at = 0;
+        let checked = self.digest.take()?.finalize();
+        Some(checked == u32::from_le_bytes(*checksum))
     }
 
     /// Most steps until a change of a block of `length` bytes is found: one pass may just have gone by.

@@ -213,11 +213,6 @@ impl Faults {
     pub const fn lasting(self) -> bool {
         self.0 & Self::LASTING != 0
     }
-
-    /// Whether there is none.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
 }
 
 /// Why the controller does not do what it was asked.

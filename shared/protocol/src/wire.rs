@@ -1,7 +1,7 @@
 //! The bytes of samples and notices, as they pass between desktop and target.
 //!
 //! A replay file is [`REPLAY_MAGIC`], the length of the [`ReplayHead`] (u32, little-endian), the head (postcard),
-//! then one record of [`SAMPLE_BYTES`] a [`Played`] sample to the end of the file. The answer is
+//! then one record of [`SAMPLE_BYTES`] a sample to the end of the file ([`encode_sample`]). The answer is
 //! [`ANSWER_MAGIC`], then [`NOTICE_BYTES`] records: notices and changes of what the controller shows, then that of the
 //! [`Severity`], and last the one of [`Summary`].
 
@@ -50,43 +50,38 @@ impl ReplayHead {
     }
 }
 
-/// A sample of a replay, and what comes with it.
+/// A sample, and what comes with it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Played {
-    /// The sample.
+pub struct Incoming {
+    /// Of the sensors.
     pub sample: Sample,
-    /// Whether an order to clear comes before it.
+    /// Whether an order to clear comes before it, as a replay may say.
     pub clear: bool,
-    /// Whether the service input is on at it.
+    /// Whether the service input is on.
     pub service: bool,
-    /// The byte that comes over the line in its period.
-    pub line: Option<u8>,
 }
 
-impl From<Sample> for Played {
+impl From<Sample> for Incoming {
     fn from(sample: Sample) -> Self {
         Self {
             sample,
             clear: false,
             service: false,
-            line: None,
         }
     }
 }
 
-impl Played {
-    /// As a record.
-    pub fn encode(&self) -> [u8; SAMPLE_BYTES] {
-        let mut bytes = [0; SAMPLE_BYTES];
-        // It has the room.
-        let _ = postcard::to_slice(self, &mut bytes);
-        bytes
-    }
+/// What comes, and the byte that comes over the line in the sample's period, to the record of a replay.
+pub fn encode_sample(incoming: &Incoming, line: Option<u8>) -> [u8; SAMPLE_BYTES] {
+    let mut bytes = [0; SAMPLE_BYTES];
+    // It has the room.
+    let _ = postcard::to_slice(&(incoming, line), &mut bytes);
+    bytes
+}
 
-    /// From a record; `None` where that is none.
-    pub fn decode(bytes: &[u8; SAMPLE_BYTES]) -> Option<Self> {
-        postcard::from_bytes(bytes).ok()
-    }
+/// The record of a replay to what comes; `None` where that is none.
+pub fn decode_sample(bytes: &[u8; SAMPLE_BYTES]) -> Option<(Incoming, Option<u8>)> {
+    postcard::from_bytes(bytes).ok()
 }
 
 /// A change of what the controller shows.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_protocol::wire::{Played, ReplayHead};
+use touchdown_protocol::wire::{ReplayHead, encode_sample};
 use touchdown_run::emulator::{built, replay_head};
 use touchdown_tests::binary::{program, touchdown};
 use touchdown_tests::controller::settings;
@@ -104,7 +104,7 @@ impl Feed {
         let block = self.fed..self.fed + blocks * BLOCK;
         let bytes: Vec<u8> = block
             .clone()
-            .flat_map(|it| Played::from(sample(it, self.falls)).encode())
+            .flat_map(|it| encode_sample(&sample(it, self.falls).into(), None))
             .collect();
         self.samples.write_all(&bytes).expect("a reader");
         self.fed = block.end;

@@ -11,7 +11,7 @@ use touchdown_core::monitor::Summary;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::link::{Decoder, FRAME_BYTES, Nonce, Reply, Request, State, encode, mac};
 use touchdown_protocol::wire::{
-    ANSWER_MAGIC, NOTICE_BYTES, Played, Record, ReplayHead, decode_record,
+    ANSWER_MAGIC, Incoming, NOTICE_BYTES, Record, ReplayHead, decode_record, encode_sample,
 };
 use touchdown_run::emulator::{built, replay_head};
 use touchdown_tests::controller::settings;
@@ -115,14 +115,14 @@ fn run(shift: u32, asked: &[Asked]) -> Run {
     let mut replay = replay_head(&head).expect("a head");
     let samples = (LASTS * RATE) as u64;
     let mut records: Vec<_> = (0..samples)
-        .map(|it| Played { service: true, ..sample(it).into() })
+        .map(|it| (Incoming { service: true, ..sample(it).into() }, None))
         .collect();
     for (sequence, asked) in (1..).zip(asked) {
         for (at, byte) in asked.bytes(sequence) {
-            records[at as usize].line = Some(byte);
+            records[at as usize].1 = Some(byte);
         }
     }
-    replay.extend(records.iter().flat_map(Played::encode));
+    replay.extend(records.iter().flat_map(|(incoming, line)| encode_sample(incoming, *line)));
     fs::write(folder.path().join("replay"), replay).expect("a file");
     let status = Command::new("qemu-system-arm")
         .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "file:line"])

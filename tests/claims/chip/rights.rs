@@ -18,7 +18,7 @@ use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::{self, Key, Settings};
 use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Decoder, Nonce, Refusal, Reply, Request, State, encode, mac};
-use touchdown_protocol::wire::{Played, ReplayHead, Switching};
+use touchdown_protocol::wire::{Incoming, ReplayHead, Switching, encode_sample};
 use touchdown_run::emulator::{Emulator, Session, built, replay_head};
 use touchdown_run::procedure::Procedure;
 use touchdown_run::target::Target;
@@ -164,7 +164,7 @@ impl Wire {
 /// Switched on with what is stored in `folder`, or as if lifted before; each change of what it showed.
 fn session(folder: &Path, power_on: bool, samples: impl Iterator<Item = Sample>) -> (Session, Vec<Switching>) {
     let mut replay = replay_head(&ReplayHead::new(settings().monitor, power_on)).expect("a head");
-    samples.for_each(|it| replay.extend(Played::from(it).encode()));
+    samples.for_each(|it| replay.extend(encode_sample(&it.into(), None)));
     fs::write(folder.join("replay"), replay).expect("a file");
     let _ = fs::remove_file(folder.join("answer"));
     let mut session = emulator().open(folder).unwrap_or_else(|error| panic!("{error}"));
@@ -238,7 +238,7 @@ fn without_a_whole_configuration_of_its_own_there_is_never_current() {
         let mut replay = replay_head(&head).expect("a head");
         for (sample, number) in samples(1.3, lifted).zip(0..) {
             let clear = number == cleared_at;
-            replay.extend(Played { clear, ..sample.into() }.encode());
+            replay.extend(encode_sample(&Incoming { clear, ..sample.into() }, None));
         }
         fs::write(at.join("replay"), replay).expect("a file");
         let mut session = emulator().open(at).unwrap_or_else(|error| panic!("{error}"));
@@ -336,7 +336,7 @@ fn coefficients_that_change_in_memory_are_a_fault_of_their_own() {
         let folder = TempDir::new().expect("a folder");
         let at = folder.path();
         let mut replay = replay_head(&ReplayHead::new(settings().monitor, false)).expect("a head");
-        samples(0.6, |_| 0.0).for_each(|it| replay.extend(Played::from(it).encode()));
+        samples(0.6, |_| 0.0).for_each(|it| replay.extend(encode_sample(&it.into(), None)));
         fs::write(at.join("replay"), replay).expect("a file");
         let log = std::thread::scope(|scope| {
             let run = scope.spawn(|| {

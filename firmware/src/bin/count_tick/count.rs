@@ -12,7 +12,7 @@ use semihosting::fs::File;
 use semihosting::io::Read as _;
 
 use touchdown_core::event::{Notice, Notices};
-use touchdown_protocol::config_block::{self, Block, Settings, Wiring};
+use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Shown};
 
 use crate::scenes::{NUMBERS, SCENES, Scene};
@@ -22,7 +22,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::Board;
 use touchdown_firmware::intake::Ring;
 use touchdown_firmware::memory;
-use touchdown_firmware::recorder::{self, Identity, Recorder};
+use touchdown_firmware::recorder::{self, Recorder};
 use touchdown_firmware::tick::tick;
 
 /// All but the forecast, which is below the tick, are parts of it.
@@ -161,16 +161,12 @@ fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut Ap
 
 #[inline(never)]
 fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m> {
-    Recorder::new(samples, &scene.config(), Identity::new(&[], 0))
+    Recorder::new(samples, &scene.config(), &[], 0)
 }
 
 #[inline(never)]
 fn board(scene: &Scene) -> Idle {
-    Idle(config_block::encode(&Settings {
-        monitor: scene.config(),
-        wiring: Wiring::default(),
-        key: None,
-    }))
+    Idle(config_block::encode(&scene.config().into()))
 }
 
 /// A board whose registers take nothing.

@@ -3,12 +3,11 @@
 use semihosting::experimental::env;
 use semihosting::fs::File;
 use semihosting::io::{self, Read as _, Write as _};
-use touchdown_protocol::wire::{self, Played, ReplayHead};
+use touchdown_protocol::wire::{self, Incoming, ReplayHead};
 
 use super::nor::NorFile;
 use super::settings::{SettingsFile, fill};
 use super::{Failure, FileLog, Name};
-use crate::intake::Incoming;
 
 const COMMAND_LINE_BYTES: usize = 512;
 const HEAD_BYTES: usize = 1024;
@@ -41,7 +40,9 @@ impl Files {
         Ok(Self {
             replay: Replay::open(&replay)?,
             answer: create_answer(&answer).map_err(|_| Failure::Answer)?,
-            log: log.map(|name| mount(&name)).transpose()?,
+            log: log
+                .map(|name| mount(&name).ok_or(Failure::Log))
+                .transpose()?,
             settings: settings.map(SettingsFile),
         })
     }
@@ -68,11 +69,7 @@ impl Replay {
 
     /// The start of the file; to be called once, first.
     #[inline(never)]
-    pub fn head(&mut self) -> Result<ReplayHead, Failure> {
-        self.read_head().ok_or(Failure::Replay)
-    }
-
-    fn read_head(&mut self) -> Option<ReplayHead> {
+    pub fn head(&mut self) -> Option<ReplayHead> {
         let mut first = [0; 8];
         let mut head = [0; HEAD_BYTES];
         self.file.read_exact(&mut first).ok()?;
@@ -89,18 +86,12 @@ impl Replay {
         if self.at == self.records {
             (self.records, self.at) = (self.read()?, 0);
         }
-        let record = self.block.get(self.at..self.records).and_then(<[_]>::first);
-        self.at += usize::from(record.is_some());
-        let Some(record) = record else {
+        let Some([record, ..]) = self.block.get(self.at..self.records) else {
             return Ok(None);
         };
-        let played = Played::decode(record).ok_or(Failure::Replay)?;
-        let arrival = Incoming {
-            sample: played.sample,
-            service: played.service,
-            clear: played.clear,
-        };
-        Ok(Some((arrival, played.line)))
+        self.at += 1;
+        let incoming = wire::decode_sample(record).map(Some);
+        incoming.ok_or(Failure::Replay)
     }
 
     /// Fills the block as far as the file goes; how many records it has.
@@ -114,8 +105,8 @@ impl Replay {
     }
 }
 
-fn mount(name: &Name) -> Result<FileLog, Failure> {
-    FileLog::mount(NorFile::open(name)?).map_err(|_| Failure::Log)
+fn mount(name: &Name) -> Option<FileLog> {
+    FileLog::mount(NorFile::open(name)?).ok()
 }
 
 fn create_answer(name: &Name) -> io::Result<File> {

@@ -20,7 +20,7 @@ use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::{Fingerprint, MonitorConfig};
-use touchdown_protocol::config_block::{BlockError, Settings, Wiring};
+use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
 
@@ -37,7 +37,6 @@ use crate::journal;
 use crate::main_loop::MainLoop;
 use crate::memory;
 use crate::power_on::{InForce, PowerOn};
-use crate::recorder::Identity;
 use crate::tick::TickTask;
 
 /// TIM2's clock in QEMU, Hz.
@@ -59,15 +58,8 @@ pub enum Failure {
     Log = 6,
 }
 
-/// How a run ended well; the exit status.
-#[derive(Clone, Copy, Debug)]
-#[repr(u8)]
-enum End {
-    /// No sample is left.
-    Done = 0,
-    /// A configuration was stored and waits for a start: silicon would reset.
-    Restart = 7,
-}
+/// Exit status once a configuration was stored, which waits for a start: silicon would reset.
+const RESTART: i32 = 7;
 
 /// The name of a file of the desktop.
 type Name = heapless::CString<256>;
@@ -123,11 +115,8 @@ impl Board for Emulated {
     fn drive(&mut self, shown: Shown) {
         if self.shown != Some(shown) {
             self.shown = Some(shown);
-            let switching = Switching {
-                sample: self.ticks,
-                shown,
-            };
-            self.write(&Record::Switching(switching));
+            let sample = self.ticks;
+            self.write(&Record::Switching(Switching { sample, shown }));
         }
         self.ticks += 1;
     }
@@ -202,13 +191,12 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         unreachable!("main runs once");
     };
     let mut files = Files::open()?;
-    let head = files.replay.head()?;
+    let head = files.replay.head().ok_or(Failure::Replay)?;
     let abilities = abilities(&head.config);
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);
     let counters = files.log.as_ref().map(FileLog::counters);
-    let boots = counters.map_or(0, |it| it.boots);
-    let identity = Identity::new(&block.told(&settings), boots);
+    let boot = counters.map_or(0, |it| it.boots);
     let board = Emulated {
         answer: files.answer,
         shown: None,
@@ -216,8 +204,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         block,
         failed: false,
     };
-    let places = &mut memory.monitor;
-    let filled = places.fill(&settings.monitor, found, identity, board);
+    let filled = memory.monitor.fill(&settings, found, boot, board);
     let (intake, tick) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -278,11 +265,7 @@ fn abilities(replayed: &MonitorConfig) -> Abilities {
 fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
     PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
-        fallback: Settings {
-            monitor: head.config,
-            wiring: Wiring::default(),
-            key: None,
-        },
+        fallback: head.config.into(),
         is_configured: head.is_configured,
         is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
         crash: None,

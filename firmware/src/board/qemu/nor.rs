@@ -9,7 +9,7 @@ use embedded_storage::nor_flash::{
 use semihosting::fs::File;
 use semihosting::io::{self, Read, Seek, SeekFrom, Write};
 
-use super::{EMULATED_SLOTS, Failure};
+use super::EMULATED_SLOTS;
 use crate::drop_log::bytes_of;
 use crate::platform::Ready;
 
@@ -25,22 +25,17 @@ pub struct NorFile {
 
 impl NorFile {
     /// A file that is there, or a new one, all erased.
-    pub fn open(name: &CStr) -> Result<Self, Failure> {
-        let open = || File::options().read(true).write(true).open(name);
-        let there = open();
-        let is_new = there.is_err();
-        let file = there.or_else(|_| {
-            drop(File::create(name)?);
-            open()
-        });
-        let mut flash = Self {
-            file: file.map_err(|_| Failure::Log)?,
-            failed: false,
-        };
-        if is_new {
-            flash.erase(0, BYTES as u32).map_err(|_| Failure::Log)?;
+    pub fn open(name: &CStr) -> Option<Self> {
+        let failed = false;
+        let open = || File::options().read(true).write(true).open(name).ok();
+        if let Some(file) = open() {
+            return Some(Self { file, failed });
         }
-        Ok(flash)
+        drop(File::create(name).ok()?);
+        let file = open()?;
+        let mut flash = Self { file, failed };
+        flash.erase(0, BYTES as u32).ok()?;
+        Some(flash)
     }
 
     /// Whether the file could not be read or written.

@@ -13,7 +13,7 @@ use touchdown_protocol::wire::Record;
 
 use super::line::Line;
 use super::settings::SettingsFile;
-use super::{DONE, Emulated, End, Failure, FileLog, IS_OVER, TICK};
+use super::{DONE, Emulated, Failure, FileLog, IS_OVER, RESTART, TICK};
 use crate::board::{Abilities, BLOCK_SAMPLES};
 use crate::journal;
 use crate::platform::{JournalEntry, Platform};
@@ -76,10 +76,7 @@ impl Platform for EmulatorPlatform {
 
     fn receive(&mut self) -> Option<u8> {
         let byte = self.line.came.dequeue();
-        if byte.is_some() {
-            self.heard = None;
-        }
-        byte
+        byte.inspect(|_| self.heard = None)
     }
 
     fn send(&mut self, frame: &Frame) -> bool {
@@ -112,7 +109,7 @@ impl Platform for EmulatorPlatform {
     }
 
     fn reset(&mut self) {
-        exit(End::Restart as i32)
+        exit(RESTART)
     }
 
     fn after_slice(&mut self, forecast: &ForecastTask) {
@@ -143,7 +140,7 @@ impl Platform for EmulatorPlatform {
             self.summarise(fingerprint);
         }
         if !self.stays() && self.is_sent() {
-            exit(End::Done as i32);
+            exit(0);
         }
     }
 }

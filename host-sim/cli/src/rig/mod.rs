@@ -16,7 +16,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use touchdown_firmware::board::BLOCK_SAMPLES;
-use touchdown_protocol::wire::{Played, ReplayHead};
+use touchdown_protocol::wire::{Incoming, ReplayHead, encode_sample};
 
 use crate::gate::print;
 use touchdown_base::failure::Failure;
@@ -201,11 +201,11 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
         }
         if pipe.is_free() {
             let samples = machine.by_ref().take(BLOCK_SAMPLES);
-            let played = samples.map(|sample| Played {
+            let incoming = samples.map(|sample| Incoming {
                 service,
                 ..sample.into()
             });
-            pipe.put(played.flat_map(|it| it.encode()));
+            pipe.put(incoming.flat_map(|it| encode_sample(&it, None)));
             if let Some(at) = machine.given_up() {
                 print(&format!(
                     "truth given up at {:.4} ms: it would take too long. The rotor rolls to the bottom from there\n",

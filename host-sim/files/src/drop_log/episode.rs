@@ -224,10 +224,9 @@ fn take_samples(samples: &mut Vec<Option<Counts>>, block: &Waveform<'_>) {
     if start < MOST_BLOCKS * SAMPLES_PER_BLOCK {
         let end = start + block.samples().len();
         samples.resize(samples.len().max(end), None);
-        let places = samples.iter_mut().skip(start);
-        places
-            .zip(block.samples())
-            .for_each(|(to, from)| *to = Some(from));
+        for (place, counts) in samples.iter_mut().skip(start).zip(block.samples()) {
+            *place = Some(counts);
+        }
     }
 }
 

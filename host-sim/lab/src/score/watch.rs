@@ -126,10 +126,9 @@ impl Drop {
         }
         let answer = MonitorOutput {
             notices,
-            left_out: 0,
             severity: state.severity.so_far,
             summary: Fingerprint::default().summary(&state),
-            log: Vec::new(),
+            ..MonitorOutput::default()
         };
         let timebase = Timebase::new(self.time(0), self.scene.run.sample_rate);
         Ok(Watched {

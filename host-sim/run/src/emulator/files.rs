@@ -6,9 +6,9 @@ use std::path::Path;
 
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
-use touchdown_protocol::wire::{self, Played, Record, ReplayHead, Switching};
+use touchdown_protocol::wire::{self, Incoming, Record, ReplayHead, Switching};
 
-use crate::monitor_output::{MOST_NOTICES, MonitorOutput};
+use crate::monitor_output::MonitorOutput;
 use crate::procedure::Procedure;
 
 /// Writes a replay file; how many samples it has.
@@ -22,11 +22,11 @@ pub(super) fn write_replay(
     file.write_all(&replay_head(&ReplayHead::new(*config, procedure.power_on))?)?;
     let mut count = 0;
     for sample in samples {
-        let played = Played {
-            clear: procedure.clears(count),
+        let incoming = Incoming {
+            clear: procedure.clear_at.contains(&count),
             ..sample.into()
         };
-        file.write_all(&played.encode())?;
+        file.write_all(&wire::encode_sample(&incoming, None))?;
         count += 1;
     }
     file.flush()?;
@@ -55,23 +55,19 @@ pub(super) fn decode_answer(bytes: &[u8]) -> Option<(MonitorOutput, Vec<Switchin
     else {
         return None;
     };
-    let (mut notices, mut left_out) = (Vec::new(), 0);
+    let mut output = MonitorOutput {
+        severity,
+        summary,
+        ..MonitorOutput::default()
+    };
     let mut shown = Vec::new();
     for record in records {
         match wire::decode_record(record)? {
-            Record::Notice(notice) if notices.len() < MOST_NOTICES => notices.push(notice),
-            Record::Notice(_) => left_out += 1,
+            Record::Notice(notice) => output.hear(notice),
             Record::Switching(switching) => shown.push(switching),
             Record::Severity(_) | Record::Summary(_) => return None,
         }
     }
-    let output = MonitorOutput {
-        notices,
-        left_out,
-        severity,
-        summary,
-        log: Vec::new(),
-    };
     Some((output, shown))
 }
 

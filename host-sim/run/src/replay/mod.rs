@@ -3,6 +3,7 @@
 mod envelope;
 mod excerpt;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use touchdown_core::event::EventKind;
@@ -70,28 +71,14 @@ pub struct Orders {
 
 impl Orders {
     /// The sample at or after each time.
-    fn samples(&self, start: f64, rate: f64) -> Result<Vec<u64>, Failure> {
+    fn samples(&self, start: f64, rate: f64) -> Result<BTreeSet<u64>, Failure> {
         let sample = |time: &f64| {
             // But for rounding.
             let sample = ((time - start) * rate - 1e-6).ceil();
-            if sample >= 0.0 {
-                Ok(sample as u64)
-            } else {
-                Err(outside(*time))
-            }
+            let sample = (sample >= 0.0).then_some(sample as u64);
+            sample.ok_or_else(|| outside(*time))
         };
-        let mut samples: Vec<u64> = self.clear_at.iter().map(sample).collect::<Result<_, _>>()?;
-        samples.sort_unstable();
-        samples.dedup();
-        Ok(samples)
-    }
-
-    /// Whether the recording was long enough for each.
-    fn check(&self, last: f64) -> Result<(), Failure> {
-        match self.clear_at.iter().find(|time| **time > last) {
-            Some(time) => Err(outside(*time)),
-            None => Ok(()),
-        }
+        self.clear_at.iter().map(sample).collect()
     }
 }
 
@@ -146,7 +133,10 @@ pub fn recording(
     }
     // Rounding apart.
     let last = timebase.time(answer.summary.samples as f64 - 1.0);
-    orders.check(last + 1e-6 / rate)?;
+    let is_late = |time: &&f64| **time > last + 1e-6 / rate;
+    if let Some(time) = orders.clear_at.iter().find(is_late) {
+        return Err(outside(*time));
+    }
     let episode = is_warm.then(|| EPISODE.to_owned());
     Ok(Replay {
         format: episode.or(recording.format.take()),

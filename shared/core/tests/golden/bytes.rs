@@ -24,7 +24,7 @@ use touchdown_protocol::log::severity;
 use touchdown_protocol::log::waveform;
 use touchdown_protocol::log::waveform::Waveform;
 use touchdown_protocol::wire;
-use touchdown_protocol::wire::{Played, Record, Switching};
+use touchdown_protocol::wire::{Incoming, Record, Switching, decode_sample, encode_sample};
 
 use crate::stream::Stream;
 
@@ -152,17 +152,17 @@ fn put(text: &mut String, name: &str, bytes: &[u8]) {
 }
 
 fn wires(text: &mut String) {
-    let played = Played {
+    let incoming = Incoming {
         sample: SAMPLE,
         clear: false,
         service: true,
-        line: Some(0x5a),
     };
-    let bytes = played.encode();
-    assert_eq!(Played::decode(&bytes), Some(played));
+    let line = Some(0x5a);
+    let bytes = encode_sample(&incoming, line);
+    assert_eq!(decode_sample(&bytes), Some((incoming, line)));
     put(text, "sample of a replay", &bytes);
     // As long as any.
-    let longest = Played {
+    let longest = Incoming {
         sample: Sample {
             counts: [u16::MAX; 4],
             edges: [Some(Edges {
@@ -171,9 +171,10 @@ fn wires(text: &mut String) {
             }); 2],
             ..SAMPLE
         },
-        ..played
+        ..incoming
     };
-    assert_eq!(Played::decode(&longest.encode()), Some(longest));
+    let bytes = encode_sample(&longest, line);
+    assert_eq!(decode_sample(&bytes), Some((longest, line)));
     let summary = Summary {
         samples: 100_021,
         faults: 7,

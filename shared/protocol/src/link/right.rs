@@ -4,7 +4,7 @@ use core::hash::Hasher;
 
 use siphasher::sip128::{Hasher128, SipHasher24};
 
-use crate::config_block::{KEY_BYTES, Key};
+use crate::config_block::Key;
 use crate::controller::Busy;
 use touchdown_core::event::Act;
 
@@ -22,7 +22,7 @@ const GOOD: f32 = 5.0;
 /// The answer to `nonce` that gives the right to `act`, which is about `block`: SipHash-2-4 of 128 bits over nonce, act
 /// as it is in the request, and block. Without a key that of zeros stands in.
 pub fn mac(key: Option<&Key>, nonce: &Nonce, act: &Act, block: &[u8]) -> Mac {
-    let key: &[u8; KEY_BYTES] = key.map_or(&Key::HELD.0, |it| &it.0);
+    let Key(key) = key.unwrap_or(&Key::HELD);
     let mut hasher = SipHasher24::new_with_key(key);
     // Its variant, and a number of up to five bytes.
     let mut bytes = [0; 8];
@@ -67,10 +67,10 @@ impl Right {
         nonce
     }
 
-    /// Whether `mac` answers the nonce that is open, which it uses up.
+    /// Whether the `given` one answers the nonce that is open, which it uses up.
     pub(super) fn check(
         &mut self,
-        mac_given: &Mac,
+        given: &Mac,
         act: &Act,
         block: &[u8],
         now: u64,
@@ -82,16 +82,11 @@ impl Right {
         }
         let in_time = open.filter(|(_, at)| now.wrapping_sub(*at) <= self.good);
         let right = in_time.map(|(nonce, _)| mac(self.key.as_ref(), &nonce, act, block));
-        // All bytes, wherever the first wrong one is.
-        let differ = |it: Mac| {
-            it.iter()
-                .zip(mac_given)
-                .fold(0, |bits, (a, b)| bits | (a ^ b))
-        };
-        if right.map(differ) == Some(0) {
-            Ok(())
-        } else {
-            Err(Busy::NoRight)
+        // All bits at once, wherever the first wrong one is.
+        let differ = |it: Mac| u128::from_le_bytes(it) ^ u128::from_le_bytes(*given);
+        match right.map(differ) {
+            Some(0) => Ok(()),
+            _ => Err(Busy::NoRight),
         }
     }
 }

@@ -63,8 +63,7 @@ pub trait Device {
 /// The controller's side of the link.
 #[derive(Clone, Debug)]
 pub struct Server {
-    firmware: &'static str,
-    sample_rate: f32,
+    hello: Hello,
     decoder: Decoder,
     damaged: u32,
     sequence: u8,
@@ -76,10 +75,12 @@ pub struct Server {
 
 impl Server {
     /// Says `firmware` and `sample_rate` (Hz) to who asks, and obeys who has the `key` of the block in force.
-    pub fn new(firmware: &'static str, sample_rate: f32, key: Option<Key>) -> Self {
+    pub fn new(firmware: &str, sample_rate: f32, key: Option<Key>) -> Self {
         Self {
-            firmware,
-            sample_rate,
+            hello: Hello {
+                firmware: shortened(firmware),
+                sample_rate,
+            },
             decoder: Decoder::default(),
             damaged: 0,
             sequence: 0,
@@ -89,8 +90,7 @@ impl Server {
         }
     }
 
-    /// Takes a byte from the line; the answer, where it ends a request. A damaged request is counted
-    /// and not answered.
+    /// Takes a byte from the line; the answer, where it ends a request. A damaged request is counted and not answered.
     pub fn take(&mut self, byte: u8, device: &mut impl Device) -> Option<Frame> {
         match self.decoder.take::<Request>(byte)? {
             Ok(received) => {
@@ -100,7 +100,7 @@ impl Server {
             }
             // In its version: so a desktop of another one learns who is there.
             Err(FrameError::Hello(version, sequence)) => {
-                let hello = Reply::Hello(self.hello());
+                let hello = Reply::Hello(self.hello.clone());
                 frame::encode_as(version, sequence, &hello)
             }
             Err(_) => {
@@ -126,13 +126,6 @@ impl Server {
         frame::encode(self.sequence, reply)
     }
 
-    fn hello(&self) -> Hello {
-        Hello {
-            firmware: shortened(self.firmware),
-            sample_rate: self.sample_rate,
-        }
-    }
-
     fn state_of(&self, device: &mut impl Device) -> State {
         let mut state = device.state();
         state.counters.damaged_frames = self.damaged;
@@ -141,7 +134,7 @@ impl Server {
 
     fn answer(&mut self, request: Request, device: &mut impl Device) -> Result<Reply, Refusal> {
         Ok(match request {
-            Request::Hello => Reply::Hello(self.hello()),
+            Request::Hello => Reply::Hello(self.hello.clone()),
             Request::State => Reply::State(self.state_of(device)),
             Request::ReadConfig => {
                 let keyed = self.right.key.is_some();

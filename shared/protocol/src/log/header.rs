@@ -83,10 +83,9 @@ impl Header {
             (true, 0) => (FORMAT_WITHOUT_PULSES, PLAIN_BYTES),
             (true, _) => (FORMAT_WITH_PULSES, PLAIN_BYTES),
         };
-        let mut bytes = [0; HEADER_BYTES];
+        let mut bytes = Vec::from([0; HEADER_BYTES]);
         Offset::put(0, &format, &mut bytes);
         Offset::put(0, self, &mut bytes);
-        let mut bytes = Vec::from(bytes);
         bytes.truncate(length);
         bytes
     }
