@@ -2,17 +2,15 @@
 //! `docs/use/calibrate.md`.
 
 pub mod ellipse;
-mod linear;
 pub mod page;
 mod wall;
 
-use std::array::from_fn;
 use std::f64::consts::TAU;
 
+use nalgebra::Vector5;
 use serde::Serialize;
 
 use ellipse::Fitted;
-use linear::variance;
 
 /// Standard deviations that hold 95 % of a normal distribution.
 const SURE: f64 = 1.96;
@@ -115,19 +113,19 @@ pub fn plane(
 ) -> Result<Plane, String> {
     let fitted = wall::find(readings, resolution)?;
     let correlation = correlation(&fitted.residuals, fitted.square);
-    let parameters = fitted.ellipse.0;
-    let value = |value: f64, growth: [f64; 5]| {
-        let variance = fitted.square * correlation * variance(&fitted.cofactor, &growth);
-        let error = SURE * variance.sqrt();
-        Value { value, error }
+    let covariance = fitted.square * correlation * fitted.cofactor;
+    let value = |value: f64, variance: f64| Value {
+        value,
+        error: SURE * variance.sqrt(),
     };
+    let given = |it| value(it, 0.0);
     let over = |number: usize, unit: f64| {
-        let growth = from_fn(|it| f64::from(it == number) / unit);
-        value(parameters[number] / unit, growth)
+        let variance = covariance[(number, number)];
+        value(fitted.ellipse.0[number] / unit, variance / (unit * unit))
     };
-    let given = |value| Value { value, error: 0.0 };
-    let [_, _, a, b, _] = parameters;
-    let gain_ratio = value(b / a, [0.0, 0.0, -b / (a * a), 1.0 / a, 0.0]);
+    let [_, _, a, b, _] = fitted.ellipse.0;
+    let growth = Vector5::new(0.0, 0.0, -b / a, 1.0, 0.0) / a;
+    let gain_ratio = value(b / a, growth.dot(&(covariance * growth)));
     let (gain, radius_m) = match clearance {
         Some(r) => ([over(2, r), over(3, r)], given(r)),
         None => ([given(1.0), gain_ratio], over(2, 1.0)),
