@@ -73,11 +73,9 @@ impl Ellipse {
     /// The point at an angle, from the zeros, and the way on per rad.
     fn at(&self, angle: f64) -> [Vector2<f64>; 2] {
         let [.., a, b, skew] = self.0;
-        let ((sin, cos), (sin_b, cos_b)) = (angle.sin_cos(), (angle - skew).sin_cos());
-        [
-            Vector2::new(a * cos, b * sin_b),
-            Vector2::new(-a * sin, b * cos_b),
-        ]
+        let point = Vector2::new(a * angle.cos(), b * (angle - skew).sin());
+        let along = Vector2::new(-a * angle.sin(), b * (angle - skew).cos());
+        [point, along]
     }
 
     /// The point at an angle.
