@@ -27,15 +27,13 @@ const OF_MEDIAN: f64 = 1.4826;
 
 /// The curve through the readings on the wall; why there is none.
 pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<Fitted, String> {
-    let enough = |count: usize, are: &str| match count {
-        FEWEST.. => Ok(()),
-        _ => Err(format!(
-            "only {count} samples{are}, {FEWEST} are the fewest"
-        )),
+    let enough = |count: usize, are: &str| {
+        let few = || format!("only {count} samples{are}, {FEWEST} are the fewest");
+        (count >= FEWEST).then_some(()).ok_or_else(few)
     };
     enough(readings.len(), "")?;
     let noise = noise(readings).max(resolution / 12_f64.sqrt());
-    let mut ellipse = first(&medians(readings), noise).ok_or(
+    let mut ellipse = first(readings, noise).ok_or(
         "no ellipse bounds the readings: the rotor has not been led round the wall, or the \
          readings are cut off",
     )?;
@@ -58,12 +56,6 @@ pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<Fitted, String> {
     }
 }
 
-/// Median of five neighbours, by channel: no spikes.
-fn medians(readings: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let of = |five: &[[f64; 2]; 5]| [0, 1].map(|k| median(&five.map(|it| it[k])));
-    readings.array_windows().map(of).collect()
-}
-
 /// Of a channel, m, from second differences: slow motion leaves none.
 fn noise(readings: &[[f64; 2]]) -> f64 {
     let second = |[a, b, c]: &[[f64; 2]; 3]| [0, 1].map(|k| (a[k] - 2.0 * b[k] + c[k]).abs());
@@ -73,6 +65,9 @@ fn noise(readings: &[[f64; 2]]) -> f64 {
 
 /// The curve through outermost readings that most readings are on, and hardly any outside.
 fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
+    // Medians have no spikes.
+    let medians = |five: &[[f64; 2]; 5]| [0, 1].map(|k| median(&five.map(|it| it[k])));
+    let readings: Vec<_> = readings.array_windows().map(medians).collect();
     let outermost = |direction: usize| {
         let angle = direction as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
         let (sin, cos) = angle.sin_cos();
@@ -105,15 +100,10 @@ fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
 
 /// Readings within noise of the curve, in windows that are too. A window's mean may be off by what those outside the
 /// curve are, as runout makes them.
-fn choose(
-    ellipse: &Ellipse,
-    readings: &[[f64; 2]],
-    spread: f64,
-    windows: &[usize],
-) -> Vec<[f64; 2]> {
+fn choose(curve: &Ellipse, readings: &[[f64; 2]], spread: f64, windows: &[usize]) -> Vec<[f64; 2]> {
     let (mut of_wall, mut sum, mut sums) = (Vec::new(), 0.0, vec![0.0]);
     for reading in readings {
-        let distance = ellipse.foot(*reading).distance;
+        let distance = curve.foot(*reading).distance;
         of_wall.push(distance.abs() <= FAR * spread);
         sum += distance.clamp(-3.0 * spread, 3.0 * spread);
         sums.push(sum);
