@@ -2,17 +2,13 @@
 //! `docs/use/calibrate.md`.
 
 pub mod ellipse;
-mod linear;
 pub mod page;
 mod wall;
 
-use std::array::from_fn;
-use std::f64::consts::TAU;
-
+use nalgebra::Vector5;
 use serde::Serialize;
 
 use ellipse::Fitted;
-use linear::variance;
 
 /// Standard deviations that hold 95 % of a normal distribution.
 const SURE: f64 = 1.96;
@@ -21,10 +17,10 @@ const LEAST_ARC: f64 = 200.0;
 const SECTOR: f64 = 5.0;
 /// Samples that make a sector touched.
 const TOUCHED: usize = 3;
-/// Most 95 % error of zeros, of gains and radius, as a part, and of the skew, rad.
-const MOST_ERROR: f64 = 0.02;
-/// Most residual, rms, as a part of the radius.
-const MOST_RESIDUAL: f64 = 0.03;
+/// Most 95 % error: of zeros, % of the radius; of gains and radius, %; of the skew, 0.01 rad.
+const MOST_ERROR: f64 = 2.0;
+/// Most residual, rms, % of the radius.
+const MOST_RESIDUAL: f64 = 3.0;
 /// Most readings of a plane that are kept.
 const KEPT: usize = 1 << 17;
 /// Parts of a recording whose means are compared.
@@ -35,20 +31,19 @@ const PARTS: usize = 50;
 pub struct Readings {
     /// Those that are kept, m.
     pub kept: Vec<[f64; 2]>,
-    thinned: u32,
     seen: usize,
 }
 
 impl Readings {
     /// Takes the next, m.
     pub fn push(&mut self, reading: [f64; 2]) {
-        if self.seen.is_multiple_of(1 << self.thinned) {
+        let every = (self.seen / KEPT + 1).next_power_of_two();
+        if self.seen.is_multiple_of(every) {
             self.kept.push(reading);
         }
         self.seen += 1;
         if self.kept.len() == KEPT {
             self.kept = self.kept.iter().copied().step_by(2).collect();
-            self.thinned += 1;
         }
     }
 }
@@ -115,19 +110,19 @@ pub fn plane(
 ) -> Result<Plane, String> {
     let fitted = wall::find(readings, resolution)?;
     let correlation = correlation(&fitted.residuals, fitted.square);
-    let parameters = fitted.ellipse.0;
-    let value = |value: f64, growth: [f64; 5]| {
-        let variance = fitted.square * correlation * variance(&fitted.cofactor, &growth);
-        let error = SURE * variance.sqrt();
-        Value { value, error }
+    let covariance = fitted.square * correlation * fitted.cofactor;
+    let value = |value: f64, variance: f64| Value {
+        value,
+        error: SURE * variance.sqrt(),
     };
+    let given = |it| value(it, 0.0);
     let over = |number: usize, unit: f64| {
-        let growth = from_fn(|it| f64::from(it == number) / unit);
-        value(parameters[number] / unit, growth)
+        let variance = covariance[(number, number)];
+        value(fitted.ellipse.0[number] / unit, variance / (unit * unit))
     };
-    let given = |value| Value { value, error: 0.0 };
-    let [_, _, a, b, _] = parameters;
-    let gain_ratio = value(b / a, [0.0, 0.0, -b / (a * a), 1.0 / a, 0.0]);
+    let [_, _, a, b, _] = fitted.ellipse.0;
+    let growth = Vector5::new(0.0, 0.0, -b / a, 1.0, 0.0) / a;
+    let gain_ratio = value(b / a, growth.dot(&(covariance * growth)));
     let (gain, radius_m) = match clearance {
         Some(r) => ([over(2, r), over(3, r)], given(r)),
         None => ([given(1.0), gain_ratio], over(2, 1.0)),
@@ -151,34 +146,30 @@ impl Plane {
     /// Why it must not be used, if so.
     pub fn why_not(&self) -> Option<String> {
         let [_, _, a, b, _] = self.fitted.ellipse.0;
-        let amplitude = 0.5 * (a + b);
-        let of_itself = |it: Value| it.error / it.value;
+        let of_radius = |it: f64| 100.0 * (it / (0.5 * (a + b)));
+        let of_itself = |it: Value| 100.0 * (it.error / it.value);
         let errors = [
-            ("zero", self.zero_m[0].error / amplitude),
-            ("zero", self.zero_m[1].error / amplitude),
+            ("zero", of_radius(self.zero_m[0].error)),
+            ("zero", of_radius(self.zero_m[1].error)),
             ("gain", of_itself(self.gain[0])),
             ("gain", of_itself(self.gain[1])),
             ("radius", of_itself(self.radius_m)),
-            ("skew", self.skew_rad.error),
+            ("skew", 100.0 * self.skew_rad.error),
         ];
-        let large = errors.into_iter().find(|(_, error)| *error > MOST_ERROR);
-        if self.arc_deg < LEAST_ARC {
+        let (arc, residual) = (self.arc_deg, of_radius(self.residual_m));
+        if arc < LEAST_ARC {
             Some(format!(
-                "{:.0} degrees of the wall were touched, {LEAST_ARC} are the fewest: lead the rotor further round",
-                self.arc_deg
+                "{arc:.0} degrees of the wall were touched, {LEAST_ARC} are the fewest: lead the rotor further round"
             ))
-        } else if self.residual_m > MOST_RESIDUAL * amplitude {
+        } else if residual > MOST_RESIDUAL {
             Some(format!(
-                "the residual is {:.2} um, {:.1} % of the radius, {} % is the most: the readings are no ellipse",
-                1e6 * self.residual_m,
-                100.0 * (self.residual_m / amplitude),
-                100.0 * MOST_RESIDUAL
+                "the residual is {:.2} um, {residual:.1} % of the radius, {MOST_RESIDUAL} % is the most: the readings are no ellipse",
+                1e6 * self.residual_m
             ))
         } else {
-            large.map(|(name, error)| format!(
-                "the 95 % error of the {name} is {:.1} %, {} % is the most: lead the rotor round for longer",
-                100.0 * error,
-                100.0 * MOST_ERROR
+            let (name, error) = errors.into_iter().find(|it| it.1 > MOST_ERROR)?;
+            Some(format!(
+                "the 95 % error of the {name} is {error:.1} %, {MOST_ERROR} % is the most: lead the rotor round for longer"
             ))
         }
     }
@@ -187,23 +178,18 @@ impl Plane {
 /// Variance of the means of parts of the recording over what independent residuals (mean square given) make; 1 at least.
 fn correlation(residuals: &[[f64; 2]], square: f64) -> f64 {
     let length = residuals.len() / PARTS;
-    if length < 2 || square == 0.0 {
-        return 1.0;
-    }
     let parts = residuals.chunks_exact(length);
-    let (count, length) = (parts.len() as f64, length as f64);
-    let means = parts.map(|it| it.iter().map(|[_, it]| it).sum::<f64>() / length);
-    let squares = means.map(|it| it * it).sum::<f64>() / count;
-    (squares * length / square).max(1.0)
+    let independent = square * (parts.len() * length) as f64;
+    let sums = parts.map(|it| it.iter().map(|[_, it]| it).sum::<f64>());
+    (sums.map(|it| it * it).sum::<f64>() / independent).max(1.0)
 }
 
 /// Of the wall, degrees.
 fn arc(residuals: &[[f64; 2]]) -> f64 {
     let mut sectors = [0; (360.0 / SECTOR) as usize];
-    let count = sectors.len();
     for [angle, _] in residuals {
-        let turn = angle.rem_euclid(TAU) / TAU;
-        sectors[((turn * count as f64) as usize).min(count - 1)] += 1;
+        let sector = angle.to_degrees().rem_euclid(360.0) / SECTOR;
+        sectors[sector as usize % sectors.len()] += 1;
     }
     SECTOR * sectors.iter().filter(|it| **it >= TOUCHED).count() as f64
 }

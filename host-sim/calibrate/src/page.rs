@@ -17,24 +17,19 @@ const POINTS: usize = 1_000;
 fn rows(plane: &Plane) -> [[String; 4]; 11] {
     let found = |it: Value| (it.value, Some(it.error));
     let plain = |it: f64| (it, None);
-    let [zero, other_zero] = plane.zero_m.map(found);
-    let [gain, other_gain] = plane.gain.map(found);
-    let ratio = found(plane.gain_ratio);
-    let on_wall = plain(plane.on_wall as f64);
-    let (um, one) = ((1e6, "um"), (1.0, ""));
-    let degrees = (180.0 / std::f64::consts::PI, "deg");
+    let (um, one, degrees) = ((1e6, "um"), (1.0, ""), (1_f64.to_degrees(), "deg"));
     let rows = [
-        ("zero, first axis", zero, 3, um),
-        ("zero, second axis", other_zero, 3, um),
-        ("gain, first axis", gain, 5, one),
-        ("gain, second axis", other_gain, 5, one),
-        ("gain, second over first", ratio, 5, one),
+        ("zero, first axis", found(plane.zero_m[0]), 3, um),
+        ("zero, second axis", found(plane.zero_m[1]), 3, um),
+        ("gain, first axis", found(plane.gain[0]), 5, one),
+        ("gain, second axis", found(plane.gain[1]), 5, one),
+        ("gain, second over first", found(plane.gain_ratio), 5, one),
         ("skew", found(plane.skew_rad), 4, degrees),
         ("radius", found(plane.radius_m), 3, um),
         ("residual, rms", plain(plane.residual_m), 3, um),
         ("correlation", plain(plane.correlation), 2, one),
         ("wall touched", plain(plane.arc_deg), 0, (1.0, "deg")),
-        ("samples on the wall", on_wall, 0, one),
+        ("samples on the wall", plain(plane.on_wall as f64), 0, one),
     ];
     rows.map(|(name, (value, error), digits, (scale, unit))| {
         let number = |it: f64| format!("{:.digits$}", scale * it);

@@ -4,7 +4,7 @@
 //! then fit and choice take turns. A rotor that leaves the wall goes inward for many samples: so means over windows tell
 //! it, where single samples cannot.
 
-use std::ops::Range;
+use touchdown_base::statistics::median;
 
 use super::ellipse::{Ellipse, Fitted};
 
@@ -27,15 +27,13 @@ const OF_MEDIAN: f64 = 1.4826;
 
 /// The curve through the readings on the wall; why there is none.
 pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<Fitted, String> {
-    let enough = |count: usize, are: &str| match count {
-        FEWEST.. => Ok(()),
-        _ => Err(format!(
-            "only {count} samples{are}, {FEWEST} are the fewest"
-        )),
+    let enough = |count: usize, are: &str| {
+        let few = || format!("only {count} samples{are}, {FEWEST} are the fewest");
+        (count >= FEWEST).then_some(()).ok_or_else(few)
     };
     enough(readings.len(), "")?;
     let noise = noise(readings).max(resolution / 12_f64.sqrt());
-    let mut ellipse = first(&medians(readings), noise).ok_or(
+    let mut ellipse = first(readings, noise).ok_or(
         "no ellipse bounds the readings: the rotor has not been led round the wall, or the \
          readings are cut off",
     )?;
@@ -58,39 +56,27 @@ pub fn find(readings: &[[f64; 2]], resolution: f64) -> Result<Fitted, String> {
     }
 }
 
-/// Median of five neighbours, by channel: no spikes.
-fn medians(readings: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let of = |five: &[[f64; 2]]| [0, 1].map(|k| median(five.iter().map(|it| it[k])));
-    readings.windows(5).map(of).collect()
-}
-
 /// Of a channel, m, from second differences: slow motion leaves none.
 fn noise(readings: &[[f64; 2]]) -> f64 {
-    let second = |it: &[[f64; 2]]| [0, 1].map(|k| (it[0][k] - 2.0 * it[1][k] + it[2][k]).abs());
-    OF_MEDIAN * median(readings.windows(3).flat_map(second)) / 6_f64.sqrt()
-}
-
-/// The upper one of two in the middle; 0 of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<_> = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    let second = |[a, b, c]: &[[f64; 2]; 3]| [0, 1].map(|k| (a[k] - 2.0 * b[k] + c[k]).abs());
+    let all: Vec<_> = readings.array_windows().flat_map(second).collect();
+    OF_MEDIAN * median(&all) / 6_f64.sqrt()
 }
 
 /// The curve through outermost readings that most readings are on, and hardly any outside.
 fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
+    // Medians have no spikes.
+    let medians = |five: &[[f64; 2]; 5]| [0, 1].map(|k| median(&five.map(|it| it[k])));
+    let readings: Vec<_> = readings.array_windows().map(medians).collect();
     let outermost = |direction: usize| {
         let angle = direction as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
         let (sin, cos) = angle.sin_cos();
-        let out = |it: &usize| cos * readings[*it][0] + sin * readings[*it][1];
-        (0..readings.len()).max_by(|i, j| out(i).total_cmp(&out(j)))
+        let out = |[u, v]: &[f64; 2]| cos * u + sin * v;
+        readings.iter().max_by(|a, b| out(a).total_cmp(&out(b)))
     };
     let mut hull: Vec<_> = (0..DIRECTIONS).filter_map(outermost).collect();
     hull.dedup();
-    let every = readings.len().div_ceil(TRIED_ON).max(1);
+    let every = readings.len().div_ceil(TRIED_ON);
     let some: Vec<_> = readings.iter().step_by(every).collect();
     let score = |it: &Ellipse| {
         let distances = some.iter().map(|reading| it.foot(**reading).distance);
@@ -104,7 +90,7 @@ fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        readings[hull[(state >> 33) as usize % hull.len()]]
+        *hull[(state >> 33) as usize % hull.len()]
     };
     let tries = (0..TRIES).filter_map(|_| Ellipse::through(std::array::from_fn(|_| pick())));
     let scored = tries.filter_map(|it| Some((score(&it)?, it)));
@@ -114,34 +100,27 @@ fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
 
 /// Readings within noise of the curve, in windows that are too. A window's mean may be off by what those outside the
 /// curve are, as runout makes them.
-fn choose(
-    ellipse: &Ellipse,
-    readings: &[[f64; 2]],
-    spread: f64,
-    windows: &[usize],
-) -> Vec<[f64; 2]> {
-    let distances = readings.iter().map(|it| ellipse.foot(*it).distance);
-    let distances: Vec<f64> = distances.collect();
-    let of_wall = distances.iter().map(|it| it.abs() <= FAR * spread);
-    let mut of_wall: Vec<bool> = of_wall.collect();
-    let mut sums = vec![0.0];
-    for distance in &distances {
-        let held = distance.clamp(-3.0 * spread, 3.0 * spread);
-        sums.push(sums[sums.len() - 1] + held);
+fn choose(curve: &Ellipse, readings: &[[f64; 2]], spread: f64, windows: &[usize]) -> Vec<[f64; 2]> {
+    let (mut of_wall, mut sum, mut sums) = (Vec::new(), 0.0, vec![0.0]);
+    for reading in readings {
+        let distance = curve.foot(*reading).distance;
+        of_wall.push(distance.abs() <= FAR * spread);
+        sum += distance.clamp(-3.0 * spread, 3.0 * spread);
+        sums.push(sum);
     }
     for &most in windows {
         // Short recordings are led round faster.
         let half = (most / 2).min(readings.len() / (16 * most)).max(1);
         let around = |at: usize| at.saturating_sub(half)..(at + half + 1).min(readings.len());
         let mean = |at| {
-            let Range { start, end } = around(at);
-            (sums[end] - sums[start]) / (end - start) as f64
+            let window = around(at);
+            (sums[window.end] - sums[window.start]) / window.len() as f64
         };
         let means: Vec<f64> = (0..readings.len()).map(mean).collect();
         let on_wall = means.iter().zip(&of_wall).filter(|(_, on)| **on);
-        let outer = on_wall.map(|(it, _)| *it).filter(|it| *it > 0.0);
+        let outer: Vec<_> = on_wall.map(|it| *it.0).filter(|it| *it > 0.0).collect();
         let white = spread / (2.0 * half as f64 + 1.0).sqrt();
-        let limit = -FAR * (OF_MEDIAN * median(outer)).max(white);
+        let limit = -FAR * (OF_MEDIAN * median(&outer)).max(white);
         for (at, _) in means.iter().enumerate().filter(|(_, it)| **it < limit) {
             of_wall[around(at)].fill(false);
         }

@@ -165,10 +165,8 @@ impl Sensing {
             return Err(ConfigError::OutOfRange("full_scale", "3 counts or more"));
         }
         if !(config.zero_count > 0.0 && config.zero_count < f32::from(config.full_scale)) {
-            return Err(ConfigError::OutOfRange(
-                "zero_count",
-                "between 0 and full_scale",
-            ));
+            let rule = "between 0 and full_scale";
+            return Err(ConfigError::OutOfRange("zero_count", rule));
         }
         if config.mounting_angle.iter().any(|angle| !angle.is_finite()) {
             return Err(ConfigError::NotFinite("mounting_angle"));
@@ -178,12 +176,10 @@ impl Sensing {
         a.validate()?;
         b.validate()?;
         let [of_a, of_b] = config.mounting_angle;
+        let plane = |angle, calibration| PlaneSensing::new(config, angle, calibration);
         Ok(Self {
             full_scale: config.full_scale,
-            planes: [
-                PlaneSensing::new(config, of_a, &a),
-                PlaneSensing::new(config, of_b, &b),
-            ],
+            planes: [plane(of_a, &a), plane(of_b, &b)],
         })
     }
 

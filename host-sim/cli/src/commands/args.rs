@@ -401,17 +401,14 @@ pub(super) struct SweepArgs {
 pub(super) enum SweepCommand {
     /// Put the parts of a sweep together; the result is that of one run, to the byte
     #[command(after_help = help!("merge"))]
-    Merge(MergeArgs),
-}
-
-#[derive(Args, Clone, Debug)]
-pub(super) struct MergeArgs {
-    /// Folders with parts; the first takes the results
-    #[arg(value_name = "FOLDER", required = true)]
-    pub folders: Vec<String>,
-    /// Points with probabilities and intervals as JSON; `-` is standard output
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<String>,
+    Merge {
+        /// Folders with parts; the first takes the results
+        #[arg(value_name = "FOLDER", required = true)]
+        folders: Vec<String>,
+        /// Points with probabilities and intervals as JSON; `-` is standard output
+        #[arg(long, value_name = "FILE")]
+        json: Option<String>,
+    },
 }
 
 #[derive(Args, Clone, Debug)]
@@ -510,10 +507,8 @@ pub(super) enum Scale {
 /// A clearance, mm.
 fn clearance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
     let (least, most) = CLEARANCE_MM.into_inner();
-    number(
-        |it| CLEARANCE_MM.contains(&it),
-        &format!("{least} to {most} mm"),
-    )
+    let rule = format!("{least} to {most} mm");
+    number(|it| CLEARANCE_MM.contains(&it), &rule)
 }
 
 #[derive(Args, Clone, Debug)]
@@ -587,12 +582,11 @@ pub(super) enum ExportFormat {
 
 /// `K/N`.
 fn part(text: &str) -> Result<Part, String> {
-    let numbers = text.split_once('/');
-    let numbers = numbers.and_then(|(part, parts)| Some((part.parse().ok()?, parts.parse().ok()?)));
-    let right = numbers.filter(|(part, parts)| (1..=*parts).contains(part) && *parts <= Part::MOST);
-    let rule = || format!("K/N with 1 <= K <= N <= {}, as in 2/8", Part::MOST);
-    let (part, parts) = right.ok_or_else(rule)?;
-    Ok(Part { part, parts })
+    let read = |(part, parts): (&str, &str)| Some((part.parse().ok()?, parts.parse().ok()?));
+    match text.split_once('/').and_then(read) {
+        Some((part @ 1.., parts @ ..=Part::MOST)) if part <= parts => Ok(Part { part, parts }),
+        _ => Err(format!("K/N with 1 <= K <= N <= {}, as in 2/8", Part::MOST)),
+    }
 }
 
 #[derive(Args, Clone, Debug)]

@@ -89,8 +89,7 @@ fn machine(args: &CalibrateArgs) -> Result<(Settings, Scene), Failure> {
     let settings = super::config::load(name)?;
     let told = &settings.monitor;
     let (sensing, machine) = (&told.sensing, &told.detector.machine);
-    let counts = u32::from(sensing.full_scale) + 1;
-    let bits = counts.next_power_of_two().trailing_zeros().max(4);
+    let bits = (u16::BITS - sensing.full_scale.leading_zeros()).max(4);
     let mut scene = Scene::load("rig")?;
     (scene.name, scene.title) = (name.clone(), None);
     scene.retainer.clearance = f64::from(machine.clearance);
@@ -122,11 +121,11 @@ fn check(
     for row in recording.by_ref() {
         let row = row?;
         let (positions, _) = row.positions.as_chunks::<2>();
-        for (plane, position) in positions.iter().enumerate() {
-            let angle = f64::from(sensing.mounting_angle[plane]);
-            let along = to_sensor_axes(*position, angle);
+        let mounted = positions.iter().zip(sensing.mounting_angle);
+        for ((position, angle), readings) in mounted.zip(&mut readings) {
+            let along = to_sensor_axes(*position, angle.into());
             if along.iter().all(is_shown) {
-                readings[plane].push(along);
+                readings.push(along);
             }
         }
     }

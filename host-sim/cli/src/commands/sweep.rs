@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use super::args::{MergeArgs, SweepArgs, SweepCommand};
+use super::args::{SweepArgs, SweepCommand};
 use crate::gate::{Gate, Outputs, note};
 use touchdown_base::failure::Failure;
 use touchdown_sweep::{Part, Plan, RESULTS, Results, find, found, run, table, write};
 
 /// Runs a plan, or a part of it, or puts parts together.
 pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
-    if let Some(SweepCommand::Merge(args)) = &args.command {
-        return merge(args);
+    if let Some(SweepCommand::Merge { folders, json }) = &args.command {
+        return merge(folders, json);
     }
     let Some(name) = &args.plan else {
         return Err(Failure::Usage(
@@ -57,10 +57,10 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     finish(&plan, write(&plan, &paths, Path::new(&folder))?, out)
 }
 
-fn merge(args: &MergeArgs) -> Result<(), Failure> {
-    let (plan, parts) = found(&args.folders)?;
-    let folder = args.folders.first().cloned().unwrap_or_default();
-    let out = gate(&folder, &args.json).reads("FOLDER", &parts).open()?;
+fn merge(folders: &[String], json: &Option<String>) -> Result<(), Failure> {
+    let (plan, parts) = found(folders)?;
+    let folder = folders.first().cloned().unwrap_or_default();
+    let out = gate(&folder, json).reads("FOLDER", &parts).open()?;
     finish(&plan, write(&plan, &parts, Path::new(&folder))?, out)
 }
 

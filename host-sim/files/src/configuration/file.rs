@@ -12,9 +12,6 @@ use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::read;
 use touchdown_scene::rule::translate;
 
-/// The table that closes a file.
-const LAST: &str = "guard";
-
 /// The settings of the file `text`, as valid as the controller wants them; errors name it `name`.
 pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
     let tables: Tables = read(name, text)?;
@@ -22,11 +19,8 @@ pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
         let line = text.lines().count().max(1) as u64;
         return Err(InputError::at_line(name, line, rule));
     }
-    let checked = tables.settings().and_then(|it| match it.validate() {
-        Ok(()) => Ok(it),
-        Err(why) => Err(key_of(&why)),
-    });
-    checked.map_err(|flaw| {
+    let valid = |it: Settings| it.validate().map(|()| it).map_err(|why| key_of(&why));
+    tables.settings().and_then(valid).map_err(|flaw| {
         let error = InputError::at_span(name, text, flaw.span(text), flaw.rule);
         match flaw.table {
             // A secret.
@@ -42,11 +36,11 @@ fn cut_short(text: &str) -> Option<String> {
     let tables = root.get_ref().iter();
     let (name, table) = tables.max_by_key(|(name, _)| name.span().start)?;
     let keys = table.get_ref().as_table();
-    let keys = keys.filter(|_| name.get_ref() == LAST);
+    let keys = keys.filter(|_| name.get_ref() == "guard");
     let all = toml::Table::try_from(GuardConfig::default()).unwrap_or_default();
     let why = match keys.map(|keys| all.keys().find(|it| !keys.contains_key(it.as_str()))) {
-        None => format!("the last table must be [{LAST}]"),
-        Some(Some(key)) => format!("missing required key `{key}` of [{LAST}]"),
+        None => "the last table must be [guard]".to_owned(),
+        Some(Some(key)) => format!("missing required key `{key}` of [guard]"),
         Some(None) if text.ends_with('\n') => return None,
         Some(None) => "the last line has no end".to_owned(),
     };

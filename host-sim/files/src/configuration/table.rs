@@ -9,7 +9,7 @@ use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConf
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block::{Settings, Wiring};
 
-use crate::link::{KEY_RULE, parse_key};
+use crate::link::parse_key;
 use touchdown_scene::calibration::{CalibrationTable, DEGREE, PlaneTable, text_of_day};
 use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
@@ -92,7 +92,6 @@ impl From<&Settings> for Tables {
         let mass = shortest(machine.mass, 1.0);
         let radius = shortest(machine.rotor_radius, MILLI);
         let per_inertia = 1.0 / (mass * (MILLI * radius) * (MILLI * radius));
-        let fitted = (0..CHANNELS as u8).filter(|it| monitor.fitted >> it & 1 != 0);
         Self {
             rotor: RotorTable {
                 mass_kg: mass,
@@ -110,7 +109,7 @@ impl From<&Settings> for Tables {
                 sample_rate_hz: shortest(detector.sample_rate, 1.0),
             },
             sensors: SensorsTable {
-                channels: fitted.map(|it| channel_name(it).to_owned()).collect(),
+                channels: channels(monitor.fitted),
                 resolution_um: shortest(sensing.resolution, MICRO),
                 zero_count: shortest(sensing.zero_count, 1.0),
                 full_scale: sensing.full_scale,
@@ -168,7 +167,7 @@ impl Tables {
         let calibration = self.calibration.as_ref();
         let calibration = calibration.map(CalibrationTable::check).transpose()?;
         let key = self.link.as_ref().and_then(|it| it.key.as_deref());
-        let no_key = || Diagnostic::new("link", "key", KEY_RULE);
+        let parse = |it| parse_key(it).map_err(|rule| Diagnostic::new("link", "key", rule));
         Ok(Settings {
             monitor: MonitorConfig {
                 fitted: sensors.fitted()?,
@@ -192,7 +191,7 @@ impl Tables {
                 pulses_per_turn: sensors.pulses_per_turn,
                 levitation: sensors.levitation_signal,
             },
-            key: key.map(|it| parse_key(it).ok_or_else(no_key)).transpose()?,
+            key: key.map(parse).transpose()?,
         })
     }
 }
@@ -201,17 +200,18 @@ impl SensorsTable {
     /// A bit for each channel.
     fn fitted(&self) -> Result<u8, Diagnostic> {
         let rule = "channels must be \"ax\" and \"ay\", \"bx\" and \"by\", or all four, each once";
-        let bit = |name: &String| {
-            let channel = (0..CHANNELS as u8).find(|it| channel_name(*it) == name);
-            channel.map(|it| 1_u8 << it)
-        };
-        let mut bits = self.channels.iter().map(bit);
-        let fitted = bits.try_fold(0, |all, it| {
-            it.filter(|it| all & it == 0).map(|it| all | it)
-        });
-        let can_be = fitted.filter(|it| [0b0011, 0b1100, 0b1111].contains(it));
-        can_be.ok_or_else(|| Diagnostic::new("sensors", "channels", rule))
+        let mut told = self.channels.clone();
+        told.sort();
+        let mut can_be = [0b0011, 0b1100, 0b1111].into_iter();
+        let fitted = can_be.find(|it| channels(*it) == told);
+        fitted.ok_or_else(|| Diagnostic::new("sensors", "channels", rule))
     }
+}
+
+/// Names of the channels that have a bit, in alphabetical order.
+fn channels(fitted: u8) -> Vec<String> {
+    let channels = (0..CHANNELS as u8).filter(|it| fitted >> it & 1 != 0);
+    channels.map(|it| channel_name(it).to_owned()).collect()
 }
 
 impl BallBearingTable {

@@ -14,9 +14,8 @@ use touchdown_protocol::wire::{Record, decode_record};
 use super::error::LinkError;
 use super::line::Line;
 
-/// Without an answer for so long, ms, the request is sent again: soon where one was damaged, and ever
-/// less often, as a controller that is slow is not helped by more of them. 4.4 s in all: a sector that is
-/// being erased takes 0.4 s, an emulator on a busy machine more.
+/// Without an answer for so long, ms, the request is sent again: soon where one was damaged, ever less often where the
+/// controller is slow. 4.4 s in all: a sector that is being erased takes 0.4 s, an emulator on a busy machine more.
 const PATIENCE: [u64; 7] = [200, 200, 400, 400, 800, 800, 1_600];
 /// The same for an emulator on a busy desktop, and for a line with noise: 35 s.
 const LONG_PATIENCE: [u64; 20] = {
@@ -115,10 +114,9 @@ impl Client {
     /// What the controller says by itself, after at most `limit`.
     pub fn listen(&mut self, limit: Duration) -> Result<Option<Told>, LinkError> {
         let end = Instant::now() + limit;
-        while self.told.is_empty() {
-            let Some((_, reply)) = self.receive(end)? else {
-                break;
-            };
+        while self.told.is_empty()
+            && let Some((_, reply)) = self.receive(end)?
+        {
             self.keep(reply);
         }
         Ok(self.told.pop_front())
@@ -180,8 +178,7 @@ impl Client {
         asked!(self, Request::Episodes, Reply::Episodes(range) => range)
     }
 
-    /// Bytes of an episode from `offset` on, and how many the whole has; `None` where there is no such
-    /// episode.
+    /// Bytes of an episode from `offset` on, and how many the whole has; `None` where there is no such episode.
     pub fn chunk(
         &mut self,
         episode: u32,
@@ -195,19 +192,14 @@ impl Client {
         }
     }
 
-    /// All bytes of an episode; `None` where there is no such episode. `progress` hears how many are there
-    /// of how many.
+    /// All bytes of an episode; `None` where there is none. `progress` hears how many are there of how many.
     pub fn episode(
         &mut self,
         episode: u32,
         mut progress: impl FnMut(u32, u32),
     ) -> Result<Option<Vec<u8>>, LinkError> {
         let mut bytes = Vec::new();
-        loop {
-            let offset = bytes.len() as u32;
-            let Some((total, chunk)) = self.chunk(episode, offset)? else {
-                return Ok(None);
-            };
+        while let Some((total, chunk)) = self.chunk(episode, bytes.len() as u32)? {
             if total > LONGEST_EPISODE {
                 return Err(LinkError::Senseless);
             }
@@ -217,6 +209,7 @@ impl Client {
                 return Ok(Some(bytes));
             }
         }
+        Ok(None)
     }
 
     /// The next whole frame until `end`.

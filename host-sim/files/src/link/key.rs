@@ -6,23 +6,20 @@ use std::path::Path;
 use touchdown_base::input_error::InputError;
 use touchdown_protocol::config_block::{KEY_BYTES, Key};
 
-/// What a key must be.
-pub const RULE: &str = "the key must be 32 hexadecimal digits, not all of them 0";
-
-/// The key of `text`.
-pub fn parse(text: &str) -> Option<Key> {
+/// The key of `text`, or the rule that it breaks.
+pub fn parse(text: &str) -> Result<Key, &'static str> {
     let is_hex = text.len() == 2 * KEY_BYTES && text.bytes().all(|it| it.is_ascii_hexdigit());
-    let number = u128::from_str_radix(text, 16)
-        .ok()
-        .filter(|it| is_hex && *it != 0)?;
-    Some(Key(number.to_be_bytes()))
+    match u128::from_str_radix(text, 16) {
+        Ok(number @ 1..) if is_hex => Ok(Key(number.to_be_bytes())),
+        _ => Err("the key must be 32 hexadecimal digits, not all of them 0"),
+    }
 }
 
 /// The key in the file `name`, and a warning where others may read it.
 pub fn load(name: &str) -> Result<(Key, Option<String>), InputError> {
     let path = Path::new(name);
     let text = InputError::read(path, 1_000)?;
-    let key = parse(text.trim()).ok_or_else(|| InputError::at_line(name, 1, RULE))?;
+    let key = parse(text.trim()).map_err(|rule| InputError::at_line(name, 1, rule))?;
     let warning = others_read(path).then(|| format!("{name}: others can read this key"));
     Ok((key, warning))
 }

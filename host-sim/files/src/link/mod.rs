@@ -18,6 +18,6 @@ mod port;
 pub use client::{Client, Told};
 pub use error::{LinkError, refused_why, why};
 pub use key::load as load_key;
-pub(crate) use key::{RULE as KEY_RULE, parse as parse_key};
+pub(crate) use key::parse as parse_key;
 pub use line::Line;
 pub use port::Port;
