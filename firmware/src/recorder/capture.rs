@@ -121,17 +121,18 @@ impl Capture {
         plan: &Plan,
         tick: u64,
     ) {
-        let is_history = self.trigger.is_none();
         if plan.header.pulsed != 0 {
+            let is_history = self.trigger.is_none();
             self.pulses.take(ring, self.held, sample, is_history);
         }
+        let counts = waveform::counts(sample);
         if let Some(place) = buffer.get_mut(wrapped(self.first + self.held)) {
-            *place = waveform::counts(sample);
+            *place = counts;
         }
         self.newest = tick;
         self.held += 1;
         self.fresh += 1;
-        if is_history && self.fresh == plan.before {
+        if self.trigger.is_none() && self.fresh == plan.before {
             self.mark();
         }
     }

@@ -182,13 +182,10 @@ fn logged(episode: &Episode) -> String {
         (false, Completeness::Yes) => "whole",
         (false, Completeness::Open | Completeness::CutOff) => "open at the end of the run",
     };
-    format!(
-        "log: episode {}, {}; {} samples, {} events, {state}\n",
-        episode.sequence,
-        episode
-            .header
-            .map_or("no header", |it| it.trigger_kind.into()),
-        episode.samples.iter().flatten().count(),
-        episode.events.len(),
-    )
+    let trigger = episode
+        .header
+        .map_or("no header", |it| it.trigger_kind.into());
+    let (number, events) = (episode.sequence, episode.events.len());
+    let samples = episode.samples.iter().flatten().count();
+    format!("log: episode {number}, {trigger}; {samples} samples, {events} events, {state}\n")
 }

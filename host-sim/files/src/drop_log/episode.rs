@@ -197,19 +197,17 @@ impl Episode {
     /// Displacements in the scene's axes, m, as the monitor read them; NaN where there is none. On planes that have an
     /// angle or a commissioning check one channel that is missing takes its plane.
     pub fn positions(&self, header: &Header, counts: &Option<Counts>) -> [f64; CHANNELS] {
-        let mut places = [f64::NAN; CHANNELS];
         let count = |channel: usize| {
             let count = counts.as_ref()?.get(channel).copied()?;
             (count != NO_VALUE && header.fitted & (1 << channel) != 0).then_some(count)
         };
         if header.is_plain() {
-            for (channel, place) in places.iter_mut().enumerate() {
-                if let Some(count) = count(channel) {
-                    let from_zero = f64::from(count) - f64::from(header.zero_count);
-                    *place = from_zero * f64::from(header.resolution);
-                }
-            }
-        } else if let Ok(sensing) = Sensing::try_new(&header.sensing()) {
+            let (zero, resolution) = (f64::from(header.zero_count), f64::from(header.resolution));
+            let place = |count| (f64::from(count) - zero) * resolution;
+            return std::array::from_fn(|channel| count(channel).map_or(f64::NAN, place));
+        }
+        let mut places = [f64::NAN; CHANNELS];
+        if let Ok(sensing) = Sensing::try_new(&header.sensing()) {
             let counts = std::array::from_fn(|channel| count(channel).map(f32::from));
             for (to, place) in places.chunks_exact_mut(2).zip(sensing.place(counts)) {
                 to.copy_from_slice(&place.map_or([f64::NAN; 2], |it| it.map(f64::from)));
@@ -249,22 +247,20 @@ fn impossible(header: &Header) -> Vec<String> {
     let positive = |value: f32| value.is_finite() && value > 0.0;
     let day = header.calibration.map_or(0, |it| it.date);
     let is_sensed = header.is_plain() || Sensing::try_new(&header.sensing()).is_ok();
-    let mut flaws = Vec::new();
-    let mut rule = |holds: bool, name: &str, value: &dyn Display| {
-        if !holds {
-            let flaw = format!("the header's {name} is {value}, which no recorder writes");
-            flaws.push(flaw);
-        }
-    };
     let it = header;
-    rule(positive(it.sample_rate), "sample_rate", &it.sample_rate);
-    rule(positive(it.resolution), "resolution", &it.resolution);
-    rule(it.zero_count.is_finite(), "zero_count", &it.zero_count);
-    rule(it.decimation > 0, "decimation", &it.decimation);
-    rule(it.full_scale > 0, "full_scale", &it.full_scale);
-    rule((1..16).contains(&it.fitted), "fitted", &it.fitted);
-    rule(it.pulsed < 1 << TACHOMETERS, "pulsed", &it.pulsed);
-    rule(it.first <= it.trigger, "first", &it.first);
-    rule(is_sensed, "calibration or mounting, of the day", &day);
-    flaws
+    let rules: [(bool, &str, &dyn Display); 9] = [
+        (positive(it.sample_rate), "sample_rate", &it.sample_rate),
+        (positive(it.resolution), "resolution", &it.resolution),
+        (it.zero_count.is_finite(), "zero_count", &it.zero_count),
+        (it.decimation > 0, "decimation", &it.decimation),
+        (it.full_scale > 0, "full_scale", &it.full_scale),
+        ((1..16).contains(&it.fitted), "fitted", &it.fitted),
+        (it.pulsed < 1 << TACHOMETERS, "pulsed", &it.pulsed),
+        (it.first <= it.trigger, "first", &it.first),
+        (is_sensed, "calibration or mounting, of the day", &day),
+    ];
+    let broken = rules.iter().filter(|(holds, ..)| !holds);
+    broken
+        .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
+        .collect()
 }

@@ -151,10 +151,10 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
             it.time_s * 1e3
         );
     }
-    let orders = episode.orders.iter();
-    text + &orders
-        .map(|it| format!("order: {it}\n"))
-        .collect::<String>()
+    for it in &episode.orders {
+        text += &format!("order: {it}\n");
+    }
+    text
 }
 
 fn ended(ending: &Ending) -> String {

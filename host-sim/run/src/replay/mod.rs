@@ -107,9 +107,8 @@ pub fn recording(
     };
     let mut config = scene.monitor_config();
     config.fitted = sensors.fitted();
-    config.tachometers = config
-        .tachometers
-        .and_then(|tachometers| columns.of_tachometers(tachometers));
+    let tachometers = config.tachometers;
+    config.tachometers = tachometers.and_then(|it| columns.of_tachometers(it));
     config.detector.sample_rate = rate as f32;
     let procedure = Procedure {
         learnt: recording.learnt.take(),
@@ -117,7 +116,6 @@ pub fn recording(
         clear_at: orders.samples(recording.start, rate)?,
         zones: scene.zones,
     };
-    let is_warm = procedure.learnt.is_some();
     let mut flaw = None;
     let mut envelope = Envelope::new(columns.planes);
     let mut analyser = Analyser::new(rate);
@@ -137,7 +135,7 @@ pub fn recording(
     if let Some(time) = orders.clear_at.iter().find(is_late) {
         return Err(outside(*time));
     }
-    let episode = is_warm.then(|| EPISODE.to_owned());
+    let episode = procedure.learnt.map(|_| EPISODE.to_owned());
     Ok(Replay {
         format: episode.or(recording.format.take()),
         rate,

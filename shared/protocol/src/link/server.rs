@@ -63,7 +63,8 @@ pub trait Device {
 /// The controller's side of the link.
 #[derive(Clone, Debug)]
 pub struct Server {
-    hello: Hello,
+    firmware: &'static str,
+    sample_rate: f32,
     decoder: Decoder,
     damaged: u32,
     sequence: u8,
@@ -75,12 +76,10 @@ pub struct Server {
 
 impl Server {
     /// Says `firmware` and `sample_rate` (Hz) to who asks, and obeys who has the `key` of the block in force.
-    pub fn new(firmware: &str, sample_rate: f32, key: Option<Key>) -> Self {
+    pub fn new(firmware: &'static str, sample_rate: f32, key: Option<Key>) -> Self {
         Self {
-            hello: Hello {
-                firmware: shortened(firmware),
-                sample_rate,
-            },
+            firmware,
+            sample_rate,
             decoder: Decoder::default(),
             damaged: 0,
             sequence: 0,
@@ -100,7 +99,7 @@ impl Server {
             }
             // In its version: so a desktop of another one learns who is there.
             Err(FrameError::Hello(version, sequence)) => {
-                let hello = Reply::Hello(self.hello.clone());
+                let hello = Reply::Hello(self.hello());
                 frame::encode_as(version, sequence, &hello)
             }
             Err(_) => {
@@ -126,6 +125,13 @@ impl Server {
         frame::encode(self.sequence, reply)
     }
 
+    fn hello(&self) -> Hello {
+        Hello {
+            firmware: shortened(self.firmware),
+            sample_rate: self.sample_rate,
+        }
+    }
+
     fn state_of(&self, device: &mut impl Device) -> State {
         let mut state = device.state();
         state.counters.damaged_frames = self.damaged;
@@ -134,7 +140,7 @@ impl Server {
 
     fn answer(&mut self, request: Request, device: &mut impl Device) -> Result<Reply, Refusal> {
         Ok(match request {
-            Request::Hello => Reply::Hello(self.hello.clone()),
+            Request::Hello => Reply::Hello(self.hello()),
             Request::State => Reply::State(self.state_of(device)),
             Request::ReadConfig => {
                 let keyed = self.right.key.is_some();
