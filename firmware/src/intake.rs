@@ -42,7 +42,12 @@ impl Ring {
         let gate = &self.gate;
         let intake = Intake {
             sensing: Sensing::try_new(&config.sensing)?,
-            guard: Guard::try_new(config)?,
+            guard: Guard::try_new(
+                &config.guard,
+                &config.detector,
+                config.fitted,
+                config.commissioned,
+            )?,
             state: GuardState::default(),
             next: 0,
             samples,

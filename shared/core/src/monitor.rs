@@ -105,7 +105,7 @@ impl Monitor {
             spin: SpinCheck::new(detector),
             severeness: SeverityModel::new(detector),
             touches: Touches::new(clearance, rate),
-            guard: Guard::try_new(config)?,
+            guard: Guard::try_new(&config.guard, detector, config.fitted, config.commissioned)?,
         })
     }
 

@@ -4,9 +4,7 @@ use proptest::prelude::*;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::{Alarm, Level, Notice, Notices, Plane, Touch};
 use touchdown_core::guard::{Guard, GuardConfig, GuardState, Verdict};
-use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_core::sensing::SensingConfig;
 use touchdown_core::touch::{TouchState, Touches};
 
 const GAP: f32 = 0.3e-3;
@@ -24,39 +22,27 @@ struct Bench {
     stuck: u8,
 }
 
-fn config(sample_rate: f32, gravity: f32, fitted: u8, commissioned: bool) -> MonitorConfig {
-    MonitorConfig {
-        fitted,
-        sensing: SensingConfig {
-            resolution: 0.5e-6,
-            zero_count: 2_048.0,
-            full_scale: 4_095,
-            mounting_angle: [0.0; 2],
-            calibration: None,
+fn detector(rate: f32, gravity: f32) -> DetectorConfig {
+    DetectorConfig {
+        sample_rate: rate,
+        machine: MachineConfig {
+            mass: 3.42,
+            clearance: GAP,
+            gravity,
+            rotor_radius: 24e-3,
+            inertia_ratio: 0.5,
+            friction: 0.1,
+            restitution: 0.8,
+            spin: 3_141.6,
         },
-        tachometers: None,
-        detector: DetectorConfig {
-            sample_rate,
-            machine: MachineConfig {
-                mass: 3.42,
-                clearance: GAP,
-                gravity,
-                rotor_radius: 24e-3,
-                inertia_ratio: 0.5,
-                friction: 0.1,
-                restitution: 0.8,
-                spin: 3_141.6,
-            },
-            tuning: Tuning::default(),
-        },
-        guard: GuardConfig::default(),
-        commissioned,
+        tuning: Tuning::default(),
     }
 }
 
 impl Bench {
     fn new(rate: f32, gravity: f32, commissioned: bool) -> Self {
-        let guard = Guard::try_new(&config(rate, gravity, 0b1111, commissioned));
+        let config = GuardConfig::default();
+        let guard = Guard::try_new(&config, &detector(rate, gravity), 0b1111, commissioned);
         Self {
             guard: guard.expect("a valid configuration"),
             state: GuardState::default(),
@@ -266,8 +252,8 @@ fn a_channel_that_is_not_seen_to_work_proves_nothing() {
         early | bench.stay([0.0; 2], 400)
     });
     assert!(!proven);
-    let config = config(RATE, 9.81, 0b0011, false);
-    bench.guard = Guard::try_new(&config).expect("a valid configuration");
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
+    bench.guard = Guard::try_new(&config, &machine, 0b0011, false).expect("a valid configuration");
     assert!(bench.stay([0.0; 2], 4_100));
 }
 
@@ -289,8 +275,8 @@ fn a_channel_that_freezes_is_told_and_one_that_is_not_fitted_is_not() {
         assert!(!bench.verdict().lost);
     }
     let mut bench = Bench::rig();
-    let config = config(RATE, 9.81, 0b0011, false);
-    bench.guard = Guard::try_new(&config).expect("a valid configuration");
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
+    bench.guard = Guard::try_new(&config, &machine, 0b0011, false).expect("a valid configuration");
     bench.stuck = 0b1100;
     for _ in 0..1_000 {
         bench.planes([Some([0.0; 2]), None], None);
@@ -301,8 +287,9 @@ fn a_channel_that_freezes_is_told_and_one_that_is_not_fitted_is_not() {
 /// Without a plane nothing would be asked of a proof.
 #[test]
 fn fitted_are_whole_planes_and_one_at_least() {
+    let (config, machine) = (GuardConfig::default(), detector(RATE, 9.81));
     for fitted in 0..=u8::MAX {
-        let is_taken = Guard::try_new(&config(RATE, 9.81, fitted, false)).is_ok();
+        let is_taken = Guard::try_new(&config, &machine, fitted, false).is_ok();
         assert_eq!(
             is_taken,
             [0b0011, 0b1100, 0b1111].contains(&fitted),

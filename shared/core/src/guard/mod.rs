@@ -7,8 +7,8 @@ mod proof;
 use self::limits::{ALERT, BELOW, DANGER, Limits, PlaneLimits};
 use self::proof::Proof;
 pub use self::proof::ProofState;
+use crate::config::DetectorConfig;
 use crate::event::{Alarm, Level, Notice, Notices, Plane};
-use crate::monitor::MonitorConfig;
 use crate::sample::{Sample, count_in_a_row};
 use crate::sensing::PLANES;
 use touchdown_rotor::error::ConfigError;
@@ -89,19 +89,24 @@ pub struct Verdict {
 }
 
 impl Guard {
-    /// Checks what is its own of `config`; the detector's part must be valid.
-    pub fn try_new(config: &MonitorConfig) -> Result<Self, ConfigError> {
-        let GuardConfig { alert, danger } = config.guard;
+    /// Checks `config`; that of the detector must be valid. `fitted` has a bit for each channel; `commissioned` says
+    /// whether a commissioning check is on record.
+    pub fn try_new(
+        config: &GuardConfig,
+        detector: &DetectorConfig,
+        fitted: u8,
+        commissioned: bool,
+    ) -> Result<Self, ConfigError> {
+        let GuardConfig { alert, danger } = *config;
         if !(0.2..=0.9).contains(&alert) {
             return Err(ConfigError::OutOfRange("alert", "0.2 to 0.9"));
         }
         if !(danger > alert && danger <= 0.95) {
             return Err(ConfigError::OutOfRange("danger", "above alert, to 0.95"));
         }
-        let detector = &config.detector;
         let (clearance, rate) = (detector.machine.clearance, detector.sample_rate);
         let most_lost = ((LOST_TIME * rate) as u32).max(2) - 1;
-        let most_lost = match config.fitted {
+        let most_lost = match fitted {
             0b0011 => [most_lost, u32::MAX],
             0b1100 => [u32::MAX, most_lost],
             0b1111 => [most_lost; PLANES],
@@ -109,8 +114,8 @@ impl Guard {
         };
         Ok(Self {
             per_clearance: 1.0 / clearance,
-            limits: Limits::new(&config.guard, clearance, rate),
-            proof: Proof::new(config),
+            limits: Limits::new(config, clearance, rate),
+            proof: Proof::new(config, detector, fitted, commissioned),
             most_lost,
         })
     }

@@ -6,7 +6,8 @@
 //!
 //! Each channel that is fitted has to be seen to work: a stuck one reads as the stillest of rotors.
 
-use crate::monitor::MonitorConfig;
+use super::GuardConfig;
+use crate::config::DetectorConfig;
 use crate::sample::{CHANNELS, Sample};
 use crate::sensing::PLANES;
 
@@ -91,19 +92,24 @@ impl Default for PlaneProof {
 }
 
 impl Proof {
-    pub(super) fn new(config: &MonitorConfig) -> Self {
-        let clearance = config.detector.machine.clearance;
-        let turns = ((HELD * config.detector.sample_rate) as u16 / TURN).max(4);
+    pub(super) fn new(
+        config: &GuardConfig,
+        detector: &DetectorConfig,
+        fitted: u8,
+        commissioned: bool,
+    ) -> Self {
+        let clearance = detector.machine.clearance;
+        let turns = ((HELD * detector.sample_rate) as u16 / TURN).max(4);
         let square = |part: f32| (part * clearance) * (part * clearance);
         Self {
-            has_weight: config.detector.machine.gravity > 0.0,
-            commissioned: config.commissioned,
-            fitted: config.fitted,
+            has_weight: detector.machine.gravity > 0.0,
+            commissioned,
+            fitted,
             held_samples: TURN * turns,
             scale: 1.0 / (f32::from(turns) * f32::from(HELDS)),
             height: HEIGHT * clearance,
             spread_square: square(SPREAD),
-            alert_square: square(config.guard.alert),
+            alert_square: square(config.alert),
         }
     }
 
