@@ -175,7 +175,7 @@ impl Plane {
     }
 }
 
-/// Variance of the means of parts of the recording over what independent residuals (mean square given) make; 1 at least.
+/// Variance of means of parts, fewer than the residuals, over what independent residuals (mean square given) make; 1 at least.
 fn correlation(residuals: &[[f64; 2]], square: f64) -> f64 {
     let length = residuals.len() / PARTS;
     let parts = residuals.chunks_exact(length);
