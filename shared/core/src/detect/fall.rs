@@ -189,17 +189,17 @@ impl FallTest {
         let since = (now.since(pending.since) - late) * self.period;
         let passed = now.since(pending.declared) - late;
         let since_onset = (since / (f32::from(self.stride) * self.period)) as usize;
-        let number = SHORT.min(since_onset).min(blocks.filled);
-        if number < SHORT {
+        let whole = since_onset.min(blocks.filled);
+        if whole < SHORT {
             return FallVerdict::Open;
         }
         let mut comes_back = true;
         for (part, path) in pending.paths.iter().enumerate().skip(usize::from(!orbits)) {
-            let path = Some((path, passed));
-            let fit = self.fit(blocks, part, number, path, variance);
-            let whole = since_onset.min(blocks.filled);
-            let is_one = self.is_fall(&fit, since)
-                && self.is_steady(&self.fit(blocks, part, whole, path, variance));
+            let fit_of = |number| self.fit(blocks, part, number, Some((path, passed)), variance);
+            let fit = fit_of(SHORT);
+            let is_sharp = fit.error < SHARP * self.gravity;
+            let is_one = self.is_fall(&if is_sharp { fit } else { fit_of(whole) }, since)
+                && self.is_steady(&fit_of(whole));
             if is_one {
                 return FallVerdict::Certain;
             }
