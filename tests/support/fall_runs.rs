@@ -198,7 +198,7 @@ fn lifted(rng: &mut Rng, kinds: &[Kind], after: f64, end: Option<Phase>) -> (Mac
     let machine = machine(rng);
     let rate = any(rng, &[10_000.0, 20_000.0, 50_000.0]);
     let mut told = Told::right(rng);
-    told.chain.noise = rng.uniform(0.3, 1.0);
+    told.chain.noise = rng.uniform(0.3, 4.0);
     let time = rng.uniform(0.6, 1.5);
     let calm = 0.6;
     let began = 0.3 + 0.2 + calm;

@@ -13,12 +13,13 @@ use touchdown_rotor::real::sqrt;
 
 /// Length of a block, s.
 const BLOCK: f32 = 0.25e-3;
-/// Blocks that are kept, and those that place, speed and acceleration since an onset are fitted to.
+/// Blocks that are kept, and those that place, speed and acceleration since an onset are fitted to where that is sharp; or
+/// else all since then are.
 const BLOCKS: usize = 16;
 const SHORT: usize = 8;
 
 /// Least time since the onset, and speed as a time of fall, s: a loop of 60 Hz and more has lost half of the
-/// acceleration by then.
+/// acceleration by then. A longer fit has its middle then where that of the short one would be.
 const FALLEN: [f32; 2] = [2.5e-3, 2.25e-3];
 /// Least way, m: that of the time.
 const WAY: f32 = 30e-6;
@@ -93,6 +94,8 @@ struct Cubic {
     place_error: f32,
     error: f32,
     change_error: f32,
+    /// By which it is longer than the short one, s.
+    longer: f32,
 }
 
 impl FallTest {
@@ -198,8 +201,8 @@ impl FallTest {
             let fit_of = |number| self.fit(blocks, part, number, Some((path, passed)), variance);
             let fit = fit_of(SHORT);
             let is_sharp = fit.error < SHARP * self.gravity;
-            let is_one = self.is_fall(&if is_sharp { fit } else { fit_of(whole) }, since)
-                && self.is_steady(&fit_of(whole));
+            let sharpest = if is_sharp { fit } else { fit_of(whole) };
+            let is_one = self.is_fall(&sharpest, since) && self.is_steady(&fit_of(whole));
             if is_one {
                 return FallVerdict::Certain;
             }
@@ -223,7 +226,7 @@ impl FallTest {
         let [part, sigmas] = UNLIKE;
         let off = [fit.place[0], fit.place[1] + way];
         g > 0.0
-            && since >= FALLEN[0]
+            && since >= FALLEN[0] + 0.5 * fit.longer
             && fallen >= FALLEN[1]
             && length(fit.place) >= WAY
             && fit.error < SHARP * g
@@ -275,7 +278,10 @@ impl FallTest {
         let (path, passed) = path.map_or((StraightWay::default(), 0.0), |(path, passed)| {
             (*path, passed - 0.5 * (stride - 1.0))
         });
-        let mut fit = Cubic::default();
+        let mut fit = Cubic {
+            longer: (n - SHORT as f32) * span,
+            ..Cubic::default()
+        };
         for axis in 0..2 {
             let (b, c, d) = (
                 first[axis] * by_first,
