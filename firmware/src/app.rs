@@ -62,8 +62,8 @@ impl App {
         }
     }
 
-    /// Takes note of the coefficients where they lie: from now on a change of them is a fault. The first tick does it
-    /// for who did not, late as that tick is then.
+    /// Takes note of the coefficients where they lie: from now on a change of them is a fault. For who did not, the first
+    /// pass does it.
     #[inline(never)]
     pub fn learn_memory(&mut self) {
         self.coefficients.learn(&self.monitor);
@@ -101,9 +101,6 @@ impl App {
         lost: u32,
         notices: &mut Notices,
     ) {
-        if !self.coefficients.has_learnt() {
-            self.learn_memory();
-        }
         self.monitor.take(&mut self.state, sample, missed, notices);
         if missed {
             self.hear(board, notices);

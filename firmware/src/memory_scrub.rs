@@ -31,11 +31,6 @@ impl MemoryScrub {
         while self.step(held).is_none() {}
     }
 
-    /// Whether it knows what it checks.
-    pub fn has_learnt(&self) -> bool {
-        self.known.is_some()
-    }
-
     /// Takes in the next word of `held`, the same at every step; at the end of a pass, whether it is what it was.
     pub fn step<T>(&mut self, held: &T) -> Option<bool> {
         const {

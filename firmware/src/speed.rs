@@ -10,10 +10,8 @@ const LONGEST: f32 = 1.0;
 /// more than one capture in a sample.
 pub fn pulses_a_capture(pulses: u16, spin: f32, sample_rate: f32) -> u8 {
     let captures = 2.0 * spin.abs() / TAU * f32::from(pulses) / sample_rate;
-    [1, 2, 4]
-        .into_iter()
-        .find(|&it| captures <= f32::from(it))
-        .unwrap_or(8)
+    let fewest = [1, 2, 4].into_iter().find(|&it| captures <= f32::from(it));
+    fewest.unwrap_or(8)
 }
 
 /// Pulses to spin.

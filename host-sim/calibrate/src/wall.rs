@@ -4,6 +4,9 @@
 //! then fit and choice take turns. A rotor that leaves the wall goes inward for many samples: so means over windows tell
 //! it, where single samples cannot.
 
+use rand::SeedableRng as _;
+use rand::seq::IndexedRandom as _;
+use rand_chacha::ChaCha8Rng;
 use touchdown_base::statistics::median;
 
 use super::ellipse::{Ellipse, Fitted};
@@ -84,15 +87,10 @@ fn first(readings: &[[f64; 2]], noise: f64) -> Option<Ellipse> {
         let on = others.iter().filter(|it| **it >= -FAR * noise).count();
         (outside.len() as f64 <= OUTSIDE * some.len() as f64).then_some(on)
     };
-    // Any sequence that visits all choices alike.
-    let mut state = 1_u64;
-    let mut pick = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        *hull[(state >> 33) as usize % hull.len()]
-    };
-    let tries = (0..TRIES).filter_map(|_| Ellipse::through(std::array::from_fn(|_| pick())));
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let five = |_| hull.choose_multiple_array(&mut rng);
+    let tries = (0..TRIES).filter_map(five);
+    let tries = tries.filter_map(|five| Ellipse::through(five.map(|it: &[f64; 2]| *it)));
     let scored = tries.filter_map(|it| Some((score(&it)?, it)));
     let best = scored.reduce(|best, it| if it.0 > best.0 { it } else { best });
     best.map(|(_, it)| it)

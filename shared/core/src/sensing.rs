@@ -63,21 +63,6 @@ impl Default for PlaneCalibration {
     }
 }
 
-impl PlaneCalibration {
-    fn validate(&self) -> Result<(), ConfigError> {
-        if self.zero.iter().any(|zero| !zero.is_finite()) {
-            return Err(ConfigError::NotFinite("zero"));
-        }
-        if self.gain.iter().any(|gain| !(0.2..=5.0).contains(gain)) {
-            return Err(ConfigError::OutOfRange("gain", "0.2 to 5"));
-        }
-        if !(-0.5..=0.5).contains(&self.skew) {
-            return Err(ConfigError::OutOfRange("skew", "-0.5 to 0.5 rad"));
-        }
-        Ok(())
-    }
-}
-
 /// Where the rotor is, by plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
@@ -132,19 +117,32 @@ struct PlaneSensing {
 }
 
 impl PlaneSensing {
-    fn new(config: &SensingConfig, angle: f32, calibration: &PlaneCalibration) -> Self {
-        let PlaneCalibration { zero, gain, skew } = *calibration;
+    fn try_new(
+        config: &SensingConfig,
+        angle: f32,
+        calibration: PlaneCalibration,
+    ) -> Result<Self, ConfigError> {
+        let PlaneCalibration { zero, gain, skew } = calibration;
+        if zero.iter().any(|zero| !zero.is_finite()) {
+            return Err(ConfigError::NotFinite("zero"));
+        }
+        if gain.iter().any(|gain| !(0.2..=5.0).contains(gain)) {
+            return Err(ConfigError::OutOfRange("gain", "0.2 to 5"));
+        }
+        if !(-0.5..=0.5).contains(&skew) {
+            return Err(ConfigError::OutOfRange("skew", "-0.5 to 0.5 rad"));
+        }
         let (sin, cos) = sin_cos(angle);
         let (second_sin, second_cos) = sin_cos(angle + skew);
         let (_, between) = sin_cos(skew);
-        Self {
+        Ok(Self {
             zero_count: zero.map(|zero| config.zero_count + zero / config.resolution),
             resolution: gain.map(|gain| config.resolution / gain),
             turn: [
                 [second_cos / between, sin / between],
                 [second_sin / between, cos / between],
             ],
-        }
+        })
     }
 
     /// From the plane's counts to its position, m.
@@ -171,15 +169,12 @@ impl Sensing {
         if config.mounting_angle.iter().any(|angle| !angle.is_finite()) {
             return Err(ConfigError::NotFinite("mounting_angle"));
         }
-        let calibration = config.calibration.unwrap_or_default();
-        let [a, b] = calibration.planes;
-        a.validate()?;
-        b.validate()?;
+        let [a, b] = config.calibration.unwrap_or_default().planes;
         let [of_a, of_b] = config.mounting_angle;
-        let plane = |angle, calibration| PlaneSensing::new(config, angle, calibration);
+        let plane = |angle, calibration| PlaneSensing::try_new(config, angle, calibration);
         Ok(Self {
             full_scale: config.full_scale,
-            planes: [plane(of_a, &a), plane(of_b, &b)],
+            planes: [plane(of_a, a)?, plane(of_b, b)?],
         })
     }
 

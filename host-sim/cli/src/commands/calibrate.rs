@@ -7,7 +7,7 @@ use chrono::Utc;
 use serde_json::json;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration};
-use touchdown_protocol::config_block::{Settings, Wiring};
+use touchdown_protocol::config_block::Settings;
 
 use super::args::{CalibrateArgs, Scale};
 use super::{load, warn};
@@ -15,7 +15,7 @@ use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::shown;
-use touchdown_calibrate::{Checked, Readings, page, plane};
+use touchdown_calibrate::{Checked, Plane, Readings, page, plane};
 use touchdown_files::configuration;
 use touchdown_files::recording::Recording;
 use touchdown_page::json;
@@ -37,7 +37,8 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         .writes("--report", &args.report)
         .writes("--write", &args.write)
         .open()?;
-    let date = args.date.unwrap_or_else(today);
+    let today = || day(&Utc::now().format("%Y-%m-%d").to_string());
+    let date = args.date.or_else(today).unwrap_or_default();
     let (mut settings, scene) = machine(args)?;
     let name = scene.heading();
     let told_clearance = &mut settings.monitor.detector.machine.clearance;
@@ -76,14 +77,8 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
 fn machine(args: &CalibrateArgs) -> Result<(Settings, Scene), Failure> {
     let Some(name) = &args.config else {
         let scene = load(args.scene.as_deref().unwrap_or_default())?;
-        let settings = Settings {
-            monitor: scene.monitor_config(),
-            wiring: Wiring {
-                pulses_per_turn: None,
-                levitation: scene.sensors.levitation_signal,
-            },
-            key: None,
-        };
+        let mut settings = Settings::from(scene.monitor_config());
+        settings.wiring.levitation = scene.sensors.levitation_signal;
         return Ok((settings, scene));
     };
     let settings = super::config::load(name)?;
@@ -133,13 +128,11 @@ fn check(
     let planes: Vec<_> = (NAMED.into_iter().zip(readings))
         .filter(|((_, channels), it)| config.fitted & channels != 0 && !it.kept.is_empty())
         .map(|((name, _), readings)| {
-            let (refused, plane) = match plane(&readings.kept, resolution, clearance) {
-                Ok(plane) => (plane.why_not(), Some(plane)),
-                Err(why) => (Some(why), None),
-            };
+            let found = plane(&readings.kept, resolution, clearance);
+            let refused = (found.as_ref()).map_or_else(|why| Some(why.clone()), Plane::why_not);
             Checked {
                 name,
-                plane,
+                plane: found.ok(),
                 refused,
                 readings,
             }
@@ -184,19 +177,4 @@ fn record(monitor: &mut MonitorConfig, date: u32, planes: &[Checked]) -> String 
          than wall_tolerance\n",
         100.0 * apart
     )
-}
-
-/// In UTC, as [`day`] has it.
-fn today() -> u32 {
-    day(&Utc::now().format("%Y-%m-%d").to_string()).unwrap_or_default()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn today_is_a_day() {
-        assert!(day(&text_of_day(today())).is_some());
-    }
 }

@@ -1,6 +1,6 @@
 //! Orders to a controller: `touchdown clear`, `log lock`, `log unlock`, `log erase`.
 
-use serde::Serialize;
+use serde_json::json;
 use touchdown_core::event::Act;
 
 use super::args::OrderArgs;
@@ -9,16 +9,6 @@ use crate::gate::Gate;
 use touchdown_base::failure::Failure;
 use touchdown_files::link::{Client, LinkError, Port, load_key, why};
 use touchdown_page::json;
-
-/// What the command tells.
-#[derive(Serialize)]
-struct Told {
-    port: String,
-    order: &'static str,
-    episode: Option<u32>,
-    done: bool,
-    why: Option<String>,
-}
 
 /// Orders, and says what came of it.
 pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
@@ -38,13 +28,10 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
         Act::Lock(it) => format!("episode {it} is locked"),
         Act::Unlock(it) => format!("episode {it} is no longer locked"),
     };
-    let told = Told {
-        port: port.to_string(),
-        order: act.into(),
-        episode: act.episode(),
-        done: why.is_none(),
-        why,
-    };
+    let (order, episode): (&str, _) = (act.into(), act.episode());
+    let told = json!({
+        "port": port.to_string(), "order": order, "episode": episode, "done": why.is_none(), "why": why,
+    });
     out.json("--json", || json::text(&told))?;
     out.finish(&format!("{port}: {done}\n"))?;
     ordered.map_err(|it| it.at(&port))

@@ -13,8 +13,7 @@ use touchdown_rotor::real::sqrt;
 
 /// Length of a block, s.
 const BLOCK: f32 = 0.25e-3;
-/// Blocks that are kept, and those that place, speed and acceleration since an onset are fitted to where that is sharp; or
-/// else all since then are.
+/// Blocks that are kept, and those that a fall since an onset is fitted to where that is sharp, or else all since then.
 const BLOCKS: usize = 16;
 const SHORT: usize = 8;
 
@@ -191,8 +190,8 @@ impl FallTest {
         let late = f32::from(blocks.samples);
         let since = (now.since(pending.since) - late) * self.period;
         let passed = now.since(pending.declared) - late;
-        let since_onset = (since / (f32::from(self.stride) * self.period)) as usize;
-        let whole = since_onset.min(blocks.filled);
+        let since_onset = since / (f32::from(self.stride) * self.period);
+        let whole = (since_onset as usize).min(blocks.filled);
         if whole < SHORT {
             return FallVerdict::Open;
         }
@@ -202,8 +201,7 @@ impl FallTest {
             let fit = fit_of(SHORT);
             let is_sharp = fit.error < SHARP * self.gravity;
             let sharpest = if is_sharp { fit } else { fit_of(whole) };
-            let is_one = self.is_fall(&sharpest, since) && self.is_steady(&fit_of(whole));
-            if is_one {
+            if self.is_fall(&sharpest, since) && self.is_steady(&fit_of(whole)) {
                 return FallVerdict::Certain;
             }
             let ([x, y], [u, v]) = (fit.place, fit.speed);
@@ -250,9 +248,9 @@ impl FallTest {
         path: Option<(&StraightWay, f32)>,
         variance: f32,
     ) -> Cubic {
-        let n = number as f32;
-        let stride = f32::from(self.stride);
-        let (square, cube) = ((n * n - 1.0) / 12.0, (3.0 * n * n - 7.0) / 20.0);
+        let (n, stride) = (number as f32, f32::from(self.stride));
+        let n2 = n * n;
+        let (square, cube) = ((n2 - 1.0) / 12.0, (3.0 * n2 - 7.0) / 20.0);
         let (mut mean, mut first, mut second, mut third) = ([0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]);
         let end = 0.5 * (n - 1.0);
         let origin = blocks.back(0, part);
@@ -268,20 +266,16 @@ impl FallTest {
                 third[axis] += q * x;
             }
         }
-        let n2 = n * n;
         let by_first = 12.0 / (n * (n2 - 1.0));
         let by_second = 180.0 / (n * (n2 - 1.0) * (n2 - 4.0));
         let by_third = 2_800.0 / (n * (n2 - 1.0) * (n2 - 4.0) * (n2 - 9.0));
         let span = stride * self.period;
         let (p, square_span) = (end * end - square, span * span);
         // The last block's middle lies half a block back.
-        let (path, passed) = path.map_or((StraightWay::default(), 0.0), |(path, passed)| {
-            (*path, passed - 0.5 * (stride - 1.0))
-        });
-        let mut fit = Cubic {
-            longer: (n - SHORT as f32) * span,
-            ..Cubic::default()
-        };
+        let half = 0.5 * (stride - 1.0);
+        let (path, passed) =
+            (path.map(|(path, passed)| (*path, passed - half))).unwrap_or_default();
+        let mut fit = Cubic::default();
         for axis in 0..2 {
             let (b, c, d) = (
                 first[axis] * by_first,
@@ -300,6 +294,7 @@ impl FallTest {
         fit.place_error = sigma * sqrt(1.0 / n + end * end * by_first + p * p * by_second);
         fit.error = 2.0 * sigma * sqrt(by_second) / square_span;
         fit.change_error = 6.0 * end * sigma * sqrt(by_third) / square_span;
+        fit.longer = (n - SHORT as f32) * span;
         fit
     }
 }

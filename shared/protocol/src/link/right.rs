@@ -84,9 +84,7 @@ impl Right {
         let right = in_time.map(|(nonce, _)| mac(self.key.as_ref(), &nonce, act, block));
         // All bits at once, wherever the first wrong one is.
         let differ = |it: Mac| u128::from_le_bytes(it) ^ u128::from_le_bytes(*given);
-        match right.map(differ) {
-            Some(0) => Ok(()),
-            _ => Err(Busy::NoRight),
-        }
+        let is_right = right.map(differ) == Some(0);
+        is_right.then_some(()).ok_or(Busy::NoRight)
     }
 }

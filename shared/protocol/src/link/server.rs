@@ -184,9 +184,8 @@ impl Server {
             _ => &[],
         };
         let right = self.right.check(mac, &act, block, sample, device.service());
-        let result = right
-            .map_err(Refusal::from)
-            .and_then(|()| self.act(act, device));
+        let may = right.map_err(Refusal::from);
+        let result = may.and_then(|()| self.act(act, device));
         device.ordered(&Notice::Ordered(Ordered {
             act,
             refused: result.as_ref().err().map_or(0, Refusal::code),
