@@ -62,15 +62,15 @@ pub struct Abilities {
 impl Abilities {
     /// The first parameter of `config` that does not fit.
     pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
-        let has_rate = config.detector.sample_rate == self.sample_rate;
-        let has_scale = config.sensing.full_scale == self.full_scale;
-        let has_marks = self.tachometers || config.tachometers.is_none();
-        let fits = [
-            ("sample_rate", has_rate),
-            ("full_scale", has_scale),
-            ("marks", has_marks),
-        ];
-        fits.iter().find(|it| !it.1).map(|it| it.0)
+        if config.detector.sample_rate != self.sample_rate {
+            Some("sample_rate")
+        } else if config.sensing.full_scale != self.full_scale {
+            Some("full_scale")
+        } else if config.tachometers.is_some() && !self.tachometers {
+            Some("marks")
+        } else {
+            None
+        }
     }
 }
 
