@@ -6,13 +6,15 @@ use std::io::Sink;
 use serde_json::Value;
 use tempfile::TempDir;
 use touchdown_core::event::EventKind;
+use touchdown_core::sample::CHANNELS;
+use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration};
 use touchdown_protocol::controller::Fault;
 use touchdown_protocol::log::reader::Verdict;
 use touchdown_protocol::wire::Switching;
 use touchdown_files::drop_log::Dump;
 use touchdown_run::drop;
 use touchdown_run::emulator::{Emulator, built};
-use touchdown_run::outcome::Outcome;
+use touchdown_run::outcome::{Detection, Outcome};
 use touchdown_run::target::Target;
 use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_tests::binary::touchdown;
@@ -95,6 +97,43 @@ fn the_four_phases_are_declared_on_the_target() {
     ]
     .map(first);
     assert!(order.is_sorted(), "{order:?}");
+}
+
+/// Both planes read the wall at 0.85 of the told clearance, where impacts count as such no more, and off centre.
+#[test]
+fn with_its_commissioning_check_a_drop_told_wrong_is_found_and_gives_the_same_bits() {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    let plane = PlaneCalibration {
+        zero: [20e-6, -12e-6],
+        gain: [0.85, 0.85],
+        skew: 0.07,
+    };
+    let sensors = &mut scene.sensors;
+    sensors.gain_error = [-0.15; CHANNELS];
+    sensors.offset = [plane.zero, plane.zero].concat().try_into().map(|it: [f32; CHANNELS]| it.map(f64::from)).expect("four");
+    sensors.skew = [f64::from(plane.skew); PLANES];
+    let run = |scene: &Scene, target: &Target| {
+        let (outcome, _) = drop::by_reference::<Sink>(scene, target, None).expect("drops");
+        (outcome.detection, outcome.conduct.outputs)
+    };
+    let told = run(&scene, &Target::Host);
+    assert_eq!(run(&scene, &qemu()), told);
+    let planes = [plane; PLANES];
+    scene.sensors.calibration = Some(Calibration { date: 20_261_128, planes });
+    let checked = run(&scene, &Target::Host);
+    assert_eq!(run(&scene, &qemu()), checked);
+    let right = run(&Scene::load("rig").expect("built-in scene"), &Target::Host);
+    let speeds = |it: &Detection| -> Vec<f64> {
+        let impacts = it.events.iter().filter(|it| it.event == EventKind::Impact);
+        impacts.filter_map(|it| it.normal_speed_m_s).collect()
+    };
+    let [told, checked, right] = [&told, &checked, &right].map(|(it, _)| speeds(it));
+    println!("first impacts, m/s: {:?} {:?} {:?}", &told[..3], &checked[..3], &right[..3]);
+    assert!(checked.len().abs_diff(right.len()) <= 2, "{checked:?} {right:?}");
+    for (it, right) in checked.iter().zip(&right).take(5) {
+        assert!((it / right - 1.0).abs() < 0.03, "{it} for {right}");
+    }
+    assert!((told[0] / right[0] - 1.0).abs() > 0.1, "without it the sensors' gain is in the speeds");
 }
 
 /// A bit of a vector that is never used, and of the check itself.
