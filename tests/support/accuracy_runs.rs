@@ -20,6 +20,8 @@ use crate::plant::Rng;
 
 /// Impacts of each drop that are looked at.
 const IMPACTS: usize = 20;
+/// What a run goes on for after them, T.
+const SHORTLY: f64 = 0.02;
 /// Of the reference: of its series' last terms.
 const SERIES: [f64; 2] = [1e-18, 1e-14];
 /// Both agree to this, in T and V.
@@ -114,12 +116,10 @@ struct Seen {
 
 /// None where it takes too long.
 fn look(seed: u64, scene: &Scene) -> Option<Seen> {
+    let scene = &to_last_impact(scene);
     let run = model::run(scene).expect("a valid scene");
-    if run.given_up.is_some() {
-        return None;
-    }
+    let told = accuracy::estimate(scene, &run)?;
     let ours = run.histories.whole;
-    let told = accuracy::estimate(scene, &ours, run.histories.rings.iter())?;
     let truths = if scene.model.rung == Fidelity::Rigid {
         [
             Some(touchdown_truth::simulate(scene)),
@@ -130,6 +130,17 @@ fn look(seed: u64, scene: &Scene) -> Option<Seen> {
     };
     let [fine, coarse] = truths;
     Some(compare(seed, scene, &ours, &told, &[fine?, coarse?]))
+}
+
+/// The same drop until shortly after the impacts that are looked at.
+fn to_last_impact(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let all = model::simulate(&scene).expect("a valid scene").impacts;
+    if let Some(next) = all.get(IMPACTS) {
+        let end = next.state.time + SHORTLY * Units::of(&scene).time;
+        scene.run.duration = scene.run.duration.min(end);
+    }
+    scene
 }
 
 fn truth(scene: &Scene, accuracy: f64) -> Option<History> {

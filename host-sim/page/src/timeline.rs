@@ -250,9 +250,15 @@ fn severity(detection: &Detection) -> String {
     text
 }
 
-/// Of a model or a truth that would take too long.
-pub fn given_up(outcome: &Outcome) -> Vec<String> {
+/// Of a model or a truth that would take too long, or that leaves something out.
+pub fn left_out(outcome: &Outcome) -> Vec<String> {
     let mut lines = Vec::new();
+    if let Some(at) = outcome.model.jammed {
+        lines.push(format!(
+            "model leaves friction out where walls jam, from {} ms on",
+            millis(at)
+        ));
+    }
     if let Some(at) = outcome.model.given_up {
         let too = [", sensors and detector too", ""][usize::from(outcome.by_reference)];
         let line = format!(
@@ -298,7 +304,7 @@ pub fn accuracy(outcome: &Outcome) -> Vec<String> {
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text = String::new();
-    for line in given_up(outcome) {
+    for line in left_out(outcome) {
         text += &(paint.bad(&line) + "\n");
     }
     let regime = outcome.model.histories.whole.regime;

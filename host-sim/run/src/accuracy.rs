@@ -1,20 +1,21 @@
 //! How far the numbers of a run may be from the exact solution of the equations that the model solves.
 //!
 //! The same drop is run again in f64: the rigid rung from starts that differ by a rounding, which shows how fast an error
-//! grows; a rung that steps also by half and twice the step, which shows what the step costs. An
+//! grows; a rung that steps also by shorter and longer steps, which shows what the step costs. An
 //! impact's error is the greatest distance to its nearest in any of these runs. It does not shrink from one impact
-//! to the next. Where it has grown to a tenth of the natural scales, the runs no longer have the same impacts. How good that
-//! is: docs/know/accuracy.md.
+//! to the next. Where it has grown to a tenth of the natural scales, the runs no longer have the same impacts. From where
+//! walls jam nothing is told. How good that is: docs/know/accuracy.md.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use touchdown_base::history::{History, Impact};
 use touchdown_base::progress;
+use touchdown_base::rings::Histories;
 use touchdown_scene::{Fidelity, Math, Precision, Scene, Start};
 use touchdown_truth::Units;
 
-use crate::model;
+use crate::model::{self, ModelRun};
 
 /// Change of a start, in parts of clearance, speed and spin: some roundings.
 const NUDGE: f64 = 16.0 * f64::EPSILON;
@@ -23,9 +24,10 @@ const OTHER: f64 = 0.1;
 /// Longest part of a run by steps that is run again, s.
 const LONGEST: f64 = 1.0;
 
-/// Of a run: part of its step, and of its distance that counts as error. An error of the second order is 4/3 of the distance
-/// to half the step, one of the first order twice that, or the distance to twice the step.
-const STEPPED: &[[f64; 2]] = &[[0.5, 2.0], [2.0, 1.0]];
+/// Of a run: part of its step, and of its distance that counts as error. An error of the first order is 4/3 of the distance
+/// to a quarter of the step. The parts of the longer steps are chosen: these show what a series of bounces hides that
+/// both shorter steps end alike.
+const STEPPED: &[[f64; 2]] = &[[0.25, 4.0 / 3.0], [2.0, 0.5], [3.0, 0.3]];
 const NOT_STEPPED: &[[f64; 2]] = &[[1.0, 2.0]; 3];
 /// What an error is taken to be greater by, in parts of itself for each T or V of it: it changes the course, and so grows
 /// faster than what the other runs show.
@@ -42,7 +44,7 @@ const DIRECTIONS: [[f64; 5]; 3] = [
 pub struct RunAccuracy {
     /// Of each impact.
     pub impacts: Vec<Option<ImpactError>>,
-    /// The first impact that not all runs have.
+    /// The first impact that not all runs have, or that is after walls jammed.
     pub uncertain_from: Option<usize>,
     /// s.
     pub contact_starts_s: Vec<Option<f64>>,
@@ -50,7 +52,7 @@ pub struct RunAccuracy {
     pub lift_offs_s: Vec<Option<f64>>,
     /// s.
     pub rolling_starts_s: Vec<Option<f64>>,
-    /// Whether all runs end in the same regime.
+    /// Whether all runs end in the same regime, and no walls jam.
     pub regime_is_certain: bool,
     /// At the end of the run.
     #[serde(rename = "final")]
@@ -92,31 +94,38 @@ impl RunAccuracy {
     }
 }
 
-/// Of what `scene`'s model gave, `rings` of it where the rotor tilts; none where the run or its step is too long, or another
-/// start or step is refused.
-pub fn estimate<'a>(
-    scene: &Scene,
-    history: &History,
-    rings: impl Iterator<Item = &'a History> + Clone,
-) -> Option<RunAccuracy> {
+/// Of what `scene`'s model gave; none where it was given up, the run or its step is too long, or another start or step is
+/// refused.
+pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
+    let Histories {
+        whole: history,
+        rings,
+    } = &run.histories;
     let stepped = scene.model.rung != Fidelity::Rigid;
-    if stepped && scene.run.duration > LONGEST || !scene.step_is_short() {
+    let long = stepped && scene.run.duration > LONGEST;
+    if run.given_up.is_some() || long || !scene.step_is_short() {
         return None;
     }
     let others = others(scene, if stepped { STEPPED } else { NOT_STEPPED })?;
     let units = Units::of(scene);
+    let jammed = others.iter().filter_map(|it| it.jammed).chain(run.jammed);
+    let jammed = jammed.fold(f64::INFINITY, f64::min);
     let times = |of: fn(&History) -> &[f64]| {
-        let near = |time: &f64| greatest(&others, |it| it.time(*time, of(&it.history)));
+        let near = |time: &f64| {
+            let told = *time < jammed;
+            told.then(|| greatest(&others, |it| it.time(*time, of(&it.history))))?
+        };
         of(history).iter().map(near).collect()
     };
     let mut impacts = Vec::new();
     let mut worst = Some(ImpactError::default());
     for impact in &history.impacts {
+        worst = worst.filter(|_| impact.state.time < jammed);
         worst = worst.and_then(|worst| worse(worst, impact, &others, &units));
         // The model tells the end of a series that is shorter than a step with its last impact.
         let starts = |it: &f64| it.total_cmp(&impact.state.time);
         let ends = |it: &History| stepped && it.contact_starts.binary_search_by(starts).is_ok();
-        let lumped = ends(history) || rings.clone().any(ends);
+        let lumped = ends(history) || rings.iter().any(ends);
         impacts.push(worst.map(|worst| {
             let impulse = worst.normal_impulse_n_s.filter(|_| !lumped);
             let more = 1.0 + GROWTH * worst.apart(&units);
@@ -134,7 +143,8 @@ pub fn estimate<'a>(
         contact_starts_s: times(|it| &it.contact_starts),
         lift_offs_s: times(|it| &it.lift_offs),
         rolling_starts_s: times(|it| &it.rolling_starts),
-        regime_is_certain: others.iter().all(|it| it.history.regime == history.regime),
+        regime_is_certain: jammed == f64::INFINITY
+            && others.iter().all(|it| it.history.regime == history.regime),
         end: end(history, &others),
     })
 }
@@ -142,15 +152,20 @@ pub fn estimate<'a>(
 /// The same drop, run again.
 struct Other {
     history: History,
+    jammed: Option<f64>,
     weight: f64,
 }
 
 fn others(scene: &Scene, runs: &[[f64; 2]]) -> Option<Vec<Other>> {
     let bar = progress::bar("accuracy", runs.len() as u64);
     let run = |(&[step, weight], direction): (&[f64; 2], [f64; 5])| {
-        let history = model::simulate(&again(scene, step, direction)).ok()?;
+        let run = model::run(&again(scene, step, direction)).ok()?;
         bar.inc(1);
-        Some(Other { history, weight })
+        Some(Other {
+            history: run.histories.whole,
+            jammed: run.jammed,
+            weight,
+        })
     };
     let all = runs.into_par_iter().zip(DIRECTIONS).map(run).collect();
     bar.finish_and_clear();

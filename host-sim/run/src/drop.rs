@@ -36,10 +36,7 @@ pub fn run<W: Write>(
     let model = model.finish();
     let truth = model.histories.clone();
     let (mut outcome, stream) = outcome(model, truth, sensed);
-    if outcome.model.given_up.is_none() {
-        let Histories { whole, rings } = &outcome.model.histories;
-        outcome.accuracy = accuracy::estimate(scene, whole, rings.iter());
-    }
+    outcome.accuracy = accuracy::estimate(scene, &outcome.model);
     Ok((outcome, stream))
 }
 

@@ -143,7 +143,9 @@ fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
     for at in ends {
         let held =
             0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
-        let stiffness = held * random.random_range(-1.0..0.3);
+        let stiffness: f64 = held * random.random_range(-1.0..0.3);
+        // A scene has none below 1 N/m.
+        let stiffness = stiffness.abs().max(1.0).copysign(stiffness);
         let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
         let _ = write!(
             text,

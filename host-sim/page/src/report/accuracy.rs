@@ -29,7 +29,7 @@ pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
                 "The same drop was run again: from starts that differ by a rounding, and where the model steps, by other steps."
             }
             @else { "Its errors are not known: it is too long to be run again, or its step too long for other steps to tell." }
-            @for line in crate::timeline::given_up(outcome) { " " strong { "The " (line) "." } }
+            @for line in crate::timeline::left_out(outcome) { " " strong { "The " (line) "." } }
         }
         @if outcome.by_reference { (against_reference(scene, outcome)) }
         @else if let Some(accuracy) = &outcome.accuracy { (estimated(&outcome.model.histories.whole, accuracy)) }

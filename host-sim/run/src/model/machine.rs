@@ -26,6 +26,8 @@ pub struct StepView {
     pub beyond: f64,
     /// What energy there is and was, in m V^2.
     pub energy: CoupledEnergy<f64>,
+    /// Stretches tried so far.
+    pub tried: u64,
 }
 
 /// Told of the machine after each step.
@@ -161,6 +163,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         StepView {
             beyond: walls.chain(stops).fold(-1.0, worse),
             energy: model.energy(state).to_f64(),
+            tried: state.tried(),
         }
     }
 
@@ -293,6 +296,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         let mut run = ModelRun {
             given_up: self.given_up,
             tried: state.tried(),
+            jammed: state.jammed().map(|it| it as f64 * scene.model.step),
             ring: None,
             seats: Vec::new(),
             ledger: Some(ledger(scene, unit, &energy)),

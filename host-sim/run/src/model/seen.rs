@@ -34,6 +34,8 @@ pub struct ModelRun {
     pub given_up: Option<f64>,
     /// Stretches of motion tried, of the rungs `support`, `two-plane` and `coupled`: what it has cost.
     pub tried: u64,
+    /// From when on friction is left out of walls that jam, s.
+    pub jammed: Option<f64>,
     /// Its energy, where the rung keeps account of it.
     pub ledger: Option<Ledger>,
     /// The retainer ring at the end, where it moves or turns.
@@ -52,6 +54,7 @@ impl ModelRun {
             },
             given_up: None,
             tried: 0,
+            jammed: None,
             ledger: None,
             ring: None,
             seats: Vec::new(),

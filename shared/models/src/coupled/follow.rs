@@ -227,6 +227,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         self.calm(&before, state);
         let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.stuck));
         if !passage.rubs {
+            state.jammed = state.jammed.or(Some(state.tick));
             stuck = self.rub_in_turn(state, passage);
         }
         for i in 0..N {

@@ -118,6 +118,7 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
     pub(super) tried: u64,
+    pub(super) jammed: Option<u64>,
 }
 
 impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
@@ -129,6 +130,11 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
     /// Stretches tried so far, one a step at least: what the run has cost.
     pub fn tried(&self) -> u64 {
         self.tried
+    }
+
+    /// The first step in which walls jammed: friction was left out of what the others were solved with.
+    pub fn jammed(&self) -> Option<u64> {
+        self.jammed
     }
 
     /// Time since the release, in whole steps.
@@ -248,6 +254,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             books: Books::default(),
             shortened: 0,
             tried: 0,
+            jammed: None,
         };
         for (sums, x) in state.place.iter_mut().zip([start.position, start.tilt]) {
             *sums = Sums::new(x);

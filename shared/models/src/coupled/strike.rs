@@ -167,8 +167,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let (links, places, stops) = self.links(state, meetings);
         let mut solved = links;
         let most = R::lit(CLOSE) * R::EPSILON * self.size(&links, &places);
-        let mut smooth = !solved.solve() || solved.gained() > most;
+        let smooth = !solved.solve() || solved.gained() > most;
         if smooth {
+            state.jammed = state.jammed.or(Some(state.tick));
             solved = links;
             solved.smooth();
             if !solved.solve() || solved.gained() > most {
@@ -179,8 +180,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     solved.take_in_turn();
                 }
             }
-        } else {
-            smooth = false;
         }
         self.take(state, meetings, &solved, [&places, &stops]);
         for i in 0..N {
