@@ -30,6 +30,8 @@ struct DropJson<'a> {
     truth_given_up_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     model_given_up_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model_jammed_s: Option<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rings: Vec<RingJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -175,6 +177,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome) -> serde_json::Result<String> {
         accuracy: outcome.accuracy.as_ref(),
         truth_given_up_s: outcome.given_up,
         model_given_up_s: outcome.model.given_up,
+        model_jammed_s: outcome.model.jammed,
         validity: validity(scene),
         detector: EventsJson {
             events: events(&outcome.detection),

@@ -20,11 +20,17 @@ fn told_errors_cover_the_true_ones() {
     }
     for it in &kinds {
         // Of these seeds. Over more: docs/know/accuracy.md.
-        assert_eq!((it.told, it.beyond), (it.impacts, 0), "{it:?}");
+        assert!(it.told * 100 > it.impacts * 95, "{it:?}");
+        assert_eq!(it.beyond, 0, "{it:?}");
     }
 }
 
 fn accuracy(arguments: &[&str]) -> (String, Value) {
+    let (text, json) = drop_of(arguments);
+    (text, json["accuracy"].clone())
+}
+
+fn drop_of(arguments: &[&str]) -> (String, Value) {
     let said = Command::new(program())
         .arg("drop")
         .args(arguments)
@@ -34,7 +40,7 @@ fn accuracy(arguments: &[&str]) -> (String, Value) {
     assert!(said.status.success(), "{said:?}");
     let json: Value = serde_json::from_slice(&said.stdout).expect("JSON");
     let text = String::from_utf8(said.stderr).expect("text");
-    (text, json["accuracy"].clone())
+    (text, json)
 }
 
 #[test]
@@ -52,6 +58,31 @@ fn a_drop_tells_how_far_to_trust_it() {
     // The reference tells itself.
     let (text, none) = accuracy(&["rig", "--truth"]);
     assert!(text.contains("model off by") && none.is_null(), "{text}");
+}
+
+/// Friction wedges a sprung ring between rotor and stop: the model leaves it out, and all runs do so alike.
+#[test]
+fn no_error_is_told_from_where_walls_jam() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("jams.toml");
+    let soft = BUILT_IN.iter().find(|it| it.name == "soft-support");
+    let text = soft.expect("built in").text;
+    let jams = text.replace("\nfriction = 0.1", "\nfriction = 2.0");
+    assert_ne!(jams, text);
+    std::fs::write(&path, jams).expect("written");
+    let (text, json) = drop_of(&[path.to_str().expect("text")]);
+    assert!(text.contains("model leaves friction out where walls jam"));
+    let jammed = json["model_jammed_s"].as_f64().expect("a time");
+    let impacts = json["impacts"].as_array().expect("a list");
+    let errors = json["accuracy"]["impacts"].as_array().expect("a list");
+    let mut told = 0;
+    for (impact, error) in impacts.iter().zip(errors) {
+        let at = impact["time_s"].as_f64().expect("a time");
+        assert_eq!(error.is_object(), at < jammed, "{at} s of {jammed}: {error}");
+        told += usize::from(error.is_object());
+    }
+    assert!(0 < told && told < impacts.len(), "{told}");
+    assert_eq!(json["accuracy"]["regime_is_certain"], false);
 }
 
 /// Where a start that is a rounding off may be beyond the wall.
