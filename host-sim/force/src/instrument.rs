@@ -9,7 +9,6 @@ use std::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use rustfft::num_complex::Complex64;
 
 use super::filter::low_pass;
 
@@ -81,16 +80,6 @@ impl Instrument {
     /// Step of the simulation, s.
     pub fn step(&self) -> f64 {
         1.0 / self.rate()
-    }
-
-    /// Acceleration over force, 1/kg, at a frequency (Hz), before the filter.
-    pub fn accelerance(&self, frequency: f64) -> Complex64 {
-        let s = Complex64::new(0.0, TAU * frequency);
-        let of = |mode: &Mode| {
-            let w = TAU * mode.frequency;
-            s * s / (mode.mass * (s * s + 2.0 * mode.damping * w * s + w * w))
-        };
-        self.modes.iter().map(of).sum()
     }
 
     /// What the accelerometer's channel records of a force (N) given at each step and straight in between.

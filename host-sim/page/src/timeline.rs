@@ -251,29 +251,19 @@ fn severity(detection: &Detection) -> String {
 }
 
 /// Of a model or a truth that would take too long, or that leaves something out.
-pub fn left_out(outcome: &Outcome) -> Vec<String> {
-    let mut lines = Vec::new();
-    if let Some(at) = outcome.model.jammed {
-        lines.push(format!(
-            "model leaves friction out where walls jam, from {} ms on",
-            millis(at)
-        ));
-    }
-    if let Some(at) = outcome.model.given_up {
-        let too = [", sensors and detector too", ""][usize::from(outcome.by_reference)];
-        let line = format!(
-            "model given up at {} ms{too}: it would take too long",
-            millis(at)
-        );
-        lines.push(line);
-    }
-    if let Some(at) = outcome.given_up {
-        let (at, end) = (millis(at), millis(outcome.model.histories.whole.end.time));
-        lines.push(format!(
-            "truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms"
-        ));
-    }
-    lines
+pub fn left_out(outcome: &Outcome) -> impl Iterator<Item = String> {
+    let model = &outcome.model;
+    let times = [model.jammed, model.given_up, outcome.given_up];
+    let [jammed, model, truth] = times.map(|at| at.map(millis));
+    let too = [", sensors and detector too", ""][usize::from(outcome.by_reference)];
+    let end = millis(outcome.model.histories.whole.end.time);
+    [
+        jammed.map(|at| format!("model leaves friction out where walls jam, from {at} ms on")),
+        model.map(|at| format!("model given up at {at} ms{too}: it would take too long")),
+        truth.map(|at| format!("truth given up at {at} ms: it would take too long. Sensors and detector end there, the model at {end} ms")),
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// How far to trust the model's numbers.

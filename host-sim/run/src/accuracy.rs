@@ -1,17 +1,15 @@
 //! How far the numbers of a run may be from the exact solution of the equations that the model solves.
 //!
 //! The same drop is run again in f64: the rigid rung from starts that differ by a rounding, which shows how fast an error
-//! grows; a rung that steps also by shorter and longer steps, which shows what the step costs. An
-//! impact's error is the greatest distance to its nearest in any of these runs. It does not shrink from one impact
-//! to the next. Where it has grown to a tenth of the natural scales, the runs no longer have the same impacts. From where
-//! walls jam nothing is told. How good that is: docs/know/accuracy.md.
+//! grows; a rung that steps also by shorter and longer steps, which shows what the step costs. An impact's error is the
+//! greatest distance to its nearest in any of these runs. It does not shrink from one impact to the next. From where walls
+//! jam nothing is told. How good that is: docs/know/accuracy.md.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use touchdown_base::history::{History, Impact};
 use touchdown_base::progress;
-use touchdown_base::rings::Histories;
 use touchdown_scene::{Fidelity, Math, Precision, Scene, Start};
 use touchdown_truth::Units;
 
@@ -25,8 +23,7 @@ const OTHER: f64 = 0.1;
 const LONGEST: f64 = 1.0;
 
 /// Of a run: part of its step, and of its distance that counts as error. An error of the first order is 4/3 of the distance
-/// to a quarter of the step. The parts of the longer steps are chosen: these show what a series of bounces hides that
-/// both shorter steps end alike.
+/// to a quarter of the step. The parts of the longer steps are chosen: they show what the shorter ones miss alike.
 const STEPPED: &[[f64; 2]] = &[[0.25, 4.0 / 3.0], [2.0, 0.5], [3.0, 0.3]];
 const NOT_STEPPED: &[[f64; 2]] = &[[1.0, 2.0]; 3];
 /// What an error is taken to be greater by, in parts of itself for each T or V of it: it changes the course, and so grows
@@ -60,7 +57,7 @@ pub struct RunAccuracy {
 }
 
 /// Of an impact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ImpactError {
     /// s.
     pub time_s: f64,
@@ -68,13 +65,6 @@ pub struct ImpactError {
     pub normal_speed_m_s: f64,
     /// N s; none where a step has taken the rest of a bounce series into it.
     pub normal_impulse_n_s: Option<f64>,
-}
-
-impl ImpactError {
-    /// In T or V, the greater.
-    fn apart(&self, units: &Units) -> f64 {
-        (self.time_s / units.time).max(self.normal_speed_m_s / units.speed)
-    }
 }
 
 /// Of the end.
@@ -97,54 +87,52 @@ impl RunAccuracy {
 /// Of what `scene`'s model gave; none where it was given up, the run or its step is too long, or another start or step is
 /// refused.
 pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
-    let Histories {
-        whole: history,
-        rings,
-    } = &run.histories;
+    let (history, rings) = (&run.histories.whole, &run.histories.rings);
     let stepped = scene.model.rung != Fidelity::Rigid;
     let long = stepped && scene.run.duration > LONGEST;
     if run.given_up.is_some() || long || !scene.step_is_short() {
         return None;
     }
-    let others = others(scene, if stepped { STEPPED } else { NOT_STEPPED })?;
+    let others = others(scene, run, if stepped { STEPPED } else { NOT_STEPPED })?;
     let units = Units::of(scene);
-    let jammed = others.iter().filter_map(|it| it.jammed).chain(run.jammed);
-    let jammed = jammed.fold(f64::INFINITY, f64::min);
     let times = |of: fn(&History) -> &[f64]| {
-        let near = |time: &f64| {
-            let told = *time < jammed;
-            told.then(|| greatest(&others, |it| it.time(*time, of(&it.history))))?
+        let near = |time: f64| {
+            let mut all = others.iter().map(|it| it.time(time, of(&it.history)));
+            all.try_fold(0.0, |worst, it| it.map(|it| f64::max(worst, it)))
         };
-        of(history).iter().map(near).collect()
+        of(history).iter().copied().map(near).collect()
     };
     let mut impacts = Vec::new();
-    let mut worst = Some(ImpactError::default());
+    let apart = |time: f64, speed: f64| (time / units.time).max(speed / units.speed);
+    let greater = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k].max(b[k]));
+    let mut worst = Some([0.0; 3]);
     for impact in &history.impacts {
-        worst = worst.filter(|_| impact.state.time < jammed);
-        worst = worst.and_then(|worst| worse(worst, impact, &others, &units));
+        let errors = others.iter().map(|it| it.impact(impact, &units));
+        worst = errors.fold(worst, |worst, it| Some(greater(worst?, it?)));
         // The model tells the end of a series that is shorter than a step with its last impact.
         let starts = |it: &f64| it.total_cmp(&impact.state.time);
         let ends = |it: &History| stepped && it.contact_starts.binary_search_by(starts).is_ok();
         let lumped = ends(history) || rings.iter().any(ends);
-        impacts.push(worst.map(|worst| {
-            let impulse = worst.normal_impulse_n_s.filter(|_| !lumped);
-            let more = 1.0 + GROWTH * worst.apart(&units);
+        impacts.push(worst.map(|[time, speed, impulse]| {
+            let more = 1.0 + GROWTH * apart(time, speed);
             ImpactError {
-                time_s: more * worst.time_s,
-                normal_speed_m_s: more * worst.normal_speed_m_s,
-                normal_impulse_n_s: impulse.map(|it| more * it),
+                time_s: more * time,
+                normal_speed_m_s: more * speed,
+                normal_impulse_n_s: (!lumped).then_some(more * impulse),
             }
         }));
     }
-    let other = |it: &Option<ImpactError>| it.is_none_or(|it| it.apart(&units) > OTHER);
+    let far = |it: ImpactError| apart(it.time_s, it.normal_speed_m_s) > OTHER;
+    let other = |it: &Option<ImpactError>| it.is_none_or(far);
     Some(RunAccuracy {
         uncertain_from: impacts.iter().position(other),
         impacts,
         contact_starts_s: times(|it| &it.contact_starts),
         lift_offs_s: times(|it| &it.lift_offs),
         rolling_starts_s: times(|it| &it.rolling_starts),
-        regime_is_certain: jammed == f64::INFINITY
-            && others.iter().all(|it| it.history.regime == history.regime),
+        regime_is_certain: others
+            .iter()
+            .all(|it| it.jammed.is_infinite() && it.history.regime == history.regime),
         end: end(history, &others),
     })
 }
@@ -152,18 +140,20 @@ pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
 /// The same drop, run again.
 struct Other {
     history: History,
-    jammed: Option<f64>,
+    /// When walls jam, in this run or in the first, s; else infinite.
+    jammed: f64,
     weight: f64,
 }
 
-fn others(scene: &Scene, runs: &[[f64; 2]]) -> Option<Vec<Other>> {
+fn others(scene: &Scene, first: &ModelRun, runs: &[[f64; 2]]) -> Option<Vec<Other>> {
     let bar = progress::bar("accuracy", runs.len() as u64);
     let run = |(&[step, weight], direction): (&[f64; 2], [f64; 5])| {
         let run = model::run(&again(scene, step, direction)).ok()?;
         bar.inc(1);
+        let jammed = [first, &run].map(|it| it.jammed.unwrap_or(f64::INFINITY));
         Some(Other {
             history: run.histories.whole,
-            jammed: run.jammed,
+            jammed: jammed[0].min(jammed[1]),
             weight,
         })
     };
@@ -176,11 +166,12 @@ impl Other {
     fn time(&self, time: f64, times: &[f64]) -> Option<f64> {
         let after = times.partition_point(|it| *it < time);
         let around = times[after.saturating_sub(1)..].iter().take(2);
-        let nearest = around.map(|it| (it - time).abs()).reduce(f64::min)?;
-        Some(self.weight * nearest)
+        let nearest = around.map(|it| (it - time).abs()).reduce(f64::min);
+        Some(self.weight * nearest.filter(|_| time < self.jammed)?)
     }
 
-    fn impact(&self, impact: &Impact, units: &Units) -> Option<ImpactError> {
+    /// Errors of time, normal speed and impulse.
+    fn impact(&self, impact: &Impact, units: &Units) -> Option<[f64; 3]> {
         let late = |it: &Impact| (it.state.time - impact.state.time).abs() / units.time;
         let apart = |it: &Impact| {
             let speed = (it.normal_speed - impact.normal_speed) / units.speed;
@@ -199,38 +190,11 @@ impl Other {
         };
         let _ = before.iter().rev().all(&mut look);
         let _ = after.iter().all(&mut look);
-        let nearest = nearest?;
-        let of = |ours: f64, theirs: f64| self.weight * (ours - theirs).abs();
-        Some(ImpactError {
-            time_s: of(impact.state.time, nearest.state.time),
-            normal_speed_m_s: of(impact.normal_speed, nearest.normal_speed),
-            normal_impulse_n_s: Some(of(impact.normal_impulse, nearest.normal_impulse)),
-        })
+        let nearest = nearest.filter(|_| impact.state.time < self.jammed)?;
+        let numbers = |it: &Impact| [it.state.time, it.normal_speed, it.normal_impulse];
+        let (ours, theirs) = (numbers(impact), numbers(nearest));
+        Some([0, 1, 2].map(|k| self.weight * (ours[k] - theirs[k]).abs()))
     }
-}
-
-/// The greatest of all runs; none where one of them has no such thing.
-fn greatest(others: &[Other], of: impl Fn(&Other) -> Option<f64>) -> Option<f64> {
-    others
-        .iter()
-        .try_fold(0.0_f64, |worst, it| Some(worst.max(of(it)?)))
-}
-
-fn worse(
-    worst: ImpactError,
-    impact: &Impact,
-    others: &[Other],
-    units: &Units,
-) -> Option<ImpactError> {
-    others.iter().try_fold(worst, |worst, it| {
-        let it = it.impact(impact, units)?;
-        let impulse = worst.normal_impulse_n_s.unwrap_or_default();
-        Some(ImpactError {
-            time_s: worst.time_s.max(it.time_s),
-            normal_speed_m_s: worst.normal_speed_m_s.max(it.normal_speed_m_s),
-            normal_impulse_n_s: it.normal_impulse_n_s.map(|it| it.max(impulse)),
-        })
-    })
 }
 
 fn end(history: &History, others: &[Other]) -> EndError {

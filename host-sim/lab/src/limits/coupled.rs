@@ -19,8 +19,7 @@ const ROUNDED: f64 = 64.0;
 /// Of the first impact's time at an extreme, h^2/T: forces that go round with the spin change within a step. Chosen.
 const LATE: f64 = 4.0;
 
-/// Of the energy of motion of a random machine, in units of the last digit, a stretch: a whirl turns all of it
-/// round. Chosen.
+/// Of a random machine's energy of motion, in units of the last digit, a stretch: a whirl turns all of it round. Chosen.
 const TURNED: f64 = 16.0;
 
 /// How long the reference runs beyond the model's first impact and what it may be off, s.
@@ -182,9 +181,8 @@ fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    let (mut turned_round, mut rolled, mut tried) = (0.0, 0.0_f64, 0);
-    let (mut fastest, step) = (0.0_f64, scene.model.step / Units::of(scene).time);
-    let lever = lever(scene);
+    let (mut turned_round, mut tried, mut rolled, mut fastest) = (0.0, 0, 0.0_f64, 0.0_f64);
+    let (step, lever) = (scene.model.step / Units::of(scene).time, lever(scene));
     let run = watch(scene, &mut |view| {
         let energy = view.energy;
         let (motion, total) = (energy.motion + energy.rings, energy.total());

@@ -137,14 +137,13 @@ fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
     text
 }
 
-/// What is left of magnets that held half the rotor each at 15 to 100 Hz.
+/// What is left of magnets that held half the rotor each at 15 to 100 Hz; 1 N/m at least, as a scene asks.
 fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
     let mut text = String::new();
     for at in ends {
         let held =
             0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
         let stiffness: f64 = held * random.random_range(-1.0..0.3);
-        // A scene has none below 1 N/m.
         let stiffness = stiffness.abs().max(1.0).copysign(stiffness);
         let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
         let _ = write!(
