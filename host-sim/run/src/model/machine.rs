@@ -26,8 +26,6 @@ pub struct StepView {
     pub beyond: f64,
     /// What energy there is and was, in m V^2.
     pub energy: CoupledEnergy<f64>,
-    /// Stretches tried so far.
-    pub tried: u64,
 }
 
 /// Told of the machine after each step.
@@ -163,7 +161,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         StepView {
             beyond: walls.chain(stops).fold(-1.0, worse),
             energy: model.energy(state).to_f64(),
-            tried: state.tried(),
         }
     }
 
