@@ -60,6 +60,8 @@ impl Fall {
                 mass,
                 stiffness,
                 damping,
+                vertical: None,
+                friction: 0.0,
                 travel: None,
             }),
             ..self
@@ -250,6 +252,8 @@ impl Fall {
             mass: mount.mass,
             stiffness: mount.stiffness,
             damping: mount.damping,
+            vertical: None,
+            friction: 0.0,
             travel: mount.travel,
         });
         let race = self.race.map(|race| reference::coupled::Race {

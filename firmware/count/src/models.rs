@@ -77,6 +77,8 @@ fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
         mass: 0.5,
         stiffness: 2.6e6,
         damping: 320.0,
+        vertical: None,
+        friction: 0.0,
         travel: Some(0.5e-3),
     });
     seat.race = Some(RaceConfig {

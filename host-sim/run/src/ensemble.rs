@@ -42,6 +42,10 @@ pub fn varied(scene: &Scene, number: u64) -> Scene {
     let mount = |it: &mut Support| {
         it.stiffness *= stiffness;
         it.damping *= damping;
+        if let Some([spring, damper]) = &mut it.vertical {
+            *spring *= stiffness;
+            *damper *= damping;
+        }
     };
     law(&mut scene.retainer);
     scene.support.iter_mut().for_each(mount);

@@ -45,6 +45,8 @@ pub const CUTOFF_MM_S: RangeInclusive<f64> = 0.0..=1.0;
 pub const STIFFNESS_N_M: RangeInclusive<f64> = 1.0..=1e12;
 /// Damping of a support, N s/m.
 pub const DAMPING_N_S_M: RangeInclusive<f64> = 0.0..=1e9;
+/// Dry friction of a retainer ring on its seat, N.
+pub const DRY_FRICTION_N: RangeInclusive<f64> = 0.0..=1e9;
 /// Of a retainer ring to its hard stop, mm.
 pub const TRAVEL_MM: RangeInclusive<f64> = 1e-3..=100.0;
 /// Inertia of an inner ring, kg m^2.
@@ -71,6 +73,8 @@ pub const BASE_MM: RangeInclusive<f64> = -1e4..=1e4;
 pub const BASE_HZ: RangeInclusive<f64> = 1e-3..=1e4;
 /// When a magnet is switched, s after the release.
 pub const MOMENT_S: RangeInclusive<f64> = 0.0..=86_400.0;
+/// Greatest force of a magnet on each axis, N.
+pub const LIMIT_N: RangeInclusive<f64> = 1e-6..=1e9;
 /// Force of a magnet, N.
 pub const FORCE_N: RangeInclusive<f64> = -1e9..=1e9;
 /// Slope of the rotor's axis, mrad, and its rate, rad/s.

@@ -20,6 +20,8 @@ pub struct Magnet {
     pub damping: f64,
     /// N.
     pub force: [f64; 2],
+    /// Greatest force on each axis, either way, N; without bound where none.
+    pub limit: Option<f64>,
     /// From when and until when it is on, s after the release; always without.
     pub on: Option<[f64; 2]>,
 }
@@ -34,6 +36,7 @@ pub(super) struct MagnetTable {
     damping_n_s_m: f64,
     #[serde(default, deserialize_with = "list::exactly")]
     force_n: [f64; 2],
+    limit_n: Option<f64>,
     from_s: Option<f64>,
     until_s: Option<f64>,
 }
@@ -49,10 +52,12 @@ impl MagnetTable {
         for force in self.force_n {
             KEYS.between("force_n", force, limits::FORCE_N)?;
         }
+        let limit = |it| KEYS.within("limit_n", it, limits::LIMIT_N);
         Ok(Magnet {
             place: MILLI * KEYS.between("z_mm", self.z_mm, limits::PLACE_MM)?,
             stiffness,
             force: self.force_n,
+            limit: self.limit_n.map(limit).transpose()?,
             on: self.on()?,
             damping: KEYS.between("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,
         })

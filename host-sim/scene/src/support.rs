@@ -21,6 +21,10 @@ pub struct Support {
     pub stiffness: f64,
     /// N s/m.
     pub damping: f64,
+    /// Stiffness and damping along y, where they are others than along x.
+    pub vertical: Option<[f64; 2]>,
+    /// Dry friction of the ring on its seat, against its motion, N.
+    pub friction: f64,
     /// Of the ring to the hard stop, radial, m.
     pub travel: Option<f64>,
 }
@@ -44,6 +48,14 @@ pub struct BallBearing {
     pub marks: [Option<u16>; 2],
 }
 
+impl Support {
+    /// Along x and along y: stiffness and damping.
+    pub fn axes(&self) -> [[f64; 2]; 2] {
+        let along_x = [self.stiffness, self.damping];
+        [along_x, self.vertical.unwrap_or(along_x)]
+    }
+}
+
 impl BallBearing {
     /// The optical sensors, where there are any, on a ring of this bore radius (m).
     pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
@@ -62,8 +74,12 @@ impl BallBearing {
 pub(super) struct SupportTable {
     mass_kg: f64,
     stiffness_n_m: f64,
+    vertical_stiffness_n_m: Option<f64>,
     #[serde(default)]
     damping_n_s_m: f64,
+    vertical_damping_n_s_m: Option<f64>,
+    #[serde(default)]
+    dry_friction_n: f64,
     travel_mm: Option<f64>,
 }
 
@@ -92,11 +108,30 @@ const USUAL_HEAT_CAPACITY: f64 = 92.0;
 impl SupportTable {
     pub fn check(&self) -> Result<Support, Diagnostic> {
         const KEYS: Keys = Keys("support");
+        let stiffness = |key, value| KEYS.within(key, value, limits::STIFFNESS_N_M);
+        let damping = |key, value| KEYS.within(key, value, limits::DAMPING_N_S_M);
+        let along_y = [self.vertical_stiffness_n_m, self.vertical_damping_n_s_m];
+        let vertical = [
+            stiffness(
+                "vertical_stiffness_n_m",
+                along_y[0].unwrap_or(self.stiffness_n_m),
+            )?,
+            damping(
+                "vertical_damping_n_s_m",
+                along_y[1].unwrap_or(self.damping_n_s_m),
+            )?,
+        ];
         let travel = |travel| KEYS.within("travel_mm", travel, limits::TRAVEL_MM);
         Ok(Support {
             mass: KEYS.within("mass_kg", self.mass_kg, limits::MASS_KG)?,
-            stiffness: KEYS.within("stiffness_n_m", self.stiffness_n_m, limits::STIFFNESS_N_M)?,
-            damping: KEYS.within("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,
+            stiffness: stiffness("stiffness_n_m", self.stiffness_n_m)?,
+            damping: damping("damping_n_s_m", self.damping_n_s_m)?,
+            vertical: (along_y != [None; 2]).then_some(vertical),
+            friction: KEYS.between(
+                "dry_friction_n",
+                self.dry_friction_n,
+                limits::DRY_FRICTION_N,
+            )?,
             travel: self.travel_mm.map(travel).transpose()?.map(|it| MILLI * it),
         })
     }

@@ -81,6 +81,9 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
         mass: a.mass + b.mass,
         stiffness: a.stiffness + b.stiffness,
         damping: a.damping + b.damping,
+        vertical: (a.vertical.is_some() || b.vertical.is_some())
+            .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
+        friction: a.friction + b.friction,
         travel: match (a.travel, b.travel) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
@@ -121,7 +124,10 @@ impl TwoPlane {
     pub fn fastest(&self, spin: f64) -> f64 {
         let modes = self.modes.iter().map(|it| it.speed);
         let mounts = self.rings.iter().filter_map(|it| it.support);
-        let mounts = mounts.map(|it| (it.stiffness / it.mass).sqrt().max(it.damping / it.mass));
+        let mounts = mounts.flat_map(|it| {
+            it.axes()
+                .map(|[spring, damper]| (spring / it.mass).sqrt().max(damper / it.mass))
+        });
         let base = self.base.map(|it| it.rate);
         modes.chain(mounts).chain(base).fold(spin.abs(), f64::max)
     }

@@ -24,6 +24,8 @@ fn mount(mass: f64, stiffness: f64, damping: f64, travel: Option<f64>) -> Option
         mass,
         stiffness,
         damping,
+        vertical: None,
+        friction: 0.0,
         travel,
     })
 }

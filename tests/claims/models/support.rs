@@ -172,6 +172,8 @@ fn a_rigid_support_is_none() {
         mass: 1e6,
         stiffness: 1e12,
         damping: 0.0,
+        vertical: None,
+        friction: 0.0,
         travel: None,
     });
     let ours = run(&scene).unwrap().histories.whole;

@@ -76,6 +76,7 @@ fn the_reference_has_it_to_rounding() {
         stiffness: -HOLDS,
         force: [0.0; 2],
         damping: 0.0,
+        limit: None,
         on: Some(on),
     };
     machine.magnets = vec![magnet([0.0, OFF]), magnet([ON, f64::INFINITY])];

@@ -23,7 +23,7 @@ const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
-    travel: None,
+    vertical: None, friction: 0.0, travel: None,
 };
 const TRANSVERSE_INERTIA: f64 = 0.03;
 
@@ -281,7 +281,7 @@ fn hard_stop_holds_the_ring() {
     let travel = 4e-5;
     let mount = Support {
         stiffness: 2e5,
-        travel: Some(travel),
+        vertical: None, friction: 0.0, travel: Some(travel),
         ..MOUNT
     };
     let start = CoupledStart::default();
@@ -378,7 +378,7 @@ fn elastic_impacts_keep_energy() {
         stiffness: 2e4,
         force: [3.0, -2.0],
         damping: 0.0,
-        on: None,
+        limit: None, on: None,
     };
     machine.magnets.push(magnet);
     let start = CoupledStart {
@@ -536,7 +536,7 @@ fn free_tilt_nutates_and_held_tilt_splits() {
             stiffness: -2e4,
             force: [0.0; 2],
             damping: 0.0,
-            on: None,
+            limit: None, on: None,
         };
         machine.magnets.push(magnet);
     }
@@ -580,7 +580,7 @@ fn unbalance_drives_the_held_rotor() {
             stiffness: -2e4,
             force: [0.0; 2],
             damping: 0.0,
-            on: None,
+            limit: None, on: None,
         };
         machine.magnets.push(magnet);
     }
@@ -677,7 +677,7 @@ fn heavy_rings_are_fixed_ones() {
         mass: 1e15,
         stiffness: 1e12,
         damping: 0.0,
-        travel: Some(1e-4),
+        vertical: None, friction: 0.0, travel: Some(1e-4),
     };
     let race = Race {
         inertia: 1e15,
@@ -776,7 +776,7 @@ proptest! {
         let rotor = Machine { friction, restitution, gravity, ..RIG };
         let (mass, stiffness) = (10_f64.powf(mass), 10_f64.powf(stiffness));
         let damping = damping * (mass * stiffness).sqrt();
-        let mount = has_mount.then_some(Support { mass, stiffness, damping, travel });
+        let mount = has_mount.then_some(Support { mass, stiffness, damping, vertical: None, friction: 0.0, travel });
         let race = has_race.then_some(Race { inertia: 10_f64.powf(inertia), dry_drag, viscous_drag });
         let out = part * rotor.clearance;
         let start = free([out * angle.sin(), -out * angle.cos()], [vx, vy]);
@@ -818,7 +818,7 @@ proptest! {
         for (it, clearance) in machine.retainers.iter_mut().zip(clearances) {
             it.ring.clearance = clearance;
         }
-        machine.magnets.push(Magnet { place: 0.05, stiffness, damping: 0.0, force: [0.0; 2], on: None });
+        machine.magnets.push(Magnet { place: 0.05, stiffness, damping: 0.0, force: [0.0; 2], limit: None, on: None });
         // Inside every ring.
         let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.ring.clearance / 1e-3 / it.ring.place.abs().max(0.01)).fold(1.0, f64::min);
         let start = CoupledStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry], ..CoupledStart::default() };

@@ -16,7 +16,7 @@ const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
-    travel: None,
+    vertical: None, friction: 0.0, travel: None,
 };
 const RACE: Race = Race {
     inertia: 3e-5,
@@ -108,14 +108,14 @@ fn heavy_rings_are_rigid_ones() {
         stiffness: -1e4,
         force: [1.0, 2.0],
         damping: 0.0,
-        on: None,
+        limit: None, on: None,
     };
     let mut whole = machine(vec![retainer(-0.1, None, None), retainer(0.13, None, None)]);
     (whole.unbalance, whole.magnets) = (unbalance, vec![magnet]);
     let start = at([2e-5, 0.0], [1e-4, 2e-4]);
     let mut want = CoupledReference::new(&whole, &start, 0.1 * SPIN);
     for it in &mut whole.retainers {
-        it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, travel: Some(1e-4) });
+        it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, vertical: None, friction: 0.0, travel: Some(1e-4) });
         it.race = Some(Race { inertia: 1e15, dry_drag: 1e-3, viscous_drag: 1e-3 });
     }
     let mut have = CoupledReference::new(&whole, &start, 0.1 * SPIN);
@@ -149,7 +149,7 @@ fn one_plane(mass: f64, polar_inertia: f64, mount: Support, race: Race) -> Coupl
 #[test]
 fn level_it_is_one_plane() {
     let mount = Support {
-        travel: Some(4e-5),
+        vertical: None, friction: 0.0, travel: Some(4e-5),
         ..MOUNT
     };
     for places in [vec![0.0], vec![-0.1, 0.1]] {
@@ -246,7 +246,7 @@ fn magnet_damps() {
         stiffness: -1e5,
         force: [0.0, 9.81 * MASS],
         damping: 200.0,
-        on: None,
+        limit: None, on: None,
     };
     whole.magnets = vec![magnet];
     let mut reference = CoupledReference::new(&whole, &at([1e-4, 0.0], [0.0; 2]), 0.0);

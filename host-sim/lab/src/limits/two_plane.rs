@@ -80,6 +80,7 @@ fn magnets(stiffness: f64) -> Vec<Magnet> {
         stiffness: 0.5 * stiffness,
         damping: 0.0,
         force: [0.0; 2],
+        limit: None,
         on: None,
     };
     vec![magnet(-0.1), magnet(0.1)]

@@ -133,6 +133,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
             stiffness: from.stiffness,
             damping: damps * from.damping,
             force: from.force,
+            limit: from.limit,
             on: from.on,
             shape: shape(scene, from.place),
         };

@@ -55,6 +55,8 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
                 mass: it.mass,
                 stiffness: it.stiffness,
                 damping: it.damping,
+                vertical: it.vertical,
+                friction: it.friction,
                 travel: it.travel.filter(|_| has(Removable::Stop)),
             }),
         race: ring.ball_bearing.filter(|_| has(turns)).map(race),

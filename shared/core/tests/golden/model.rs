@@ -172,6 +172,8 @@ const MOUNT: MountConfig<f64> = MountConfig {
     mass: 0.5,
     stiffness: 2.6e6,
     damping: 320.0,
+    vertical: None,
+    friction: 0.0,
     travel: Some(5e-4),
 };
 const RACE: RaceConfig<f64> = RaceConfig {

@@ -75,6 +75,8 @@ pub struct ActuatorConfig<R> {
     pub damping: R,
     /// At the centre, N.
     pub force: [R; 2],
+    /// Greatest force on each axis, either way, N; without bound where none.
+    pub limit: Option<R>,
     /// From when and until when it is on, s after the release; always without.
     pub on: Option<[R; 2]>,
     /// Each bending mode's displacement there.

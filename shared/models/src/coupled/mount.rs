@@ -30,6 +30,10 @@ pub struct MountConfig<R> {
     pub stiffness: R,
     /// N s/m, 0 or more.
     pub damping: R,
+    /// Stiffness and damping along y, where they are others than along x.
+    pub vertical: Option<[R; 2]>,
+    /// Dry friction of the ring on its seat, N, 0 or more.
+    pub friction: R,
     /// Way of the ring from its rest place to a hard stop, m.
     pub travel: Option<R>,
 }
