@@ -217,6 +217,9 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             finite("magnets", &magnet.force)?;
             finite("shape", &magnet.shape)?;
             not_negative("magnets", magnet.damping)?;
+            if let Some(limit) = magnet.limit {
+                positive("magnets", limit)?;
+            }
             if let Some([from, until]) = magnet.on {
                 not_negative("magnets", from)?;
                 if until.partial_cmp(&from) != Some(Ordering::Greater) {
@@ -301,6 +304,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 stiffness: magnet.stiffness / config.mass * scales.time * scales.time,
                 damping: magnet.damping / config.mass * scales.time,
                 force: Vector::new(magnet.force).times(rate / config.mass),
+                limit: magnet.limit.map(|limit| limit * rate / config.mass),
                 on: magnet
                     .on
                     .map(|it| it.map(|time| moment(time / config.step))),

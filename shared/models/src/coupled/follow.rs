@@ -270,8 +270,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {
             books.damped.add(*decay * rate * moved.square());
         }
-        for magnet in self.active(&state.on) {
+        for (magnet, cut) in self.active(&state.on).zip(passage.cut) {
             let moved = at(&magnet.shape, &passage.moved);
+            if magnet.limit.is_some() {
+                books.driven.add(cut.dot(moved));
+            }
             books.damped.add(magnet.damping * rate * moved.square());
         }
     }

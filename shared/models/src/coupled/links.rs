@@ -8,7 +8,7 @@
 //! Friction takes energy, however coarse the step: it ends the slip, but gives no more than what makes the mean of
 //! the slips before and after 0, and nothing where the slip turns round by itself.
 
-use super::vector::Vector;
+use super::vector::{Response, Vector};
 use touchdown_rotor::real::Real;
 
 /// Trials in which all links change that are wrong, and trials in all; the rest change one link each.
@@ -95,7 +95,7 @@ pub(super) struct Links<R, const N: usize> {
     count: usize,
     link: Pairs<Option<Link<R>>, N>,
     /// Motion of the first by an impulse in the second.
-    response: Pairs<Pairs<Vector<R>, N>, N>,
+    response: Pairs<Pairs<Response<R>, N>, N>,
     /// Of the slip, by a tangential impulse, what is not motion.
     spin: Pairs<Pairs<R, N>, N>,
 }
@@ -117,7 +117,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         Self {
             count: 0,
             link: [[None; 2]; N],
-            response: [[[[Vector::default(); 2]; N]; 2]; N],
+            response: [[[[Response::default(); 2]; N]; 2]; N],
             spin: [[[[R::ZERO; 2]; N]; 2]; N],
         }
     }
@@ -148,7 +148,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         self.link.as_flattened_mut().iter_mut().flatten()
     }
 
-    pub(super) fn respond(&mut self, to: usize, from: usize, motion: Vector<R>, spin: R) {
+    pub(super) fn respond(&mut self, to: usize, from: usize, motion: Response<R>, spin: R) {
         if let Some(row) = self.response.as_flattened_mut().get_mut(to)
             && let Some(slot) = row.as_flattened_mut().get_mut(from)
         {
@@ -169,7 +169,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         };
         let others = self.links().zip(row.as_flattened());
         others.fold(link.free, |sum, (other, response)| {
-            sum + *response * other.push()
+            sum + response.to(other.push())
         })
     }
 
@@ -307,7 +307,7 @@ impl<R: Real, const N: usize> Links<R, N> {
             let Some(other) = self.get(*from) else {
                 continue;
             };
-            let moved = response[*from] * (*unit * other.normal);
+            let moved = response[*from].to(*unit * other.normal);
             *slot = if slips {
                 link.normal.cross(moved) + spin[*from] * unit.y
             } else {
@@ -352,8 +352,9 @@ impl<R: Real, const N: usize> Links<R, N> {
         for _ in 0..TURNS {
             for place in 0..self.count {
                 let motion = self.motion(place);
-                let own = self.response[place / 2][place % 2].as_flattened()[place].x;
+                let own = self.response[place / 2][place % 2].as_flattened()[place];
                 if let Some(link) = self.get_mut(place) {
+                    let own = own.own(link.normal);
                     link.pressed += link.normal.dot(motion).most(R::ZERO) / own;
                 }
             }

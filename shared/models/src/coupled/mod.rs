@@ -17,6 +17,7 @@ mod config;
 mod crossing;
 mod energy;
 mod follow;
+mod limit;
 mod links;
 mod mount;
 mod normals;
@@ -81,6 +82,8 @@ struct Magnet<R, const Q: usize> {
     stiffness: R,
     damping: R,
     force: Vector<R>,
+    /// Of the force, on each axis.
+    limit: Option<R>,
     /// From when and until when; always without.
     on: Option<[Instant<R>; 2]>,
 }
@@ -180,6 +183,7 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                     stiffness: R::lit(magnet.stiffness),
                     damping: R::lit(magnet.damping),
                     force: vector(magnet.force),
+                    limit: magnet.limit.map(R::lit),
                     on: magnet.on.map(|it| it.map(switch::rounded)),
                 })
             }),

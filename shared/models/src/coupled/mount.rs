@@ -1,4 +1,4 @@
-//! What a ring stands on: a spring and a damper, with a hard stop where there is one.
+//! What a ring stands on: a spring and a damper, along y others than along x or not, dry friction, a hard stop.
 //!
 //! The ring obeys M u'' = -K u - C u' by the midpoint rule: u+ - u = h (u' + u'+)/2 and forces at the
 //! middle, so an impulse P/(h/2) of the rotor moves it by P/m with m = M + h C/2 + h^2 K/4, whatever
@@ -9,6 +9,10 @@
 //! part: the impact meets M + x^2/(M + x), and of the ring's momentum counts what it would keep of it as
 //! speed. So a stiff support is a fixed ring, and a light ring as heavy as its damper; what they take
 //! from the energy is 0 or more, of second order in the step, and booked to the support.
+//!
+//! Dry friction F is a force against the ring's motion, or what leaves it at rest, up to F. In a stretch it acts against
+//! the mean motion. It stops a ring that it would turn round; a ring that it holds gives way to nothing. It has no
+//! impulse in an impact.
 
 use super::units::Units;
 use super::vector::{Sums, Vector};
@@ -43,9 +47,26 @@ impl<R: Real> MountConfig<R> {
         positive("support_mass", self.mass)?;
         positive("stiffness", self.stiffness)?;
         not_negative("damping", self.damping)?;
+        not_negative("dry_friction", self.friction)?;
+        if let Some([stiffness, damping]) = self.vertical {
+            positive("vertical_stiffness", stiffness)?;
+            not_negative("vertical_damping", damping)?;
+        }
         self.travel
             .map_or(Ok(()), |travel| positive("travel", travel))
     }
+}
+
+/// Dry friction in a stretch.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Rub<R> {
+    /// There is none.
+    #[default]
+    None,
+    /// All of it, against this direction.
+    Slides(Vector<R>),
+    /// It leaves the ring at rest.
+    Rests,
 }
 
 /// How the ring goes through a stretch of time that nothing pushes it in.
@@ -55,7 +76,45 @@ pub(super) struct Ride<R> {
     /// Change of velocity.
     pub(super) kick: Vector<R>,
     /// Displacement by a push, which is an impulse times half the time.
-    pub(super) mobility: R,
+    pub(super) mobility: [R; 2],
+    pub(super) rub: Rub<R>,
+    /// Impulse of dry friction.
+    grip: Vector<R>,
+}
+
+impl<R: Real> Ride<R> {
+    /// Displacement by a push; the push itself, where friction takes it.
+    pub(super) fn pushed(&self, push: Vector<R>) -> Vector<R> {
+        match self.rub {
+            Rub::Rests => push,
+            _ => push.along(self.mobility),
+        }
+    }
+
+    /// Displacement by the rotor and by the stop.
+    pub(super) fn by(&self, [rotor, stop]: [Vector<R>; 2]) -> Vector<R> {
+        match self.rub {
+            Rub::Rests => Vector::default(),
+            _ => rotor + stop,
+        }
+    }
+
+    /// Impulse of dry friction on the ring.
+    fn friction(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> Vector<R> {
+        match self.rub {
+            Rub::Rests => self.grip - (rotor + stop).times(R::TWO / time),
+            _ => self.grip,
+        }
+    }
+}
+
+/// A spring and a damper along one axis, over the rotor's mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis<R> {
+    stiffness: R,
+    damping: R,
+    /// Mass that an impact meets.
+    braced: R,
 }
 
 /// A ring on a spring and a damper.
@@ -63,11 +122,12 @@ pub(super) struct Ride<R> {
 pub(super) struct Sprung<R> {
     /// Over the rotor's.
     mass: R,
-    stiffness: R,
-    damping: R,
+    across: Axis<R>,
+    /// Where it is another than across.
+    vertical: Option<Axis<R>>,
+    /// Over the rotor's mass.
+    friction: R,
     travel: Option<R>,
-    /// Mass that an impact meets.
-    braced: R,
 }
 
 /// The ring's motion, and what the support has taken.
@@ -76,6 +136,7 @@ pub(super) struct SprungState<R> {
     place: Sums<R>,
     velocity: Sums<R>,
     stopped: bool,
+    rests: bool,
     damped: Sum<R>,
     stopping: Sum<R>,
 }
@@ -93,17 +154,41 @@ impl<R: Real> SprungState<R> {
     pub(super) fn is_stopped(&self) -> bool {
         self.stopped
     }
+
+    /// Whether dry friction holds it.
+    pub(super) fn rests(&self) -> bool {
+        self.rests
+    }
 }
 
 impl Sprung<f64> {
     pub(super) fn rounded<R: Real>(&self) -> Sprung<R> {
+        let axis = |it: Axis<f64>| Axis {
+            stiffness: R::lit(it.stiffness),
+            damping: R::lit(it.damping),
+            braced: R::lit(it.braced),
+        };
         Sprung {
             mass: R::lit(self.mass),
-            stiffness: R::lit(self.stiffness),
-            damping: R::lit(self.damping),
+            across: axis(self.across),
+            vertical: self.vertical.map(axis),
+            friction: R::lit(self.friction),
             travel: self.travel.map(R::lit),
-            braced: R::lit(self.braced),
         }
+    }
+}
+
+impl<R: Real> Axis<R> {
+    fn try_new([stiffness, damping]: [R; 2], mass: R, half: R) -> Result<Self, ConfigError> {
+        positive("stiffness", stiffness)?;
+        let implicit = half * (damping + half * stiffness);
+        let braced = mass + implicit * (implicit / (mass + implicit));
+        positive("stiffness", R::ONE / braced)?;
+        Ok(Self {
+            stiffness,
+            damping,
+            braced,
+        })
     }
 }
 
@@ -112,21 +197,27 @@ impl<R: Real> Sprung<R> {
         config.check()?;
         let time = units.scales.time;
         let mass = config.mass / units.mass;
-        let stiffness = config.stiffness / units.mass * time * time;
-        let damping = config.damping / units.mass * time;
         positive("support_mass", mass)?;
-        positive("stiffness", stiffness)?;
-        let half = R::HALF * units.step;
-        let implicit = half * (damping + half * stiffness);
-        let braced = mass + implicit * (implicit / (mass + implicit));
-        positive("stiffness", R::ONE / braced)?;
+        let axis = |[stiffness, damping]: [R; 2]| {
+            let scaled = [
+                stiffness / units.mass * time * time,
+                damping / units.mass * time,
+            ];
+            Axis::try_new(scaled, mass, R::HALF * units.step)
+        };
         Ok(Self {
             mass,
-            stiffness,
-            damping,
+            across: axis([config.stiffness, config.damping])?,
+            vertical: config.vertical.map(axis).transpose()?,
+            friction: config.friction / units.mass * time / units.scales.speed,
             travel: config.travel.map(|travel| travel / units.scales.length),
-            braced,
         })
+    }
+
+    /// Of both axes.
+    fn each(&self, of: impl Fn(&Axis<R>) -> R) -> [R; 2] {
+        let across = of(&self.across);
+        [across, self.vertical.as_ref().map_or(across, of)]
     }
 
     /// Through a stretch that nothing pushes it in but the base's motion, `shaken`.
@@ -135,20 +226,83 @@ impl<R: Real> Sprung<R> {
         state: &SprungState<R>,
         time: R,
         shaken: Option<Vector<R>>,
+        rub: Rub<R>,
     ) -> Ride<R> {
         let half = R::HALF * time;
-        let mobility = R::ONE / (self.mass + half * (self.damping + half * self.stiffness));
-        let velocity = state.velocity.value();
-        let middle = state.place.value() + velocity.times(half);
-        let mut force = middle.times(self.stiffness) + velocity.times(self.damping);
-        if let Some(push) = shaken {
-            force = force - push.times(self.mass);
+        let (place, velocity) = (state.place.value(), state.velocity.value());
+        let (stiffness, damping) = (self.each(|it| it.stiffness), self.each(|it| it.damping));
+        // Against it, at the middle of a stretch in which it moves so.
+        let force = |middle: Vector<R>, mean: Vector<R>| {
+            let force = middle.along(stiffness) + mean.along(damping);
+            match shaken {
+                Some(push) => force - push.times(self.mass),
+                None => force,
+            }
+        };
+        if rub == Rub::Rests {
+            let mean = velocity.times(R::HALF);
+            let moved = mean.times(time);
+            let against = force(place + moved.times(R::HALF), mean).times(time);
+            return Ride {
+                moved,
+                kick: Vector::default() - velocity,
+                mobility: [R::ZERO; 2],
+                rub,
+                grip: against - velocity.times(self.mass),
+            };
         }
-        let kick = force.times(-(time * mobility));
+        let mut against = force(place + velocity.times(half), velocity);
+        let mut grip = Vector::default();
+        if let Rub::Slides(direction) = rub {
+            against = against + direction.times(self.friction);
+            grip = direction.times(-(self.friction * time));
+        }
+        let mobility =
+            self.each(|it| R::ONE / (self.mass + half * (it.damping + half * it.stiffness)));
+        let kick = against.along(mobility.map(|it| -(time * it)));
         Ride {
             moved: velocity.times(time) + kick.times(half),
             kick,
             mobility,
+            rub,
+            grip,
+        }
+    }
+
+    /// What dry friction is at first taken for.
+    pub(super) fn guess(&self, state: &SprungState<R>) -> Rub<R> {
+        if self.friction <= R::ZERO {
+            return Rub::None;
+        }
+        direction(state.velocity.value()).map_or(Rub::Rests, Rub::Slides)
+    }
+
+    /// What dry friction is rather, with these pushes; none if it was right.
+    pub(super) fn corrected(
+        &self,
+        state: &SprungState<R>,
+        ride: &Ride<R>,
+        time: R,
+        pushed: [Vector<R>; 2],
+    ) -> Option<Rub<R>> {
+        match ride.rub {
+            Rub::None => None,
+            Rub::Rests => {
+                let grip = ride.friction(time, pushed);
+                let most = self.friction * time;
+                let slips = grip.square() > most * most;
+                let against = direction(grip).filter(|_| slips)?;
+                Some(Rub::Slides(Vector::default() - against))
+            }
+            Rub::Slides(was) => {
+                let moved = ride.moved + ride.by(pushed);
+                let end = moved.times(R::TWO / time) - state.velocity.value();
+                if end.dot(was) <= R::ZERO {
+                    return Some(Rub::Rests);
+                }
+                let now = direction(moved)?;
+                ((now - was).square() > R::EPSILON).then_some(Rub::Slides(now))
+            }
         }
     }
 
@@ -173,18 +327,20 @@ impl<R: Real> Sprung<R> {
     }
 
     /// Velocity by an impulse in an impact.
-    pub(super) fn yielding(&self) -> R {
-        R::ONE / self.braced
+    pub(super) fn yielding(&self) -> [R; 2] {
+        self.each(|it| R::ONE / it.braced)
     }
 
     /// Makes the ring ready for an impact.
     pub(super) fn brace(&self, state: &mut SprungState<R>) {
         let velocity = state.velocity.value();
-        let kept = self.mass / self.braced;
-        let lost = (self.braced - self.mass) / self.braced;
-        state.velocity.add(velocity.times(-lost));
-        let taken = R::HALF * self.mass * lost * (R::ONE + kept) * velocity.square();
-        state.damped.add(taken);
+        let lost = self.each(|it| (it.braced - self.mass) / it.braced);
+        let taken = self.each(|it| {
+            let lost = (it.braced - self.mass) / it.braced;
+            R::HALF * self.mass * lost * (R::ONE + self.mass / it.braced)
+        });
+        state.velocity.add(velocity.along(lost.map(|it| -it)));
+        state.damped.add(velocity.dot_along(velocity, taken));
     }
 
     /// Takes a part of the velocity that is across all others: the stop takes its energy.
@@ -196,11 +352,12 @@ impl<R: Real> Sprung<R> {
 
     /// Takes what an impact gives, and impulse `stop` away from the stop.
     pub(super) fn strike(&self, state: &mut SprungState<R>, push: Vector<R>, stop: Vector<R>) {
-        let kick = (push + stop).times(self.yielding());
+        let kick = (push + stop).along(self.yielding());
         let mean = state.velocity.value() + kick.times(R::HALF);
         state.velocity.add(kick);
-        let taken = (self.braced - self.mass) * kick.dot(mean);
-        state.damped.add(taken);
+        state.rests &= kick.square() <= R::ZERO;
+        let taken = self.each(|it| it.braced - self.mass);
+        state.damped.add(kick.dot_along(mean, taken));
         state.stopping.add(-stop.dot(mean));
     }
 
@@ -210,18 +367,28 @@ impl<R: Real> Sprung<R> {
         state: &mut SprungState<R>,
         ride: &Ride<R>,
         time: R,
-        [by_rotor, by_stop]: [Vector<R>; 2],
+        pushed: [Vector<R>; 2],
     ) {
-        let pushed = by_rotor + by_stop;
-        let moved = ride.moved + pushed;
+        let pushes = ride.by(pushed);
+        let moved = ride.moved + pushes;
         let rate = R::TWO / time;
-        state.place.add(moved);
-        state.velocity.add(ride.kick + pushed.times(rate));
         let mean = moved.times(R::ONE / time);
-        state.damped.add(self.damping * mean.dot(moved));
-        state
-            .stopping
-            .add(-(rate / ride.mobility * by_stop.dot(mean)));
+        state.place.add(moved);
+        let [_, by_stop] = pushed;
+        state.rests = ride.rub == Rub::Rests;
+        let stopping = if state.rests {
+            state.velocity = Sums::default();
+            rate * by_stop.dot(mean)
+        } else {
+            state.velocity.add(ride.kick + pushes.times(rate));
+            by_stop.dot_along(mean, ride.mobility.map(|it| rate / it))
+        };
+        let damped = mean.dot_along(moved, self.each(|it| it.damping));
+        state.damped.add(damped);
+        if ride.rub != Rub::None {
+            state.damped.add(-ride.friction(time, pushed).dot(mean));
+        }
+        state.stopping.add(-stopping);
     }
 
     /// Puts the ring onto its stop, where it is not but for rounding.
@@ -238,7 +405,8 @@ impl<R: Real> Sprung<R> {
         let middle = place + moved.times(R::HALF);
         state.place.add(moved);
         state.stopped = true;
-        state.stopping.add(-(self.stiffness * middle.dot(moved)));
+        let work = middle.dot_along(moved, self.each(|it| it.stiffness));
+        state.stopping.add(-work);
     }
 
     pub(super) fn release(&self, state: &mut SprungState<R>) {
@@ -247,11 +415,18 @@ impl<R: Real> Sprung<R> {
 
     /// Kinetic, in the spring; taken by support and stop.
     pub(super) fn energy(&self, state: &SprungState<R>) -> [R; 4] {
+        let place = state.place.value();
         [
             R::HALF * self.mass * state.velocity.value().square(),
-            R::HALF * self.stiffness * state.place.value().square(),
+            R::HALF * place.dot_along(place, self.each(|it| it.stiffness)),
             state.damped.value(),
             state.stopping.value(),
         ]
     }
+}
+
+/// Of length 1; none of what does not move.
+fn direction<R: Real>(of: Vector<R>) -> Option<Vector<R>> {
+    let length = of.length();
+    (length > R::ZERO).then(|| of.times(R::ONE / length))
 }

@@ -4,15 +4,18 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
+use super::config::MAGNETS;
 use super::links::{Grip, Link, Links};
-use super::mount::Ride;
+use super::mount::{Ride, Rub};
 use super::race::{Drag, Turning};
-use super::vector::{Vector, inverse, turned_by};
+use super::vector::{Response, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
+/// Repetitions for the friction of mounts and for magnets at their limit.
+const REPETITIONS: usize = 20;
 /// How far round a wall in a stretch, rad.
 pub(super) const REACH: f64 = 0.25;
 /// Heat below 0, in friction times speed, from which walls jam. Chosen, because a ring that rolls a quarter of
@@ -38,6 +41,8 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) kick: [Vector<R>; Q],
     pub(super) rides: [Ride<R>; N],
     pub(super) presses: [Option<Press<R>>; N],
+    /// Force of the magnets beyond what displacement and velocity ask for: what their limits leave out.
+    pub(super) cut: [Vector<R>; MAGNETS],
     /// Displacement of the rings by rotor and stop.
     pub(super) pushed: [[Vector<R>; 2]; N],
     pub(super) stopped: [bool; N],
@@ -56,11 +61,11 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
 impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
     pub(super) fn ring_moved(&self, ring: usize) -> Vector<R> {
         // Rotor and stop push a light ring by far more than it moves.
-        self.rides[ring].moved + (self.pushed[ring][0] + self.pushed[ring][1])
+        self.rides[ring].moved + self.rides[ring].by(self.pushed[ring])
     }
 
     pub(super) fn ring_kick(&self, ring: usize) -> Vector<R> {
-        let pushed = self.pushed[ring][0] + self.pushed[ring][1];
+        let pushed = self.rides[ring].by(self.pushed[ring]);
         self.rides[ring].kick + pushed.times(R::TWO / self.time)
     }
 
@@ -81,46 +86,73 @@ pub(super) struct Walls<R, const N: usize> {
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The next `time`; none where the walls cannot be solved for in it.
     pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Option<Passage<R, N, Q>> {
-        let mut drags = [Drag::Runs(R::ZERO); N];
-        for ((drag, ring), seat) in drags.iter_mut().zip(&self.rings).zip(&state.seats) {
-            if let Some(race) = &ring.race {
-                *drag = race.guess(&seat.race);
-            }
-        }
-        let free = self.free(state, time, drags);
+        let mut free = self.free(state, time);
         let mut passage = self.press(state, free)?;
-        for _ in 1..DRAGS {
-            let mut changed = false;
-            for (i, ring) in self.rings.iter().enumerate() {
-                let Some(race) = &ring.race else {
-                    continue;
-                };
-                let rub = passage.rub(i);
-                let other = race.corrected(&state.seats[i].race, time, drags[i], rub);
-                if let Some(other) = other {
-                    (drags[i], changed) = (other, true);
-                }
-            }
-            if !changed {
+        for repetition in 1..REPETITIONS {
+            let turns = repetition < DRAGS && self.correct_drags(state, &passage, &mut free);
+            let rubs = self.correct_mounts(state, &passage, &mut free);
+            let cuts = self.correct_magnets(state, &passage, &mut free);
+            if !turns && !rubs && !cuts {
                 break;
             }
-            passage = self.press(state, Passage { drags, ..free })?;
+            passage = self.press(state, free)?;
         }
         Some(passage)
     }
 
-    /// Without any wall.
-    fn free(
+    /// Drags that `passage` shows to be others; whether there are any.
+    fn correct_drags(
         &self,
         state: &CoupledState<R, N, Q>,
-        time: R,
-        drags: [Drag<R>; N],
-    ) -> Passage<R, N, Q> {
+        passage: &Passage<R, N, Q>,
+        free: &mut Passage<R, N, Q>,
+    ) -> bool {
+        let mut changed = false;
+        for (i, ring) in self.rings.iter().enumerate() {
+            let (drag, rub) = (&mut free.drags[i], passage.rub(i));
+            let other = ring
+                .race
+                .and_then(|it| it.corrected(&state.seats[i].race, free.time, *drag, rub));
+            if let Some(other) = other {
+                (*drag, changed) = (other, true);
+            }
+        }
+        changed
+    }
+
+    /// The same of the dry friction of mounts.
+    fn correct_mounts(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+        free: &mut Passage<R, N, Q>,
+    ) -> bool {
+        let mut changed = false;
+        for (i, ring) in self.rings.iter().enumerate() {
+            let (ride, mount) = (&mut free.rides[i], &state.seats[i].mount);
+            let rubs = ring.mount.as_ref().filter(|_| ride.rub != Rub::None);
+            let Some(it) = rubs else {
+                continue;
+            };
+            if let Some(rub) = it.corrected(mount, ride, free.time, passage.pushed[i]) {
+                *ride = it.ride(mount, free.time, free.shaken, rub);
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    /// Without any wall.
+    fn free(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
         let shaken = self.shaken(state, time);
         let mut rides = [Ride::default(); N];
-        for ((ride, ring), seat) in rides.iter_mut().zip(&self.rings).zip(&state.seats) {
+        let mut drags = [Drag::Runs(R::ZERO); N];
+        for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
             if let Some(mount) = &ring.mount {
-                *ride = mount.ride(&seat.mount, time, shaken);
+                rides[i] = mount.ride(&seat.mount, time, shaken, mount.guess(&seat.mount));
+            }
+            if let Some(race) = &ring.race {
+                drags[i] = race.guess(&seat.race);
             }
         }
         let mut passage = Passage {
@@ -129,6 +161,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             kick: [Vector::default(); Q],
             rides,
             presses: [None; N],
+            cut: self.cut_at_first(state),
             pushed: [[Vector::default(); 2]; N],
             stopped: [false; N],
             drags,
@@ -142,7 +175,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         passage
     }
 
-    fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+    pub(super) fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         let (time, half) = (passage.time, R::HALF * passage.time);
         let (places, velocities) = (state.places(), state.velocities());
         let nutation = self.gyration * state.spin.value();
@@ -162,10 +195,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             force[1] = force[1] + velocities[1].turned().times(nutation);
             matrix[1][1].y = -(half * nutation);
         }
-        for magnet in self.active(&state.on) {
+        for (magnet, cut) in self.active(&state.on).zip(passage.cut) {
             let rate = at(&magnet.shape, &velocities);
             let middle = at(&magnet.shape, &places) + rate.times(half);
-            let pull = middle.times(magnet.stiffness) + magnet.force - rate.times(magnet.damping);
+            let mut pull = magnet.pull(middle, rate);
+            if magnet.limit.is_some() {
+                pull = pull + cut;
+            }
             let implicit = half * (magnet.damping - half * magnet.stiffness);
             for k in 0..Q {
                 force[k] = force[k] + pull.times(magnet.shape[k]);
@@ -230,7 +266,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let rate = R::TWO / free.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
-            let mobility = free.rides[i].mobility;
+            let ride = &free.rides[i];
             if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
                 && link.grip != Grip::Open
             {
@@ -244,13 +280,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 for (sum, b) in pushes.iter_mut().zip(&ring.shape) {
                     *sum = *sum + push.times(*b);
                 }
-                passage.pushed[i][0] = push.times(-mobility);
+                passage.pushed[i][0] = ride.pushed(Vector::default() - push);
                 passage.spun += rate * ring.surface * link.rubbed / self.inertia_ratio;
             }
             if let Some(link) = walls.stops[i].and_then(|it| walls.links.get(it))
                 && link.grip != Grip::Open
             {
-                passage.pushed[i][1] = link.push().times(mobility);
+                passage.pushed[i][1] = ride.pushed(link.push());
                 passage.stopped[i] = true;
             }
         }
@@ -311,19 +347,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         for (i, ring) in self.rings.iter().enumerate() {
-            let mobility = Vector::real(free.rides[i].mobility);
-            let back = Vector::default() - mobility;
+            let mobility = Response::along(free.rides[i].mobility);
+            let back = mobility.back();
             for (j, other) in self.rings.iter().enumerate() {
                 let (Some(to), Some(from)) = (walls.contacts[i], walls.contacts[j]) else {
                     continue;
                 };
-                let mut motion = Vector::default();
+                let mut turned = Vector::default();
                 for (k, b) in ring.shape.iter().enumerate() {
-                    motion = motion + at(&other.shape, &free.inverse[k]).times(*b);
+                    turned = turned + at(&other.shape, &free.inverse[k]).times(*b);
                 }
+                let mut motion = Response::default() + turned;
                 let mut spin = ring.surface * other.surface / self.inertia_ratio;
                 if i == j {
-                    motion = motion + mobility;
+                    motion = mobility + turned;
                     spin += turnings[i].mobility;
                 }
                 walls.links.respond(to, from, motion, spin);

@@ -8,7 +8,7 @@
 use super::links::{Link, Links};
 use super::mount::OFF;
 use super::passage::Passage;
-use super::vector::Vector;
+use super::vector::{Response, Vector};
 use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
 
@@ -37,16 +37,18 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 if let (Some(to), Some(from)) = (places[i], places[j]) {
                     let own = if i == j { yields(i) } else { R::ZERO };
                     let mobility = self.mobility(i, j) + own;
-                    links.respond(to, from, Vector::real(mobility), R::ZERO);
+                    links.respond(to, from, Response::real(mobility), R::ZERO);
                 }
             }
         }
         (links, places)
     }
 
-    /// Velocity of a ring by an impulse.
-    fn ring_mobility(&self, ring: usize) -> R {
-        self.rings[ring].mount.map_or(R::ZERO, |it| it.mobility())
+    /// Velocity of a ring by an impulse; dry friction holds a ring that rests.
+    fn ring_mobility(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
+        let moves = !state.seats[ring].mount.rests();
+        let mount = self.rings[ring].mount.filter(|_| moves);
+        mount.map_or(R::ZERO, |it| it.mobility())
     }
 
     /// Takes the swing across the walls from the velocities, after a stretch.
@@ -57,7 +59,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let (mut links, places) = self.held(
             state,
             |i| self.relative(state, i),
-            |i| self.ring_mobility(i),
+            |i| self.ring_mobility(state, i),
         );
         for (i, place) in places.iter().enumerate() {
             if let Some(link) = place.and_then(|place| links.get_mut(place)) {
@@ -106,7 +108,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Gives an impulse to the rotor at a ring, and its counterpart to the ring.
     fn give(&self, state: &mut CoupledState<R, N, Q>, ring: usize, push: Vector<R>) {
         state.kick(&self.rings[ring].shape, push);
-        if let Some(mount) = &self.rings[ring].mount {
+        if let Some(mount) = &self.rings[ring].mount
+            && !state.seats[ring].mount.rests()
+        {
             let back = Vector::default() - push;
             mount.kick(&mut state.seats[ring].mount, back);
         }
@@ -184,7 +188,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let ring = &self.rings[i];
         let within = self.within(state, i);
         let normal = within.times(R::ONE / within.length());
-        let stands = state.is_stopped(i) || ring.mount.is_none();
+        let rests = state.seats[i].mount.rests();
+        let stands = state.is_stopped(i) || rests || ring.mount.is_none();
         let velocity = if stands {
             self.relative(state, i) + state.ring_velocity(i)
         } else {
@@ -194,7 +199,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut mobility = self.mobility(i, i) + ring.surface * ring.surface / self.inertia_ratio;
         mobility += ring.race.map_or(R::ZERO, |race| race.mobility());
         if !stands {
-            mobility += self.ring_mobility(i);
+            mobility += self.ring_mobility(state, i);
         }
         let stick = -slip / mobility;
         let most = ring.friction * impulse;

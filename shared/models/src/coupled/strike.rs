@@ -6,7 +6,7 @@
 
 use super::follow::{Arrival, on_wall};
 use super::links::{Grip, Link, Links};
-use super::vector::Vector;
+use super::vector::{Response, Vector};
 use super::{Coupled, CoupledState, RingEvent};
 use touchdown_rotor::kinematics::Change;
 use touchdown_rotor::precision::Precision;
@@ -228,14 +228,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         for (i, ring) in self.rings.iter().enumerate() {
-            let yielding = ring.mount.map_or(R::ZERO, |mount| mount.yielding());
-            let own = Vector::real(yielding);
+            let yielding = ring.mount.map_or([R::ZERO; 2], |mount| mount.yielding());
+            let own = Response::along(yielding);
             for (j, other) in self.rings.iter().enumerate() {
                 if let (Some(to), Some(from)) = (places[i], places[j]) {
-                    let mut motion = Vector::real(self.mobility(i, j));
+                    let mobility = Vector::real(self.mobility(i, j));
+                    let mut motion = Response::default() + mobility;
                     let mut spin = ring.surface * other.surface / self.inertia_ratio;
                     if i == j {
-                        motion = motion + own;
+                        motion = own + mobility;
                         spin += ring.race.map_or(R::ZERO, |race| race.mobility());
                     }
                     links.respond(to, from, motion, spin);
@@ -244,8 +245,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             if let Some(stop) = stops[i] {
                 links.respond(stop, stop, own, R::ZERO);
                 if let Some(contact) = places[i] {
-                    links.respond(stop, contact, Vector::default() - own, R::ZERO);
-                    links.respond(contact, stop, Vector::default() - own, R::ZERO);
+                    links.respond(stop, contact, own.back(), R::ZERO);
+                    links.respond(contact, stop, own.back(), R::ZERO);
                 }
             }
         }

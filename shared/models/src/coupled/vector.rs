@@ -55,6 +55,24 @@ impl<R: Real> Vector<R> {
         }
     }
 
+    /// Along x and along y by factors of their own.
+    pub(super) fn along(self, [x, y]: [R; 2]) -> Self {
+        Self {
+            x: self.x * x,
+            y: self.y * y,
+        }
+    }
+
+    /// The dot product, its parts along x and y by factors of their own.
+    pub(super) fn dot_along(self, other: Self, factors: [R; 2]) -> R {
+        let [x, y] = factors;
+        if x == y {
+            x * self.dot(other)
+        } else {
+            self.along(factors).dot(other)
+        }
+    }
+
     /// Quotient of the complex numbers; `other` is not 0.
     pub(super) fn over(self, other: Self) -> Self {
         let square = other.square();
@@ -95,6 +113,59 @@ impl<R: Real> Mul for Vector<R> {
         Self {
             x: self.x * other.x - self.y * other.y,
             y: self.x * other.y + self.y * other.x,
+        }
+    }
+}
+
+/// Motion by an impulse: a complex number, and what is more along x than along y, which mirrors it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Response<R> {
+    pub(super) whole: Vector<R>,
+    pub(super) mirrored: R,
+}
+
+impl<R: Real> Response<R> {
+    pub(super) fn real(x: R) -> Self {
+        Self::along([x; 2])
+    }
+
+    /// Along x and along y by factors of their own.
+    pub(super) fn along([x, y]: [R; 2]) -> Self {
+        Self {
+            whole: Vector::real(R::HALF * (x + y)),
+            mirrored: R::HALF * (x - y),
+        }
+    }
+
+    pub(super) fn to(self, push: Vector<R>) -> Vector<R> {
+        let turned = self.whole * push;
+        if self.mirrored == R::ZERO {
+            return turned;
+        }
+        turned + push.along([self.mirrored, -self.mirrored])
+    }
+
+    /// Along a direction of length 1, by an impulse there.
+    pub(super) fn own(self, direction: Vector<R>) -> R {
+        let mirrored = direction.along([R::ONE, -R::ONE]).dot(direction);
+        self.whole.x + self.mirrored * mirrored
+    }
+
+    pub(super) fn back(self) -> Self {
+        Self {
+            whole: Vector::default() - self.whole,
+            mirrored: -self.mirrored,
+        }
+    }
+}
+
+impl<R: Real> Add<Vector<R>> for Response<R> {
+    type Output = Self;
+
+    fn add(self, turned: Vector<R>) -> Self {
+        Self {
+            whole: turned + self.whole,
+            ..self
         }
     }
 }
