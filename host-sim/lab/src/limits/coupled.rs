@@ -19,7 +19,7 @@ const ROUNDED: f64 = 64.0;
 /// Of the first impact's time at an extreme, h^2/T: forces that go round with the spin change within a step. Chosen.
 const LATE: f64 = 4.0;
 
-/// Of a random machine's energy of motion, in units of the last digit, a step: a whirl turns all of it round. Chosen.
+/// Of a random machine's energy of motion, in units of the last digit, a stretch or impact: a whirl turns all of it round. Chosen.
 const TURNED: f64 = 16.0;
 
 /// How long the reference runs beyond the model's first impact and what it may be off, s.
@@ -181,7 +181,7 @@ fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
     let epsilon = epsilon(scene.model.precision);
     let (mut start, mut most_gone) = (None, f64::MIN);
     let (mut farthest, mut made, mut missing, mut size) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    let (mut turned_round, mut rolled, mut fastest) = (0.0, 0.0_f64, 0.0_f64);
+    let (mut turned_round, mut taken, mut rolled, mut fastest) = (0.0, 0, 0.0_f64, 0.0_f64);
     let (step, lever) = (scene.model.step / Units::of(scene).time, lever(scene));
     let run = watch(scene, &mut |view| {
         let energy = view.energy;
@@ -198,7 +198,8 @@ fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
         most_gone = most_gone.max(gone);
         made = made.max(most_gone - gone);
         fastest = fastest.max((2.0 * motion).sqrt());
-        turned_round += motion;
+        turned_round += motion * (view.taken - taken) as f64;
+        taken = view.taken;
         rolled = rolled.max(energy.races);
         let path = step * (fastest + step) * lever + ROUNDED * epsilon;
         farthest = farthest.max(view.beyond / path);

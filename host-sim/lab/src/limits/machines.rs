@@ -98,6 +98,7 @@ pub fn text(seed: u64) -> String {
     }
     if has(0) {
         text += &support(&mut random, mass, clearance);
+        text += &seat(seed, mass);
     }
     if has(1) {
         let inertia = polar * decades(&mut random, -4.0, -0.5);
@@ -107,7 +108,7 @@ pub fn text(seed: u64) -> String {
         text += &modes(&mut random);
     }
     if has(3) {
-        text += &left(&mut random, mass, ends);
+        text += &left(&mut random, seed, mass, ends);
     }
     let [x, y] = [(); 2].map(|()| clearance * random.random_range(-0.2..0.2));
     let step = decades(&mut random, 0.0, 300_f64.log10());
@@ -137,10 +138,45 @@ fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
     text
 }
 
-/// What is left of magnets that held half the rotor each at 15 to 100 Hz; 1 N/m at least, as a scene asks.
-fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
+/// Another stiffness along y in one of two, dry friction of 0.01 to 10 times the weight in one of two. Numbers of their own.
+fn seat(seed: u64, mass: f64) -> String {
+    let mut random = own(seed, 2);
     let mut text = String::new();
-    for at in ends {
+    let [spring, damper] = [
+        decades(&mut random, 4.0, 10.0),
+        decades(&mut random, 0.0, 5.0),
+    ];
+    if random.random() {
+        text += &format!("vertical_stiffness_n_m = {spring}\nvertical_damping_n_s_m = {damper}\n");
+    }
+    let friction = 9.81 * mass * decades(&mut random, -2.0, 1.0);
+    if random.random() {
+        let _ = writeln!(text, "dry_friction_n = {friction}");
+    }
+    text
+}
+
+/// The greatest force of a magnet, 0.1 to 10 times the weight, in one of two. Numbers of their own.
+fn limit(seed: u64, stream: u64, mass: f64) -> String {
+    let mut random = own(seed, stream);
+    let limit = 9.81 * mass * decades(&mut random, -1.0, 1.0);
+    if random.random() {
+        return format!("limit_n = {limit}\n");
+    }
+    String::new()
+}
+
+/// What does not change the numbers of other parts.
+fn own(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    random
+}
+
+/// What is left of magnets that held half the rotor each at 15 to 100 Hz; 1 N/m at least, as a scene asks.
+fn left(random: &mut ChaCha8Rng, seed: u64, mass: f64, ends: [f64; 2]) -> String {
+    let mut text = String::new();
+    for (at, stream) in ends.into_iter().zip(3..) {
         let held =
             0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
         let stiffness: f64 = held * random.random_range(-1.0..0.3);
@@ -150,6 +186,7 @@ fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
             text,
             "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
         );
+        text += &limit(seed, stream, mass);
     }
     text
 }
@@ -157,11 +194,10 @@ fn left(random: &mut ChaCha8Rng, mass: f64, ends: [f64; 2]) -> String {
 /// Magnets that hold the rotor at 15 to 100 Hz again, in the run and perhaps to its end. Numbers of their own: the
 /// machine without them stays the same.
 fn lift(seed: u64, mass: f64, ends: [f64; 2], duration: f64) -> String {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(1);
+    let mut random = own(seed, 1);
     let from = duration * random.random_range(0.1..0.6);
     let mut text = String::new();
-    for at in ends {
+    for (at, stream) in ends.into_iter().zip(5..) {
         let rate = std::f64::consts::TAU * random.random_range(15.0..100.0_f64);
         let stiffness = -0.5 * mass * rate * rate;
         let damping = 0.5 * mass * rate * random.random_range(0.1..2.0);
@@ -172,6 +208,7 @@ fn lift(seed: u64, mass: f64, ends: [f64; 2], duration: f64) -> String {
         if random.random() {
             let _ = writeln!(text, "until_s = {}", from + 0.3 * duration);
         }
+        text += &limit(seed, stream, mass);
     }
     text
 }

@@ -24,6 +24,8 @@ pub struct StepView {
     /// Farthest of the axis beyond the wall of any ring, its clearance, and of a ring beyond its hard stop, rho0; below
     /// 0 before any.
     pub beyond: f64,
+    /// Stretches and impacts taken so far.
+    pub taken: u64,
     /// What energy there is and was, in m V^2.
     pub energy: CoupledEnergy<f64>,
 }
@@ -160,6 +162,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let worse = |worst: f64, it: f64| if it <= worst { worst } else { it };
         StepView {
             beyond: walls.chain(stops).fold(-1.0, worse),
+            taken: state.taken(),
             energy: model.energy(state).to_f64(),
         }
     }

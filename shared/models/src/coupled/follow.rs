@@ -204,6 +204,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     ) {
         let before = *state;
         let time = passage.time;
+        state.taken = state.taken.saturating_add(1);
         self.book(state, passage);
         for k in 0..Q {
             state.place[k].add(passage.moved[k]);

@@ -11,8 +11,8 @@
 //! from the energy is 0 or more, of second order in the step, and booked to the support.
 //!
 //! Dry friction F is a force against the ring's motion, or what leaves it at rest, up to F. In a stretch it acts against
-//! the mean motion. It stops a ring that it would turn round; a ring that it holds gives way to nothing. It has no
-//! impulse in an impact.
+//! the mean motion. It stops a ring that it would turn round, and gives nothing where that turns round by itself; a ring
+//! that it holds gives way to nothing. It has no impulse in an impact.
 
 use super::units::Units;
 use super::vector::{Sums, Vector};
@@ -67,6 +67,8 @@ pub(super) enum Rub<R> {
     Slides(Vector<R>),
     /// It leaves the ring at rest.
     Rests,
+    /// The motion turns round by itself, within the stretch: it gives nothing.
+    Turns,
 }
 
 /// How the ring goes through a stretch of time that nothing pushes it in.
@@ -286,9 +288,12 @@ impl<R: Real> Sprung<R> {
         pushed: [Vector<R>; 2],
     ) -> Option<Rub<R>> {
         match ride.rub {
-            Rub::None => None,
+            Rub::None | Rub::Turns => None,
             Rub::Rests => {
                 let grip = ride.friction(time, pushed);
+                if grip.dot(ride.moved) > R::ZERO {
+                    return Some(Rub::Turns);
+                }
                 let most = self.friction * time;
                 let slips = grip.square() > most * most;
                 let against = direction(grip).filter(|_| slips)?;

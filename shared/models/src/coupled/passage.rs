@@ -90,7 +90,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut passage = self.press(state, free)?;
         for repetition in 1..REPETITIONS {
             let turns = repetition < DRAGS && self.correct_drags(state, &passage, &mut free);
-            let rubs = self.correct_mounts(state, &passage, &mut free);
+            let last = repetition + 1 == REPETITIONS;
+            let rubs = self.correct_mounts(state, &passage, &mut free, last);
             let cuts = self.correct_magnets(state, &passage, &mut free);
             if !turns && !rubs && !cuts {
                 break;
@@ -120,12 +121,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         changed
     }
 
-    /// The same of the dry friction of mounts.
+    /// The same of the dry friction of mounts; what is not found by the last repetition gives nothing.
     fn correct_mounts(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,
         free: &mut Passage<R, N, Q>,
+        last: bool,
     ) -> bool {
         let mut changed = false;
         for (i, ring) in self.rings.iter().enumerate() {
@@ -135,6 +137,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 continue;
             };
             if let Some(rub) = it.corrected(mount, ride, free.time, passage.pushed[i]) {
+                let rub = if last { Rub::Turns } else { rub };
                 *ride = it.ride(mount, free.time, free.shaken, rub);
                 changed = true;
             }

@@ -118,6 +118,7 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
     pub(super) tried: u64,
+    pub(super) taken: u64,
     pub(super) jammed: Option<u64>,
 }
 
@@ -130,6 +131,11 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
     /// Stretches tried so far, one a step at least: what the run has cost.
     pub fn tried(&self) -> u64 {
         self.tried
+    }
+
+    /// Stretches and impacts taken so far: of each the rounding stays.
+    pub fn taken(&self) -> u64 {
+        self.taken
     }
 
     /// The first step in which walls jammed: friction was left out of what the others were solved with.
@@ -254,6 +260,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             books: Books::default(),
             shortened: 0,
             tried: 0,
+            taken: 0,
             jammed: None,
         };
         for (sums, x) in state.place.iter_mut().zip([start.position, start.tilt]) {

@@ -65,6 +65,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !meetings.iter().any(|it| it.new || it.stops) {
             return;
         }
+        state.taken = state.taken.saturating_add(1);
         let mut after = *state;
         self.strike(&mut after, &mut meetings);
         let mut returns = meetings.map(|meeting| meeting.new && stays);
