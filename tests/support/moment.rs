@@ -44,6 +44,7 @@ pub fn scaled(energy: &CoupledEnergy<f64>, unit: f64) -> CoupledEnergy<f64> {
         height: energy.height * unit,
         magnets: energy.magnets * unit,
         bending: energy.bending * unit,
+        contacts: energy.contacts * unit,
         rings: energy.rings * unit,
         springs: energy.springs * unit,
         races: energy.races * unit,

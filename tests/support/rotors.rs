@@ -15,6 +15,7 @@ pub fn ring(place: f64) -> SeatConfig<f64> {
             friction: 0.0,
             restitution: 1.0,
         },
+        compliant: None,
         mount: None,
         race: None,
         shape: [0.0; 3],

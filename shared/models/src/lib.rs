@@ -12,9 +12,9 @@ mod hertz;
 mod moreau;
 
 pub use coupled::{
-    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledEnergy, CoupledState, Load,
-    ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion, RingConfig, RingEvent, RingMotion,
-    SeatConfig, UnbalanceConfig, Whole,
+    ActuatorConfig, BaseConfig, CompliantConfig, CompliantShape, Coupled, CoupledConfig,
+    CoupledEnergy, CoupledState, Load, ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion,
+    RingConfig, RingEvent, RingMotion, SeatConfig, UnbalanceConfig, Whole,
 };
 pub use hertz::{
     Compliance, Euler, Hertz, HertzConfig, HertzState, Line, LinePower, Materials, Pairing, Point,

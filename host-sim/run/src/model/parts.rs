@@ -48,6 +48,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
             friction: ring.retainer.friction,
             restitution: ring.retainer.restitution,
         },
+        compliant: None,
         mount: ring
             .support
             .filter(|_| has(Removable::Mount))

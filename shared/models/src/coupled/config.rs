@@ -2,6 +2,7 @@
 
 use core::cmp::Ordering;
 
+use super::compliant::{Compliant, CompliantConfig};
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
 use super::units::Units;
@@ -56,6 +57,8 @@ pub struct UnbalanceConfig<R> {
 pub struct SeatConfig<R> {
     /// Place, gap and law.
     pub ring: RingConfig<R>,
+    /// A wall that gives way; one with restitution without.
+    pub compliant: Option<CompliantConfig<R>>,
     /// Spring and damper; a rigid seat without.
     pub mount: Option<MountConfig<R>>,
     /// Ball bearing; a bushing without.
@@ -170,6 +173,7 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             transverse_inertia: plane.polar_inertia,
             rings: places.map(|place| SeatConfig {
                 ring: ring(place),
+                compliant: None,
                 mount: None,
                 race: None,
                 shape: [R::ZERO; MODES],
@@ -369,14 +373,18 @@ impl<R: Precision, const Q: usize> Ring<R, Q> {
             step: config.step / scales.time,
             scales: *scales,
         };
+        let limit = ring.clearance / first.clearance;
+        let compliant = seat.compliant.as_ref();
+        let compliant = compliant.map(|it| Compliant::try_new(it, ring.restitution, limit, &units));
         let mount = seat.mount.as_ref();
         let race = seat.race.as_ref();
         Ok(Self {
             shape: [R::ZERO; Q],
-            limit: ring.clearance / first.clearance,
+            limit,
             surface: ring.radius / first.radius,
             friction: ring.friction,
             restitution: ring.restitution,
+            compliant: compliant.transpose()?,
             mount: mount.map(|it| Sprung::try_new(it, &units)).transpose()?,
             race: race
                 .map(|it| BallBearing::try_new(it, &units))

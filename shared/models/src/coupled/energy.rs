@@ -18,6 +18,8 @@ pub struct CoupledEnergy<R> {
     pub magnets: R,
     /// In the bent rotor.
     pub bending: R,
+    /// In walls that give way.
+    pub contacts: R,
     /// Of the rings' motion.
     pub rings: R,
     /// In the rings' springs.
@@ -50,7 +52,7 @@ impl<R: Real> CoupledEnergy<R> {
             self.magnets,
             self.bending,
         ];
-        sum(rotor) + sum([self.rings, self.springs, self.races])
+        sum(rotor) + sum([self.contacts, self.rings, self.springs, self.races])
     }
 
     /// Stored and gone, without what came in: the same at all times.
@@ -67,6 +69,7 @@ impl<R: Real> CoupledEnergy<R> {
             height: self.height.to_f64(),
             magnets: self.magnets.to_f64(),
             bending: self.bending.to_f64(),
+            contacts: self.contacts.to_f64(),
             rings: self.rings.to_f64(),
             springs: self.springs.to_f64(),
             races: self.races.to_f64(),
@@ -110,6 +113,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         energy.magnets = self.in_magnets(state, &state.on);
         for (ring, seat) in self.rings.iter().zip(&state.seats) {
+            let spell = seat.held.and_then(|it| it.spell);
+            energy.contacts += spell.map_or(R::ZERO, |it| it.stored);
             if let Some(mount) = &ring.mount {
                 let [motion, spring, taken, stop] = mount.energy(&seat.mount);
                 energy.rings += motion;

@@ -7,9 +7,10 @@
 
 use super::crossing::crossing;
 use super::passage::Passage;
+use super::state::Held;
 use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent, at};
-use touchdown_rotor::kinematics::{Change, ModelEvent};
+use touchdown_rotor::kinematics::{Change, ModelEvent, Pulse};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 
@@ -136,7 +137,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
-                    self.meet(state, Some(beyond.who), stays, now, &mut on_event);
+                    if !self.enters(state, beyond.who, now, &mut on_event) {
+                        self.meet(state, Some(beyond.who), stays, now, &mut on_event);
+                    }
                     impacts += 1;
                     (longest, crossings) = (whole, 0);
                 }
@@ -220,7 +223,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             self.advance_ring(state, passage, i, spin);
         }
         for i in 0..N {
-            if !keeps && state.is_held(i) && passage.presses[i].is_none() {
+            if state.seats[i].held.is_some_and(|it| it.spell.is_some()) {
+                self.goes_on(state, passage, i, part, on_event);
+            } else if !keeps && state.is_held(i) && passage.presses[i].is_none() {
                 state.seats[i].held = None;
                 self.tell(state, i, part, Change::LiftsOff, on_event);
             }
@@ -244,6 +249,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
             let rolled = core::mem::replace(&mut held.rolling, stuck[i]);
             let change = match (rolled, stuck[i]) {
+                _ if held.passes() => continue,
                 (false, true) => Change::RollingStarts,
                 (true, false) => Change::SlidingStarts,
                 _ => continue,
@@ -317,6 +323,84 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if let Some(race) = &ring.race {
             race.advance(&mut seat.race, time, turned, rub, heat);
         }
+    }
+
+    /// The axis comes to a wall that gives way; whether it is one.
+    fn enters(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        who: Arrival,
+        part: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) -> bool {
+        let Arrival::Axis(i) = who else {
+            return false;
+        };
+        let ring = &self.rings[i];
+        let Some(compliant) = &ring.compliant else {
+            return false;
+        };
+        let within = self.within(state, i);
+        let normal = within.times(R::ONE / within.length());
+        let speed = normal.dot(self.relative(state, i)).most(R::ZERO);
+        let spell = compliant.entered(state.in_step(part), speed);
+        state.seats[i].held = Some(Held {
+            spell: Some(spell),
+            ..Held::default()
+        });
+        let yields = ring.mount.map_or([R::ZERO; 2], |it| it.yielding());
+        let mobility = self.mobility(i, i) + normal.dot_along(normal, yields);
+        let change = Change::Impact {
+            speed,
+            impulse: (R::ONE + ring.restitution) * speed / mobility,
+        };
+        self.tell(state, i, part, change, on_event);
+        true
+    }
+
+    /// After a stretch in a wall that gives way: what it stores, and whether it is left.
+    fn goes_on(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        passage: &Passage<R, N, Q>,
+        i: usize,
+        part: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) {
+        let ring = &self.rings[i];
+        let (Some(compliant), Some(mut held)) = (&ring.compliant, state.seats[i].held) else {
+            return;
+        };
+        let Some(spell) = &mut held.spell else {
+            return;
+        };
+        let moved = at(&ring.shape, &passage.moved) - passage.ring_moved(i);
+        let end = self.within(state, i);
+        let depth = end.length() - ring.limit;
+        let pressed = passage.presses[i].map_or(R::ZERO, |it| it.pressed);
+        let force = R::TWO * pressed / (passage.time * passage.time);
+        let begins = spell.goes_on(end.length() - (end - moved).length(), force, passage.time);
+        let left = depth <= R::ZERO || passage.presses[i].is_none();
+        let stored = if left {
+            R::ZERO
+        } else {
+            compliant.energy(depth)
+        };
+        state.books.lost.add(spell.stored - stored);
+        spell.stored = stored;
+        let spell = *spell;
+        state.seats[i].held = (!left).then_some(held);
+        let change = match (left, spell.stays) {
+            (true, true) => Change::LiftsOff,
+            (true, false) => Change::Released(Pulse {
+                peak_force: spell.peak,
+                duration: state.in_step(part).since(spell.since) * self.step,
+                impulse: spell.impulse,
+            }),
+            (false, _) if begins => Change::ContactStarts,
+            _ => return,
+        };
+        self.tell(state, i, part, change, on_event);
     }
 
     pub(super) fn tell(

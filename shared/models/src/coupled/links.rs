@@ -42,6 +42,8 @@ pub(super) struct Link<R> {
     pub(super) free: Vector<R>,
     /// Motion along the normal that is asked for.
     pub(super) wanted: R,
+    /// Further motion along the normal by the impulse: the wall gives way.
+    pub(super) softness: R,
     /// Of the slip, what is not motion within the wall, without any impulse.
     pub(super) surface: R,
     /// Slip before.
@@ -60,6 +62,7 @@ impl<R: Real> Link<R> {
             normal,
             free,
             wanted: R::ZERO,
+            softness: R::ZERO,
             surface: R::ZERO,
             before: R::ZERO,
             friction: R::ZERO,
@@ -315,7 +318,21 @@ impl<R: Real, const N: usize> Links<R, N> {
             };
         }
         if !slips {
-            return link.wanted - link.normal.dot(link.free);
+            let wanted = link.wanted - link.normal.dot(link.free);
+            if link.softness <= R::ZERO {
+                return wanted;
+            }
+            // In the size of the other rows: a wall that hardly presses is as soft as can be.
+            let size = R::ONE / (R::ONE + link.softness);
+            for (slot, (from, unit)) in row.iter_mut().zip(unknowns) {
+                let gives = if *from == place {
+                    link.softness * unit.x
+                } else {
+                    R::ZERO
+                };
+                *slot = (*slot + gives) * size;
+            }
+            return wanted * size;
         }
         let after = match link.grip {
             Grip::Turns => -link.before,

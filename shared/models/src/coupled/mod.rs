@@ -13,6 +13,7 @@
 // Coordinates and rings are counted alike in several arrays.
 #![allow(clippy::needless_range_loop)]
 
+mod compliant;
 mod config;
 mod crossing;
 mod energy;
@@ -31,6 +32,7 @@ mod units;
 mod vector;
 mod whole;
 
+pub use compliant::{CompliantConfig, CompliantShape};
 pub use config::{
     ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
 };
@@ -40,6 +42,7 @@ pub use race::{RaceConfig, RaceMotion};
 pub use state::{CoupledState, Load, Placement, RingEvent, RingMotion};
 pub use whole::Whole;
 
+use compliant::Compliant;
 use config::{MAGNETS, MODES};
 use mount::Sprung;
 use race::BallBearing;
@@ -58,6 +61,8 @@ struct Ring<R, const Q: usize> {
     surface: R,
     friction: R,
     restitution: R,
+    /// In place of restitution.
+    compliant: Option<Compliant<R>>,
     mount: Option<Sprung<R>>,
     race: Option<BallBearing<R>>,
 }
@@ -70,6 +75,7 @@ impl<R: Real, const Q: usize> Default for Ring<R, Q> {
             surface: R::ONE,
             friction: R::ZERO,
             restitution: R::ZERO,
+            compliant: None,
             mount: None,
             race: None,
         }
@@ -170,6 +176,7 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                 surface: R::lit(ring.surface),
                 friction: R::lit(ring.friction),
                 restitution: R::lit(ring.restitution),
+                compliant: ring.compliant.map(|it| it.rounded()),
                 mount: ring.mount.map(|mount| mount.rounded()),
                 race: ring.race.map(|race| race.rounded()),
             }),

@@ -132,6 +132,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 }
             }
             changed = Search::size(&off);
+            for i in 0..N {
+                let Some(place) = walls.contacts[i] else {
+                    continue;
+                };
+                let moved = walls.links.motion(place);
+                if let Some(link) = walls.links.get_mut(place) {
+                    changed = changed.most(self.bend(state, i, walls.time, link, moved));
+                }
+            }
             let turns = search.next(off);
             for (place, wanted) in wanted.into_iter().enumerate() {
                 if let Some(link) = walls.links.get_mut(place) {

@@ -4,6 +4,7 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
+use super::compliant::Way;
 use super::config::MAGNETS;
 use super::links::{Grip, Link, Links};
 use super::mount::{Ride, Rub};
@@ -327,6 +328,23 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         Some(link)
     }
 
+    /// Makes the link of a wall that gives way its tangent at its motion; how far that is from what it was, of the distance.
+    pub(super) fn bend(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        i: usize,
+        time: R,
+        link: &mut Link<R>,
+        moved: Vector<R>,
+    ) -> R {
+        let spell = state.seats[i].held.and_then(|it| it.spell);
+        let (Some(compliant), Some(spell)) = (&self.rings[i].compliant, spell) else {
+            return R::ZERO;
+        };
+        let from = self.within(state, i);
+        compliant.bend(link, &spell, &Way { from, time }, moved)
+    }
+
     /// The walls that hold at the start, with what moves in them.
     fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Walls<R, N> {
         let mut walls = Walls {
@@ -341,7 +359,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
             }
             let link = self.contact(state, free, i, turnings[i].free);
-            walls.contacts[i] = link.map(|link| walls.links.add(link));
+            walls.contacts[i] = link.map(|mut link| {
+                let moved = link.free;
+                self.bend(state, i, free.time, &mut link, moved);
+                walls.links.add(link)
+            });
             if state.is_stopped(i) {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());

@@ -26,7 +26,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut links = Links::new();
         let mut places = [None; N];
         for (i, place) in places.iter_mut().enumerate() {
-            if state.is_held(i) {
+            if state.lies(i) {
                 let within = self.within(state, i);
                 let normal = within.times(R::ONE / within.length());
                 *place = Some(links.add(Link::new(normal, motion(i))));
@@ -53,7 +53,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Takes the swing across the walls from the velocities, after a stretch.
     pub(super) fn calm(&self, before: &CoupledState<R, N, Q>, state: &mut CoupledState<R, N, Q>) {
-        if !(0..N).any(|i| state.is_held(i)) {
+        if !(0..N).any(|i| state.lies(i)) {
             return;
         }
         let (mut links, places) = self.held(
@@ -83,7 +83,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let velocities = state.velocities();
         let mut motion = velocities.iter().fold(R::ZERO, |sum, v| sum + v.square());
         for (i, ring) in self.rings.iter().enumerate() {
-            if let Some(mount) = ring.mount.as_ref().filter(|_| state.is_held(i)) {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| state.lies(i)) {
                 motion += state.ring_velocity(i).square() / mount.mobility();
             }
         }
@@ -97,7 +97,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             sums.add(velocity.times(more));
         }
         for (i, ring) in self.rings.iter().enumerate() {
-            if let Some(mount) = ring.mount.as_ref().filter(|_| state.is_held(i)) {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| state.lies(i)) {
                 let push = state.ring_velocity(i).times(more / mount.mobility());
                 mount.kick(&mut state.seats[i].mount, push);
             }
@@ -160,11 +160,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Farthest from its wall of any held ring, of its clearance.
     fn off(&self, state: &CoupledState<R, N, Q>) -> R {
-        (0..N)
-            .filter(|i| state.is_held(*i))
-            .fold(R::ZERO, |off, i| {
-                off.most((self.reach_at(state, i) - R::ONE).abs())
-            })
+        (0..N).filter(|i| state.lies(*i)).fold(R::ZERO, |off, i| {
+            off.most((self.reach_at(state, i) - R::ONE).abs())
+        })
     }
 
     /// Friction of a stretch that was gone without it, limited by the normal impulses there; where it stopped the slip.

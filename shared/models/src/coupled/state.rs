@@ -1,5 +1,6 @@
 //! The state: the rotor's coordinates, its spin, and each ring's motion.
 
+use super::compliant::Spell;
 use super::config::MAGNETS;
 use super::mount::SprungState;
 use super::race::{BallBearingState, RaceMotion};
@@ -76,6 +77,15 @@ pub struct RingEvent<R> {
 pub(super) struct Held<R> {
     pub(super) rolling: bool,
     pub(super) turns: Turns<R>,
+    /// Where the wall gives way.
+    pub(super) spell: Option<Spell<R>>,
+}
+
+impl<R: Real> Held<R> {
+    /// Whether it is an impact yet.
+    pub(super) fn passes(&self) -> bool {
+        self.spell.is_some_and(|it| !it.stays)
+    }
 }
 
 /// A ring's part of the state.
@@ -200,6 +210,11 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
         self.seats[ring].held.is_some()
     }
 
+    /// Whether a wall holds the axis that does not give way.
+    pub(super) fn lies(&self, ring: usize) -> bool {
+        self.seats[ring].held.is_some_and(|it| it.spell.is_none())
+    }
+
     /// Whether a hard stop holds the ring.
     pub(super) fn is_stopped(&self, ring: usize) -> bool {
         self.seats[ring].mount.is_stopped()
@@ -298,7 +313,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// The axis at a ring, spin as surface speed there.
     pub fn kinematics_at(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Kinematics<R> {
-        let held = state.seats[ring].held;
+        let held = state.seats[ring].held.filter(|it| !it.passes());
         let (position, velocity) = state.axis_at(&self.rings[ring].shape);
         Kinematics {
             position,
@@ -316,6 +331,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Displacement of the axis in a ring, rho0.
     pub fn displacement(&self, state: &CoupledState<R, N, Q>, ring: usize) -> [R; 2] {
         self.within(state, ring).parts()
+    }
+
+    /// Whether a ring's wall gives way.
+    pub fn is_compliant(&self, ring: usize) -> bool {
+        self.rings[ring].compliant.is_some()
     }
 
     /// A ring's way beyond its hard stop, rho0; below 0 before it, none without a stop.

@@ -119,8 +119,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let ring = &self.rings[i];
         let within = self.within(state, i);
         let held = state.is_held(i);
+        let gives_way = ring.compliant.is_some();
         let arrives = arrived == Some(Arrival::Axis(i));
-        let mut touches = held || arrives || within.length() >= near * ring.limit;
+        let mut touches = !gives_way && (held || arrives || within.length() >= near * ring.limit);
         let mut outward = R::ZERO;
         if touches {
             outward = within.dot(self.relative(state, i)) / within.length();

@@ -21,7 +21,7 @@ const TERMS: i32 = 28;
 const ITERATIONS: usize = 80;
 
 /// `a` for this restitution, 0 to 1.
-pub(super) fn damping<R: Real>(restitution: R) -> R {
+pub(crate) fn damping<R: Real>(restitution: R) -> R {
     let e = restitution.most(R::lit(LEAST_RESTITUTION));
     // Negative below the root, positive beyond; 0 itself is the root of no interest.
     let (mut low, mut high) = (R::ZERO, R::ONE / e);

@@ -13,6 +13,7 @@ mod shape;
 mod state;
 
 pub use config::{Compliance, HertzConfig};
+pub(crate) use damping::damping;
 pub use scheme::{Euler, Scheme, Verlet};
 pub use shape::{Line, LinePower, Materials, Pairing, Point, Shape};
 pub use state::HertzState;

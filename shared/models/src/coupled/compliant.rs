@@ -1,0 +1,264 @@
+//! A wall that gives way to a force, in place of one with restitution: force K times a function of the depth, times
+//! 1 + a d'/V with the speed V at which this contact was entered (Hunt and Crossley; docs/know/model.md).
+//!
+//! In a stretch the force is its mean over the way from one depth to the other, so that a contact without damping keeps
+//! the energy. Its tangent makes it a link that gives way; stretch by stretch that is found by Newton's method (`normals`).
+
+use super::links::{Grip, Link};
+use super::units::Units;
+use super::vector::Vector;
+use crate::hertz::{Line, LinePower, Point, Shape, damping};
+use touchdown_rotor::clock::Instant;
+use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
+use touchdown_rotor::scales::positive;
+
+/// Newton's steps for the part of the depth that is not the balls': each doubles the digits.
+const POLISHINGS: usize = 8;
+
+/// How the force grows with the depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompliantShape {
+    /// [`Point`].
+    Point,
+    /// [`Line`].
+    Line,
+    /// [`LinePower`].
+    LinePower,
+}
+
+/// A wall that gives way, SI. The ring's restitution sets its damping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompliantConfig<R> {
+    /// How the force grows.
+    pub shape: CompliantShape,
+    /// K, N/m^n.
+    pub stiffness: R,
+    /// Of balls and races, which give way with the wall, N/m; rigid without.
+    pub balls: Option<R>,
+    /// Speed up to which the damping is scaled by it and not by the contact's own, m/s.
+    pub slowest: R,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Compliant<R> {
+    shape: CompliantShape,
+    /// Force per mass of the rotor.
+    stiffness: R,
+    balls: Option<R>,
+    damping: R,
+    slowest: R,
+    /// Clearance, of the first ring's.
+    gap: R,
+}
+
+/// A contact, from its first to its last moment beyond the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spell<R> {
+    pub(super) since: Instant<R>,
+    /// Of the damping, over depth per time.
+    rate: R,
+    /// Energy in the wall.
+    pub(super) stored: R,
+    pub(super) peak: R,
+    pub(super) impulse: R,
+    leaves: bool,
+    /// Whether it was pressed again before it was left: it is permanent.
+    pub(super) stays: bool,
+}
+
+/// The way of the axis in the ring in a stretch, as far as it is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way<R> {
+    pub(super) from: Vector<R>,
+    pub(super) time: R,
+}
+
+impl Compliant<f64> {
+    pub(super) fn rounded<R: Real>(&self) -> Compliant<R> {
+        Compliant {
+            shape: self.shape,
+            stiffness: R::lit(self.stiffness),
+            balls: self.balls.map(R::lit),
+            damping: R::lit(self.damping),
+            slowest: R::lit(self.slowest),
+            gap: R::lit(self.gap),
+        }
+    }
+}
+
+impl<R: Precision> Compliant<R> {
+    /// `gap` is the ring's clearance over the first's.
+    pub(super) fn try_new(
+        config: &CompliantConfig<R>,
+        restitution: R,
+        gap: R,
+        units: &Units<R>,
+    ) -> Result<Self, ConfigError> {
+        positive("stiffness", config.stiffness)?;
+        positive("slowest", config.slowest)?;
+        let scales = &units.scales;
+        let spring = scales.length / scales.speed * (scales.length / scales.speed) / units.mass;
+        let root = match config.shape {
+            CompliantShape::Point => scales.length.sqrt(),
+            _ => R::ONE,
+        };
+        if let Some(balls) = config.balls {
+            positive("balls", balls)?;
+        }
+        Ok(Self {
+            shape: config.shape,
+            stiffness: config.stiffness * spring * root,
+            balls: config.balls.map(|it| it * spring),
+            damping: damping(restitution),
+            slowest: config.slowest / scales.speed,
+            gap,
+        })
+    }
+
+    /// Of the wall alone: force and its slope.
+    fn alone(&self, depth: R) -> [R; 2] {
+        if depth <= R::ZERO {
+            return [R::ZERO; 2];
+        }
+        let (power, slope) = match self.shape {
+            CompliantShape::Point => law::<R, Point>(depth, self.gap),
+            CompliantShape::Line => law::<R, Line<R>>(depth, self.gap),
+            CompliantShape::LinePower => law::<R, LinePower<R>>(depth, self.gap),
+        };
+        let force = self.stiffness * power;
+        [force, slope * force / depth]
+    }
+
+    /// The part of a depth that is the wall's, and not the balls'.
+    fn own(&self, depth: R) -> R {
+        let Some(balls) = self.balls else {
+            return depth;
+        };
+        let mut own = depth;
+        for _ in 0..POLISHINGS {
+            let [force, slope] = self.alone(own);
+            own -= (own + force / balls - depth) / (R::ONE + slope / balls);
+        }
+        own
+    }
+
+    /// Without damping: force and its slope.
+    fn force(&self, depth: R) -> [R; 2] {
+        let [force, slope] = self.alone(self.own(depth));
+        match self.balls {
+            Some(balls) => [force, slope / (R::ONE + slope / balls)],
+            None => [force, slope],
+        }
+    }
+
+    /// What is stored at a depth.
+    pub(super) fn energy(&self, depth: R) -> R {
+        if depth <= R::ZERO {
+            return R::ZERO;
+        }
+        let own = self.own(depth);
+        let [force, _] = self.alone(own);
+        let power = force / self.stiffness;
+        let parts = match self.shape {
+            CompliantShape::Point => Point::parts(own, power),
+            CompliantShape::Line => Line::parts(own, power),
+            CompliantShape::LinePower => LinePower::parts(own, power),
+        };
+        let balls = self.balls.map_or(R::ZERO, |it| R::HALF * force / it);
+        force * (own / parts + balls)
+    }
+
+    /// Mean force on the way from one depth to another, and how that grows with the other.
+    fn mean(&self, from: R, to: R) -> [R; 2] {
+        let (from, inside) = (from.most(R::ZERO), to.most(R::ZERO));
+        let mean = if self.balls.is_none() && self.shape == CompliantShape::Point {
+            // Of d^1.5: by differences of d^2.5, of which the root of the depth is a factor.
+            let (a, b) = (from.sqrt(), inside.sqrt());
+            let sum = a + b;
+            if sum <= R::ZERO {
+                return [R::ZERO; 2];
+            }
+            let terms = from * from + inside * inside + a * b * (from + inside) + from * inside;
+            R::lit(0.4) * self.stiffness * terms / sum
+        } else {
+            // Two points of Gauss.
+            let (middle, half) = (R::HALF * (from + inside), R::HALF * (inside - from));
+            let off = R::lit(0.577_350_269_189_625_8) * half;
+            R::HALF * (self.force(middle - off)[0] + self.force(middle + off)[0])
+        };
+        if to < R::ZERO {
+            let share = from / (from - to);
+            return [mean * share, mean * share / (from - to)];
+        }
+        let third = (inside - from) / R::from_i32(3);
+        [mean, R::HALF * self.force(inside - third)[1]]
+    }
+
+    /// A contact entered at this speed.
+    pub(super) fn entered(&self, since: Instant<R>, speed: R) -> Spell<R> {
+        Spell {
+            since,
+            rate: self.damping / speed.most(self.slowest),
+            stored: R::ZERO,
+            peak: R::ZERO,
+            impulse: R::ZERO,
+            leaves: false,
+            stays: false,
+        }
+    }
+
+    /// Makes the link that of the tangent of the force where the axis has moved so; how far that is from what it was, of
+    /// the distance.
+    pub(super) fn bend(
+        &self,
+        link: &mut Link<R>,
+        spell: &Spell<R>,
+        way: &Way<R>,
+        moved: Vector<R>,
+    ) -> R {
+        let end = way.from + moved;
+        let (before, after) = (way.from.length(), end.length());
+        let sum = way.from + end;
+        let part = sum.length() / (before + after);
+        let deeper = after - before;
+        let along = sum.dot(moved) / sum.length();
+        let [mean, slope] = self.mean(before - self.gap, after - self.gap);
+        let damped = R::ONE + spell.rate * deeper / way.time;
+        let factor = R::HALF * way.time * way.time * part;
+        let pressed = factor * mean * damped.most(R::ZERO);
+        let stiffness = factor * part * (slope * damped + mean * spell.rate / way.time);
+        if pressed <= R::ZERO || stiffness <= R::ZERO {
+            let off = if link.grip == Grip::Open {
+                R::ZERO
+            } else {
+                link.pressed
+            };
+            link.grip = Grip::Open;
+            link.wanted = along + before;
+            return off / before;
+        }
+        let off = (pressed - link.pressed) / stiffness;
+        link.softness = R::ONE / stiffness;
+        link.wanted = along - pressed / stiffness;
+        off.abs() / before
+    }
+}
+
+impl<R: Precision> Spell<R> {
+    /// After a stretch that went deeper by so much with this mean force; whether it has become permanent.
+    pub(super) fn goes_on(&mut self, deeper: R, force: R, time: R) -> bool {
+        self.peak = self.peak.most(force);
+        self.impulse += force * time;
+        let again = self.leaves && deeper > R::ZERO && !self.stays;
+        self.leaves |= deeper < R::ZERO;
+        self.stays |= again;
+        again
+    }
+}
+
+fn law<R: Real, C: Shape<R>>(depth: R, gap: R) -> (R, R) {
+    let power = C::power(depth, gap);
+    (power, C::slope(depth, power))
+}
