@@ -218,7 +218,12 @@ impl Recorder {
                 self.history.impacts.push(impact);
             }
             ModelEvent::Released { state, pulse } => {
-                if let Some(impact) = self.history.impacts.last_mut() {
+                // That which began when the pulse did: another ring may have been struck since.
+                let begun = state.time - pulse.duration;
+                let late = |it: &Impact| (it.state.time - begun).abs();
+                let open = self.history.impacts.iter_mut();
+                let open = open.rev().filter(|it| it.pulse.is_none());
+                if let Some(impact) = open.min_by(|a, b| late(a).total_cmp(&late(b))) {
                     let time = impact.state.time;
                     impact.state = RotorState { time, ..state };
                     impact.normal_impulse = pulse.impulse;

@@ -13,6 +13,7 @@ use super::faults::faults;
 use super::file::{ModelTable, RunTable, SceneFile, SensorsTable, StatorTable};
 use super::machine::{retainer, rotor, start};
 use super::rule::{Keys, MICRO, MILLI, translate};
+use super::scales;
 use super::support::{BallBearingTable, SupportTable};
 use super::{
     BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Start,
@@ -38,7 +39,11 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let plane = ball_bearing.filter(|_| file.two_plane.is_none());
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
     let two_plane = two_plane(&file, &rotor, &retainer, &start, (support, ball_bearing))?;
-    let needed = needed(&file, two_plane.as_ref());
+    let compliant = compliant(&file, two_plane.as_ref())?;
+    let needed = match compliant {
+        true => Fidelity::Coupled,
+        false => needed(&file, two_plane.as_ref()),
+    };
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
     let materials = materials(file.materials.as_ref())?;
@@ -72,6 +77,13 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         zones: zones(file.guard.zones)?,
     };
     let given = file.model.step_us.is_some();
+    if compliant && let Some(mut machine) = scene.two_plane.take() {
+        for k in 0..machine.rings.len() {
+            let wall = scales::wall(&scene, &machine, &machine.rings[k]);
+            machine.rings[k].wall = Some(wall.map_err(|error| translate(&error))?);
+        }
+        scene.two_plane = Some(machine);
+    }
     match scene.model.rung {
         Fidelity::Hertz => scene.model.step = step_in_contact(&scene, given)?,
         Fidelity::Coupled if !given => scene.model.step = resolved_step(&scene),
@@ -94,6 +106,7 @@ fn resolved_step(scene: &Scene) -> f64 {
     let machine = scene.two_plane.as_ref();
     let fastest = machine.map_or(0.0, |it| it.fastest(scene.rotor.spin));
     let wanted = (limits::ANGLE_OF_STEP / fastest).min(limits::RESOLVED);
+    let wanted = wanted.min(scales::accurate_step(scene));
     let least = (scene.run.duration / limits::STEPS).max(MICRO);
     let sample = scene.model.step;
     let parts = (sample / wanted).ceil().min((sample / least).floor());
@@ -157,6 +170,26 @@ pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
     RUN.between("gravity_m_s2", gravity, limits::GRAVITY_M_S2)
 }
 
+/// Whether contacts are to have a force and a duration; what only such have must not stand without it.
+fn compliant(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Result<bool, Diagnostic> {
+    const KEYS: Keys = Keys("model");
+    let names = ["restitution", "compliant"];
+    let contact = KEYS.named_or("contact", &file.model.contact, names[0], &names)?;
+    let compliant = contact == names[1];
+    if compliant && two_plane.is_none() {
+        let rule =
+            "contact = \"compliant\" needs [two_plane]: in the plane rung = \"hertz\" is that";
+        return Err(KEYS.broken("contact", rule));
+    }
+    let mut bearings = two_plane.iter().flat_map(|it| &it.rings);
+    let balls = bearings.any(|it| it.ball_bearing.is_some_and(|it| it.stiffness.is_some()));
+    if balls && !compliant {
+        let rule = "stiffness_n_m of balls is that of [model] contact = \"compliant\"";
+        return Err(Keys("ball_bearing").broken("stiffness_n_m", rule));
+    }
+    Ok(compliant)
+}
+
 /// The lowest rung that has all parts of the machine.
 fn needed(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Fidelity {
     match two_plane {
@@ -215,7 +248,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, magnet's damping or times: leave them out, or rung";
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping or times: leave them out, or rung";
         return Err(KEYS.broken("rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {

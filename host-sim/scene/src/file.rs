@@ -160,6 +160,7 @@ pub(super) struct ModelTable {
     pub precision: Option<String>,
     pub step_us: Option<f64>,
     pub cutoff_mm_s: Option<f64>,
+    pub contact: Option<String>,
     pub fidelity: Option<String>,
 }
 

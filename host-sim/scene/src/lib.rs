@@ -29,7 +29,7 @@ mod two_plane;
 pub use base::Base;
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use magnet::Magnet;
-pub use materials::{Contact, Materials};
+pub use materials::{Contact, Materials, Wall};
 pub use mode::{MODES, Mode};
 pub use model::{Fidelity, LeftOut, Math, Model, Precision, Removable, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
@@ -202,6 +202,11 @@ impl Scene {
             Fidelity::Coupled => {
                 let fastest = self.two_plane.as_ref()?.fastest(self.rotor.spin);
                 let limit = 5.0 * limits::ANGLE_OF_STEP / fastest;
+                let accurate = scales::accurate_step(self);
+                if accurate < limit {
+                    let then = "forces and contact times are inaccurate";
+                    return Some((accurate, "T_c/25", then));
+                }
                 Some((
                     limit,
                     "half a radian of the fastest motion",

@@ -34,13 +34,21 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         asked,
         reason: reason.to_owned(),
     };
-    let takes_time = rung == Fidelity::Hertz;
+    let gives_way = rings().any(|it| it.wall.is_some());
+    let takes_time = rung == Fidelity::Hertz || gives_way && rung == Fidelity::Coupled;
     let (laws, force) = match takes_time {
         true => (
             "as losses of a contact that takes time",
-            "rung hertz is asked for",
+            if gives_way {
+                "contact = \"compliant\" is given"
+            } else {
+                "rung hertz is asked for"
+            },
         ),
-        false => ("the laws that all rungs share", "rung hertz has them"),
+        false => (
+            "the laws that all rungs share",
+            "rung hertz and contact = \"compliant\" have them",
+        ),
     };
     let mut parts = vec![
         fixed("gap, restitution, friction, spin", true, true, laws),

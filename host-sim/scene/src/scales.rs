@@ -1,12 +1,16 @@
 //! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
 
 use touchdown_base::machine::Start;
-use touchdown_models::{Compliance, HertzConfig, Line, LinePower, Point};
+use touchdown_models::{Compliance, HertzConfig, Line, LinePower, Point, Shape};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
 use crate::elastic::Validity;
-use crate::{Contact, Scene};
+use crate::{Contact, Ring, Scene, TwoPlane, Wall};
+
+/// Part of the fastest impact's speed below which a contact's damping is no longer scaled by its own: it has 1e-6 of that
+/// impact's energy.
+const SLOWEST: f64 = 1e-3;
 
 /// How stiff the scene's contact is.
 pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
@@ -37,6 +41,47 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
         }
     });
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+}
+
+/// The wall of a ring that is to give way. An impact there meets 1/(1 + zeta^2) of the mass, zeta its place in radii of
+/// gyration; bending is not counted.
+pub(super) fn wall(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> Result<Wall, ConfigError> {
+    match scene.materials.contact {
+        Contact::Point => wall_of(scene, machine, ring, Point),
+        Contact::Line { length } => wall_of(scene, machine, ring, Line { length }),
+        Contact::LinePower { length } => wall_of(scene, machine, ring, LinePower { length }),
+    }
+}
+
+fn wall_of<C: Shape<f64>>(
+    scene: &Scene,
+    machine: &TwoPlane,
+    ring: &Ring,
+    shape: C,
+) -> Result<Wall, ConfigError> {
+    let mut there = compliant(scene, shape);
+    let turned = ring.place * ring.place * scene.rotor.mass / machine.transverse_inertia;
+    there.rigid.mass /= 1.0 + turned;
+    there.rigid.radius = ring.radius;
+    there.rigid.clearance = ring.retainer.clearance;
+    let compliance = there.compliance()?;
+    // A fall through the static compression: slower, the weight and not the impact decides.
+    let weight = scene.rotor.mass * scene.run.gravity;
+    let settled = C::depth(weight / compliance.stiffness, ring.retainer.clearance);
+    let slowest = (2.0 * scene.run.gravity * settled).sqrt();
+    Ok(Wall {
+        contact: scene.materials.contact,
+        stiffness: compliance.stiffness,
+        balls: ring.ball_bearing.and_then(|it| it.stiffness),
+        slowest: slowest.max(SLOWEST * there.fastest),
+        contact_time: compliance.contact_time,
+    })
+}
+
+/// The longest step that follows all contacts of walls that give way, s; infinite without such.
+pub(super) fn accurate_step(scene: &Scene) -> f64 {
+    let walls = scene.rings().iter().filter_map(|it| it.wall);
+    walls.fold(f64::INFINITY, |least, it| least.min(it.contact_time / 25.0))
 }
 
 /// Contact of the scene with the shape `shape`.

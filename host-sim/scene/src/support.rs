@@ -44,6 +44,8 @@ pub struct BallBearing {
     pub heat_capacity: f64,
     /// To the surroundings, W/K.
     pub heat_loss: f64,
+    /// Of balls and races under a load, N/m; rigid without.
+    pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
     pub marks: [Option<u16>; 2],
 }
@@ -95,6 +97,7 @@ pub(super) struct BallBearingTable {
     heat_capacity_j_k: Option<f64>,
     #[serde(default)]
     heat_loss_w_k: f64,
+    stiffness_n_m: Option<f64>,
     inner_ring_marks: Option<u16>,
     cage_marks: Option<u16>,
 }
@@ -143,6 +146,7 @@ impl BallBearingTable {
         let inertia = self.inner_ring_inertia_kg_m2;
         let cage_ratio = self.cage_ratio.unwrap_or(USUAL_CAGE_RATIO);
         let capacity = self.heat_capacity_j_k.unwrap_or(USUAL_HEAT_CAPACITY);
+        let stiffness = |it| KEYS.within("stiffness_n_m", it, limits::STIFFNESS_N_M);
         let drag = |key, value| KEYS.within(key, value, limits::DRAG);
         let marks = [
             ("inner_ring_marks", self.inner_ring_marks),
@@ -164,6 +168,7 @@ impl BallBearingTable {
             cage_ratio: KEYS.between("cage_ratio", cage_ratio, limits::CAGE_RATIO)?,
             heat_capacity: KEYS.within("heat_capacity_j_k", capacity, limits::HEAT_CAPACITY_J_K)?,
             heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
+            stiffness: self.stiffness_n_m.map(stiffness).transpose()?,
             marks: marks.map(|(_, marks)| marks),
         })
     }

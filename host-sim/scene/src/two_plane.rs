@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::base::Base;
 use super::diagnostic::Diagnostic;
 use super::magnet::{Magnet, MagnetTable, all_magnets};
+use super::materials::Wall;
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{Keys, MILLI, ON_THE_WALL};
 use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
@@ -55,6 +56,8 @@ pub struct Ring {
     pub radius: f64,
     /// Its gap and law.
     pub retainer: Retainer,
+    /// In place of restitution, where contacts are to have a force and a duration.
+    pub wall: Option<Wall>,
     /// What it stands on, where that gives way.
     pub support: Option<Support>,
     /// Its ball bearing, where it has one.
@@ -70,6 +73,7 @@ impl Ring {
             place: 0.0,
             radius: scene.rotor.radius,
             retainer: scene.retainer,
+            wall: None,
             support: mounts(all().filter_map(|it| it.support)).or(scene.support),
             ball_bearing: races(all().filter_map(|it| it.ball_bearing)).or(scene.ball_bearing),
         }
@@ -112,7 +116,9 @@ impl TwoPlane {
     /// Whether it has what only rigid rings and a rigid rotor lack.
     pub fn is_coupled(&self) -> bool {
         let seats = self.rings.iter();
-        let mut seats = seats.map(|ring| ring.support.is_some() || ring.ball_bearing.is_some());
+        let mut seats = seats.map(|ring| {
+            ring.support.is_some() || ring.ball_bearing.is_some() || ring.wall.is_some()
+        });
         let mut magnets = self.magnets.iter();
         seats.any(|gives_way| gives_way)
             || magnets.any(|magnet| magnet.damping > 0.0 || magnet.on.is_some())
@@ -358,6 +364,7 @@ impl RingTable {
                 friction: friction.unwrap_or(retainer.friction),
                 restitution: restitution.unwrap_or(retainer.restitution),
             },
+            wall: None,
             support: support.transpose()?,
             ball_bearing: ball_bearing.transpose()?,
         })

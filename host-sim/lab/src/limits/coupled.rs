@@ -190,7 +190,7 @@ fn look(scene: &Scene, seen: &mut Seen) -> Result<Option<Impact>, ConfigError> {
         let parts = [
             energy.spin + energy.races,
             motion,
-            energy.bending + energy.springs,
+            energy.bending + energy.springs + energy.contacts,
             energy.magnets.abs() + energy.driven.abs() + energy.height.abs(),
         ];
         let mut all = [view.beyond, total, gone].into_iter().chain(parts);

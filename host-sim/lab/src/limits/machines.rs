@@ -15,12 +15,13 @@ use touchdown_base::progress::Progress;
 use touchdown_scene::Scene;
 
 /// Parts, by the bits of a combination.
-const PARTS: [&str; 5] = [
+const PARTS: [&str; 6] = [
     "soft mounts",
     "ball bearings",
     "bending modes",
     "magnets",
     "magnets that come back",
+    "walls that give way",
 ];
 /// Of the progress.
 pub const JOBS: u64 = 1 << PARTS.len();
@@ -103,6 +104,11 @@ pub fn text(seed: u64) -> String {
     if has(1) {
         let inertia = polar * decades(&mut random, -4.0, -0.5);
         let _ = writeln!(text, "[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}");
+        let mut random = own(seed, 7);
+        let stiffness = decades(&mut random, 6.0, 9.0);
+        if has(5) && random.random() {
+            let _ = writeln!(text, "stiffness_n_m = {stiffness}");
+        }
     }
     if has(2) {
         text += &modes(&mut random);
@@ -120,6 +126,9 @@ pub fn text(seed: u64) -> String {
         text,
         "[start]\nx_mm = {x}\ny_mm = {y}\n[run]\nduration_s = {duration}\n[model]\nrung = \"coupled\"\nstep_us = {step}\n"
     );
+    if has(5) {
+        text += "contact = \"compliant\"\n";
+    }
     text
 }
 

@@ -75,6 +75,7 @@ fn turning(scene: &mut Scene, inertia: f64) {
         cage_ratio: 0.4,
         heat_capacity: 50.0,
         heat_loss: 0.5,
+        stiffness: None,
         marks: [None; 2],
     });
 }

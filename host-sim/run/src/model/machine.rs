@@ -156,7 +156,8 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     fn view(&self) -> StepView {
         let (model, state) = (&self.of.model, &self.state);
-        let walls = (0..N).map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
+        let rigid = (0..N).filter(|ring| !model.is_compliant(*ring));
+        let walls = rigid.map(|ring| model.reach_at(state, ring).to_f64() - 1.0);
         let stops = (0..N).filter_map(|ring| model.beyond_stop(state, ring).map(R::to_f64));
         // NaN is the worst there is.
         let worse = |worst: f64, it: f64| if it <= worst { worst } else { it };
@@ -190,6 +191,11 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
         let peak_radius_m = radius * scales.length;
+        let held = model.load(&self.state, ring).held_peak.to_f64() * unit / scales.length;
+        let seat = &seats(self.scene)[ring].ring;
+        let materials = &self.scene.materials;
+        let known = materials.given || model.is_compliant(ring);
+        let pressure = || materials.pressure(held, seat.radius, seat.clearance);
         RingEnd {
             x_m,
             y_m,
@@ -198,8 +204,8 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             peak_radius_m,
             peak_excursion_m: excursion * scales.length,
             clearance_left_m: self.scene.stator_gap.map(|gap| gap - peak_radius_m),
-            held_peak_force_n: model.load(&self.state, ring).held_peak.to_f64() * unit
-                / scales.length,
+            held_peak_force_n: held,
+            peak_pressure_pa: known.then(pressure).flatten(),
             race: motion.race.map(|race| RaceEnd {
                 inner_ring_rad_s: race.spin.to_f64() * scales.spin,
                 cage_rad_s: race.cage.to_f64() * scales.spin,
@@ -323,6 +329,7 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
     let stops = mounts.clone().any(|it| it.travel.is_some());
     let mounts = mounts.count() > 0;
     let races = seats.iter().any(|it| it.race.is_some());
+    let gives_way = seats.iter().any(|it| it.compliant.is_some());
     let bends = modelled_modes(scene).next().is_some();
     let machine = ends(scene);
     let magnets = machine.is_some_and(|it| !it.magnets.is_empty());
@@ -339,6 +346,7 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
                 (true, "height", end.height),
                 (magnets, "magnets", end.magnets),
                 (bends, "bending", end.bending),
+                (gives_way, "walls", end.contacts),
                 (mounts, "ring", end.rings),
                 (mounts, "spring", end.springs),
                 (races, "inner ring", end.races),

@@ -1,9 +1,11 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
-use touchdown_models::{MountConfig, RaceConfig, RingConfig, SeatConfig};
+use touchdown_models::{
+    CompliantConfig, CompliantShape, MountConfig, RaceConfig, RingConfig, SeatConfig,
+};
 
 use touchdown_scene::{
-    BallBearing, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane,
+    BallBearing, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane, Wall,
 };
 
 /// The rotor's ends, where the rung has them.
@@ -40,6 +42,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
     let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
     let turns = Removable::BallBearing;
     let has = |part| scene.model.rung != Fidelity::TwoPlane && scene.model.has(part);
+    let has_walls = scene.model.rung == Fidelity::Coupled;
     let seat = |ring: &Ring| SeatConfig {
         ring: RingConfig {
             place: ring.place,
@@ -48,7 +51,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
             friction: ring.retainer.friction,
             restitution: ring.retainer.restitution,
         },
-        compliant: None,
+        compliant: ring.wall.filter(|_| has_walls).map(compliant),
         mount: ring
             .support
             .filter(|_| has(Removable::Mount))
@@ -64,6 +67,19 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
+}
+
+fn compliant(wall: Wall) -> CompliantConfig<f64> {
+    CompliantConfig {
+        shape: match wall.contact {
+            Contact::Point => CompliantShape::Point,
+            Contact::Line { .. } => CompliantShape::Line,
+            Contact::LinePower { .. } => CompliantShape::LinePower,
+        },
+        stiffness: wall.stiffness,
+        balls: wall.balls,
+        slowest: wall.slowest,
+    }
 }
 
 fn race(bearing: BallBearing) -> RaceConfig<f64> {

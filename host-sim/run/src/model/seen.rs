@@ -80,8 +80,11 @@ pub struct RingEnd {
     /// Between that radius and the stator, where there is one; below 0 it was reached, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance_left_m: Option<f64>,
-    /// Largest normal force in permanent contact, mean of a step, N.
+    /// Largest normal force of walls that hold or give way, mean of a step, N; impulses of impacts have no part in it.
     pub held_peak_force_n: f64,
+    /// Greatest Hertz pressure under that force, where the materials are given, Pa.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_pressure_pa: Option<f64>,
     /// The ball bearing in it.
     #[serde(flatten)]
     pub race: Option<RaceEnd>,
