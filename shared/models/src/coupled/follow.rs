@@ -380,7 +380,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let pressed = passage.presses[i].map_or(R::ZERO, |it| it.pressed);
         let force = R::TWO * pressed / (passage.time * passage.time);
         let begins = spell.goes_on(end.length() - (end - moved).length(), force, passage.time);
-        let left = depth <= R::ZERO || passage.presses[i].is_none();
+        let left = depth <= R::ZERO;
         let stored = if left {
             R::ZERO
         } else {

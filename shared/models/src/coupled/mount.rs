@@ -82,6 +82,8 @@ pub(super) struct Ride<R> {
     pub(super) rub: Rub<R>,
     /// Impulse of dry friction.
     grip: Vector<R>,
+    /// Outward, where the ring comes to rest on its stop, which takes what pushes it there.
+    stop: Option<Vector<R>>,
 }
 
 impl<R: Real> Ride<R> {
@@ -101,12 +103,29 @@ impl<R: Real> Ride<R> {
         }
     }
 
-    /// Impulse of dry friction on the ring.
-    fn friction(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> Vector<R> {
-        match self.rub {
-            Rub::Rests => self.grip - (rotor + stop).times(R::TWO / time),
-            _ => self.grip,
+    /// Impulses on the ring by dry friction, and by the stop that it comes to rest on.
+    fn friction(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> [Vector<R>; 2] {
+        let none = Vector::default();
+        if self.rub != Rub::Rests {
+            return [self.grip, none];
         }
+        let grip = self.grip - (rotor + stop).times(R::TWO / time);
+        match self.stop {
+            Some(outward) if outward.dot(grip) < R::ZERO => {
+                let inward = outward.times(outward.dot(grip));
+                [grip - inward, inward]
+            }
+            _ => [grip, none],
+        }
+    }
+
+    /// Whether dry friction leaves the ring where it is.
+    pub(super) fn rests(&self) -> bool {
+        self.rub == Rub::Rests
+    }
+
+    pub(super) fn rests_on_stop(&self) -> bool {
+        self.stop.is_some()
     }
 }
 
@@ -251,6 +270,7 @@ impl<R: Real> Sprung<R> {
                 mobility: [R::ZERO; 2],
                 rub,
                 grip: against - velocity.times(self.mass),
+                stop: direction(place).filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
             };
         }
         let mut against = force(place + velocity.times(half), velocity);
@@ -268,6 +288,7 @@ impl<R: Real> Sprung<R> {
             mobility,
             rub,
             grip,
+            stop: None,
         }
     }
 
@@ -290,7 +311,7 @@ impl<R: Real> Sprung<R> {
         match ride.rub {
             Rub::None | Rub::Turns => None,
             Rub::Rests => {
-                let grip = ride.friction(time, pushed);
+                let [grip, _] = ride.friction(time, pushed);
                 if grip.dot(ride.moved) > R::ZERO {
                     return Some(Rub::Turns);
                 }
@@ -380,10 +401,11 @@ impl<R: Real> Sprung<R> {
         let mean = moved.times(R::ONE / time);
         state.place.add(moved);
         let [_, by_stop] = pushed;
-        state.rests = ride.rub == Rub::Rests;
+        state.rests = ride.rests();
         let stopping = if state.rests {
             state.velocity = Sums::default();
-            rate * by_stop.dot(mean)
+            let [_, inward] = ride.friction(time, pushed);
+            inward.dot(mean)
         } else {
             state.velocity.add(ride.kick + pushes.times(rate));
             by_stop.dot_along(mean, ride.mobility.map(|it| rate / it))
@@ -391,7 +413,8 @@ impl<R: Real> Sprung<R> {
         let damped = mean.dot_along(moved, self.each(|it| it.damping));
         state.damped.add(damped);
         if ride.rub != Rub::None {
-            state.damped.add(-ride.friction(time, pushed).dot(mean));
+            let [friction, _] = ride.friction(time, pushed);
+            state.damped.add(-friction.dot(mean));
         }
         state.stopping.add(-stopping);
     }

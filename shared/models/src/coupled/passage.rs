@@ -271,6 +271,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
             let ride = &free.rides[i];
+            passage.stopped[i] = ride.rests_on_stop();
             if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
                 && link.grip != Grip::Open
             {
@@ -364,7 +365,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 self.bend(state, i, free.time, &mut link, moved);
                 walls.links.add(link)
             });
-            if state.is_stopped(i) {
+            if state.is_stopped(i) && !free.rides[i].rests() {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());
                 let link = Link::new(normal, free.rides[i].moved);
