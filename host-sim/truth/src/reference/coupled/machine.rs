@@ -219,16 +219,19 @@ impl CoupledMachine {
             },
         ];
         bodies.extend(self.bending.iter().map(|mode| Body {
-            stiffness: mode.modal_mass * mode.rate * mode.rate,
-            damping: 2.0 * mode.damping_ratio * mode.modal_mass * mode.rate,
+            stiffness: [mode.modal_mass * mode.rate * mode.rate; 2],
+            damping: [2.0 * mode.damping_ratio * mode.modal_mass * mode.rate; 2],
             turning: (mode.at_centre * centre, angle),
             ..Body::default()
         }));
-        bodies.extend(self.retainers.iter().map(|it| Body {
-            stiffness: it.mount.map_or(0.0, |mount| mount.stiffness),
-            damping: it.mount.map_or(0.0, |mount| mount.damping),
-            shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
-            ..Body::default()
+        bodies.extend(self.retainers.iter().map(|it| {
+            let axes = it.mount.map_or([[0.0; 2]; 2], |mount| mount.axes());
+            Body {
+                stiffness: axes.map(|[stiffness, _]| stiffness),
+                damping: axes.map(|[_, damping]| damping),
+                shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
+                ..Body::default()
+            }
         }));
         let magnet = |(i, magnet): (usize, &Magnet)| Pull {
             magnet: *magnet,

@@ -24,10 +24,10 @@ pub struct Pull {
 pub struct Body {
     /// Constant force, N.
     pub weight: [f64; 2],
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
+    /// Along x and along y, N/m.
+    pub stiffness: [f64; 2],
+    /// Along x and along y, N s/m.
+    pub damping: [f64; 2],
     /// Unbalance: force over the spin squared, and its direction.
     pub turning: (f64, f64),
     /// By the base's motion, at its angle 0, N.
@@ -57,9 +57,10 @@ impl Surroundings {
         let mut forces = Vec::with_capacity(place.len());
         for (k, body) in self.bodies.iter().enumerate() {
             forces.extend(body.weight.map(constant));
-            if body.stiffness != 0.0 || body.damping != 0.0 {
-                for i in [2 * k, 2 * k + 1] {
-                    let sprung = place[i] * body.stiffness + speed[i] * body.damping;
+            if [body.stiffness, body.damping] != [[0.0; 2]; 2] {
+                for axis in 0..2 {
+                    let i = 2 * k + axis;
+                    let sprung = place[i] * body.stiffness[axis] + speed[i] * body.damping[axis];
                     forces[i] = forces[i] - sprung;
                 }
             }
@@ -115,7 +116,8 @@ impl Surroundings {
         let of_body = |(k, body): (usize, &Body)| {
             let (x, y) = (place[2 * k], place[2 * k + 1]);
             let [wx, wy] = body.weight;
-            0.5 * body.stiffness * (x * x + y * y) - (wx * x + wy * y)
+            let [kx, ky] = body.stiffness;
+            0.5 * (kx * x * x + ky * y * y) - (wx * x + wy * y)
         };
         let held = |pull: &Pull| {
             let (at, magnet) = (shared(&pull.shares, place), &pull.magnet);
