@@ -7,9 +7,10 @@
 //!
 //! Limits: the damping of bending is taken in the frame that does not turn (no instability above a
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
-//! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
+//! small tilt, and unbalance does not act on the spin.
 
-use super::surroundings::{Body, Pull, Surroundings};
+use super::pull::Pull;
+use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
 use touchdown_scene::{Base, Magnet, Support};
@@ -237,6 +238,7 @@ impl CoupledMachine {
             magnet: *magnet,
             shares: self.axis(magnet.place, |mode| mode.at_magnets[i]),
             on: magnet.on.is_none(),
+            cut: [0.0; 2],
         };
         let drags = self
             .retainers

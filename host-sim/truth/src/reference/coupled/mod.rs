@@ -10,6 +10,8 @@
 //! the first fall of a polynomial, found with steps that a bound of its curvature keeps from
 //! passing one, so that no flight is too short to be seen.
 //!
+//! The force of a magnet is smooth in parts: an axis on which it reaches its greatest force, or leaves it, ends a step too.
+//!
 //! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
 //! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those
 //! that others already determine are taken as 0. Where no set of modes lasts (several rings can jam
@@ -30,6 +32,7 @@ mod jet;
 mod linear;
 mod machine;
 mod motion;
+mod pull;
 mod share;
 mod start;
 mod step;

@@ -2,6 +2,7 @@
 
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
+use super::pull::Pull;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
@@ -13,7 +14,10 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// The same for the gap: once lifted off, a rotor must not land on the rounding of its lift-off.
 const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// How a step ends; the number is that of the link.
+/// The same for a magnet's force, of which the rate counts too.
+const CUT_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// How a step ends; a number is that of the link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
     /// The series is no longer good.
@@ -26,6 +30,15 @@ pub enum Ending {
     SlipEnds(usize),
     /// Grip does; slip of this sign begins.
     GripLost(usize, f64),
+    /// What a magnet does on an axis does: there it is cut off with this sign from now on, or not with 0.
+    Cut {
+        /// Its number.
+        magnet: usize,
+        /// 0 or 1.
+        axis: usize,
+        /// Of the greatest force.
+        sign: f64,
+    },
 }
 
 /// What a link's displacement, slip and forces are made of, without signs: their rounding counts against it.
@@ -127,6 +140,9 @@ impl Step {
             };
             step.locate(&system.links[link], link, *mode, &grip[link], &sizes);
         }
+        for (number, pull) in surroundings.magnets.iter().enumerate() {
+            step.cut_off(number, pull, [place, speed, &pushes]);
+        }
         step
     }
 
@@ -186,6 +202,13 @@ impl Step {
             };
             let slip = (along + link.turning(&self.speed)) * sign;
             self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
+        }
+    }
+
+    fn cut_off(&mut self, magnet: usize, pull: &Pull, of: [&[f64]; 3]) {
+        let rounding = CUT_ROUNDING * pull.size(of, self.span);
+        for (falls, axis, sign) in pull.ends(&self.place, &self.speed) {
+            self.earlier(&falls, [rounding; 3], Ending::Cut { magnet, axis, sign });
         }
     }
 

@@ -66,6 +66,7 @@ impl Motion {
             }
         }
         self.release_brakes();
+        self.surroundings.cut_off(&self.place, &self.speed);
         self.count();
     }
 

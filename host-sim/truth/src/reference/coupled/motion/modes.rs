@@ -25,6 +25,9 @@ impl Motion {
             Ending::LiftOff(link) => self.modes[link] = Mode::Flight,
             Ending::SlipEnds(link) => self.modes[link] = Mode::Stick,
             Ending::GripLost(link, sign) => self.modes[link] = Mode::Slide(sign),
+            Ending::Cut { magnet, axis, sign } => {
+                self.surroundings.magnets[magnet].cut[axis] = sign
+            }
         }
     }
 
@@ -124,7 +127,8 @@ impl Motion {
         }
         impact::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
         let since = self.since.value;
-        let until = self.surroundings.reach(since) - since;
+        let next = self.surroundings.reach(since, &self.place, &self.speed);
+        let until = next - since;
         self.step = Step::new(
             &self.system,
             &self.surroundings,
