@@ -1,6 +1,7 @@
 //! The forces of closed links: from the conditions that they keep, at the level of accelerations.
 
 use super::jet::dot;
+use super::seat::Seat;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Mode, System};
 use super::tape::{Tape, Term};
@@ -9,16 +10,22 @@ use super::tape::{Tape, Term};
 pub struct Forces<'t> {
     /// Of the coordinates.
     pub acceleration: Vec<Term<'t>>,
-    /// Normal force of each link, N.
-    pub normal: Vec<Term<'t>>,
-    /// Friction of each link without slip, N.
-    pub grip: Vec<Term<'t>>,
+    /// Of each link, N: normal force, and friction without slip; or, at a seat, along x and y what holds the ring.
+    pub held: Vec<[Term<'t>; 2]>,
+}
+
+/// What an unknown force is in its link.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Normal,
+    Grip,
+    Vector,
 }
 
 /// An unknown force and the condition that it keeps.
-struct Unknown<'t> {
+pub struct Unknown<'t> {
     link: usize,
-    grips: bool,
+    part: Part,
     /// The condition's direction, and its part of the turning.
     row: ([Term<'t>; 2], f64),
     /// The force's direction, and its part of the turning.
@@ -63,7 +70,7 @@ impl<'t> Forces<'t> {
                     let rubbing = [0, 1].map(|k| inward[k] + along[k] * rubbed);
                     unknowns.push(Unknown {
                         link: index,
-                        grips: false,
+                        part: Part::Normal,
                         row: (inward, 0.0),
                         force: (rubbing, rubbed),
                         target: dot(&w, &w) * (1.0 / clearance),
@@ -75,12 +82,19 @@ impl<'t> Forces<'t> {
                 (Hold::Brake(_), Mode::Stick) => {
                     unknowns.push(Unknown::without_slip(index, [none; 2]));
                 }
+                (Hold::Seat { .. }, _) => {}
                 (Hold::Brake(limit), Mode::Slide(sign)) => {
                     for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
                         let braked = -sign * limit * arm * system.mobility[i];
                         acceleration[i] = acceleration[i] + none.constant(braked);
                     }
                 }
+            }
+        }
+        for seat in Seat::all(system) {
+            match modes[seat.link] {
+                Mode::Stick => unknowns.extend(seat.hold(system, modes, place)),
+                _ => seat.brake(system, speed, &mut acceleration),
             }
         }
         let (mut matrix, mut right) = (Vec::new(), Vec::new());
@@ -107,18 +121,17 @@ impl<'t> Forces<'t> {
         }
         let mut result = Self {
             acceleration,
-            normal: vec![none; modes.len()],
-            grip: vec![none; modes.len()],
+            held: vec![[none; 2]; modes.len()],
         };
         let mut parts: Vec<Vec<(Term<'t>, f64)>> = Vec::new();
         parts.extend(result.acceleration.iter().map(|free| vec![(*free, 1.0)]));
         for (unknown, force) in unknowns.iter().zip(tape.solve(&matrix, &right)) {
-            let list = if unknown.grips {
-                &mut result.grip
-            } else {
-                &mut result.normal
-            };
-            list[unknown.link] = force;
+            let held = &mut result.held[unknown.link];
+            match unknown.part {
+                Part::Normal => held[0] = force,
+                Part::Grip => held[1] = force,
+                Part::Vector => *held = [0, 1].map(|k| held[k] + force * unknown.force.0[k]),
+            }
             unknown.push(system, force, &mut parts);
         }
         for (acceleration, parts) in result.acceleration.iter_mut().zip(&parts) {
@@ -152,10 +165,21 @@ impl<'t> Unknown<'t> {
     fn without_slip(link: usize, along: [Term<'t>; 2]) -> Self {
         Self {
             link,
-            grips: true,
+            part: Part::Grip,
             row: (along, 1.0),
             force: (along, 1.0),
             target: along[0].constant(0.0),
+        }
+    }
+
+    /// What keeps a link from being displaced in a direction.
+    pub fn at_rest(link: usize, direction: [Term<'t>; 2]) -> Self {
+        Self {
+            link,
+            part: Part::Vector,
+            row: (direction, 0.0),
+            force: (direction, 0.0),
+            target: direction[0].constant(0.0),
         }
     }
 }

@@ -2,7 +2,9 @@
 //! links press, stick and slide; for those the impulses are one linear system. Also what keeps closed links
 //! closed against rounding.
 
+use super::jet::dot;
 use super::linear::solve;
+use super::seat::Seat;
 use super::system::{Hold, Link, Mode, System};
 
 /// Passes over all links; thousands are needed for a light ring between the rotor and its stop where no
@@ -84,7 +86,7 @@ impl Touching {
     fn leaves(&self, system: &System) -> f64 {
         match system.links[self.link].hold {
             Hold::Wall { restitution, .. } => -restitution * self.closing.max(0.0),
-            Hold::Brake(_) => 0.0,
+            Hold::Brake(_) | Hold::Seat { .. } => 0.0,
         }
     }
 }
@@ -232,35 +234,84 @@ pub fn arrest(system: &System, link: usize, place: &[f64], speed: &mut [f64]) {
 
 /// Takes what is left of normal speed and slip from links that have none.
 pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64], speed: &mut [f64]) {
-    // Direction, part that turns, and speed of each condition.
+    meet(system, &kept(system, modes, place, speed), speed);
+}
+
+/// Gives a ring at rest on its seat this velocity, with what closed links do then.
+pub fn set_off(
+    system: &System,
+    modes: &[Mode],
+    (seat, velocity): (usize, [f64; 2]),
+    place: &[f64],
+    speed: &mut [f64],
+) {
+    let mut kept = kept(system, modes, place, speed);
+    for it in kept.iter_mut().filter(|it| it.link == seat) {
+        it.speed -= dot(&it.direction, &velocity);
+    }
+    meet(system, &kept, speed);
+}
+
+/// A condition on the speeds of a link.
+struct Kept {
+    link: usize,
+    direction: [f64; 2],
+    /// Part that turns.
+    turn: f64,
+    /// To be taken, m/s.
+    speed: f64,
+}
+
+/// That closed links have no normal speed, and those without slip none.
+fn kept(system: &System, modes: &[Mode], place: &[f64], speed: &[f64]) -> Vec<Kept> {
     let mut kept = Vec::new();
+    let mut keep = |link, direction, turn, speed| {
+        kept.push(Kept {
+            link,
+            direction,
+            turn,
+            speed,
+        });
+    };
     for (index, mode) in modes.iter().enumerate() {
         let link = &system.links[index];
         let turning = link.turning(speed);
         match (link.hold, mode) {
-            (_, Mode::Flight) | (Hold::Brake(_), Mode::Slide(_)) => {}
-            (Hold::Brake(_), Mode::Stick) => kept.push((index, [0.0; 2], 1.0, turning)),
+            (_, Mode::Flight) | (Hold::Brake(_), Mode::Slide(_)) | (Hold::Seat { .. }, _) => {}
+            (Hold::Brake(_), Mode::Stick) => keep(index, [0.0; 2], 1.0, turning),
             (Hold::Wall { .. }, mode) => {
                 let touch = Touching::new(system, index, place, speed);
                 let [x, y] = touch.normal;
-                kept.push((index, [x, y], 0.0, touch.closing));
+                keep(index, [x, y], 0.0, touch.closing);
                 if *mode == Mode::Stick {
-                    kept.push((index, [-y, x], 1.0, touch.slip(system, speed)));
+                    keep(index, [-y, x], 1.0, touch.slip(system, speed));
                 }
             }
         }
     }
-    let line = |(a, [ax, ay], at, _): &(usize, [f64; 2], f64, f64)| {
-        let against = |(b, [bx, by], bt, _): &(usize, [f64; 2], f64, f64)| {
-            let lateral = system.lateral(*a, *b) * (ax * bx + ay * by);
-            lateral + system.turning(*a, *b) * at * bt
+    for seat in Seat::all(system).filter(|it| modes[it.link] == Mode::Stick) {
+        let rate = system.links[seat.link].lateral(speed);
+        for direction in seat.directions(system, modes, place) {
+            keep(seat.link, direction, 0.0, dot(&direction, &rate));
+        }
+    }
+    kept
+}
+
+/// Takes what is to be taken, by impulses at the links.
+fn meet(system: &System, kept: &[Kept], speed: &mut [f64]) {
+    let line = |a: &Kept| {
+        let against = |b: &Kept| {
+            let lateral = system.lateral(a.link, b.link) * dot(&a.direction, &b.direction);
+            lateral + system.turning(a.link, b.link) * a.turn * b.turn
         };
         kept.iter().map(against).collect()
     };
     let matrix = kept.iter().map(line).collect();
-    let right: Vec<f64> = kept.iter().map(|kept| -kept.3).collect();
-    for ((link, direction, turn, _), impulse) in kept.iter().zip(solve(matrix, &right)) {
-        system.push(*link, direction.map(|d| d * impulse), turn * impulse, speed);
+    let right: Vec<f64> = kept.iter().map(|kept| -kept.speed).collect();
+    for (it, impulse) in kept.iter().zip(solve(matrix, &right)) {
+        let vector = it.direction.map(|d| d * impulse);
+        system.push(it.link, vector, it.turn * impulse, speed);
     }
 }
 

@@ -155,9 +155,10 @@ impl CoupledMachine {
         shares
     }
 
-    /// Walls of the rings, of the stops, and brakes.
+    /// Walls of the rings, of the stops, brakes and seats.
     fn links(&self) -> Vec<Link> {
         let (mut walls, mut stops, mut brakes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut seats = Vec::new();
         for (i, Retainer { ring, mount, race }) in self.retainers.iter().enumerate() {
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
@@ -179,6 +180,21 @@ impl CoupledMachine {
                 near: 0.0,
                 told,
             });
+            let dry = mount.map_or(0.0, |mount| mount.friction);
+            seats.extend((dry > 0.0).then(|| {
+                Link {
+                    shares: with(none.clone(), body, 1.0),
+                    arms: still.clone(),
+                    hold: Hold::Seat {
+                        limit: dry,
+                        stop: mount
+                            .and_then(|mount| mount.travel)
+                            .map(|_| self.retainers.len() + stops.len()),
+                    },
+                    near: 0.0,
+                    told: with(none.clone(), body, 1.0),
+                }
+            }));
             stops.extend(mount.and_then(|mount| mount.travel).map(|travel| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
@@ -199,7 +215,7 @@ impl CoupledMachine {
                 told: none,
             }));
         }
-        [walls, stops, brakes].concat()
+        [walls, stops, brakes, seats].concat()
     }
 
     /// What acts on it.

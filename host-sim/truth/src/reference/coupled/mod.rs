@@ -2,8 +2,8 @@
 //! independent of the models under test.
 //!
 //! Bodies that move in the plane (also tilt and modes of bending) and spins, a constant mass matrix,
-//! any smooth forces, and links: walls with Newton's restitution and Coulomb's friction, and dry
-//! brakes. Smooth motion is a Taylor series of order 20, made by arithmetic with series; the forces
+//! any smooth forces, and links: walls with Newton's restitution and Coulomb's friction, dry
+//! brakes, and rings' seats, whose dry friction has any direction. Smooth motion is a Taylor series of order 20, made by arithmetic with series; the forces
 //! of closed walls, of grip without slip and of brakes at rest follow from a linear system at the
 //! level of accelerations, and what rounding leaves in the constraints is projected away each step.
 //! A step ends where a wall is reached, a normal force or a slip falls to zero or a grip is lost:
@@ -32,7 +32,9 @@ mod jet;
 mod linear;
 mod machine;
 mod motion;
+mod power;
 mod pull;
+mod seat;
 mod share;
 mod start;
 mod step;

@@ -3,6 +3,7 @@
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
 use super::pull::Pull;
+use super::seat::Seat;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
@@ -17,6 +18,20 @@ const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same for a magnet's force, of which the rate counts too.
 const CUT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// Speed of a sliding ring against which errors count, in cut-offs of a slide: 1000 units of speed.
+const SLIDES: f64 = 1e13;
+
+/// What a step keeps to.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Size of the last terms, in parts of the coordinates' sizes.
+    pub accuracy: f64,
+    /// Longest span, s.
+    pub longest: f64,
+    /// Speed at which a sliding ring is at rest, m/s.
+    pub slowest: f64,
+}
+
 /// How a step ends; a number is that of the link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
@@ -28,7 +43,7 @@ pub enum Ending {
     LiftOff(usize),
     /// Slip does.
     SlipEnds(usize),
-    /// Grip does; slip of this sign begins.
+    /// Grip does; slip of this sign begins, of a seat in the direction of the force.
     GripLost(usize, f64),
     /// What a magnet does on an axis does: there it is cut off with this sign from now on, or not with 0.
     Cut {
@@ -50,9 +65,7 @@ struct Magnitudes {
     /// m/s^2.
     slip_push: f64,
     /// N.
-    normal: f64,
-    /// N.
-    grip: f64,
+    held: [f64; 2],
 }
 
 /// Motion from one moment on, series in parts of `span`.
@@ -68,7 +81,7 @@ pub struct Step {
     pub cost: usize,
     place: Vec<Jet>,
     speed: Vec<Jet>,
-    normal: Vec<Jet>,
+    held: Vec<[Jet; 2]>,
 }
 
 impl Step {
@@ -81,23 +94,24 @@ impl Step {
             cost: 0,
             place: constants(place),
             speed: constants(speed),
-            normal: vec![Jet::ZERO; links],
+            held: vec![[Jet::ZERO; 2]; links],
         }
     }
 
-    /// Expands the motion; `accuracy` is the size of the last terms, `longest` the longest span.
+    /// Expands the motion.
     pub fn new(
         system: &System,
         surroundings: &Surroundings,
         modes: &[Mode],
         (place, speed): (&[f64], &[f64]),
-        (accuracy, longest): (f64, f64),
+        bounds: Bounds,
     ) -> Self {
         let tape = Tape::new();
         let (places, speeds) = (tape.start(place), tape.start(speed));
         let forces = Forces::new(&tape, system, surroundings, modes, &places, &speeds);
+        let clock = clock(system, modes, speed, &forces.acceleration);
         tape.carry(|before, order, next| {
-            let part = 1.0 / order as f64;
+            let part = clock / order as f64;
             let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
             for ((place, speed), acceleration) in rates {
                 next[place.index] = part * before[speed.index];
@@ -105,29 +119,19 @@ impl Step {
             }
         });
         let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
-        let series = jets(&places);
-        let reach = |(jet, size): (&Jet, &f64)| {
-            [ORDER - 1, ORDER]
-                .map(|k| (accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
-                .into_iter()
-                .fold(f64::INFINITY, f64::min)
-        };
-        let span = series
-            .iter()
-            .zip(&system.size)
-            .map(reach)
-            .fold(longest, f64::min);
-        let scaled = |of: &[Jet]| of.iter().map(|jet| jet.scaled(span)).collect();
+        let series = [jets(&places), jets(&speeds)];
+        let ticks = ticks(system, modes, &series, bounds).min(bounds.longest / clock);
+        let scaled = |of: &[Jet]| of.iter().map(|jet| jet.scaled(ticks)).collect();
+        let held = |of: &[Term; 2]| of.map(|it| it.jet().scaled(ticks));
         let mut step = Self {
-            span,
+            span: clock * ticks,
             end: 1.0,
             ending: Ending::Step,
             cost: tape.cost(),
-            place: scaled(&series),
-            speed: scaled(&jets(&speeds)),
-            normal: scaled(&jets(&forces.normal)),
+            place: scaled(&series[0]),
+            speed: scaled(&series[1]),
+            held: forces.held.iter().map(held).collect(),
         };
-        let grip: Vec<Jet> = scaled(&jets(&forces.grip));
         let pushes: Vec<f64> = forces.acceleration.iter().map(Term::size).collect();
         let lateral = [place, speed, &pushes].map(|of| system.lateral_size(of));
         for (link, mode) in modes.iter().enumerate() {
@@ -135,10 +139,13 @@ impl Step {
                 lateral,
                 slip: system.links[link].slip_size(speed),
                 slip_push: system.links[link].slip_size(&pushes),
-                normal: forces.normal[link].size(),
-                grip: forces.grip[link].size(),
+                held: forces.held[link].map(|it| it.size()),
             };
-            step.locate(&system.links[link], link, *mode, &grip[link], &sizes);
+            step.locate(&system.links[link], link, *mode, &sizes);
+        }
+        for seat in Seat::all(system) {
+            let held = forces.held[seat.link].map(|it| it.size());
+            step.seat(system, &seat, modes[seat.link], held, bounds.slowest);
         }
         for (number, pull) in surroundings.magnets.iter().enumerate() {
             step.cut_off(number, pull, [place, speed, &pushes]);
@@ -156,12 +163,14 @@ impl Step {
         self.speed.iter().map(|jet| jet.at(part)).collect()
     }
 
-    /// Normal force at a link, N.
-    pub fn normal(&self, link: usize, part: f64) -> f64 {
-        self.normal[link].at(part)
+    /// Normal force at a link and friction without slip; or what holds a ring at its seat: N.
+    pub fn held(&self, link: usize, part: f64) -> [f64; 2] {
+        self.held[link].map(|force| force.at(part))
     }
 
-    fn locate(&mut self, link: &Link, index: usize, mode: Mode, grip: &Jet, sizes: &Magnitudes) {
+    fn locate(&mut self, link: &Link, index: usize, mode: Mode, sizes: &Magnitudes) {
+        let [normal, grip] = self.held[index];
+        let [normal_size, grip_size] = sizes.held;
         let slip_rounding = ROUNDING * (sizes.slip + sizes.slip_push * self.span);
         match (mode, link.hold) {
             (Mode::Flight, Hold::Wall { clearance, .. }) => {
@@ -174,20 +183,19 @@ impl Step {
                 let tolerances = [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size);
                 self.earlier(&gap, tolerances, Ending::Touch(index));
             }
-            (Mode::Flight, Hold::Brake(_)) => {}
+            (Mode::Flight, Hold::Brake(_)) | (_, Hold::Seat { .. }) => {}
             (_, Hold::Wall { friction, .. }) => {
-                let normal = self.normal[index];
-                let rounding = ROUNDING * sizes.normal;
+                let rounding = ROUNDING * normal_size;
                 self.earlier(&normal, [rounding; 3], Ending::LiftOff(index));
                 if mode == Mode::Stick {
-                    let rounding = rounding * friction + ROUNDING * sizes.grip;
-                    self.hold(index, &(normal * friction), grip, rounding);
+                    let rounding = rounding * friction + ROUNDING * grip_size;
+                    self.hold(index, &(normal * friction), &grip, rounding);
                 }
             }
             (_, Hold::Brake(limit)) => {
                 if mode == Mode::Stick {
-                    let rounding = ROUNDING * (sizes.grip + limit);
-                    self.hold(index, &Jet::constant(limit), grip, rounding);
+                    let rounding = ROUNDING * (grip_size + limit);
+                    self.hold(index, &Jet::constant(limit), &grip, rounding);
                 }
             }
         }
@@ -202,6 +210,18 @@ impl Step {
             };
             let slip = (along + link.turning(&self.speed)) * sign;
             self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
+        }
+    }
+
+    fn seat(&mut self, system: &System, seat: &Seat, mode: Mode, sizes: [f64; 2], slowest: f64) {
+        if mode == Mode::Stick {
+            let size = (sizes[0] + sizes[1]) / seat.limit;
+            let rounding = ROUNDING * (1.0 + size * size);
+            let spare = seat.spare(&self.held[seat.link]);
+            self.earlier(&spare, [rounding; 3], Ending::GripLost(seat.link, 0.0));
+        } else {
+            let haste = seat.haste(system, &self.speed, slowest);
+            self.earlier(&haste, [0.0; 3], Ending::SlipEnds(seat.link));
         }
     }
 
@@ -229,6 +249,31 @@ impl Step {
             (self.end, self.ending) = (end, ending);
         }
     }
+}
+
+/// Unit of time of the terms, s: 1, or a power of two in which those of a slow slide are no large numbers.
+fn clock(system: &System, modes: &[Mode], speed: &[f64], acceleration: &[Term]) -> f64 {
+    let times = Seat::sliding(system, modes).map(|seat| {
+        let acceleration: Vec<f64> = acceleration.iter().map(Term::value).collect();
+        seat.time(system, speed, &acceleration)
+    });
+    times.fold(1.0, f64::min).log2().floor().exp2()
+}
+
+/// Time that series of places and speeds are good for, in the unit of their terms.
+fn ticks(system: &System, modes: &[Mode], [place, speed]: &[Vec<Jet>; 2], bounds: Bounds) -> f64 {
+    let reach = |jet: &Jet, size: f64| {
+        [ORDER - 1, ORDER]
+            .map(|k| (bounds.accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+    };
+    let places = place.iter().zip(&system.size);
+    let places = places.map(|(jet, size)| reach(jet, *size));
+    let slides = Seat::sliding(system, modes)
+        .flat_map(|seat| system.links[seat.link].lateral(speed))
+        .map(|jet| reach(&jet, SLIDES * bounds.slowest));
+    places.chain(slides).fold(f64::INFINITY, f64::min)
 }
 
 /// Where a function that is not negative at 0 first falls below zero, without passing a fall by.

@@ -10,7 +10,7 @@ use super::share::{Shared, shared, weighted};
 pub enum Mode {
     /// Apart.
     Flight,
-    /// Slips with this sign; 0 without friction.
+    /// Slips with this sign; 0 without friction, and of a seat, which slips in any direction.
     Slide(f64),
     /// Without slip.
     Stick,
@@ -30,9 +30,16 @@ pub enum Hold {
     },
     /// Dry friction that always presses alike, N.
     Brake(f64),
+    /// Dry friction of a ring that lies on its housing.
+    Seat {
+        /// N.
+        limit: f64,
+        /// Number of the ring's hard stop.
+        stop: Option<usize>,
+    },
 }
 
-/// A contact, or a brake.
+/// A contact, a brake, or a seat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Displacement: the part that each body has in it.
@@ -74,11 +81,11 @@ impl Link {
         })
     }
 
-    /// Coulomb's coefficient; 0 for a brake.
+    /// Coulomb's coefficient of a wall, else 0.
     pub fn friction(&self) -> f64 {
         match self.hold {
             Hold::Wall { friction, .. } => friction,
-            Hold::Brake(_) => 0.0,
+            Hold::Brake(_) | Hold::Seat { .. } => 0.0,
         }
     }
 
@@ -86,7 +93,7 @@ impl Link {
     pub fn clearance(&self) -> Option<f64> {
         match self.hold {
             Hold::Wall { clearance, .. } => Some(clearance),
-            Hold::Brake(_) => None,
+            Hold::Brake(_) | Hold::Seat { .. } => None,
         }
     }
 }

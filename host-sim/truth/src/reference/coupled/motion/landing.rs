@@ -1,13 +1,14 @@
 //! Links that touch: impacts, and where a bounce series ends.
 
 use super::super::impact::{self, Touching};
+use super::super::seat::Seat;
 use super::super::share::shared;
 use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
 use touchdown_base::history::{Impact, ModelEvent, RotorState};
 
 /// Launch speed below which a bounce series ends in contact, in units of speed.
-const CUTOFF: f64 = 1e-10;
+pub(super) const CUTOFF: f64 = 1e-10;
 /// The same in parts of the speed along the wall, whose rounding it must exceed.
 const FAST_CUTOFF: f64 = 1e-12;
 /// Impacts that are forgotten in a unit of time; each time as many are not, the cut-off is doubled:
@@ -95,8 +96,11 @@ impl Motion {
         Touching::new(&self.system, link, &self.place, &self.speed)
     }
 
-    /// A brake has no impulse: what an impact has set turning slips in it.
+    /// A brake has no impulse, and a seat none: what an impact has set moving slips in it.
     fn release_brakes(&mut self) {
+        for seat in Seat::all(&self.system) {
+            self.modes[seat.link] = Mode::Slide(0.0);
+        }
         for (mode, link) in self.modes.iter_mut().zip(&self.system.links) {
             let turning = link.turning(&self.speed);
             if let (Hold::Brake(_), Mode::Stick) = (link.hold, *mode)

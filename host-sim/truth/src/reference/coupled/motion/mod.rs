@@ -68,13 +68,15 @@ impl Motion {
         (place, speed): (Vec<f64>, Vec<f64>),
     ) -> Self {
         let links = system.links.len();
-        let brake_or_flight = |link: &Link| match link.hold {
+        let first_mode = |link: &Link| match link.hold {
             Hold::Wall { .. } => Mode::Flight,
             Hold::Brake(_) if link.turning(&speed) == 0.0 => Mode::Stick,
             Hold::Brake(_) => Mode::Slide(link.turning(&speed).signum()),
+            // Where it is slow, the first step finds it at rest.
+            Hold::Seat { .. } => Mode::Slide(0.0),
         };
         Self {
-            modes: system.links.iter().map(brake_or_flight).collect(),
+            modes: system.links.iter().map(first_mode).collect(),
             step: Step::none(&place, &speed, links),
             system,
             surroundings,
@@ -139,7 +141,7 @@ impl Motion {
         Moment {
             time,
             turns: links.clone().map(turned).collect(),
-            normal: links.map(|link| self.step.normal(link, part)).collect(),
+            normal: links.map(|link| self.step.held(link, part)[0]).collect(),
             place,
             speed: self.step.speed(part),
             modes: self.modes.clone(),
