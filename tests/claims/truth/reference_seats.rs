@@ -143,7 +143,7 @@ fn a_ring_comes_to_rest_on_its_stop() {
     close(f64::hypot(x, y), 1e-5, 1e-13);
 }
 
-/// A rotor that bounces, rubs and whirls on a ring that sticks and slides: stored energy only falls, and the series converge.
+/// A rotor that bounces, rubs and whirls on a ring that sticks and slides: stored energy only falls.
 #[test]
 fn a_drop_on_a_seated_ring_loses_energy_only() {
     for (spin, friction) in [(0.0, 20.0), (-300.0, 20.0), (-300.0, 200.0), (1000.0, 50.0)] {

@@ -2,6 +2,7 @@
 
 use super::jet::dot;
 use super::seat::Seat;
+use super::soft::Pressed;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Mode, System};
 use super::tape::{Tape, Term};
@@ -12,6 +13,8 @@ pub struct Forces<'t> {
     pub acceleration: Vec<Term<'t>>,
     /// Of each link, N: normal force, and friction without slip; or, at a seat, along x and y what holds the ring.
     pub held: Vec<[Term<'t>; 2]>,
+    /// At walls that give way.
+    pub pressed: Vec<Pressed<'t>>,
 }
 
 /// What an unknown force is in its link.
@@ -76,13 +79,13 @@ impl<'t> Forces<'t> {
                         target: dot(&w, &w) * (1.0 / clearance),
                     });
                     if mode == Mode::Stick {
-                        unknowns.push(Unknown::without_slip(index, along));
+                        unknowns.push(Unknown::without_slip(index, along, none));
                     }
                 }
                 (Hold::Brake(_), Mode::Stick) => {
-                    unknowns.push(Unknown::without_slip(index, [none; 2]));
+                    unknowns.push(Unknown::without_slip(index, [none; 2], none));
                 }
-                (Hold::Seat { .. }, _) => {}
+                (Hold::Seat { .. } | Hold::Soft(_), _) => {}
                 (Hold::Brake(limit), Mode::Slide(sign)) => {
                     for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
                         let braked = -sign * limit * arm * system.mobility[i];
@@ -96,6 +99,11 @@ impl<'t> Forces<'t> {
                 Mode::Stick => unknowns.extend(seat.hold(system, modes, place)),
                 _ => seat.brake(system, speed, &mut acceleration),
             }
+        }
+        let pressed = Pressed::all(system, modes, place, speed);
+        for it in &pressed {
+            it.push(system, modes[it.link], &mut acceleration);
+            unknowns.extend((modes[it.link] == Mode::Stick).then(|| it.grip()));
         }
         let (mut matrix, mut right) = (Vec::new(), Vec::new());
         for Unknown {
@@ -122,7 +130,11 @@ impl<'t> Forces<'t> {
         let mut result = Self {
             acceleration,
             held: vec![[none; 2]; modes.len()],
+            pressed,
         };
+        for it in &result.pressed {
+            result.held[it.link][0] = it.normal;
+        }
         let mut parts: Vec<Vec<(Term<'t>, f64)>> = Vec::new();
         parts.extend(result.acceleration.iter().map(|free| vec![(*free, 1.0)]));
         for (unknown, force) in unknowns.iter().zip(tape.solve(&matrix, &right)) {
@@ -162,13 +174,14 @@ impl<'t> Unknown<'t> {
         }
     }
 
-    fn without_slip(link: usize, along: [Term<'t>; 2]) -> Self {
+    /// Friction that keeps the rate of slip; `target` is the lateral part of it.
+    pub fn without_slip(link: usize, along: [Term<'t>; 2], target: Term<'t>) -> Self {
         Self {
             link,
             part: Part::Grip,
             row: (along, 1.0),
             force: (along, 1.0),
-            target: along[0].constant(0.0),
+            target,
         }
     }
 

@@ -10,6 +10,7 @@
 //! small tilt, and unbalance does not act on the spin.
 
 use super::pull::Pull;
+use super::soft::{Press, Soft};
 use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
@@ -54,6 +55,28 @@ pub struct Retainer {
     pub mount: Option<Support>,
     /// In the ring.
     pub race: Option<Race>,
+    /// How its bore gives way, where it isn't rigid.
+    pub press: Option<Press>,
+}
+
+impl Retainer {
+    /// Of the bore.
+    fn hold(&self) -> Hold {
+        let Ring {
+            clearance,
+            friction,
+            restitution,
+            ..
+        } = self.ring;
+        match self.press {
+            Some(press) => Hold::Soft(Soft::new(clearance, friction, restitution, press)),
+            None => Hold::Wall {
+                clearance,
+                friction,
+                restitution,
+            },
+        }
+    }
 }
 
 /// Directions are those at spin angle 0, counter-clockwise from x.
@@ -124,7 +147,12 @@ impl CoupledMachine {
             polar_inertia: rotor.polar_inertia,
             transverse_inertia: rotor.polar_inertia,
             gravity: [0.0, -rotor.gravity],
-            retainers: vec![Retainer { ring, mount, race }],
+            retainers: vec![Retainer {
+                ring,
+                mount,
+                race,
+                press: None,
+            }],
             unbalance: Unbalance::default(),
             magnets: Vec::new(),
             bending: Vec::new(),
@@ -159,7 +187,10 @@ impl CoupledMachine {
     fn links(&self) -> Vec<Link> {
         let (mut walls, mut stops, mut brakes) = (Vec::new(), Vec::new(), Vec::new());
         let mut seats = Vec::new();
-        for (i, Retainer { ring, mount, race }) in self.retainers.iter().enumerate() {
+        for (i, it) in self.retainers.iter().enumerate() {
+            let Retainer {
+                ring, mount, race, ..
+            } = it;
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
             let none = vec![0.0; self.bodies()];
@@ -172,11 +203,7 @@ impl CoupledMachine {
             walls.push(Link {
                 shares: with(told.clone(), body, -1.0),
                 arms: with(with(still.clone(), 0, ring.radius), 1 + i, -bore),
-                hold: Hold::Wall {
-                    clearance: ring.clearance,
-                    friction: ring.friction,
-                    restitution: ring.restitution,
-                },
+                hold: it.hold(),
                 near: 0.0,
                 told,
             });

@@ -12,6 +12,9 @@
 //!
 //! The force of a magnet is smooth in parts: an axis on which it reaches its greatest force, or leaves it, ends a step too.
 //!
+//! A wall may give way instead: then it has a force, and no impulse; of such a wall only impacts are told, without
+//! impulse.
+//!
 //! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
 //! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those
 //! that others already determine are taken as 0. Where no set of modes lasts (several rings can jam
@@ -29,6 +32,7 @@ mod drop;
 mod forces;
 mod impact;
 mod jet;
+mod keep;
 mod linear;
 mod machine;
 mod motion;
@@ -36,6 +40,7 @@ mod power;
 mod pull;
 mod seat;
 mod share;
+mod soft;
 mod start;
 mod step;
 mod surroundings;
@@ -44,5 +49,6 @@ mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
+pub use soft::Press;
 pub use start::CoupledStart;
 pub use system::Mode;

@@ -4,6 +4,7 @@ use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
 use super::pull::Pull;
 use super::seat::Seat;
+use super::soft::Pressed;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
@@ -18,8 +19,12 @@ const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same for a magnet's force, of which the rate counts too.
 const CUT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Speed of a sliding ring against which errors count, in cut-offs of a slide: 1000 units of speed.
+/// Speed of a sliding ring, and in a wall that gives way, against which errors count, in cut-offs of a slide: 1000 units
+/// of speed.
 const SLIDES: f64 = 1e13;
+
+/// Force of a wall that gives way against which errors count, in its own: 1e-8 of it.
+const PRESSES: f64 = 1e10;
 
 /// What a step keeps to.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +50,10 @@ pub enum Ending {
     SlipEnds(usize),
     /// Grip does; slip of this sign begins, of a seat in the direction of the force.
     GripLost(usize, f64),
+    /// What is in a wall that gives way leaves it.
+    Left(usize),
+    /// It presses on it once more before that.
+    PressedAgain(usize),
     /// What a magnet does on an axis does: there it is cut off with this sign from now on, or not with 0.
     Cut {
         /// Its number.
@@ -109,7 +118,7 @@ impl Step {
         let tape = Tape::new();
         let (places, speeds) = (tape.start(place), tape.start(speed));
         let forces = Forces::new(&tape, system, surroundings, modes, &places, &speeds);
-        let clock = clock(system, modes, speed, &forces.acceleration);
+        let clock = clock(system, modes, speed, &forces);
         tape.carry(|before, order, next| {
             let part = clock / order as f64;
             let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
@@ -120,7 +129,7 @@ impl Step {
         });
         let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
         let series = [jets(&places), jets(&speeds)];
-        let ticks = ticks(system, modes, &series, bounds).min(bounds.longest / clock);
+        let ticks = ticks(system, modes, &series, &forces, bounds).min(bounds.longest / clock);
         let scaled = |of: &[Jet]| of.iter().map(|jet| jet.scaled(ticks)).collect();
         let held = |of: &[Term; 2]| of.map(|it| it.jet().scaled(ticks));
         let mut step = Self {
@@ -146,6 +155,9 @@ impl Step {
         for seat in Seat::all(system) {
             let held = forces.held[seat.link].map(|it| it.size());
             step.seat(system, &seat, modes[seat.link], held, bounds.slowest);
+        }
+        for it in &forces.pressed {
+            step.pressed(system, it, modes[it.link], &forces, ticks);
         }
         for (number, pull) in surroundings.magnets.iter().enumerate() {
             step.cut_off(number, pull, [place, speed, &pushes]);
@@ -174,16 +186,12 @@ impl Step {
         let slip_rounding = ROUNDING * (sizes.slip + sizes.slip_push * self.span);
         match (mode, link.hold) {
             (Mode::Flight, Hold::Wall { clearance, .. }) => {
-                let unit = 1.0 / clearance;
-                let q = link.lateral(&self.place).map(|q| q * unit);
-                let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
-                let [place, speed, push] = sizes.lateral.map(|size| size * unit);
-                let way = speed * self.span;
-                let pushed = push * self.span * self.span;
-                let tolerances = [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size);
-                self.earlier(&gap, tolerances, Ending::Touch(index));
+                self.approach(link, index, clearance, sizes);
             }
-            (Mode::Flight, Hold::Brake(_)) | (_, Hold::Seat { .. }) => {}
+            (Mode::Flight, Hold::Soft(soft)) if !soft.is_within() => {
+                self.approach(link, index, soft.entry(), sizes);
+            }
+            (Mode::Flight, Hold::Brake(_)) | (_, Hold::Seat { .. } | Hold::Soft(_)) => {}
             (_, Hold::Wall { friction, .. }) => {
                 let rounding = ROUNDING * normal_size;
                 self.earlier(&normal, [rounding; 3], Ending::LiftOff(index));
@@ -201,6 +209,7 @@ impl Step {
         }
         if let Mode::Slide(sign) = mode
             && sign != 0.0
+            && !matches!(link.hold, Hold::Soft(_))
         {
             let q = link.lateral(&self.place);
             let w = link.lateral(&self.speed);
@@ -210,6 +219,46 @@ impl Step {
             };
             let slip = (along + link.turning(&self.speed)) * sign;
             self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
+        }
+    }
+
+    /// Where a link that is apart comes to this distance.
+    fn approach(&mut self, link: &Link, index: usize, distance: f64, sizes: &Magnitudes) {
+        let unit = 1.0 / distance;
+        let q = link.lateral(&self.place).map(|q| q * unit);
+        let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
+        let [place, speed, push] = sizes.lateral.map(|size| size * unit);
+        let way = speed * self.span;
+        let pushed = push * self.span * self.span;
+        let tolerances = [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size);
+        self.earlier(&gap, tolerances, Ending::Touch(index));
+    }
+
+    fn pressed(&mut self, system: &System, it: &Pressed, mode: Mode, forces: &Forces, ticks: f64) {
+        let link = &system.links[it.link];
+        let Hold::Soft(soft) = link.hold else { return };
+        let jet = |of: Term| of.jet().scaled(ticks);
+        self.earlier(&soft.exit(jet(it.depth)), [0.0; 3], Ending::Left(it.link));
+        let rounding = CUT_ROUNDING * it.push.size();
+        let push = jet(it.push);
+        if mode == Mode::Flight {
+            self.earlier(&(push * -1.0), [rounding; 3], Ending::PressedAgain(it.link));
+            return;
+        }
+        self.earlier(&push, [rounding; 3], Ending::LiftOff(it.link));
+        match mode {
+            Mode::Slide(sign) if sign != 0.0 => {
+                let rounding = ROUNDING * it.slip.size();
+                let slip = jet(it.slip) * sign;
+                self.earlier(&slip, [rounding; 3], Ending::SlipEnds(it.link));
+            }
+            Mode::Stick => {
+                let [normal, grip] = forces.held[it.link];
+                let rounding = ROUNDING * (normal.size() * soft.friction + grip.size());
+                let most = jet(normal) * soft.friction;
+                self.hold(it.link, &most, &jet(grip), rounding);
+            }
+            _ => {}
         }
     }
 
@@ -251,17 +300,26 @@ impl Step {
     }
 }
 
-/// Unit of time of the terms, s: 1, or a power of two in which those of a slow slide are no large numbers.
-fn clock(system: &System, modes: &[Mode], speed: &[f64], acceleration: &[Term]) -> f64 {
-    let times = Seat::sliding(system, modes).map(|seat| {
-        let acceleration: Vec<f64> = acceleration.iter().map(Term::value).collect();
-        seat.time(system, speed, &acceleration)
+/// Unit of time of the terms, s: 1, or a power of two in which those of what is slow or has hardly begun are no large
+/// numbers.
+fn clock(system: &System, modes: &[Mode], speed: &[f64], forces: &Forces) -> f64 {
+    let slides = Seat::sliding(system, modes).map(|seat| {
+        let acceleration = forces.acceleration.iter().map(Term::value);
+        seat.time(system, speed, &acceleration.collect::<Vec<f64>>())
     });
-    times.fold(1.0, f64::min).log2().floor().exp2()
+    let presses = forces.pressed.iter().map(Pressed::time);
+    let least = slides.chain(presses).fold(1.0, f64::min);
+    least.log2().floor().exp2()
 }
 
 /// Time that series of places and speeds are good for, in the unit of their terms.
-fn ticks(system: &System, modes: &[Mode], [place, speed]: &[Vec<Jet>; 2], bounds: Bounds) -> f64 {
+fn ticks(
+    system: &System,
+    modes: &[Mode],
+    [place, speed]: &[Vec<Jet>; 2],
+    forces: &Forces,
+    bounds: Bounds,
+) -> f64 {
     let reach = |jet: &Jet, size: f64| {
         [ORDER - 1, ORDER]
             .map(|k| (bounds.accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
@@ -270,10 +328,22 @@ fn ticks(system: &System, modes: &[Mode], [place, speed]: &[Vec<Jet>; 2], bounds
     };
     let places = place.iter().zip(&system.size);
     let places = places.map(|(jet, size)| reach(jet, *size));
+    let pressed = || {
+        forces
+            .pressed
+            .iter()
+            .filter(|it| modes[it.link] != Mode::Flight)
+    };
     let slides = Seat::sliding(system, modes)
-        .flat_map(|seat| system.links[seat.link].lateral(speed))
+        .map(|seat| seat.link)
+        .chain(pressed().map(|it| it.link))
+        .flat_map(|link| system.links[link].lateral(speed))
         .map(|jet| reach(&jet, SLIDES * bounds.slowest));
-    places.chain(slides).fold(f64::INFINITY, f64::min)
+    let presses = pressed().map(|it| reach(&it.spring.jet(), PRESSES * it.spring.value()));
+    places
+        .chain(slides)
+        .chain(presses)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Where a function that is not negative at 0 first falls below zero, without passing a fall by.

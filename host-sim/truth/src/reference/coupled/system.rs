@@ -4,6 +4,7 @@
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
 use super::share::{Shared, shared, weighted};
+use super::soft::Soft;
 
 /// What a link does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,8 @@ pub enum Hold {
         /// Coefficient of restitution.
         restitution: f64,
     },
+    /// A round wall that gives way.
+    Soft(Soft),
     /// Dry friction that always presses alike, N.
     Brake(f64),
     /// Dry friction of a ring that lies on its housing.
@@ -85,6 +88,7 @@ impl Link {
     pub fn friction(&self) -> f64 {
         match self.hold {
             Hold::Wall { friction, .. } => friction,
+            Hold::Soft(soft) => soft.friction,
             Hold::Brake(_) | Hold::Seat { .. } => 0.0,
         }
     }
@@ -93,7 +97,16 @@ impl Link {
     pub fn clearance(&self) -> Option<f64> {
         match self.hold {
             Hold::Wall { clearance, .. } => Some(clearance),
+            Hold::Soft(soft) => Some(soft.clearance),
             Hold::Brake(_) | Hold::Seat { .. } => None,
+        }
+    }
+
+    /// Radius of the wall, if it is one that doesn't give way.
+    pub fn rigid(&self) -> Option<f64> {
+        match self.hold {
+            Hold::Wall { clearance, .. } => Some(clearance),
+            _ => None,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which links are closed, and how: the modes that last.
 
-use super::super::impact::{self, Touching};
+use super::super::impact::Touching;
+use super::super::keep;
 use super::super::seat::Seat;
 use super::super::step::{Bounds, Ending, Step};
 use super::super::system::{Hold, Mode};
@@ -23,7 +24,9 @@ impl Motion {
     pub(super) fn change(&mut self, ending: Ending) {
         match ending {
             Ending::Step => {}
-            Ending::Touch(link) => self.modes[link] = self.closed(link),
+            Ending::Touch(link) => self.close(link),
+            Ending::Left(link) => self.leave(link),
+            Ending::PressedAgain(link) => self.modes[link] = self.closed(link),
             Ending::LiftOff(link) => self.modes[link] = Mode::Flight,
             Ending::SlipEnds(link) => match self.seat(link) {
                 Some(seat) if !seat.stops(&self.system, &self.speed, self.slowest()) => {}
@@ -41,6 +44,21 @@ impl Motion {
         }
     }
 
+    fn close(&mut self, link: usize) {
+        let closing = Touching::new(&self.system, link, &self.place, &self.speed).closing;
+        if let Hold::Soft(soft) = &mut self.system.links[link].hold {
+            soft.enter(closing);
+        }
+        self.modes[link] = self.closed(link);
+    }
+
+    fn leave(&mut self, link: usize) {
+        if let Hold::Soft(soft) = &mut self.system.links[link].hold {
+            soft.leave();
+        }
+        self.modes[link] = Mode::Flight;
+    }
+
     fn seat(&self, link: usize) -> Option<Seat> {
         Seat::all(&self.system).find(|seat| seat.link == link)
     }
@@ -55,7 +73,7 @@ impl Motion {
         let held = self.step.held(link, self.step.end);
         let velocity = Seat::set_off(held, self.slowest());
         let set_off = (link, velocity);
-        impact::set_off(
+        keep::set_off(
             &self.system,
             &self.modes,
             set_off,
@@ -65,7 +83,7 @@ impl Motion {
     }
 
     fn keep_speed(&mut self) {
-        impact::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
+        keep::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
     }
 
     /// Rings that slide no faster than the cut-off are at rest; whether there are any.
@@ -150,7 +168,7 @@ impl Motion {
 
     fn choices(&self, link: usize) -> Vec<Mode> {
         let any = [Mode::Stick, Mode::Slide(1.0), Mode::Slide(-1.0)];
-        let Some(clearance) = self.system.links[link].clearance() else {
+        let Some(clearance) = self.system.links[link].rigid() else {
             return match (self.system.links[link].hold, self.modes[link]) {
                 (Hold::Brake(_), Mode::Stick) => any.to_vec(),
                 (_, mode) => vec![mode],
@@ -171,8 +189,9 @@ impl Motion {
 
     fn begin(&mut self) {
         for link in 0..self.modes.len() {
-            if self.modes[link] != Mode::Flight {
-                impact::keep_place(&self.system, link, &mut self.place);
+            let rigid = self.system.links[link].rigid().is_some();
+            if rigid && self.modes[link] != Mode::Flight {
+                keep::keep_place(&self.system, link, &mut self.place);
             }
         }
         self.keep_speed();
