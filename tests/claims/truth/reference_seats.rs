@@ -46,8 +46,8 @@ fn a_sliding_ring_swings_about_shifted_centres_until_it_stays() {
     let mut reference = ring_alone(MOUNT, [0.6 * first, 0.8 * first], [0.0; 2]);
     let rate = (MOUNT.stiffness / MOUNT.mass).sqrt();
     let half = PI / rate;
-    // Stopping and setting off, four times, at 1e-10 and 2e-10 of the unit of speed, which is 1 m/s.
-    let cut_off = 4.0 * 3e-10 / rate;
+    // Stopping and setting off, four times, at 1e-7 and 2e-7 of the unit of speed, which is 1 m/s.
+    let cut_off = 4.0 * 3e-7 / rate;
     for k in 0..600 {
         let time = f64::from(k) * 0.01 * half;
         let state = reference.advance(time, &mut |_, _| panic!("no contact"));
@@ -120,10 +120,10 @@ fn a_rotors_weight_moves_the_ring_only_beyond_its_friction() {
             let free = sag * (1.0 - (rate * time).min(PI).cos());
             let place = hits.map_or(free, |travel| free.min(travel));
             if hits.is_none() {
-                close_pair(state.rings[0].position, [0.0, -place], 1e-8 * size);
-                close_pair(state.position, [0.0, -place - ROTOR.clearance], 1e-8 * size);
+                close_pair(state.rings[0].position, [0.0, -place], 1e-6 * size);
+                close_pair(state.position, [0.0, -place - ROTOR.clearance], 1e-6 * size);
             } else if free < place {
-                close_pair(state.rings[0].position, [0.0, -place], 1e-8 * size);
+                close_pair(state.rings[0].position, [0.0, -place], 1e-6 * size);
             }
         }
     }

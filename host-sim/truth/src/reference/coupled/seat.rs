@@ -3,8 +3,9 @@
 //! At rest the ring is held by as much as it takes, up to the limit. A ring on its hard stop is held along the stop only:
 //! what presses it on the stop is the stop's. The sliding ring is braked by the limit, against its motion.
 //!
-//! Cut-off: it comes to rest where it is slower than 1e-10 of the unit of speed, and sets off with twice that, in the
-//! direction in which it pulled. Where it is not held at that speed it goes on so.
+//! Cut-off: it comes to rest where it is slower than 1e-7 of the unit of speed, and sets off with twice that, in the
+//! direction in which it pulled. Where it is not held at that speed it goes on so. The direction of a slow slide follows
+//! the force within m v/F, which bounds the steps: a run with a lower cut-off would not end where the force turns.
 
 use super::forces::Unknown;
 use super::jet::{Jet, dot};
@@ -12,6 +13,8 @@ use super::system::{Hold, Mode, System};
 use super::tape::Term;
 use std::f64::consts::SQRT_2;
 
+/// Speed at which a sliding ring is at rest, in units of speed.
+pub const SLOWEST: f64 = 1e-7;
 /// Speed with which it sets off, in cut-offs.
 const SET_OFF: f64 = 2.0;
 

@@ -19,9 +19,8 @@ const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same for a magnet's force, of which the rate counts too.
 const CUT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Speed of a sliding ring, and in a wall that gives way, against which errors count, in cut-offs of a slide: 1000 units
-/// of speed.
-const SLIDES: f64 = 1e13;
+/// Speed of a sliding ring, and in a wall that gives way, against which errors count, in units of speed.
+const SLIDES: f64 = 1e3;
 
 /// Force of a wall that gives way against which errors count, in its own: 1e-8 of it.
 const PRESSES: f64 = 1e10;
@@ -33,6 +32,8 @@ pub struct Bounds {
     pub accuracy: f64,
     /// Longest span, s.
     pub longest: f64,
+    /// Unit of speed, m/s.
+    pub speed: f64,
     /// Speed at which a sliding ring is at rest, m/s.
     pub slowest: f64,
 }
@@ -338,7 +339,7 @@ fn ticks(
         .map(|seat| seat.link)
         .chain(pressed().map(|it| it.link))
         .flat_map(|link| system.links[link].lateral(speed))
-        .map(|jet| reach(&jet, SLIDES * bounds.slowest));
+        .map(|jet| reach(&jet, SLIDES * bounds.speed));
     let presses = pressed().map(|it| reach(&it.spring.jet(), PRESSES * it.spring.value()));
     places
         .chain(slides)

@@ -9,7 +9,7 @@ use super::{Motion, ON_WALL};
 use touchdown_base::history::{Impact, ModelEvent, RotorState};
 
 /// Launch speed below which a bounce series ends in contact, in units of speed.
-pub(super) const CUTOFF: f64 = 1e-10;
+const CUTOFF: f64 = 1e-10;
 /// The same in parts of the speed along the wall, whose rounding it must exceed.
 const FAST_CUTOFF: f64 = 1e-12;
 /// Impacts that are forgotten in a unit of time; each time as many are not, the cut-off is doubled:

@@ -2,10 +2,9 @@
 
 use super::super::impact::Touching;
 use super::super::keep;
-use super::super::seat::Seat;
+use super::super::seat::{SLOWEST, Seat};
 use super::super::step::{Bounds, Ending, Step};
 use super::super::system::{Hold, Mode};
-use super::landing::CUTOFF;
 use super::{Motion, ON_WALL};
 
 /// Slip below this part of the speeds that it is made of is none.
@@ -65,7 +64,7 @@ impl Motion {
 
     /// Speed at which a sliding ring is at rest, m/s.
     fn slowest(&self) -> f64 {
-        CUTOFF * self.units.1
+        SLOWEST * self.units.1
     }
 
     /// A ring that its seat holds no longer begins to slide.
@@ -209,6 +208,7 @@ impl Motion {
             Bounds {
                 accuracy: self.accuracy,
                 longest: until.min(LONGEST * self.units.0),
+                speed: self.units.1,
                 slowest: self.slowest(),
             },
         );
