@@ -214,6 +214,7 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         },
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
+        press: None,
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {
         rate: mode.speed,

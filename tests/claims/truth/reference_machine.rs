@@ -32,7 +32,7 @@ fn retainer(place: f64, mount: Option<Support>, race: Option<Race>) -> Retainer 
         friction: 0.1,
         restitution: 0.8,
     };
-    Retainer { ring, mount, race }
+    Retainer { ring, mount, race, press: None }
 }
 
 fn machine(retainers: Vec<Retainer>) -> CoupledMachine {

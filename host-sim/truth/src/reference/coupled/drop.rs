@@ -82,8 +82,9 @@ impl CoupledReference {
         let length = rings()
             .map(|ring| ring.clearance)
             .fold(f64::INFINITY, f64::min);
-        let (surroundings, system) = (machine.surroundings(), machine.system(length));
+        let (mut surroundings, system) = (machine.surroundings(), machine.system(length));
         let [place, speed] = start.coordinates(machine, spin);
+        surroundings.cut_off(&place, &speed);
         let tape = Tape::new();
         let pulled = surroundings.forces(&tape.start(&place), &tape.start(&speed));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;

@@ -1,9 +1,8 @@
 //! Impacts at several links at once: Newton's restitution, Coulomb's impulse. Gauss-Seidel passes find which
-//! links press, stick and slide; for those the impulses are one linear system. Also what keeps closed links
-//! closed against rounding.
+//! links press, stick and slide; for those the impulses are one linear system.
 
 use super::linear::solve;
-use super::system::{Hold, Link, Mode, System};
+use super::system::{Hold, Link, System};
 
 /// Passes over all links; thousands are needed for a light ring between the rotor and its stop where no
 /// linear system is the answer.
@@ -64,7 +63,8 @@ impl Touching {
         self.normal[0] * other.normal[0] + self.normal[1] * other.normal[1]
     }
 
-    fn press(&self, system: &System, impulse: f64, speed: &mut [f64]) {
+    /// An impulse into the wall.
+    pub fn press(&self, system: &System, impulse: f64, speed: &mut [f64]) {
         let vector = self.normal.map(|n| -n * impulse);
         system.push(self.link, vector, 0.0, speed);
     }
@@ -84,7 +84,7 @@ impl Touching {
     fn leaves(&self, system: &System) -> f64 {
         match system.links[self.link].hold {
             Hold::Wall { restitution, .. } => -restitution * self.closing.max(0.0),
-            Hold::Brake(_) => 0.0,
+            Hold::Brake(_) | Hold::Seat { .. } | Hold::Soft(_) => 0.0,
         }
     }
 }
@@ -223,59 +223,6 @@ fn at_once(
     all.then_some((impulses, after))
 }
 
-/// Takes the normal speed of a link.
-pub fn arrest(system: &System, link: usize, place: &[f64], speed: &mut [f64]) {
-    let touch = Touching::new(system, link, place, speed);
-    let impulse = touch.closing / system.lateral(link, link);
-    touch.press(system, impulse, speed);
-}
-
-/// Takes what is left of normal speed and slip from links that have none.
-pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64], speed: &mut [f64]) {
-    // Direction, part that turns, and speed of each condition.
-    let mut kept = Vec::new();
-    for (index, mode) in modes.iter().enumerate() {
-        let link = &system.links[index];
-        let turning = link.turning(speed);
-        match (link.hold, mode) {
-            (_, Mode::Flight) | (Hold::Brake(_), Mode::Slide(_)) => {}
-            (Hold::Brake(_), Mode::Stick) => kept.push((index, [0.0; 2], 1.0, turning)),
-            (Hold::Wall { .. }, mode) => {
-                let touch = Touching::new(system, index, place, speed);
-                let [x, y] = touch.normal;
-                kept.push((index, [x, y], 0.0, touch.closing));
-                if *mode == Mode::Stick {
-                    kept.push((index, [-y, x], 1.0, touch.slip(system, speed)));
-                }
-            }
-        }
-    }
-    let line = |(a, [ax, ay], at, _): &(usize, [f64; 2], f64, f64)| {
-        let against = |(b, [bx, by], bt, _): &(usize, [f64; 2], f64, f64)| {
-            let lateral = system.lateral(*a, *b) * (ax * bx + ay * by);
-            lateral + system.turning(*a, *b) * at * bt
-        };
-        kept.iter().map(against).collect()
-    };
-    let matrix = kept.iter().map(line).collect();
-    let right: Vec<f64> = kept.iter().map(|kept| -kept.3).collect();
-    for ((link, direction, turn, _), impulse) in kept.iter().zip(solve(matrix, &right)) {
-        system.push(*link, direction.map(|d| d * impulse), turn * impulse, speed);
-    }
-}
-
-/// Puts a link's displacement on its wall.
-pub fn keep_place(system: &System, index: usize, place: &mut [f64]) {
-    let link = &system.links[index];
-    let Some(clearance) = link.clearance() else {
-        return;
-    };
-    let [x, y] = link.lateral(place);
-    let distance = f64::hypot(x, y);
-    let inward = (distance - clearance) / distance / system.lateral(index, index);
-    system.push(index, [-x * inward, -y * inward], 0.0, place);
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
@@ -295,6 +242,7 @@ mod tests {
                 restitution: 0.6,
             },
             mount: None,
+            press: None,
             race: Some(Race {
                 inertia: 8e-6,
                 dry_drag: 0.0,

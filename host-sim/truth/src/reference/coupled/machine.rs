@@ -7,9 +7,11 @@
 //!
 //! Limits: the damping of bending is taken in the frame that does not turn (no instability above a
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
-//! small tilt, unbalance does not act on the spin, and a magnet's force has no limit.
+//! small tilt, and unbalance does not act on the spin.
 
-use super::surroundings::{Body, Pull, Surroundings};
+use super::pull::Pull;
+use super::soft::{Press, Soft};
+use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
 use touchdown_scene::{Base, Magnet, Support};
@@ -53,6 +55,28 @@ pub struct Retainer {
     pub mount: Option<Support>,
     /// In the ring.
     pub race: Option<Race>,
+    /// How its bore gives way, where it isn't rigid.
+    pub press: Option<Press>,
+}
+
+impl Retainer {
+    /// Of the bore.
+    fn hold(&self) -> Hold {
+        let Ring {
+            clearance,
+            friction,
+            restitution,
+            ..
+        } = self.ring;
+        match self.press {
+            Some(press) => Hold::Soft(Soft::new(clearance, friction, restitution, press)),
+            None => Hold::Wall {
+                clearance,
+                friction,
+                restitution,
+            },
+        }
+    }
 }
 
 /// Directions are those at spin angle 0, counter-clockwise from x.
@@ -123,7 +147,12 @@ impl CoupledMachine {
             polar_inertia: rotor.polar_inertia,
             transverse_inertia: rotor.polar_inertia,
             gravity: [0.0, -rotor.gravity],
-            retainers: vec![Retainer { ring, mount, race }],
+            retainers: vec![Retainer {
+                ring,
+                mount,
+                race,
+                press: None,
+            }],
             unbalance: Unbalance::default(),
             magnets: Vec::new(),
             bending: Vec::new(),
@@ -154,10 +183,14 @@ impl CoupledMachine {
         shares
     }
 
-    /// Walls of the rings, of the stops, and brakes.
+    /// Walls of the rings, of the stops, brakes and seats.
     fn links(&self) -> Vec<Link> {
         let (mut walls, mut stops, mut brakes) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, Retainer { ring, mount, race }) in self.retainers.iter().enumerate() {
+        let mut seats = Vec::new();
+        for (i, it) in self.retainers.iter().enumerate() {
+            let Retainer {
+                ring, mount, race, ..
+            } = it;
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
             let none = vec![0.0; self.bodies()];
@@ -170,14 +203,25 @@ impl CoupledMachine {
             walls.push(Link {
                 shares: with(told.clone(), body, -1.0),
                 arms: with(with(still.clone(), 0, ring.radius), 1 + i, -bore),
-                hold: Hold::Wall {
-                    clearance: ring.clearance,
-                    friction: ring.friction,
-                    restitution: ring.restitution,
-                },
+                hold: it.hold(),
                 near: 0.0,
                 told,
             });
+            let dry = mount.map_or(0.0, |mount| mount.friction);
+            seats.extend((dry > 0.0).then(|| {
+                Link {
+                    shares: with(none.clone(), body, 1.0),
+                    arms: still.clone(),
+                    hold: Hold::Seat {
+                        limit: dry,
+                        stop: mount
+                            .and_then(|mount| mount.travel)
+                            .map(|_| self.retainers.len() + stops.len()),
+                    },
+                    near: 0.0,
+                    told: with(none.clone(), body, 1.0),
+                }
+            }));
             stops.extend(mount.and_then(|mount| mount.travel).map(|travel| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
@@ -198,7 +242,7 @@ impl CoupledMachine {
                 told: none,
             }));
         }
-        [walls, stops, brakes].concat()
+        [walls, stops, brakes, seats].concat()
     }
 
     /// What acts on it.
@@ -219,21 +263,25 @@ impl CoupledMachine {
             },
         ];
         bodies.extend(self.bending.iter().map(|mode| Body {
-            stiffness: mode.modal_mass * mode.rate * mode.rate,
-            damping: 2.0 * mode.damping_ratio * mode.modal_mass * mode.rate,
+            stiffness: [mode.modal_mass * mode.rate * mode.rate; 2],
+            damping: [2.0 * mode.damping_ratio * mode.modal_mass * mode.rate; 2],
             turning: (mode.at_centre * centre, angle),
             ..Body::default()
         }));
-        bodies.extend(self.retainers.iter().map(|it| Body {
-            stiffness: it.mount.map_or(0.0, |mount| mount.stiffness),
-            damping: it.mount.map_or(0.0, |mount| mount.damping),
-            shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
-            ..Body::default()
+        bodies.extend(self.retainers.iter().map(|it| {
+            let axes = it.mount.map_or([[0.0; 2]; 2], |mount| mount.axes());
+            Body {
+                stiffness: axes.map(|[stiffness, _]| stiffness),
+                damping: axes.map(|[_, damping]| damping),
+                shaken: self.shaken(it.mount.map_or(0.0, |mount| mount.mass)),
+                ..Body::default()
+            }
         }));
         let magnet = |(i, magnet): (usize, &Magnet)| Pull {
             magnet: *magnet,
             shares: self.axis(magnet.place, |mode| mode.at_magnets[i]),
             on: magnet.on.is_none(),
+            cut: [0.0; 2],
         };
         let drags = self
             .retainers

@@ -2,13 +2,18 @@
 //! independent of the models under test.
 //!
 //! Bodies that move in the plane (also tilt and modes of bending) and spins, a constant mass matrix,
-//! any smooth forces, and links: walls with Newton's restitution and Coulomb's friction, and dry
-//! brakes. Smooth motion is a Taylor series of order 20, made by arithmetic with series; the forces
+//! any smooth forces, and links: walls with Newton's restitution and Coulomb's friction, dry
+//! brakes, and rings' seats, whose dry friction has any direction. Smooth motion is a Taylor series of order 20, made by arithmetic with series; the forces
 //! of closed walls, of grip without slip and of brakes at rest follow from a linear system at the
 //! level of accelerations, and what rounding leaves in the constraints is projected away each step.
 //! A step ends where a wall is reached, a normal force or a slip falls to zero or a grip is lost:
 //! the first fall of a polynomial, found with steps that a bound of its curvature keeps from
 //! passing one, so that no flight is too short to be seen.
+//!
+//! The force of a magnet is smooth in parts: an axis on which it reaches its greatest force, or leaves it, ends a step too.
+//!
+//! A wall may give way instead: then it has a force, and no impulse; of such a wall only impacts are told, without
+//! impulse.
 //!
 //! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
 //! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those
@@ -27,10 +32,15 @@ mod drop;
 mod forces;
 mod impact;
 mod jet;
+mod keep;
 mod linear;
 mod machine;
 mod motion;
+mod power;
+mod pull;
+mod seat;
 mod share;
+mod soft;
 mod start;
 mod step;
 mod surroundings;
@@ -39,5 +49,6 @@ mod tape;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
+pub use soft::Press;
 pub use start::CoupledStart;
 pub use system::Mode;

@@ -1,33 +1,18 @@
 //! The forces besides those of the links: weight, springs, dampers, unbalance, gyroscopic effect, magnets
 //! and drag.
 
-use super::share::shared;
+use super::pull::Pull;
 use super::tape::Term;
-use touchdown_scene::Magnet;
-
-/// Of the moment at which a magnet is switched, relative.
-const MOMENT_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// A magnet in a machine.
-#[derive(Clone, Debug)]
-pub struct Pull {
-    /// What it does.
-    pub magnet: Magnet,
-    /// Parts of the bodies in the displacement there.
-    pub shares: Vec<f64>,
-    /// Whether it does it now.
-    pub on: bool,
-}
 
 /// What acts on a body by itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Body {
     /// Constant force, N.
     pub weight: [f64; 2],
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
+    /// Along x and along y, N/m.
+    pub stiffness: [f64; 2],
+    /// Along x and along y, N s/m.
+    pub damping: [f64; 2],
     /// Unbalance: force over the spin squared, and its direction.
     pub turning: (f64, f64),
     /// By the base's motion, at its angle 0, N.
@@ -57,9 +42,10 @@ impl Surroundings {
         let mut forces = Vec::with_capacity(place.len());
         for (k, body) in self.bodies.iter().enumerate() {
             forces.extend(body.weight.map(constant));
-            if body.stiffness != 0.0 || body.damping != 0.0 {
-                for i in [2 * k, 2 * k + 1] {
-                    let sprung = place[i] * body.stiffness + speed[i] * body.damping;
+            if [body.stiffness, body.damping] != [[0.0; 2]; 2] {
+                for axis in 0..2 {
+                    let i = 2 * k + axis;
+                    let sprung = place[i] * body.stiffness[axis] + speed[i] * body.damping[axis];
                     forces[i] = forces[i] - sprung;
                 }
             }
@@ -77,19 +63,7 @@ impl Surroundings {
             forces[3] = forces[3] + gyroscopic * speed[2];
         }
         for pull in self.magnets.iter().filter(|it| it.on) {
-            let (shares, magnet) = (&pull.shares, &pull.magnet);
-            let (at, rate) = (shared(shares, place), shared(shares, speed));
-            for axis in 0..2 {
-                let held = at[axis] * magnet.stiffness - rate[axis] * magnet.damping;
-                let force = held + constant(magnet.force[axis]);
-                for (k, share) in shares
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, share)| **share != 0.0)
-                {
-                    forces[2 * k + axis] = forces[2 * k + axis] + force * *share;
-                }
-            }
+            pull.push(place, speed, &mut forces);
         }
         if self.base
             && let Some(angle) = place.last()
@@ -110,34 +84,30 @@ impl Surroundings {
         forces
     }
 
-    /// Potential energy, J.
+    /// Potential energy, J; dampers have none.
     pub fn potential(&self, place: &[f64]) -> f64 {
         let of_body = |(k, body): (usize, &Body)| {
             let (x, y) = (place[2 * k], place[2 * k + 1]);
             let [wx, wy] = body.weight;
-            0.5 * body.stiffness * (x * x + y * y) - (wx * x + wy * y)
-        };
-        let held = |pull: &Pull| {
-            let (at, magnet) = (shared(&pull.shares, place), &pull.magnet);
-            let held = |k: usize| -at[k] * (0.5 * magnet.stiffness * at[k] + magnet.force[k]);
-            held(0) + held(1)
+            let [kx, ky] = body.stiffness;
+            0.5 * (kx * x * x + ky * y * y) - (wx * x + wy * y)
         };
         let bodies: f64 = self.bodies.iter().enumerate().map(of_body).sum();
         let magnets = self.magnets.iter().filter(|it| it.on);
-        bodies + magnets.map(held).sum::<f64>()
+        bodies + magnets.map(|it| it.potential(place)).sum::<f64>()
     }
 
     /// Makes them those of `time` (s since the release) and after; when they next change, s.
-    pub fn reach(&mut self, time: f64) -> f64 {
-        let reached = |moment: f64| moment <= time * (1.0 + MOMENT_ROUNDING);
-        let mut next = f64::INFINITY;
+    pub fn reach(&mut self, time: f64, place: &[f64], speed: &[f64]) -> f64 {
+        let magnets = self.magnets.iter_mut();
+        let next = magnets.map(|it| it.reach(time, place, speed));
+        next.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Cuts the magnets' forces off where they are above their limits, once a speed or a place has jumped.
+    pub fn cut_off(&mut self, place: &[f64], speed: &[f64]) {
         for pull in &mut self.magnets {
-            if let Some([from, until]) = pull.magnet.on {
-                pull.on = reached(from) && !reached(until);
-                let ahead = [from, until].into_iter().filter(|it| !reached(*it));
-                next = ahead.fold(next, f64::min);
-            }
+            pull.cut_off(place, speed);
         }
-        next
     }
 }

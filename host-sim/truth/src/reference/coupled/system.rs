@@ -4,13 +4,14 @@
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
 use super::share::{Shared, shared, weighted};
+use super::soft::Soft;
 
 /// What a link does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mode {
     /// Apart.
     Flight,
-    /// Slips with this sign; 0 without friction.
+    /// Slips with this sign; 0 without friction, and of a seat, which slips in any direction.
     Slide(f64),
     /// Without slip.
     Stick,
@@ -28,11 +29,20 @@ pub enum Hold {
         /// Coefficient of restitution.
         restitution: f64,
     },
+    /// A round wall that gives way.
+    Soft(Soft),
     /// Dry friction that always presses alike, N.
     Brake(f64),
+    /// Dry friction of a ring that lies on its housing.
+    Seat {
+        /// N.
+        limit: f64,
+        /// Number of the ring's hard stop.
+        stop: Option<usize>,
+    },
 }
 
-/// A contact, or a brake.
+/// A contact, a brake, or a seat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Displacement: the part that each body has in it.
@@ -74,11 +84,12 @@ impl Link {
         })
     }
 
-    /// Coulomb's coefficient; 0 for a brake.
+    /// Coulomb's coefficient of a wall, else 0.
     pub fn friction(&self) -> f64 {
         match self.hold {
             Hold::Wall { friction, .. } => friction,
-            Hold::Brake(_) => 0.0,
+            Hold::Soft(soft) => soft.friction,
+            Hold::Brake(_) | Hold::Seat { .. } => 0.0,
         }
     }
 
@@ -86,7 +97,16 @@ impl Link {
     pub fn clearance(&self) -> Option<f64> {
         match self.hold {
             Hold::Wall { clearance, .. } => Some(clearance),
-            Hold::Brake(_) => None,
+            Hold::Soft(soft) => Some(soft.clearance),
+            Hold::Brake(_) | Hold::Seat { .. } => None,
+        }
+    }
+
+    /// Radius of the wall, if it is one that doesn't give way.
+    pub fn rigid(&self) -> Option<f64> {
+        match self.hold {
+            Hold::Wall { clearance, .. } => Some(clearance),
+            _ => None,
         }
     }
 }

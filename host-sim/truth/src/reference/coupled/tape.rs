@@ -2,6 +2,7 @@
 
 use super::jet::{Jet, ORDER};
 use super::linear::inverse;
+use super::power::Power;
 use super::share::Shared;
 use std::cell::RefCell;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -24,6 +25,7 @@ enum Rule {
     Product(usize),
     /// A sine; its cosine follows.
     Sine(usize),
+    Power(usize),
     /// The first unknown of a linear system; the others follow.
     Unknowns(usize),
     /// Made with the one before.
@@ -132,6 +134,7 @@ struct Record {
     weighted: Vec<(usize, f64)>,
     products: Vec<Product>,
     sines: Vec<Sine>,
+    powers: Vec<Power>,
     systems: Vec<LinearSystem>,
 }
 
@@ -152,6 +155,10 @@ impl Record {
                     let [sine, cosine] = self.sines[number].next(row, order);
                     row[index + 1] = cosine;
                     sine
+                }
+                Rule::Power(number) => {
+                    let power = &mut self.powers[number];
+                    power.next(row[power.of], order)
                 }
                 Rule::Unknowns(number) => {
                     let next = self.systems[number].next(row, order);
@@ -203,7 +210,9 @@ impl Tape {
     pub fn cost(&self) -> usize {
         let record = self.0.borrow();
         let systems = record.systems.iter().map(|it| it.right.len().pow(2));
-        let products = record.products.len() + 2 * record.sines.len() + systems.sum::<usize>();
+        let products = record.products.len()
+            + 2 * (record.sines.len() + record.powers.len())
+            + systems.sum::<usize>();
         OTHERWISE + products + record.rules.len() / 16
     }
 
@@ -278,6 +287,16 @@ impl<'t> Term<'t> {
     /// A value that stays, on the same tape.
     pub fn constant(&self, value: f64) -> Self {
         self.tape.record(Rule::Given, value, value.abs())
+    }
+
+    /// A power of what is above 0.
+    pub fn power(self, exponent: f64) -> Self {
+        let power = Power::new(self.index, self.value(), exponent);
+        let value = power.value();
+        let size = value + (value * exponent / self.value()).abs() * self.size();
+        let number = self.tape.0.borrow().powers.len();
+        self.tape.0.borrow_mut().powers.push(power);
+        self.tape.record(Rule::Power(number), value, size)
     }
 
     /// Sine and cosine.

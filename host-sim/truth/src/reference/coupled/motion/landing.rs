@@ -1,6 +1,8 @@
 //! Links that touch: impacts, and where a bounce series ends.
 
 use super::super::impact::{self, Touching};
+use super::super::keep;
+use super::super::seat::Seat;
 use super::super::share::shared;
 use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
@@ -20,7 +22,7 @@ impl Motion {
         for link in 0..self.modes.len() {
             let clearance = self.system.links[link].clearance();
             if clearance.is_some_and(|clearance| self.distance(link) > clearance) {
-                impact::keep_place(&self.system, link, &mut self.place);
+                keep::keep_place(&self.system, link, &mut self.place);
             }
         }
     }
@@ -31,7 +33,7 @@ impl Motion {
         on_event: &mut impl FnMut(usize, ModelEvent),
     ) {
         // One that has just been left takes no part: what it meets next, it meets with its restitution.
-        let touches = |link: &usize| match self.system.links[*link].clearance() {
+        let touches = |link: &usize| match self.system.links[*link].rigid() {
             None => false,
             Some(clearance) => {
                 self.modes[*link] != Mode::Flight
@@ -43,11 +45,11 @@ impl Motion {
         let all = 0..self.modes.len();
         let links: Vec<usize> = all.clone().filter(touches).collect();
         for link in &links {
-            impact::keep_place(&self.system, *link, &mut self.place);
+            keep::keep_place(&self.system, *link, &mut self.place);
         }
         let backed: Vec<usize> = all.filter(|link| self.is_backed(*link, &links)).collect();
         for link in &backed {
-            impact::arrest(&self.system, *link, &self.place, &mut self.speed);
+            keep::arrest(&self.system, *link, &self.place, &mut self.speed);
         }
         let near = backed.iter().filter(|link| !links.contains(link));
         let all = links.iter().chain(near);
@@ -66,6 +68,7 @@ impl Motion {
             }
         }
         self.release_brakes();
+        self.surroundings.cut_off(&self.place, &self.speed);
         self.count();
     }
 
@@ -94,8 +97,17 @@ impl Motion {
         Touching::new(&self.system, link, &self.place, &self.speed)
     }
 
-    /// A brake has no impulse: what an impact has set turning slips in it.
+    /// A brake has no impulse, nor has a seat or a wall that gives way: what an impact has set moving slips in it.
     fn release_brakes(&mut self) {
+        for seat in Seat::all(&self.system) {
+            self.modes[seat.link] = Mode::Slide(0.0);
+        }
+        for link in 0..self.modes.len() {
+            let soft = matches!(self.system.links[link].hold, Hold::Soft(_));
+            if soft && self.modes[link] != Mode::Flight {
+                self.modes[link] = self.closed(link);
+            }
+        }
         for (mode, link) in self.modes.iter_mut().zip(&self.system.links) {
             let turning = link.turning(&self.speed);
             if let (Hold::Brake(_), Mode::Stick) = (link.hold, *mode)
@@ -104,6 +116,11 @@ impl Motion {
                 *mode = Mode::Slide(turning.signum());
             }
         }
+    }
+
+    /// What is told of a wall that gives way, as it is entered: it has no impulse yet.
+    pub(super) fn entry(&self, link: usize) -> Impact {
+        self.impact(&self.touch(link))
     }
 
     fn impact(&self, touch: &Touching) -> Impact {

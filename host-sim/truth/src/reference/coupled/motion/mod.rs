@@ -68,13 +68,15 @@ impl Motion {
         (place, speed): (Vec<f64>, Vec<f64>),
     ) -> Self {
         let links = system.links.len();
-        let brake_or_flight = |link: &Link| match link.hold {
-            Hold::Wall { .. } => Mode::Flight,
+        let first_mode = |link: &Link| match link.hold {
+            Hold::Wall { .. } | Hold::Soft(_) => Mode::Flight,
             Hold::Brake(_) if link.turning(&speed) == 0.0 => Mode::Stick,
             Hold::Brake(_) => Mode::Slide(link.turning(&speed).signum()),
+            // Where it is slow, the first step finds it at rest.
+            Hold::Seat { .. } => Mode::Slide(0.0),
         };
         Self {
-            modes: system.links.iter().map(brake_or_flight).collect(),
+            modes: system.links.iter().map(first_mode).collect(),
             step: Step::none(&place, &speed, links),
             system,
             surroundings,
@@ -126,7 +128,13 @@ impl Motion {
 
     /// Kinetic and potential, J.
     pub fn energy(&self, moment: &Moment) -> f64 {
-        self.system.kinetic(&moment.speed) + self.surroundings.potential(&moment.place)
+        let place = &moment.place;
+        let stored = |link: &Link| match link.hold {
+            Hold::Soft(soft) => soft.potential(link, place),
+            _ => 0.0,
+        };
+        let walls: f64 = self.system.links.iter().map(stored).sum();
+        self.system.kinetic(&moment.speed) + self.surroundings.potential(place) + walls
     }
 
     fn moment(&self, time: f64, part: f64) -> Moment {
@@ -139,7 +147,7 @@ impl Motion {
         Moment {
             time,
             turns: links.clone().map(turned).collect(),
-            normal: links.map(|link| self.step.normal(link, part)).collect(),
+            normal: links.map(|link| self.step.held(link, part)[0]).collect(),
             place,
             speed: self.step.speed(part),
             modes: self.modes.clone(),
@@ -170,14 +178,20 @@ impl Motion {
                 self.collide(None, on_event);
             }
             Ending::Step => {}
-            Ending::Touch(link) => self.collide(Some(link), on_event),
+            Ending::Touch(link) if self.system.links[link].rigid().is_some() => {
+                self.collide(Some(link), on_event);
+            }
+            Ending::Touch(link) => {
+                on_event(link, ModelEvent::Impact(self.entry(link)));
+                self.change(Ending::Touch(link));
+            }
             change => self.change(change),
         }
         self.started = true;
         self.settle();
         let time = self.since.value;
         for (link, (was, is)) in before.into_iter().zip(&self.modes).enumerate() {
-            let wall = self.system.links[link].clearance().is_some();
+            let wall = self.system.links[link].rigid().is_some();
             let happening = match (was, *is) {
                 _ if !wall => continue,
                 (Mode::Flight, Mode::Slide(_)) => ModelEvent::ContactStart {

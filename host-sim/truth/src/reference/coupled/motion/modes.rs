@@ -1,8 +1,10 @@
 //! Which links are closed, and how: the modes that last.
 
-use super::super::impact::{self, Touching};
-use super::super::step::{Ending, Step};
-use super::super::system::Mode;
+use super::super::impact::Touching;
+use super::super::keep;
+use super::super::seat::{SLOWEST, Seat};
+use super::super::step::{Bounds, Ending, Step};
+use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
 
 /// Slip below this part of the speeds that it is made of is none.
@@ -21,11 +23,79 @@ impl Motion {
     pub(super) fn change(&mut self, ending: Ending) {
         match ending {
             Ending::Step => {}
-            Ending::Touch(link) => self.modes[link] = self.closed(link),
+            Ending::Touch(link) => self.close(link),
+            Ending::Left(link) => self.leave(link),
+            Ending::PressedAgain(link) => self.modes[link] = self.closed(link),
             Ending::LiftOff(link) => self.modes[link] = Mode::Flight,
-            Ending::SlipEnds(link) => self.modes[link] = Mode::Stick,
-            Ending::GripLost(link, sign) => self.modes[link] = Mode::Slide(sign),
+            Ending::SlipEnds(link) => match self.seat(link) {
+                Some(seat) if !seat.stops(&self.system, &self.speed, self.slowest()) => {}
+                _ => self.modes[link] = Mode::Stick,
+            },
+            Ending::GripLost(link, sign) => {
+                if self.seat(link).is_some() {
+                    self.set_off(link);
+                }
+                self.modes[link] = Mode::Slide(sign);
+            }
+            Ending::Cut { magnet, axis, sign } => {
+                self.surroundings.magnets[magnet].cut[axis] = sign
+            }
         }
+    }
+
+    fn close(&mut self, link: usize) {
+        let closing = Touching::new(&self.system, link, &self.place, &self.speed).closing;
+        if let Hold::Soft(soft) = &mut self.system.links[link].hold {
+            soft.enter(closing);
+        }
+        self.modes[link] = self.closed(link);
+    }
+
+    fn leave(&mut self, link: usize) {
+        if let Hold::Soft(soft) = &mut self.system.links[link].hold {
+            soft.leave();
+        }
+        self.modes[link] = Mode::Flight;
+    }
+
+    fn seat(&self, link: usize) -> Option<Seat> {
+        Seat::all(&self.system).find(|seat| seat.link == link)
+    }
+
+    /// Speed at which a sliding ring is at rest, m/s.
+    fn slowest(&self) -> f64 {
+        SLOWEST * self.units.1
+    }
+
+    /// A ring that its seat holds no longer begins to slide.
+    fn set_off(&mut self, link: usize) {
+        let held = self.step.held(link, self.step.end);
+        let velocity = Seat::set_off(held, self.slowest());
+        let set_off = (link, velocity);
+        keep::set_off(
+            &self.system,
+            &self.modes,
+            set_off,
+            &self.place,
+            &mut self.speed,
+        );
+    }
+
+    fn keep_speed(&mut self) {
+        keep::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
+    }
+
+    /// Rings that slide no faster than the cut-off are at rest; whether there are any.
+    fn seats_stop(&mut self) -> bool {
+        let mut any = false;
+        for seat in Seat::all(&self.system) {
+            let slow = seat.speed(&self.system, &self.speed) <= self.slowest();
+            if slow && self.modes[seat.link] != Mode::Stick {
+                self.modes[seat.link] = Mode::Stick;
+                any = true;
+            }
+        }
+        any
     }
 
     /// How a link that touches goes on: with slip or without.
@@ -97,10 +167,10 @@ impl Motion {
 
     fn choices(&self, link: usize) -> Vec<Mode> {
         let any = [Mode::Stick, Mode::Slide(1.0), Mode::Slide(-1.0)];
-        let Some(clearance) = self.system.links[link].clearance() else {
-            return match self.modes[link] {
-                Mode::Stick => any.to_vec(),
-                mode => vec![mode],
+        let Some(clearance) = self.system.links[link].rigid() else {
+            return match (self.system.links[link].hold, self.modes[link]) {
+                (Hold::Brake(_), Mode::Stick) => any.to_vec(),
+                (_, mode) => vec![mode],
             };
         };
         let touch = Touching::new(&self.system, link, &self.place, &self.speed);
@@ -118,19 +188,29 @@ impl Motion {
 
     fn begin(&mut self) {
         for link in 0..self.modes.len() {
-            if self.modes[link] != Mode::Flight {
-                impact::keep_place(&self.system, link, &mut self.place);
+            let rigid = self.system.links[link].rigid().is_some();
+            if rigid && self.modes[link] != Mode::Flight {
+                keep::keep_place(&self.system, link, &mut self.place);
             }
         }
-        impact::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
+        self.keep_speed();
+        if self.seats_stop() {
+            self.keep_speed();
+        }
         let since = self.since.value;
-        let until = self.surroundings.reach(since) - since;
+        let next = self.surroundings.reach(since, &self.place, &self.speed);
+        let until = next - since;
         self.step = Step::new(
             &self.system,
             &self.surroundings,
             &self.modes,
             (&self.place, &self.speed),
-            (self.accuracy, until.min(LONGEST * self.units.0)),
+            Bounds {
+                accuracy: self.accuracy,
+                longest: until.min(LONGEST * self.units.0),
+                speed: self.units.1,
+                slowest: self.slowest(),
+            },
         );
         self.cost += self.step.cost;
     }
