@@ -5,12 +5,12 @@ use touchdown_scene::sensors::{Motion, PLANES};
 use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer, Ring,
-    RingState, Unbalance,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, Race, Retainer,
+    Ring, RingState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
-use touchdown_scene::{RINGS, Scene, Start, TwoPlane};
+use touchdown_scene::{Contact, RINGS, Scene, Start, TwoPlane, Wall};
 
 /// Part of the speed scale below which a rotor in contact is at rest.
 const STILL: f64 = 1e-9;
@@ -203,6 +203,20 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     }
 }
 
+/// None of a wall whose law the reference lacks, a line's logarithm or balls behind it: it is one with restitution then.
+fn press(wall: Wall) -> Option<Press> {
+    let exponent = match wall.contact {
+        Contact::Point => 1.5,
+        Contact::LinePower { .. } => 1.0,
+        Contact::Line { .. } => return None,
+    };
+    wall.balls.is_none().then_some(Press {
+        stiffness: wall.stiffness,
+        exponent,
+        slowest: wall.slowest,
+    })
+}
+
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
         ring: Ring {
@@ -214,7 +228,7 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         },
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
-        press: None,
+        press: it.wall.and_then(press),
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {
         rate: mode.speed,
