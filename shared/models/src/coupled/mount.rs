@@ -65,8 +65,8 @@ pub(super) enum Rub<R> {
     None,
     /// All of it, against this direction.
     Slides(Vector<R>),
-    /// It leaves the ring at rest.
-    Rests,
+    /// It leaves the ring at rest, from this part of the stretch on.
+    Rests(R),
     /// The motion turns round by itself, within the stretch: it gives nothing.
     Turns,
 }
@@ -80,8 +80,10 @@ pub(super) struct Ride<R> {
     /// Displacement by a push, which is an impulse times half the time.
     pub(super) mobility: [R; 2],
     pub(super) rub: Rub<R>,
-    /// Impulse of dry friction.
+    /// Impulse of dry friction; of a ring at rest, before the pushes.
     grip: Vector<R>,
+    /// Energy that a ring gives that comes to rest, before the pushes' work.
+    taken: R,
     /// Outward, where the ring comes to rest on its stop, which takes what pushes it there.
     stop: Option<Vector<R>>,
 }
@@ -90,7 +92,7 @@ impl<R: Real> Ride<R> {
     /// Displacement by a push; the push itself, where friction takes it.
     pub(super) fn pushed(&self, push: Vector<R>) -> Vector<R> {
         match self.rub {
-            Rub::Rests => push,
+            Rub::Rests(_) => push,
             _ => push.along(self.mobility),
         }
     }
@@ -98,7 +100,7 @@ impl<R: Real> Ride<R> {
     /// Displacement by the rotor and by the stop.
     pub(super) fn by(&self, [rotor, stop]: [Vector<R>; 2]) -> Vector<R> {
         match self.rub {
-            Rub::Rests => Vector::default(),
+            Rub::Rests(_) => Vector::default(),
             _ => rotor + stop,
         }
     }
@@ -106,7 +108,7 @@ impl<R: Real> Ride<R> {
     /// Impulses on the ring by dry friction, and by the stop that it comes to rest on.
     fn friction(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> [Vector<R>; 2] {
         let none = Vector::default();
-        if self.rub != Rub::Rests {
+        if !self.rests() {
             return [self.grip, none];
         }
         let grip = self.grip - (rotor + stop).times(R::TWO / time);
@@ -119,9 +121,20 @@ impl<R: Real> Ride<R> {
         }
     }
 
+    /// Energy that dry friction takes.
+    fn taken(&self, time: R, pushed: [Vector<R>; 2]) -> R {
+        let mean = (self.moved + self.by(pushed)).times(R::ONE / time);
+        let [grip, inward] = self.friction(time, pushed);
+        if !self.rests() {
+            return -grip.dot(mean);
+        }
+        let [rotor, stop] = pushed;
+        self.taken + ((rotor + stop).times(R::TWO / time) + inward).dot(mean)
+    }
+
     /// Whether dry friction leaves the ring where it is.
     pub(super) fn rests(&self) -> bool {
-        self.rub == Rub::Rests
+        matches!(self.rub, Rub::Rests(_))
     }
 
     pub(super) fn rests_on_stop(&self) -> bool {
@@ -260,21 +273,22 @@ impl<R: Real> Sprung<R> {
                 None => force,
             }
         };
-        if rub == Rub::Rests {
-            let mean = velocity.times(R::HALF);
-            let moved = mean.times(time);
-            let against = force(place + moved.times(R::HALF), mean).times(time);
+        let none = Vector::default();
+        if let Rub::Rests(part) = rub {
+            let moved = velocity.times(half * part);
+            let work = force(place + moved.times(R::HALF), none).dot(moved);
             return Ride {
                 moved,
-                kick: Vector::default() - velocity,
+                kick: none - velocity,
                 mobility: [R::ZERO; 2],
                 rub,
-                grip: against - velocity.times(self.mass),
+                grip: force(place + moved, none).times(time),
+                taken: R::HALF * self.mass * velocity.square() - work,
                 stop: direction(place).filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
             };
         }
         let mut against = force(place + velocity.times(half), velocity);
-        let mut grip = Vector::default();
+        let mut grip = none;
         if let Rub::Slides(direction) = rub {
             against = against + direction.times(self.friction);
             grip = direction.times(-(self.friction * time));
@@ -288,6 +302,7 @@ impl<R: Real> Sprung<R> {
             mobility,
             rub,
             grip,
+            taken: R::ZERO,
             stop: None,
         }
     }
@@ -297,7 +312,7 @@ impl<R: Real> Sprung<R> {
         if self.friction <= R::ZERO {
             return Rub::None;
         }
-        direction(state.velocity.value()).map_or(Rub::Rests, Rub::Slides)
+        direction(state.velocity.value()).map_or(Rub::Rests(R::ZERO), Rub::Slides)
     }
 
     /// What dry friction is rather, with these pushes; none if it was right.
@@ -310,9 +325,9 @@ impl<R: Real> Sprung<R> {
     ) -> Option<Rub<R>> {
         match ride.rub {
             Rub::None | Rub::Turns => None,
-            Rub::Rests => {
+            Rub::Rests(_) => {
                 let [grip, _] = ride.friction(time, pushed);
-                if grip.dot(ride.moved) > R::ZERO {
+                if ride.taken(time, pushed) < R::ZERO {
                     return Some(Rub::Turns);
                 }
                 let most = self.friction * time;
@@ -322,9 +337,17 @@ impl<R: Real> Sprung<R> {
             }
             Rub::Slides(was) => {
                 let moved = ride.moved + ride.by(pushed);
-                let end = moved.times(R::TWO / time) - state.velocity.value();
-                if end.dot(was) <= R::ZERO {
-                    return Some(Rub::Rests);
+                let before = state.velocity.value();
+                let end = moved.times(R::TWO / time) - before;
+                let (before, end) = (before.dot(was), end.dot(was));
+                if end <= R::ZERO {
+                    let turns = before > R::ZERO;
+                    let part = if turns {
+                        before / (before - end)
+                    } else {
+                        R::ZERO
+                    };
+                    return Some(Rub::Rests(part));
                 }
                 let now = direction(moved)?;
                 ((now - was).square() > R::EPSILON).then_some(Rub::Slides(now))
@@ -408,13 +431,12 @@ impl<R: Real> Sprung<R> {
             inward.dot(mean)
         } else {
             state.velocity.add(ride.kick + pushes.times(rate));
+            let damped = mean.dot_along(moved, self.each(|it| it.damping));
+            state.damped.add(damped);
             by_stop.dot_along(mean, ride.mobility.map(|it| rate / it))
         };
-        let damped = mean.dot_along(moved, self.each(|it| it.damping));
-        state.damped.add(damped);
         if ride.rub != Rub::None {
-            let [friction, _] = ride.friction(time, pushed);
-            state.damped.add(-friction.dot(mean));
+            state.damped.add(ride.taken(time, pushed));
         }
         state.stopping.add(-stopping);
     }
