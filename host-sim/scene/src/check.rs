@@ -39,7 +39,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let plane = ball_bearing.filter(|_| file.two_plane.is_none());
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
     let two_plane = two_plane(&file, &rotor, &retainer, &start, (support, ball_bearing))?;
-    let compliant = compliant(&file, two_plane.as_ref())?;
+    let compliant = compliant(&file, two_plane.as_ref(), ball_bearing)?;
     let needed = match compliant {
         true => Fidelity::Coupled,
         false => needed(&file, two_plane.as_ref()),
@@ -171,7 +171,11 @@ pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
 }
 
 /// Whether contacts are to have a force and a duration; what only such have must not stand without it.
-fn compliant(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Result<bool, Diagnostic> {
+fn compliant(
+    file: &SceneFile,
+    two_plane: Option<&TwoPlane>,
+    ball_bearing: Option<BallBearing>,
+) -> Result<bool, Diagnostic> {
     const KEYS: Keys = Keys("model");
     let names = ["restitution", "compliant"];
     let contact = KEYS.named_or("contact", &file.model.contact, names[0], &names)?;
@@ -181,9 +185,9 @@ fn compliant(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Result<bool, Dia
             "contact = \"compliant\" needs [two_plane]: in the plane rung = \"hertz\" is that";
         return Err(KEYS.broken("contact", rule));
     }
-    let mut bearings = two_plane.iter().flat_map(|it| &it.rings);
-    let balls = bearings.any(|it| it.ball_bearing.is_some_and(|it| it.stiffness.is_some()));
-    if balls && !compliant {
+    let rings = two_plane.iter().flat_map(|it| &it.rings);
+    let mut bearings = rings.filter_map(|it| it.ball_bearing).chain(ball_bearing);
+    if !compliant && bearings.any(|it| it.stiffness.is_some()) {
         let rule = "stiffness_n_m of balls is that of [model] contact = \"compliant\"";
         return Err(Keys("ball_bearing").broken("stiffness_n_m", rule));
     }
@@ -248,7 +252,7 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
     let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
     let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
     if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping or times: leave them out, or rung";
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping, limit or times: leave them out, or rung";
         return Err(KEYS.broken("rung", rule));
     }
     if !parts.is_empty() && needed != rung && !more {

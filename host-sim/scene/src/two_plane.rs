@@ -121,7 +121,7 @@ impl TwoPlane {
         });
         let mut magnets = self.magnets.iter();
         seats.any(|gives_way| gives_way)
-            || magnets.any(|magnet| magnet.damping > 0.0 || magnet.on.is_some())
+            || magnets.any(|it| it.damping > 0.0 || it.on.is_some() || it.limit.is_some())
             || !self.modes.is_empty()
             || self.base.is_some()
     }

@@ -13,6 +13,9 @@ mass_kg = 0.5
 stiffness_n_m = 1e6
 damping_n_s_m = 100
 travel_mm = 0.2
+vertical_stiffness_n_m = 2e6
+vertical_damping_n_s_m = 50
+dry_friction_n = 5
 [ball_bearing]
 inner_ring_inertia_kg_m2 = 3e-5
 dry_drag_n_m = 0.01
@@ -107,6 +110,9 @@ fn a_support_is_checked() {
         ("damping_n_s_m", "1e10", "damping_n_s_m must be 0 to"),
         ("travel_mm", "0", "travel_mm must be above 0"),
         ("travel_mm", "1e3", "travel_mm must be 0.001 to 100"),
+        ("vertical_stiffness_n_m", "0", "vertical_stiffness_n_m must be above 0"),
+        ("vertical_damping_n_s_m", "1e10", "vertical_damping_n_s_m must be 0 to"),
+        ("dry_friction_n", "-1", "dry_friction_n must be 0 to"),
     ] {
         refuse(GIVES_WAY, "support", key, value, rule);
     }
@@ -319,4 +325,24 @@ fn tables_that_do_not_go_together() {
         .stderr(contains(
             "scene.toml:10: inclination_deg must be -90 to 90, is 91",
         ));
+}
+
+#[test]
+fn what_only_compliant_contacts_have_is_refused_without_them() {
+    let balls = format!("{GIVES_WAY}stiffness_n_m = 1e8\n");
+    let rule = "stiffness_n_m of balls is that of [model] contact = \"compliant\"";
+    let plane = explain(&format!("{MACHINE}{balls}"));
+    plane.code(2).stdout("").stderr(contains(rule));
+    let rings = format!("{TILTS}[ball_bearing]\ninner_ring_inertia_kg_m2 = 3e-5\nstiffness_n_m = 1e8\n");
+    let rigid = explain(&format!("{MACHINE}{rings}"));
+    rigid.code(2).stdout("").stderr(contains(rule));
+    let compliant = "[model]\ncontact = \"compliant\"\n";
+    explain(&format!("{MACHINE}{rings}{compliant}")).success();
+    let rule = "contact = \"compliant\" needs [two_plane]: in the plane rung = \"hertz\" is that";
+    refuse("[model]\ncontact = \"restitution\"\n", "model", "contact", "\"compliant\"", rule);
+    let limited = format!("{TILTS}limit_n = 10\n{compliant}");
+    refuse(&limited, "magnet", "limit_n", "0", "limit_n must be above 0");
+    let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact";
+    let given = format!("{limited}rung = \"coupled\"\n");
+    refuse(&given, "model", "rung", "\"two-plane\"", rule);
 }
