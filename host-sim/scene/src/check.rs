@@ -40,25 +40,20 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
     let two_plane = two_plane(&file, &rotor, &retainer, &start, (support, ball_bearing))?;
     let compliant = compliant(&file, two_plane.as_ref(), ball_bearing)?;
-    let needed = match compliant {
-        true => Fidelity::Coupled,
-        false => needed(&file, two_plane.as_ref()),
-    };
+    let needed = needed(&file, two_plane.as_ref(), compliant);
     let model = model(&file.model, &run, needed)?;
     let auto = auto(&file, &model)?;
-    let materials = materials(file.materials.as_ref())?;
     let calibration = file.calibration.as_ref();
     let calibration = calibration.map(CalibrationTable::check).transpose()?;
     let sensors = sensors(&file.sensors, calibration, tachometers)?;
     let faults = faults(&file.fault, &sensors, &run)?;
-    let stator_gap = stator_gap(file.stator.as_ref())?;
     let mut scene = Scene {
         name: name.to_owned(),
         title: file.title,
         source: file.source,
         rotor,
         retainer,
-        stator_gap,
+        stator_gap: stator_gap(file.stator.as_ref())?,
         support,
         ball_bearing,
         two_plane,
@@ -66,7 +61,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         run,
         model,
         auto,
-        materials,
+        materials: materials(file.materials.as_ref())?,
         sensors,
         faults,
         tuning: file.detector,
@@ -77,13 +72,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         zones: zones(file.guard.zones)?,
     };
     let given = file.model.step_us.is_some();
-    if compliant && let Some(mut machine) = scene.two_plane.take() {
-        for k in 0..machine.rings.len() {
-            let wall = scales::wall(&scene, &machine, &machine.rings[k]);
-            machine.rings[k].wall = Some(wall.map_err(|error| translate(&error))?);
-        }
-        scene.two_plane = Some(machine);
-    }
+    give_way(&mut scene, compliant)?;
     match scene.model.rung {
         Fidelity::Hertz => scene.model.step = step_in_contact(&scene, given)?,
         Fidelity::Coupled if !given => scene.model.step = resolved_step(&scene),
@@ -194,10 +183,23 @@ fn compliant(
     Ok(compliant)
 }
 
+/// Makes the walls of all rings give way, where they are to.
+fn give_way(scene: &mut Scene, compliant: bool) -> Result<(), Diagnostic> {
+    let Some(mut machine) = scene.two_plane.take_if(|_| compliant) else {
+        return Ok(());
+    };
+    for k in 0..machine.rings.len() {
+        let wall = scales::wall(scene, &machine, &machine.rings[k]);
+        machine.rings[k].wall = Some(wall.map_err(|error| translate(&error))?);
+    }
+    scene.two_plane = Some(machine);
+    Ok(())
+}
+
 /// The lowest rung that has all parts of the machine.
-fn needed(file: &SceneFile, two_plane: Option<&TwoPlane>) -> Fidelity {
+fn needed(file: &SceneFile, two_plane: Option<&TwoPlane>, compliant: bool) -> Fidelity {
     match two_plane {
-        Some(machine) if machine.is_coupled() => Fidelity::Coupled,
+        Some(machine) if compliant || machine.is_coupled() => Fidelity::Coupled,
         Some(_) => Fidelity::TwoPlane,
         None if file.support.is_some() || file.ball_bearing.is_some() => Fidelity::Support,
         None => Fidelity::Rigid,

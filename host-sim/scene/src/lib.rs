@@ -29,7 +29,7 @@ mod two_plane;
 pub use base::Base;
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use magnet::Magnet;
-pub use materials::{Contact, Materials, Wall};
+pub use materials::{CompliantWall, Contact, Materials};
 pub use mode::{MODES, Mode};
 pub use model::{Fidelity, LeftOut, Math, Model, Precision, Removable, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};

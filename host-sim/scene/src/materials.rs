@@ -24,7 +24,7 @@ pub enum Contact {
 
 /// A wall that gives way: its force over depth, in place of restitution. The balls give way with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct CompliantWall {
     /// The shape.
     pub contact: Contact,
     /// K: force is K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line; N/m^1.5 or N/m.

@@ -34,22 +34,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
         asked,
         reason: reason.to_owned(),
     };
-    let gives_way = rings().any(|it| it.wall.is_some());
-    let takes_time = rung == Fidelity::Hertz || gives_way && rung == Fidelity::Coupled;
-    let (laws, force) = match takes_time {
-        true => (
-            "as losses of a contact that takes time",
-            if gives_way {
-                "contact = \"compliant\" is given"
-            } else {
-                "rung hertz is asked for"
-            },
-        ),
-        false => (
-            "the laws that all rungs share",
-            "rung hertz and contact = \"compliant\" have them",
-        ),
-    };
+    let (takes_time, laws, force) = contact(scene);
     let mut parts = vec![
         fixed("gap, restitution, friction, spin", true, true, laws),
         fixed("contact force and its duration", takes_time, false, force),
@@ -85,6 +70,21 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     part(Base, is(|it| it.base.is_some()), c, "[base]");
     parts.push(fixed("wear", false, false, "no rung has it"));
     parts
+}
+
+/// Whether a contact takes time, and why all laws and its force are in or out.
+fn contact(scene: &Scene) -> (bool, &'static str, &'static str) {
+    let in_time = "as losses of a contact that takes time";
+    let gives_way = scene.rings().iter().any(|it| it.wall.is_some());
+    match scene.model.rung {
+        Fidelity::Hertz => (true, in_time, "rung hertz is asked for"),
+        Fidelity::Coupled if gives_way => (true, in_time, "contact = \"compliant\" is given"),
+        _ => (
+            false,
+            "the laws that all rungs share",
+            "rung hertz and contact = \"compliant\" have them",
+        ),
+    }
 }
 
 /// Parts that the scene's model has and can do without.

@@ -6,7 +6,7 @@ use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
 use crate::elastic::Validity;
-use crate::{Contact, Ring, Scene, TwoPlane, Wall};
+use crate::{CompliantWall, Contact, Ring, Scene, TwoPlane};
 
 /// Part of the fastest impact's speed below which a contact's damping is no longer scaled by its own: it has 1e-6 of that
 /// impact's energy.
@@ -45,7 +45,11 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
 
 /// The wall of a ring that is to give way. An impact there meets 1/(1 + zeta^2) of the mass, zeta its place in radii of
 /// gyration; bending is not counted.
-pub(super) fn wall(scene: &Scene, machine: &TwoPlane, ring: &Ring) -> Result<Wall, ConfigError> {
+pub(super) fn wall(
+    scene: &Scene,
+    machine: &TwoPlane,
+    ring: &Ring,
+) -> Result<CompliantWall, ConfigError> {
     match scene.materials.contact {
         Contact::Point => wall_of(scene, machine, ring, Point),
         Contact::Line { length } => wall_of(scene, machine, ring, Line { length }),
@@ -58,7 +62,7 @@ fn wall_of<C: Shape<f64>>(
     machine: &TwoPlane,
     ring: &Ring,
     shape: C,
-) -> Result<Wall, ConfigError> {
+) -> Result<CompliantWall, ConfigError> {
     let mut there = compliant(scene, shape);
     let turned = ring.place * ring.place * scene.rotor.mass / machine.transverse_inertia;
     there.rigid.mass /= 1.0 + turned;
@@ -69,7 +73,7 @@ fn wall_of<C: Shape<f64>>(
     let weight = scene.rotor.mass * scene.run.gravity;
     let settled = C::depth(weight / compliance.stiffness, ring.retainer.clearance);
     let slowest = (2.0 * scene.run.gravity * settled).sqrt();
-    Ok(Wall {
+    Ok(CompliantWall {
         contact: scene.materials.contact,
         stiffness: compliance.stiffness,
         balls: ring.ball_bearing.and_then(|it| it.stiffness),

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::base::Base;
 use super::diagnostic::Diagnostic;
 use super::magnet::{Magnet, MagnetTable, all_magnets};
-use super::materials::Wall;
+use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{Keys, MILLI, ON_THE_WALL};
 use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
@@ -57,7 +57,7 @@ pub struct Ring {
     /// Its gap and law.
     pub retainer: Retainer,
     /// In place of restitution, where contacts are to have a force and a duration.
-    pub wall: Option<Wall>,
+    pub wall: Option<CompliantWall>,
     /// What it stands on, where that gives way.
     pub support: Option<Support>,
     /// Its ball bearing, where it has one.

@@ -10,7 +10,7 @@ use crate::reference::coupled::{
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
-use touchdown_scene::{Contact, RINGS, Scene, Start, TwoPlane, Wall};
+use touchdown_scene::{CompliantWall, Contact, RINGS, Scene, Start, TwoPlane};
 
 /// Part of the speed scale below which a rotor in contact is at rest.
 const STILL: f64 = 1e-9;
@@ -204,7 +204,7 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
 }
 
 /// None of a wall whose law the reference lacks, a line's logarithm or balls behind it: it is one with restitution then.
-fn press(wall: Wall) -> Option<Press> {
+fn press(wall: CompliantWall) -> Option<Press> {
     let exponent = match wall.contact {
         Contact::Point => 1.5,
         Contact::LinePower { .. } => 1.0,

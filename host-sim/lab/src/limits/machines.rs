@@ -104,11 +104,7 @@ pub fn text(seed: u64) -> String {
     if has(1) {
         let inertia = polar * decades(&mut random, -4.0, -0.5);
         let _ = writeln!(text, "[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}");
-        let mut random = own(seed, 7);
-        let stiffness = decades(&mut random, 6.0, 9.0);
-        if has(5) && random.random() {
-            let _ = writeln!(text, "stiffness_n_m = {stiffness}");
-        }
+        text += &balls(seed, has(5));
     }
     if has(2) {
         text += &modes(&mut random);
@@ -163,6 +159,16 @@ fn seat(seed: u64, mass: f64) -> String {
         let _ = writeln!(text, "dry_friction_n = {friction}");
     }
     text
+}
+
+/// Balls that give way in one of two, behind compliant contacts.
+fn balls(seed: u64, compliant: bool) -> String {
+    let mut random = own(seed, 7);
+    let stiffness = decades(&mut random, 6.0, 9.0);
+    match compliant && random.random() {
+        true => format!("stiffness_n_m = {stiffness}\n"),
+        false => String::new(),
+    }
 }
 
 /// The greatest force of a magnet, 0.1 to 10 times the weight, in one of two. Numbers of their own.

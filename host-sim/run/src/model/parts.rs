@@ -5,7 +5,8 @@ use touchdown_models::{
 };
 
 use touchdown_scene::{
-    BallBearing, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane, Wall,
+    BallBearing, CompliantWall, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene,
+    TwoPlane,
 };
 
 /// The rotor's ends, where the rung has them.
@@ -69,7 +70,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
     rings.iter().map(seat).collect()
 }
 
-fn compliant(wall: Wall) -> CompliantConfig<f64> {
+fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
     CompliantConfig {
         shape: match wall.contact {
             Contact::Point => CompliantShape::Point,

@@ -5,6 +5,7 @@
 //! value and slope before and its value after; the stretch is taken to there, and again from there, until
 //! the wall is met.
 
+use super::compliant::Compliant;
 use super::crossing::crossing;
 use super::passage::Passage;
 use super::state::Held;
@@ -137,9 +138,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
                     let now = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
-                    if !self.enters(state, beyond.who, now, &mut on_event) {
-                        self.meet(state, Some(beyond.who), stays, now, &mut on_event);
-                    }
+                    self.arrive(state, beyond.who, stays, now, &mut on_event);
                     impacts += 1;
                     (longest, crossings) = (whole, 0);
                 }
@@ -221,13 +220,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         for i in 0..N {
             self.advance_ring(state, passage, i, spin);
-        }
-        for i in 0..N {
-            if state.seats[i].held.is_some_and(|it| it.spell.is_some()) {
-                self.goes_on(state, passage, i, part, on_event);
-            } else if !keeps && state.is_held(i) && passage.presses[i].is_none() {
+            if state.lies(i) && !keeps && passage.presses[i].is_none() {
                 state.seats[i].held = None;
                 self.tell(state, i, part, Change::LiftsOff, on_event);
+            } else if state.is_held(i) {
+                self.go_on(state, passage, i, part, on_event);
             }
         }
         self.calm(&before, state);
@@ -325,21 +322,33 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// The axis comes to a wall that gives way; whether it is one.
-    fn enters(
+    /// At a wall, with an impact or into one that gives way.
+    fn arrive(
         &self,
         state: &mut CoupledState<R, N, Q>,
         who: Arrival,
+        stays: bool,
         part: R,
         on_event: &mut impl FnMut(RingEvent<R>),
-    ) -> bool {
-        let Arrival::Axis(i) = who else {
-            return false;
-        };
+    ) {
+        if let Arrival::Axis(i) = who
+            && let Some(compliant) = &self.rings[i].compliant
+        {
+            self.enter(state, i, compliant, part, on_event);
+        } else {
+            self.meet(state, Some(who), stays, part, on_event);
+        }
+    }
+
+    fn enter(
+        &self,
+        state: &mut CoupledState<R, N, Q>,
+        i: usize,
+        compliant: &Compliant<R>,
+        part: R,
+        on_event: &mut impl FnMut(RingEvent<R>),
+    ) {
         let ring = &self.rings[i];
-        let Some(compliant) = &ring.compliant else {
-            return false;
-        };
         let within = self.within(state, i);
         let normal = within.times(R::ONE / within.length());
         let speed = normal.dot(self.relative(state, i)).most(R::ZERO);
@@ -355,11 +364,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             impulse: (R::ONE + ring.restitution) * speed / mobility,
         };
         self.tell(state, i, part, change, on_event);
-        true
     }
 
     /// After a stretch in a wall that gives way: what it stores, and whether it is left.
-    fn goes_on(
+    fn go_on(
         &self,
         state: &mut CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,

@@ -8,7 +8,7 @@
 //! Friction takes energy, however coarse the step: it ends the slip, but gives no more than what makes the mean of
 //! the slips before and after 0, and nothing where the slip turns round by itself.
 
-use super::vector::{Response, Vector};
+use super::vector::{Mobility, Vector};
 use touchdown_rotor::real::Real;
 
 /// Trials in which all links change that are wrong, and trials in all; the rest change one link each.
@@ -98,7 +98,7 @@ pub(super) struct Links<R, const N: usize> {
     count: usize,
     link: Pairs<Option<Link<R>>, N>,
     /// Motion of the first by an impulse in the second.
-    response: Pairs<Pairs<Response<R>, N>, N>,
+    response: Pairs<Pairs<Mobility<R>, N>, N>,
     /// Of the slip, by a tangential impulse, what is not motion.
     spin: Pairs<Pairs<R, N>, N>,
 }
@@ -120,7 +120,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         Self {
             count: 0,
             link: [[None; 2]; N],
-            response: [[[[Response::default(); 2]; N]; 2]; N],
+            response: [[[[Mobility::default(); 2]; N]; 2]; N],
             spin: [[[[R::ZERO; 2]; N]; 2]; N],
         }
     }
@@ -151,7 +151,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         self.link.as_flattened_mut().iter_mut().flatten()
     }
 
-    pub(super) fn respond(&mut self, to: usize, from: usize, motion: Response<R>, spin: R) {
+    pub(super) fn respond(&mut self, to: usize, from: usize, motion: Mobility<R>, spin: R) {
         if let Some(row) = self.response.as_flattened_mut().get_mut(to)
             && let Some(slot) = row.as_flattened_mut().get_mut(from)
         {

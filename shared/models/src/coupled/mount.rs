@@ -144,7 +144,7 @@ impl<R: Real> Ride<R> {
 
 /// A spring and a damper along one axis, over the rotor's mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Axis<R> {
+struct AxisSpring<R> {
     stiffness: R,
     damping: R,
     /// Mass that an impact meets.
@@ -156,9 +156,9 @@ struct Axis<R> {
 pub(super) struct Sprung<R> {
     /// Over the rotor's.
     mass: R,
-    across: Axis<R>,
+    across: AxisSpring<R>,
     /// Where it is another than across.
-    vertical: Option<Axis<R>>,
+    vertical: Option<AxisSpring<R>>,
     /// Over the rotor's mass.
     friction: R,
     travel: Option<R>,
@@ -197,7 +197,7 @@ impl<R: Real> SprungState<R> {
 
 impl Sprung<f64> {
     pub(super) fn rounded<R: Real>(&self) -> Sprung<R> {
-        let axis = |it: Axis<f64>| Axis {
+        let axis = |it: AxisSpring<f64>| AxisSpring {
             stiffness: R::lit(it.stiffness),
             damping: R::lit(it.damping),
             braced: R::lit(it.braced),
@@ -212,7 +212,7 @@ impl Sprung<f64> {
     }
 }
 
-impl<R: Real> Axis<R> {
+impl<R: Real> AxisSpring<R> {
     fn try_new([stiffness, damping]: [R; 2], mass: R, half: R) -> Result<Self, ConfigError> {
         positive("stiffness", stiffness)?;
         let implicit = half * (damping + half * stiffness);
@@ -237,7 +237,7 @@ impl<R: Real> Sprung<R> {
                 stiffness / units.mass * time * time,
                 damping / units.mass * time,
             ];
-            Axis::try_new(scaled, mass, R::HALF * units.step)
+            AxisSpring::try_new(scaled, mass, R::HALF * units.step)
         };
         Ok(Self {
             mass,
@@ -249,7 +249,7 @@ impl<R: Real> Sprung<R> {
     }
 
     /// Of both axes.
-    fn each(&self, of: impl Fn(&Axis<R>) -> R) -> [R; 2] {
+    fn each(&self, of: impl Fn(&AxisSpring<R>) -> R) -> [R; 2] {
         let across = of(&self.across);
         [across, self.vertical.as_ref().map_or(across, of)]
     }

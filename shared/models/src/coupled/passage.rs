@@ -9,7 +9,7 @@ use super::config::MAGNETS;
 use super::links::{Grip, Link, Links};
 use super::mount::{Ride, Rub};
 use super::race::{Drag, Turning};
-use super::vector::{Response, Vector, inverse, turned_by};
+use super::vector::{Mobility, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
 
@@ -373,7 +373,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         for (i, ring) in self.rings.iter().enumerate() {
-            let mobility = Response::along(free.rides[i].mobility);
+            let mobility = Mobility::along(free.rides[i].mobility);
             let back = mobility.back();
             for (j, other) in self.rings.iter().enumerate() {
                 let (Some(to), Some(from)) = (walls.contacts[i], walls.contacts[j]) else {
@@ -383,7 +383,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 for (k, b) in ring.shape.iter().enumerate() {
                     turned = turned + at(&other.shape, &free.inverse[k]).times(*b);
                 }
-                let mut motion = Response::default() + turned;
+                let mut motion = Mobility::default() + turned;
                 let mut spin = ring.surface * other.surface / self.inertia_ratio;
                 if i == j {
                     motion = mobility + turned;

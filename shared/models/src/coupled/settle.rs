@@ -8,7 +8,7 @@
 use super::links::{Link, Links};
 use super::mount::OFF;
 use super::passage::Passage;
-use super::vector::{Response, Vector};
+use super::vector::{Mobility, Vector};
 use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
 
@@ -37,7 +37,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 if let (Some(to), Some(from)) = (places[i], places[j]) {
                     let own = if i == j { yields(i) } else { R::ZERO };
                     let mobility = self.mobility(i, j) + own;
-                    links.respond(to, from, Response::real(mobility), R::ZERO);
+                    links.respond(to, from, Mobility::real(mobility), R::ZERO);
                 }
             }
         }

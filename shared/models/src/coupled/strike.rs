@@ -6,7 +6,7 @@
 
 use super::follow::{Arrival, on_wall};
 use super::links::{Grip, Link, Links};
-use super::vector::{Response, Vector};
+use super::vector::{Mobility, Vector};
 use super::{Coupled, CoupledState, RingEvent};
 use touchdown_rotor::kinematics::Change;
 use touchdown_rotor::precision::Precision;
@@ -231,11 +231,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         for (i, ring) in self.rings.iter().enumerate() {
             let yielding = ring.mount.map_or([R::ZERO; 2], |mount| mount.yielding());
-            let own = Response::along(yielding);
+            let own = Mobility::along(yielding);
             for (j, other) in self.rings.iter().enumerate() {
                 if let (Some(to), Some(from)) = (places[i], places[j]) {
                     let mobility = Vector::real(self.mobility(i, j));
-                    let mut motion = Response::default() + mobility;
+                    let mut motion = Mobility::default() + mobility;
                     let mut spin = ring.surface * other.surface / self.inertia_ratio;
                     if i == j {
                         motion = own + mobility;

@@ -119,12 +119,12 @@ impl<R: Real> Mul for Vector<R> {
 
 /// Motion by an impulse: a complex number, and what is more along x than along y, which mirrors it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Response<R> {
+pub(super) struct Mobility<R> {
     pub(super) whole: Vector<R>,
     pub(super) mirrored: R,
 }
 
-impl<R: Real> Response<R> {
+impl<R: Real> Mobility<R> {
     pub(super) fn real(x: R) -> Self {
         Self::along([x; 2])
     }
@@ -159,7 +159,7 @@ impl<R: Real> Response<R> {
     }
 }
 
-impl<R: Real> Add<Vector<R>> for Response<R> {
+impl<R: Real> Add<Vector<R>> for Mobility<R> {
     type Output = Self;
 
     fn add(self, turned: Vector<R>) -> Self {

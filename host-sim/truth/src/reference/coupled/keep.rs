@@ -3,7 +3,7 @@
 use super::impact::Touching;
 use super::jet::dot;
 use super::linear::solve;
-use super::seat::Seat;
+use super::seat::SeatLink;
 use super::system::{Hold, Mode, System};
 
 /// Takes the normal speed of a link.
@@ -77,7 +77,7 @@ fn kept(system: &System, modes: &[Mode], place: &[f64], speed: &[f64]) -> Vec<Ke
             }
         }
     }
-    for seat in Seat::all(system).filter(|it| modes[it.link] == Mode::Stick) {
+    for seat in SeatLink::all(system).filter(|it| modes[it.link] == Mode::Stick) {
         let rate = system.links[seat.link].lateral(speed);
         for direction in seat.directions(system, modes, place) {
             keep(seat.link, direction, 0.0, dot(&direction, &rate));

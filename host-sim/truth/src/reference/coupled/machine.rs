@@ -207,22 +207,17 @@ impl CoupledMachine {
                 near: 0.0,
                 told,
             });
-            let dry = mount.map_or(0.0, |mount| mount.friction);
-            seats.extend((dry > 0.0).then(|| {
-                Link {
-                    shares: with(none.clone(), body, 1.0),
-                    arms: still.clone(),
-                    hold: Hold::Seat {
-                        limit: dry,
-                        stop: mount
-                            .and_then(|mount| mount.travel)
-                            .map(|_| self.retainers.len() + stops.len()),
-                    },
-                    near: 0.0,
-                    told: with(none.clone(), body, 1.0),
-                }
+            let travel = mount.and_then(|mount| mount.travel);
+            let limit = mount.map_or(0.0, |mount| mount.friction);
+            let stop = travel.map(|_| self.retainers.len() + stops.len());
+            seats.extend((limit > 0.0).then(|| Link {
+                shares: with(none.clone(), body, 1.0),
+                arms: still.clone(),
+                hold: Hold::Seat { limit, stop },
+                near: 0.0,
+                told: with(none.clone(), body, 1.0),
             }));
-            stops.extend(mount.and_then(|mount| mount.travel).map(|travel| Link {
+            stops.extend(travel.map(|travel| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
                 hold: Hold::Wall {

@@ -41,11 +41,13 @@ mod pull;
 mod seat;
 mod share;
 mod soft;
+mod soft_force;
 mod start;
 mod step;
 mod surroundings;
 mod system;
 mod tape;
+mod unknown;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};

@@ -7,10 +7,10 @@
 //! direction in which it pulled. Where it is not held at that speed it goes on so. The direction of a slow slide follows
 //! the force within m v/F, which bounds the steps: a run with a lower cut-off would not end where the force turns.
 
-use super::forces::Unknown;
 use super::jet::{Jet, dot};
 use super::system::{Hold, Mode, System};
 use super::tape::Term;
+use super::unknown::Unknown;
 use std::f64::consts::SQRT_2;
 
 /// Speed at which a sliding ring is at rest, in units of speed.
@@ -20,7 +20,7 @@ const SET_OFF: f64 = 2.0;
 
 /// Of a seat in a system: that of a ring, and the number of its link.
 #[derive(Clone, Copy, Debug)]
-pub struct Seat {
+pub struct SeatLink {
     /// Number of the link.
     pub link: usize,
     /// Greatest force, N.
@@ -28,7 +28,7 @@ pub struct Seat {
     stop: Option<usize>,
 }
 
-impl Seat {
+impl SeatLink {
     /// All of a system.
     pub fn all(system: &System) -> impl Iterator<Item = Self> {
         let links = system.links.iter().enumerate();

@@ -3,8 +3,8 @@
 use super::forces::Forces;
 use super::jet::{Jet, ORDER, constants, dot};
 use super::pull::Pull;
-use super::seat::Seat;
-use super::soft::Pressed;
+use super::seat::SeatLink;
+use super::soft_force::SoftForce;
 use super::surroundings::Surroundings;
 use super::system::{Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
@@ -153,7 +153,7 @@ impl Step {
             };
             step.locate(&system.links[link], link, *mode, &sizes);
         }
-        for seat in Seat::all(system) {
+        for seat in SeatLink::all(system) {
             let held = forces.held[seat.link].map(|it| it.size());
             step.seat(system, &seat, modes[seat.link], held, bounds.slowest);
         }
@@ -235,7 +235,14 @@ impl Step {
         self.earlier(&gap, tolerances, Ending::Touch(index));
     }
 
-    fn pressed(&mut self, system: &System, it: &Pressed, mode: Mode, forces: &Forces, ticks: f64) {
+    fn pressed(
+        &mut self,
+        system: &System,
+        it: &SoftForce,
+        mode: Mode,
+        forces: &Forces,
+        ticks: f64,
+    ) {
         let link = &system.links[it.link];
         let Hold::Soft(soft) = link.hold else { return };
         let jet = |of: Term| of.jet().scaled(ticks);
@@ -263,7 +270,14 @@ impl Step {
         }
     }
 
-    fn seat(&mut self, system: &System, seat: &Seat, mode: Mode, sizes: [f64; 2], slowest: f64) {
+    fn seat(
+        &mut self,
+        system: &System,
+        seat: &SeatLink,
+        mode: Mode,
+        sizes: [f64; 2],
+        slowest: f64,
+    ) {
         if mode == Mode::Stick {
             let size = (sizes[0] + sizes[1]) / seat.limit;
             let rounding = ROUNDING * (1.0 + size * size);
@@ -304,11 +318,11 @@ impl Step {
 /// Unit of time of the terms, s: 1, or a power of two in which those of what is slow or has hardly begun are no large
 /// numbers.
 fn clock(system: &System, modes: &[Mode], speed: &[f64], forces: &Forces) -> f64 {
-    let slides = Seat::sliding(system, modes).map(|seat| {
+    let slides = SeatLink::sliding(system, modes).map(|seat| {
         let acceleration = forces.acceleration.iter().map(Term::value);
         seat.time(system, speed, &acceleration.collect::<Vec<f64>>())
     });
-    let presses = forces.pressed.iter().map(Pressed::time);
+    let presses = forces.pressed.iter().map(SoftForce::time);
     let least = slides.chain(presses).fold(1.0, f64::min);
     least.log2().floor().exp2()
 }
@@ -335,7 +349,7 @@ fn ticks(
             .iter()
             .filter(|it| modes[it.link] != Mode::Flight)
     };
-    let slides = Seat::sliding(system, modes)
+    let slides = SeatLink::sliding(system, modes)
         .map(|seat| seat.link)
         .chain(pressed().map(|it| it.link))
         .flat_map(|link| system.links[link].lateral(speed))

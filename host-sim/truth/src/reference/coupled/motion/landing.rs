@@ -2,7 +2,7 @@
 
 use super::super::impact::{self, Touching};
 use super::super::keep;
-use super::super::seat::Seat;
+use super::super::seat::SeatLink;
 use super::super::share::shared;
 use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
@@ -99,7 +99,7 @@ impl Motion {
 
     /// A brake has no impulse, nor has a seat or a wall that gives way: what an impact has set moving slips in it.
     fn release_brakes(&mut self) {
-        for seat in Seat::all(&self.system) {
+        for seat in SeatLink::all(&self.system) {
             self.modes[seat.link] = Mode::Slide(0.0);
         }
         for link in 0..self.modes.len() {

@@ -130,7 +130,10 @@ impl Motion {
     pub fn energy(&self, moment: &Moment) -> f64 {
         let place = &moment.place;
         let stored = |link: &Link| match link.hold {
-            Hold::Soft(soft) => soft.potential(link, place),
+            Hold::Soft(soft) => {
+                let [x, y] = link.lateral(place);
+                soft.potential(f64::hypot(x, y))
+            }
             _ => 0.0,
         };
         let walls: f64 = self.system.links.iter().map(stored).sum();

@@ -2,7 +2,7 @@
 
 use super::super::impact::Touching;
 use super::super::keep;
-use super::super::seat::{SLOWEST, Seat};
+use super::super::seat::{SLOWEST, SeatLink};
 use super::super::step::{Bounds, Ending, Step};
 use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
@@ -58,8 +58,8 @@ impl Motion {
         self.modes[link] = Mode::Flight;
     }
 
-    fn seat(&self, link: usize) -> Option<Seat> {
-        Seat::all(&self.system).find(|seat| seat.link == link)
+    fn seat(&self, link: usize) -> Option<SeatLink> {
+        SeatLink::all(&self.system).find(|seat| seat.link == link)
     }
 
     /// Speed at which a sliding ring is at rest, m/s.
@@ -70,7 +70,7 @@ impl Motion {
     /// A ring that its seat holds no longer begins to slide.
     fn set_off(&mut self, link: usize) {
         let held = self.step.held(link, self.step.end);
-        let velocity = Seat::set_off(held, self.slowest());
+        let velocity = SeatLink::set_off(held, self.slowest());
         let set_off = (link, velocity);
         keep::set_off(
             &self.system,
@@ -88,7 +88,7 @@ impl Motion {
     /// Rings that slide no faster than the cut-off are at rest; whether there are any.
     fn seats_stop(&mut self) -> bool {
         let mut any = false;
-        for seat in Seat::all(&self.system) {
+        for seat in SeatLink::all(&self.system) {
             let slow = seat.speed(&self.system, &self.speed) <= self.slowest();
             if slow && self.modes[seat.link] != Mode::Stick {
                 self.modes[seat.link] = Mode::Stick;

@@ -1,0 +1,117 @@
+//! The forces of walls that give way, as series.
+
+use super::jet::dot;
+use super::soft::Soft;
+use super::system::{Hold, Link, Mode, System};
+use super::tape::Term;
+use super::unknown::Unknown;
+
+/// What presses at a wall, or did: series.
+pub struct SoftForce<'t> {
+    /// Number of the link.
+    pub link: usize,
+    /// m.
+    pub depth: Term<'t>,
+    /// 1 + a d'/V: the wall presses while it is positive.
+    pub push: Term<'t>,
+    /// m/s.
+    pub slip: Term<'t>,
+    /// Of the depth alone, N.
+    pub spring: Term<'t>,
+    /// N.
+    pub normal: Term<'t>,
+    rate: Term<'t>,
+    inward: [Term<'t>; 2],
+    along: [Term<'t>; 2],
+    /// Rate of slip that the turning of its direction gives, m/s^2.
+    turned: Term<'t>,
+}
+
+impl<'t> SoftForce<'t> {
+    /// What presses at this wall, or did before it is left.
+    fn at(
+        soft: &Soft,
+        (link, of): (usize, &Link),
+        mode: Mode,
+        place: &[Term<'t>],
+        speed: &[Term<'t>],
+    ) -> Option<Self> {
+        let constant = |value| place[0].constant(value);
+        let within = soft.within()?;
+        let (q, w) = (of.lateral(place), of.lateral(speed));
+        let distance = dot(&q, &q).power(0.5);
+        let nearness = distance.power(-1.0);
+        let [x, y] = q.map(|part| part * nearness);
+        let along = [-y, x];
+        let depth = distance - constant(soft.clearance);
+        let (rate, passing) = (dot(&[x, y], &w), dot(&along, &w));
+        let push = rate * within + constant(1.0);
+        let (spring, normal) = match mode {
+            Mode::Flight => (constant(0.0), constant(0.0)),
+            _ => {
+                let spring = soft.spring(depth);
+                (spring, spring * push)
+            }
+        };
+        Some(Self {
+            link,
+            depth,
+            push,
+            slip: passing + of.turning(speed),
+            spring,
+            normal,
+            rate,
+            inward: [-x, -y],
+            along,
+            turned: passing * rate * nearness,
+        })
+    }
+
+    /// All of a system.
+    pub fn all(
+        system: &System,
+        modes: &[Mode],
+        place: &[Term<'t>],
+        speed: &[Term<'t>],
+    ) -> Vec<Self> {
+        let links = system.links.iter().enumerate();
+        let pressed = |(index, link): (usize, &Link)| match link.hold {
+            Hold::Soft(soft) => Self::at(&soft, (index, link), modes[index], place, speed),
+            _ => None,
+        };
+        links.filter_map(pressed).collect()
+    }
+
+    /// Adds its force to the accelerations.
+    pub fn push(&self, system: &System, mode: Mode, acceleration: &mut [Term<'t>]) {
+        let link = &system.links[self.link];
+        let rubbed = match mode {
+            Mode::Flight => return,
+            Mode::Slide(sign) => -sign * link.friction(),
+            Mode::Stick => 0.0,
+        };
+        let force = [0, 1].map(|k| (self.inward[k] + self.along[k] * rubbed) * self.normal);
+        for i in 0..system.first_spin() {
+            let part = link.shares[i / 2] * system.mobility[i];
+            if part != 0.0 {
+                acceleration[i] = acceleration[i] + force[i % 2] * part;
+            }
+        }
+        for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
+            let part = arm * system.mobility[i] * rubbed;
+            if part != 0.0 {
+                acceleration[i] = acceleration[i] + self.normal * part;
+            }
+        }
+    }
+
+    /// The unknown friction that keeps it from slipping.
+    pub fn grip(&self) -> Unknown<'t> {
+        Unknown::without_slip(self.link, self.along, self.turned)
+    }
+
+    /// Time in which the depth changes by itself, s.
+    pub fn time(&self) -> f64 {
+        (self.depth.value() / self.rate.value()).abs()
+    }
+}
