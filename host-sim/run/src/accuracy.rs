@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use touchdown_base::history::{History, Impact};
 use touchdown_base::progress;
-use touchdown_scene::{Fidelity, Math, Precision, Scene, Start};
+use touchdown_scene::{Fidelity, Math, Precision, Scene, Start, Support};
 use touchdown_truth::Units;
 
 use crate::model::{self, ModelRun};
@@ -84,13 +84,20 @@ impl RunAccuracy {
     }
 }
 
-/// Of what `scene`'s model gave; none where it was given up, the run or its step is too long, or another start or step is
-/// refused.
+/// Whether it has parts of which no told error was held against the reference.
+fn is_unproven(scene: &Scene) -> bool {
+    let rubs = |it: Option<Support>| it.is_some_and(|it| it.friction > 0.0);
+    let mut rings = scene.rings().iter();
+    rings.any(|it| it.wall.is_some() || rubs(it.support)) || rubs(scene.support)
+}
+
+/// Of what `scene`'s model gave; none where it was given up, the run or its step is too long, another start or step is
+/// refused, or contacts are compliant or a mount rubs: what is told of those was not held against the reference.
 pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
     let (history, rings) = (&run.histories.whole, &run.histories.rings);
     let stepped = scene.model.rung != Fidelity::Rigid;
     let long = stepped && scene.run.duration > LONGEST;
-    if run.given_up.is_some() || long || !scene.step_is_short() {
+    if run.given_up.is_some() || long || is_unproven(scene) || !scene.step_is_short() {
         return None;
     }
     let others = others(scene, run, if stepped { STEPPED } else { NOT_STEPPED })?;

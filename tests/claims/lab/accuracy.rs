@@ -8,7 +8,7 @@ use touchdown_tests::accuracy_runs;
 use touchdown_tests::binary::program;
 
 /// Drops of each kind; all of it: `--example accuracy`.
-const DROPS: u64 = 48;
+const DROPS: u64 = 64;
 
 #[test]
 fn told_errors_cover_the_true_ones() {

@@ -5,7 +5,7 @@ use touchdown_base::history::{History, Impact};
 use touchdown_lab::limits::machine;
 use touchdown_run::model;
 use touchdown_scene::Scene;
-use touchdown_tests::growth::{apart, growth};
+use touchdown_tests::growth::{apart, growth, unit_speed};
 
 /// Of the model, s.
 const STEP: f64 = 1e-6;
@@ -57,13 +57,25 @@ fn pressing(scene: &Scene) -> f64 {
     walls.fold(0.0, |most, it| f64::max(most, std::f64::consts::PI / it.contact_time))
 }
 
+/// What dry friction takes from a ring's speed in a step, V: when it stops the ring is known to a part of a step.
+fn rubbed(scene: &Scene) -> f64 {
+    let mounts = scene.rings().iter().filter_map(|it| it.support);
+    let most = mounts.fold(0.0, |most, it| f64::max(most, it.friction / it.mass));
+    STEP * most / unit_speed(scene)
+}
+
 /// A step of the midpoint rule turns what goes round at W late by (W h)^2/12.
 #[test]
 fn well_conditioned_impacts_are_the_references() {
     let (mut seen, mut closest) = (0, 0);
     let (mut worst, mut halved) = (0.0_f64, Vec::new());
-    for number in 0..48 {
+    for number in 0..96 {
         let mut scene = scene(number);
+        // The reference has no balls behind a wall.
+        let mut walls = scene.rings().iter().filter_map(|it| it.wall);
+        if walls.any(|it| it.balls.is_some()) {
+            continue;
+        }
         let before = cut(&mut scene);
         let fastest = scene.two_plane.as_ref().expect("two ends").fastest(scene.rotor.spin);
         if before == 0 {
@@ -71,7 +83,8 @@ fn well_conditioned_impacts_are_the_references() {
         }
         let truth = touchdown_truth::simulate(&scene);
         let turned = STEP * fastest.max(round(&scene, &truth)).max(pressing(&scene));
-        if turned > 0.05 {
+        let rubbed = rubbed(&scene);
+        if turned > 0.05 || rubbed > 0.05 {
             continue;
         }
         let fine = model::run(&scene).expect("a valid scene").histories.whole;
@@ -80,7 +93,7 @@ fn well_conditioned_impacts_are_the_references() {
         let grown = growth(&scene, &truth, before);
         for (k, growth) in grown.into_iter().enumerate().filter(|it| it.1 <= TAME) {
             let off = apart(&told(&fine.impacts[k], &scene), &told(&truth.impacts[k], &scene), &scene);
-            let limit = growth * (1e-8 + turned * turned);
+            let limit = growth * (1e-8 + turned * turned + rubbed);
             println!("{number} {k}: {off:.1e} of {limit:.1e}, growth {growth:.1}");
             assert!(off <= limit, "machine {number}, impact {k}: {off} {limit}");
             worst = worst.max(off / limit);
