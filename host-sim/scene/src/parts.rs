@@ -82,7 +82,7 @@ fn contact(scene: &Scene) -> (bool, &'static str, &'static str) {
         _ => (
             false,
             "the laws that all rungs share",
-            "rung hertz and contact = \"compliant\" have them",
+            "rung hertz has them, and contact = \"compliant\"",
         ),
     }
 }
