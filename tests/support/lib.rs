@@ -24,6 +24,7 @@ pub mod moment;
 pub mod monitor_run;
 pub mod plant;
 pub mod record;
+pub mod rig;
 pub mod ring_scenes;
 pub mod rotors;
 pub mod sweep_runs;

@@ -84,7 +84,7 @@ impl RunAccuracy {
     }
 }
 
-/// Whether it has parts of which no told error was held against the reference.
+/// Whether it has parts of which told errors were not held against the reference, or did not hold (docs/know/accuracy.md).
 fn is_unproven(scene: &Scene) -> bool {
     let rubs = |it: Option<Support>| it.is_some_and(|it| it.friction > 0.0);
     let mut rings = scene.rings().iter();
@@ -92,7 +92,7 @@ fn is_unproven(scene: &Scene) -> bool {
 }
 
 /// Of what `scene`'s model gave; none where it was given up, the run or its step is too long, another start or step is
-/// refused, or contacts are compliant or a mount rubs: what is told of those was not held against the reference.
+/// refused, or contacts are compliant or a mount rubs.
 pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
     let (history, rings) = (&run.histories.whole, &run.histories.rings);
     let stepped = scene.model.rung != Fidelity::Rigid;

@@ -113,23 +113,22 @@ impl SupportTable {
         const KEYS: Keys = Keys("support");
         let stiffness = |key, value| KEYS.within(key, value, limits::STIFFNESS_N_M);
         let damping = |key, value| KEYS.within(key, value, limits::DAMPING_N_S_M);
-        let along_y = [self.vertical_stiffness_n_m, self.vertical_damping_n_s_m];
-        let vertical = [
-            stiffness(
-                "vertical_stiffness_n_m",
-                along_y[0].unwrap_or(self.stiffness_n_m),
-            )?,
-            damping(
-                "vertical_damping_n_s_m",
-                along_y[1].unwrap_or(self.damping_n_s_m),
-            )?,
+        let along_x = [
+            stiffness("stiffness_n_m", self.stiffness_n_m)?,
+            damping("damping_n_s_m", self.damping_n_s_m)?,
+        ];
+        let [spring, damper] = [self.vertical_stiffness_n_m, self.vertical_damping_n_s_m];
+        let given = spring.is_some() || damper.is_some();
+        let along_y = [
+            stiffness("vertical_stiffness_n_m", spring.unwrap_or(along_x[0]))?,
+            damping("vertical_damping_n_s_m", damper.unwrap_or(along_x[1]))?,
         ];
         let travel = |travel| KEYS.within("travel_mm", travel, limits::TRAVEL_MM);
         Ok(Support {
             mass: KEYS.within("mass_kg", self.mass_kg, limits::MASS_KG)?,
-            stiffness: stiffness("stiffness_n_m", self.stiffness_n_m)?,
-            damping: damping("damping_n_s_m", self.damping_n_s_m)?,
-            vertical: (along_y != [None; 2]).then_some(vertical),
+            stiffness: along_x[0],
+            damping: along_x[1],
+            vertical: given.then_some(along_y),
             friction: KEYS.between(
                 "dry_friction_n",
                 self.dry_friction_n,

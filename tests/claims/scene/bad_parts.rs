@@ -115,6 +115,11 @@ fn a_support_is_checked() {
         ("dry_friction_n", "-1", "dry_friction_n must be 0 to"),
     ] {
         refuse(GIVES_WAY, "support", key, value, rule);
+        // A key along y that is not given is not named.
+        let along_x = GIVES_WAY.replace("vertical_stiffness_n_m = 2e6\nvertical_damping_n_s_m = 50\n", "");
+        if !key.starts_with("vertical") {
+            refuse(&along_x, "support", key, value, rule);
+        }
     }
 }
 

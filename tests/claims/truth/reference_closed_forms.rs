@@ -5,17 +5,9 @@ use std::f64::consts::PI;
 use touchdown_base::history::{ModelEvent, History, PhaseKind, Recorder, Regime, RotorState};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::close;
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::{Reference, energy};
 
-const RIG: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 0.0003,
-    friction: 0.1,
-    restitution: 0.8,
-    gravity: 9.81,
-};
 const INERTIA: f64 = 0.5;
 const SPIN: f64 = 1000.0 * PI;
 /// Length, mass, time and speed in units of the scale law: dyadic inputs stay exact.

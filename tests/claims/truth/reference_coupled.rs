@@ -5,19 +5,11 @@ use std::f64::consts::PI;
 use touchdown_base::history::{ModelEvent, Impact};
 use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::{close, close_pair};
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::Reference;
 use touchdown_scene::{Magnet, Support};
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Ring, Unbalance};
 
-const RIG: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 0.0003,
-    friction: 0.1,
-    restitution: 0.8,
-    gravity: 9.81,
-};
 const SPIN: f64 = 1000.0 * PI;
 const MOUNT: Support = Support {
     mass: 0.4,

@@ -3,17 +3,10 @@
 use touchdown_base::machine::Machine;
 use touchdown_scene::Magnet;
 use touchdown_tests::close::{close, close_pair};
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState};
 
-const ROTOR: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 3e-4,
-    friction: 0.0,
-    restitution: 1.0,
-    gravity: 9.81,
-};
+const ROTOR: Machine = Machine { friction: 0.0, restitution: 1.0, ..RIG };
 const MAGNET: Magnet = Magnet {
     place: 0.0,
     stiffness: -5e5,

@@ -4,17 +4,10 @@ use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_scene::Support;
 use touchdown_tests::close::close_pair;
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
 
-const ROTOR: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 3e-4,
-    friction: 0.0,
-    restitution: 0.8,
-    gravity: 0.0,
-};
+const ROTOR: Machine = Machine { friction: 0.0, gravity: 0.0, ..RIG };
 /// The ring of 0.4 kg: along x, then along y.
 const AXES: [[f64; 2]; 2] = [[2e6, 300.0], [5e6, 100.0]];
 

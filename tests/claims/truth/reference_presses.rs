@@ -5,17 +5,10 @@ use touchdown_base::history::{Impact, ModelEvent};
 use touchdown_base::machine::Machine;
 use touchdown_scene::Support;
 use touchdown_tests::close::{close, close_pair};
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press};
 
-const ROTOR: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 3e-4,
-    friction: 0.0,
-    restitution: 1.0,
-    gravity: 0.0,
-};
+const ROTOR: Machine = Machine { friction: 0.0, restitution: 1.0, gravity: 0.0, ..RIG };
 const HERTZ: Press = Press { stiffness: 2e10, exponent: 1.5, slowest: 1e-6 };
 /// Of Hertz' impact: V times its duration over its depth, 2 sqrt(pi) Gamma(7/5)/Gamma(9/10).
 const DURATION: f64 = 2.943_275_184_324_706;

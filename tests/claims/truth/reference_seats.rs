@@ -4,17 +4,10 @@ use std::f64::consts::PI;
 use touchdown_base::machine::{Machine, Start};
 use touchdown_scene::Support;
 use touchdown_tests::close::{close, close_pair};
+use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
 
-const ROTOR: Machine = Machine {
-    mass: 3.42,
-    radius: 0.024,
-    polar_inertia: 0.000_984_96,
-    clearance: 3e-4,
-    friction: 0.1,
-    restitution: 0.6,
-    gravity: 9.81,
-};
+const ROTOR: Machine = Machine { restitution: 0.6, ..RIG };
 /// Rounding of the speed of a ring at rest, m/s.
 const STILL: f64 = 1e-15;
 /// The rotor weighs 33.6 N.

@@ -55,7 +55,7 @@ pub(super) struct Compliant<R> {
 
 /// A contact, from its first to its last moment beyond the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spell<R> {
+pub(super) struct SoftContact<R> {
     pub(super) since: Instant<R>,
     /// Of the damping, over depth per time.
     rate: R,
@@ -66,13 +66,6 @@ pub(super) struct Spell<R> {
     leaves: bool,
     /// Whether it was pressed again before it was left: it is permanent.
     pub(super) stays: bool,
-}
-
-/// The way of the axis in the ring in a stretch, as far as it is known.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Way<R> {
-    pub(super) from: Vector<R>,
-    pub(super) time: R,
 }
 
 impl Compliant<f64> {
@@ -197,8 +190,8 @@ impl<R: Precision> Compliant<R> {
     }
 
     /// A contact entered at this speed.
-    pub(super) fn entered(&self, since: Instant<R>, speed: R) -> Spell<R> {
-        Spell {
+    pub(super) fn entered(&self, since: Instant<R>, speed: R) -> SoftContact<R> {
+        SoftContact {
             since,
             rate: self.damping / speed.most(self.slowest),
             stored: R::ZERO,
@@ -209,26 +202,26 @@ impl<R: Precision> Compliant<R> {
         }
     }
 
-    /// Makes the link that of the tangent of the force where the axis has moved so; how far that is from what it was, of
-    /// the distance.
-    pub(super) fn bend(
+    /// Makes the link that of the tangent of the force where the axis moves so from a place in a time; how far that is from
+    /// what it was, of the distance.
+    pub(super) fn linearize(
         &self,
         link: &mut Link<R>,
-        spell: &Spell<R>,
-        way: &Way<R>,
+        soft: &SoftContact<R>,
+        (from, time): (Vector<R>, R),
         moved: Vector<R>,
     ) -> R {
-        let end = way.from + moved;
-        let (before, after) = (way.from.length(), end.length());
-        let sum = way.from + end;
+        let end = from + moved;
+        let (before, after) = (from.length(), end.length());
+        let sum = from + end;
         let part = sum.length() / (before + after);
         let deeper = after - before;
         let along = sum.dot(moved) / sum.length();
         let [mean, slope] = self.mean(before - self.gap, after - self.gap);
-        let damped = R::ONE + spell.rate * deeper / way.time;
-        let factor = R::HALF * way.time * way.time * part;
+        let damped = R::ONE + soft.rate * deeper / time;
+        let factor = R::HALF * time * time * part;
         let pressed = factor * mean * damped.most(R::ZERO);
-        let stiffness = factor * part * (slope * damped + mean * spell.rate / way.time);
+        let stiffness = factor * part * (slope * damped + mean * soft.rate / time);
         if pressed <= R::ZERO || stiffness <= R::ZERO {
             let off = if link.grip == Grip::Open {
                 R::ZERO
@@ -246,7 +239,7 @@ impl<R: Precision> Compliant<R> {
     }
 }
 
-impl<R: Precision> Spell<R> {
+impl<R: Precision> SoftContact<R> {
     /// After a stretch that went deeper by so much with this mean force; whether it has become permanent.
     pub(super) fn goes_on(&mut self, deeper: R, force: R, time: R) -> bool {
         self.peak = self.peak.most(force);

@@ -113,8 +113,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         energy.magnets = self.in_magnets(state, &state.on);
         for (ring, seat) in self.rings.iter().zip(&state.seats) {
-            let spell = seat.held.and_then(|it| it.spell);
-            energy.contacts += spell.map_or(R::ZERO, |it| it.stored);
+            let soft = seat.held.and_then(|it| it.soft);
+            energy.contacts += soft.map_or(R::ZERO, |it| it.stored);
             if let Some(mount) = &ring.mount {
                 let [motion, spring, taken, stop] = mount.energy(&seat.mount);
                 energy.rings += motion;

@@ -352,9 +352,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let within = self.within(state, i);
         let normal = within.times(R::ONE / within.length());
         let speed = normal.dot(self.relative(state, i)).most(R::ZERO);
-        let spell = compliant.entered(state.in_step(part), speed);
+        let soft = compliant.entered(state.in_step(part), speed);
         state.seats[i].held = Some(Held {
-            spell: Some(spell),
+            soft: Some(soft),
             ..Held::default()
         });
         let yields = ring.mount.map_or([R::ZERO; 2], |it| it.yielding());
@@ -379,7 +379,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let (Some(compliant), Some(mut held)) = (&ring.compliant, state.seats[i].held) else {
             return;
         };
-        let Some(spell) = &mut held.spell else {
+        let Some(soft) = &mut held.soft else {
             return;
         };
         let moved = at(&ring.shape, &passage.moved) - passage.ring_moved(i);
@@ -387,23 +387,23 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let depth = end.length() - ring.limit;
         let pressed = passage.presses[i].map_or(R::ZERO, |it| it.pressed);
         let force = R::TWO * pressed / (passage.time * passage.time);
-        let begins = spell.goes_on(end.length() - (end - moved).length(), force, passage.time);
+        let begins = soft.goes_on(end.length() - (end - moved).length(), force, passage.time);
         let left = depth <= R::ZERO;
         let stored = if left {
             R::ZERO
         } else {
             compliant.energy(depth)
         };
-        state.books.lost.add(spell.stored - stored);
-        spell.stored = stored;
-        let spell = *spell;
+        state.books.lost.add(soft.stored - stored);
+        soft.stored = stored;
+        let soft = *soft;
         state.seats[i].held = (!left).then_some(held);
-        let change = match (left, spell.stays) {
+        let change = match (left, soft.stays) {
             (true, true) => Change::LiftsOff,
             (true, false) => Change::Released(Pulse {
-                peak_force: spell.peak,
-                duration: state.in_step(part).since(spell.since) * self.step,
-                impulse: spell.impulse,
+                peak_force: soft.peak,
+                duration: state.in_step(part).since(soft.since) * self.step,
+                impulse: soft.impulse,
             }),
             (false, _) if begins => Change::ContactStarts,
             _ => return,

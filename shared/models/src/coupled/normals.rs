@@ -132,7 +132,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 }
             }
             changed = Search::size(&off);
-            changed = changed.most(self.bend_all(state, walls));
+            changed = changed.most(self.linearize_all(state, walls));
             let turns = search.next(off);
             for (place, wanted) in wanted.into_iter().enumerate() {
                 if let Some(link) = walls.links.get_mut(place) {
@@ -153,7 +153,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Of all walls that give way; the most.
-    fn bend_all(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> R {
+    fn linearize_all(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> R {
         let mut most = R::ZERO;
         for i in 0..N {
             let Some(place) = walls.contacts[i] else {
@@ -161,7 +161,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             };
             let moved = walls.links.motion(place);
             if let Some(link) = walls.links.get_mut(place) {
-                most = most.most(self.bend(state, i, walls.time, link, moved));
+                most = most.most(self.linearize(state, i, walls.time, link, moved));
             }
         }
         most

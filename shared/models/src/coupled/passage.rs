@@ -4,7 +4,6 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
-use super::compliant::Way;
 use super::config::MAGNETS;
 use super::links::{Grip, Link, Links};
 use super::mount::{Ride, Rub};
@@ -15,7 +14,8 @@ use touchdown_rotor::precision::Precision;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
-/// Repetitions for the friction of mounts and for magnets at their limit.
+/// Repetitions for the friction of mounts and for magnets at their limit. Chosen: what is not found then gives nothing
+/// (friction), or is off by what the last repetition changed (magnets).
 const REPETITIONS: usize = 20;
 /// How far round a wall in a stretch, rad.
 pub(super) const REACH: f64 = 0.25;
@@ -330,7 +330,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Makes the link of a wall that gives way its tangent at its motion; how far that is from what it was, of the distance.
-    pub(super) fn bend(
+    pub(super) fn linearize(
         &self,
         state: &CoupledState<R, N, Q>,
         i: usize,
@@ -338,12 +338,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         link: &mut Link<R>,
         moved: Vector<R>,
     ) -> R {
-        let spell = state.seats[i].held.and_then(|it| it.spell);
-        let (Some(compliant), Some(spell)) = (&self.rings[i].compliant, spell) else {
+        let soft = state.seats[i].held.and_then(|it| it.soft);
+        let (Some(compliant), Some(soft)) = (&self.rings[i].compliant, soft) else {
             return R::ZERO;
         };
         let from = self.within(state, i);
-        compliant.bend(link, &spell, &Way { from, time }, moved)
+        compliant.linearize(link, &soft, (from, time), moved)
     }
 
     /// The walls that hold at the start, with what moves in them.
@@ -362,7 +362,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let link = self.contact(state, free, i, turnings[i].free);
             walls.contacts[i] = link.map(|mut link| {
                 let moved = link.free;
-                self.bend(state, i, free.time, &mut link, moved);
+                self.linearize(state, i, free.time, &mut link, moved);
                 walls.links.add(link)
             });
             if state.is_stopped(i) && !free.rides[i].rests() {

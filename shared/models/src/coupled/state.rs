@@ -1,6 +1,6 @@
 //! The state: the rotor's coordinates, its spin, and each ring's motion.
 
-use super::compliant::Spell;
+use super::compliant::SoftContact;
 use super::config::MAGNETS;
 use super::mount::SprungState;
 use super::race::{BallBearingState, RaceMotion};
@@ -78,13 +78,13 @@ pub(super) struct Held<R> {
     pub(super) rolling: bool,
     pub(super) turns: Turns<R>,
     /// Where the wall gives way.
-    pub(super) spell: Option<Spell<R>>,
+    pub(super) soft: Option<SoftContact<R>>,
 }
 
 impl<R: Real> Held<R> {
     /// Whether it is an impact yet.
     pub(super) fn passes(&self) -> bool {
-        self.spell.is_some_and(|it| !it.stays)
+        self.soft.is_some_and(|it| !it.stays)
     }
 }
 
@@ -212,7 +212,7 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
 
     /// Whether a wall holds the axis that does not give way.
     pub(super) fn lies(&self, ring: usize) -> bool {
-        self.seats[ring].held.is_some_and(|it| it.spell.is_none())
+        self.seats[ring].held.is_some_and(|it| it.soft.is_none())
     }
 
     /// Whether a hard stop holds the ring.
