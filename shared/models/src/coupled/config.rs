@@ -281,6 +281,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             decay: [R::ZERO; Q],
             mode_scale: [R::ZERO; Q],
             weight: [Vector::default(); Q],
+            repeats: false,
             step: config.step / scales.time,
             tilt: scales.length / arm,
             scales,
@@ -314,6 +315,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     .map(|it| it.map(|time| moment(time / config.step))),
             });
         }
+        let repeats = |ring: &Ring<R, Q>| {
+            let rubs = ring.mount.is_some_and(|it| it.rubs());
+            ring.race.is_some() || rubs
+        };
+        let limited = model.magnets.iter().flatten().any(|it| it.limit.is_some());
+        model.repeats = limited || model.rings.iter().any(repeats);
         model.weight = model.unbalanced(config);
         model.checked()
     }

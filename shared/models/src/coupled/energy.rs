@@ -113,7 +113,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         energy.magnets = self.in_magnets(state, &state.on);
         for (ring, seat) in self.rings.iter().zip(&state.seats) {
-            let soft = seat.held.and_then(|it| it.soft);
+            let soft = seat.held.as_ref().and_then(|it| it.soft.as_ref());
             energy.contacts += soft.map_or(R::ZERO, |it| it.stored);
             if let Some(mount) = &ring.mount {
                 let [motion, spring, taken, stop] = mount.energy(&seat.mount);

@@ -5,9 +5,12 @@
 //! value and slope before and its value after; the stretch is taken to there, and again from there, until
 //! the wall is met.
 
+use core::array::from_fn;
+
 use super::compliant::Compliant;
 use super::crossing::crossing;
 use super::passage::Passage;
+use super::settle::AtWall;
 use super::state::Held;
 use super::vector::Vector;
 use super::{Coupled, CoupledState, RingEvent, at};
@@ -123,10 +126,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             state.tried = state.tried.saturating_add(1);
             let switch = self.switch(state, (whole - left) / self.step);
             let time = left.least(longest).least(self.reach(state)).least(switch);
-            let Some(passage) = self.pass(state, time) else {
+            let passage = self.pass(state, time);
+            if !passage.solved {
                 longest = R::HALF * time;
                 continue;
-            };
+            }
             match self.beyond(state, &passage) {
                 None => {
                     left -= time;
@@ -176,7 +180,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 kick: at(&ring.shape, &passage.kick) - ring_kick,
                 radius: ring.limit,
             });
-            let travel = ring.mount.and_then(|mount| mount.travel());
+            let travel = ring.mount.as_ref().and_then(|mount| mount.travel());
             let travel = travel.filter(|_| !state.is_stopped(i));
             let stop = travel.map(|radius| Flyer {
                 who: Arrival::Ring(i),
@@ -204,7 +208,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         keeps: bool,
         on_event: &mut impl FnMut(RingEvent<R>),
     ) {
-        let before = *state;
+        let before = from_fn(|i| state.is_held(i).then(|| self.at_wall(state, i)));
         let time = passage.time;
         state.taken = state.taken.saturating_add(1);
         self.book(state, passage);
@@ -212,7 +216,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             state.place[k].add(passage.moved[k]);
             state.velocity[k].add(passage.kick[k]);
         }
-        let spin = before.spin.value() + R::HALF * passage.spun;
+        let spin = state.spin.value() + R::HALF * passage.spun;
         state.spin.add(passage.spun);
         state.angle.add(self.turn * spin * time);
         if let Some(base) = &self.base {
@@ -234,10 +238,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             stuck = self.rub_in_turn(state, passage);
         }
         for i in 0..N {
-            let place = self.within(&before, i);
+            let (Some(AtWall { place, .. }), true) = (before[i], state.is_held(i)) else {
+                continue;
+            };
             let end = self.within(state, i);
-            let seat = &mut state.seats[i];
-            let Some(held) = &mut seat.held else {
+            let Some(held) = &mut state.seats[i].held else {
                 continue;
             };
             held.turns.add(place.cross(end).atan2(place.dot(end)));
@@ -274,9 +279,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         for (decay, moved) in self.decay.iter().zip(&passage.moved) {
             books.damped.add(*decay * rate * moved.square());
         }
-        for (magnet, cut) in self.active(&state.on).zip(passage.cut) {
+        for (k, magnet) in self.active(&state.on).enumerate() {
             let moved = at(&magnet.shape, &passage.moved);
-            if magnet.limit.is_some() {
+            if let Some(cut) = passage.cut(k) {
                 books.driven.add(cut.dot(moved));
             }
             books.damped.add(magnet.damping * rate * moved.square());
@@ -376,14 +381,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         on_event: &mut impl FnMut(RingEvent<R>),
     ) {
         let ring = &self.rings[i];
-        let (Some(compliant), Some(mut held)) = (&ring.compliant, state.seats[i].held) else {
-            return;
-        };
-        let Some(soft) = &mut held.soft else {
+        let Some(compliant) = &ring.compliant else {
             return;
         };
         let moved = at(&ring.shape, &passage.moved) - passage.ring_moved(i);
         let end = self.within(state, i);
+        let held = state.seats[i].held.as_mut();
+        let Some(soft) = held.and_then(|it| it.soft.as_mut()) else {
+            return;
+        };
         let depth = end.length() - ring.limit;
         let pressed = passage.presses[i].map_or(R::ZERO, |it| it.pressed);
         let force = R::TWO * pressed / (passage.time * passage.time);
@@ -397,7 +403,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state.books.lost.add(soft.stored - stored);
         soft.stored = stored;
         let soft = *soft;
-        state.seats[i].held = (!left).then_some(held);
+        if left {
+            state.seats[i].held = None;
+        }
         let change = match (left, soft.stays) {
             (true, true) => Change::LiftsOff,
             (true, false) => Change::Released(Pulse {

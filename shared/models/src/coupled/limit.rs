@@ -29,25 +29,31 @@ impl<R: Real, const Q: usize> Magnet<R, Q> {
 
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// What the limits of the magnets that are on add where the rotor is.
-    pub(super) fn cut_at_first(&self, state: &CoupledState<R, N, Q>) -> [Vector<R>; MAGNETS] {
+    pub(super) fn cut_at_first(
+        &self,
+        state: &CoupledState<R, N, Q>,
+    ) -> Option<[Vector<R>; MAGNETS]> {
+        if !self.active(&state.on).any(|it| it.limit.is_some()) {
+            return None;
+        }
         let mut cuts = [Vector::default(); MAGNETS];
         for (cut, magnet) in cuts.iter_mut().zip(self.active(&state.on)) {
             let place = at(&magnet.shape, &state.places());
             let rate = at(&magnet.shape, &state.velocities());
             *cut = magnet.cut(place, rate).unwrap_or_default();
         }
-        cuts
+        Some(cuts)
     }
 
     /// What they add rather, in the middle of `passage`; whether that is another.
     pub(super) fn correct_magnets(
         &self,
         state: &CoupledState<R, N, Q>,
-        passage: &Passage<R, N, Q>,
-        free: &mut Passage<R, N, Q>,
+        passage: &mut Passage<R, N, Q>,
     ) -> bool {
         let mut changed = false;
-        for (was, magnet) in free.cut.iter_mut().zip(self.active(&state.on)) {
+        let cuts = passage.cut.iter_mut().flatten();
+        for (was, magnet) in cuts.zip(self.active(&state.on)) {
             let moved = at(&magnet.shape, &passage.moved);
             let place = at(&magnet.shape, &state.places()) + moved.times(R::HALF);
             let rate = moved.times(R::ONE / passage.time);
@@ -57,9 +63,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let close = R::lit(CLOSE) * R::EPSILON * limit;
             changed |= (cut - *was).square() > close * close;
             *was = cut;
-        }
-        if changed {
-            self.go_free(state, free);
         }
         changed
     }

@@ -123,6 +123,8 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     mode_scale: [R; Q],
     /// Unbalance in each coordinate, on the rotor.
     weight: [Vector<R>; Q],
+    /// Whether a stretch is solved by repetition: inner rings, dry friction of mounts, magnets with a limit.
+    repeats: bool,
     /// Length of a step, T.
     step: R,
     /// Tilt of 1, rad.
@@ -203,6 +205,7 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
             decay: self.decay.map(R::lit),
             mode_scale: self.mode_scale.map(R::lit),
             weight: self.weight.map(vector),
+            repeats: self.repeats,
             step: R::lit(self.step),
             tilt: R::lit(self.tilt),
             scales: self.scales.rounded(),

@@ -57,18 +57,27 @@ impl<R: Real> MountConfig<R> {
     }
 }
 
-/// Dry friction in a stretch.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What dry friction does in a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Rub<R> {
-    /// There is none.
-    #[default]
-    None,
     /// All of it, against this direction.
     Slides(Vector<R>),
     /// It leaves the ring at rest, from this part of the stretch on.
     Rests(R),
     /// The motion turns round by itself, within the stretch: it gives nothing.
     Turns,
+}
+
+/// Dry friction in a stretch.
+#[derive(Clone, Copy, Debug)]
+struct Dry<R> {
+    rub: Rub<R>,
+    /// Impulse of it; of a ring at rest, before the pushes.
+    grip: Vector<R>,
+    /// Energy that a ring gives that comes to rest, before the pushes' work.
+    taken: R,
+    /// Outward, where the ring comes to rest on its stop, which takes what pushes it there.
+    stop: Option<Vector<R>>,
 }
 
 /// How the ring goes through a stretch of time that nothing pushes it in.
@@ -79,66 +88,66 @@ pub(super) struct Ride<R> {
     pub(super) kick: Vector<R>,
     /// Displacement by a push, which is an impulse times half the time.
     pub(super) mobility: [R; 2],
-    pub(super) rub: Rub<R>,
-    /// Impulse of dry friction; of a ring at rest, before the pushes.
-    grip: Vector<R>,
-    /// Energy that a ring gives that comes to rest, before the pushes' work.
-    taken: R,
-    /// Outward, where the ring comes to rest on its stop, which takes what pushes it there.
-    stop: Option<Vector<R>>,
+    dry: Option<Dry<R>>,
 }
 
 impl<R: Real> Ride<R> {
     /// Displacement by a push; the push itself, where friction takes it.
     pub(super) fn pushed(&self, push: Vector<R>) -> Vector<R> {
-        match self.rub {
-            Rub::Rests(_) => push,
-            _ => push.along(self.mobility),
+        if self.rests() {
+            return push;
         }
+        push.along(self.mobility)
     }
 
     /// Displacement by the rotor and by the stop.
     pub(super) fn by(&self, [rotor, stop]: [Vector<R>; 2]) -> Vector<R> {
-        match self.rub {
-            Rub::Rests(_) => Vector::default(),
-            _ => rotor + stop,
+        if self.rests() {
+            return Vector::default();
         }
+        rotor + stop
     }
 
-    /// Impulses on the ring by dry friction, and by the stop that it comes to rest on.
-    fn friction(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> [Vector<R>; 2] {
-        let none = Vector::default();
+    /// Whether dry friction leaves the ring where it is.
+    pub(super) fn rests(&self) -> bool {
+        matches!(
+            self.dry,
+            Some(Dry {
+                rub: Rub::Rests(_),
+                ..
+            })
+        )
+    }
+
+    pub(super) fn rests_on_stop(&self) -> bool {
+        self.dry.is_some_and(|it| it.stop.is_some())
+    }
+
+    /// Energy that dry friction takes, and the impulse of the stop that the ring comes to rest on.
+    fn rubbed(&self, time: R, pushed: [Vector<R>; 2]) -> Option<(R, Vector<R>)> {
+        let dry = self.dry.as_ref()?;
+        let mean = (self.moved + self.by(pushed)).times(R::ONE / time);
         if !self.rests() {
-            return [self.grip, none];
+            return Some((-dry.grip.dot(mean), Vector::default()));
         }
+        let [_, inward] = dry.resting(time, pushed);
+        let [rotor, stop] = pushed;
+        let push = (rotor + stop).times(R::TWO / time) + inward;
+        Some((dry.taken + push.dot(mean), inward))
+    }
+}
+
+impl<R: Real> Dry<R> {
+    /// Impulses on a ring at rest by dry friction, and by the stop that it comes to rest on.
+    fn resting(&self, time: R, [rotor, stop]: [Vector<R>; 2]) -> [Vector<R>; 2] {
         let grip = self.grip - (rotor + stop).times(R::TWO / time);
         match self.stop {
             Some(outward) if outward.dot(grip) < R::ZERO => {
                 let inward = outward.times(outward.dot(grip));
                 [grip - inward, inward]
             }
-            _ => [grip, none],
+            _ => [grip, Vector::default()],
         }
-    }
-
-    /// Energy that dry friction takes.
-    fn taken(&self, time: R, pushed: [Vector<R>; 2]) -> R {
-        let mean = (self.moved + self.by(pushed)).times(R::ONE / time);
-        let [grip, inward] = self.friction(time, pushed);
-        if !self.rests() {
-            return -grip.dot(mean);
-        }
-        let [rotor, stop] = pushed;
-        self.taken + ((rotor + stop).times(R::TWO / time) + inward).dot(mean)
-    }
-
-    /// Whether dry friction leaves the ring where it is.
-    pub(super) fn rests(&self) -> bool {
-        matches!(self.rub, Rub::Rests(_))
-    }
-
-    pub(super) fn rests_on_stop(&self) -> bool {
-        self.stop.is_some()
     }
 }
 
@@ -260,7 +269,7 @@ impl<R: Real> Sprung<R> {
         state: &SprungState<R>,
         time: R,
         shaken: Option<Vector<R>>,
-        rub: Rub<R>,
+        rub: Option<Rub<R>>,
     ) -> Ride<R> {
         let half = R::HALF * time;
         let (place, velocity) = (state.place.value(), state.velocity.value());
@@ -274,22 +283,25 @@ impl<R: Real> Sprung<R> {
             }
         };
         let none = Vector::default();
-        if let Rub::Rests(part) = rub {
+        if let Some(rub @ Rub::Rests(part)) = rub {
             let moved = velocity.times(half * part);
             let work = force(place + moved.times(R::HALF), none).dot(moved);
             return Ride {
                 moved,
                 kick: none - velocity,
                 mobility: [R::ZERO; 2],
-                rub,
-                grip: force(place + moved, none).times(time),
-                taken: R::HALF * self.mass * velocity.square() - work,
-                stop: direction(place).filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
+                dry: Some(Dry {
+                    rub,
+                    grip: force(place + moved, none).times(time),
+                    taken: R::HALF * self.mass * velocity.square() - work,
+                    stop: direction(place)
+                        .filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
+                }),
             };
         }
         let mut against = force(place + velocity.times(half), velocity);
         let mut grip = none;
-        if let Rub::Slides(direction) = rub {
+        if let Some(Rub::Slides(direction)) = rub {
             against = against + direction.times(self.friction);
             grip = direction.times(-(self.friction * time));
         }
@@ -300,19 +312,25 @@ impl<R: Real> Sprung<R> {
             moved: velocity.times(time) + kick.times(half),
             kick,
             mobility,
-            rub,
-            grip,
-            taken: R::ZERO,
-            stop: None,
+            dry: rub.map(|rub| Dry {
+                rub,
+                grip,
+                taken: R::ZERO,
+                stop: None,
+            }),
         }
     }
 
+    /// Whether it has dry friction.
+    pub(super) fn rubs(&self) -> bool {
+        self.friction > R::ZERO
+    }
+
     /// What dry friction is at first taken for.
-    pub(super) fn guess(&self, state: &SprungState<R>) -> Rub<R> {
-        if self.friction <= R::ZERO {
-            return Rub::None;
-        }
-        direction(state.velocity.value()).map_or(Rub::Rests(R::ZERO), Rub::Slides)
+    pub(super) fn guess(&self, state: &SprungState<R>) -> Option<Rub<R>> {
+        let moving = || direction(state.velocity.value());
+        self.rubs()
+            .then(|| moving().map_or(Rub::Rests(R::ZERO), Rub::Slides))
     }
 
     /// What dry friction is rather, with these pushes; none if it was right.
@@ -323,11 +341,13 @@ impl<R: Real> Sprung<R> {
         time: R,
         pushed: [Vector<R>; 2],
     ) -> Option<Rub<R>> {
-        match ride.rub {
-            Rub::None | Rub::Turns => None,
+        let dry = ride.dry.as_ref()?;
+        match dry.rub {
+            Rub::Turns => None,
             Rub::Rests(_) => {
-                let [grip, _] = ride.friction(time, pushed);
-                if ride.taken(time, pushed) < R::ZERO {
+                let [grip, _] = dry.resting(time, pushed);
+                let (taken, _) = ride.rubbed(time, pushed)?;
+                if taken < R::ZERO {
                     return Some(Rub::Turns);
                 }
                 let most = self.friction * time;
@@ -424,19 +444,22 @@ impl<R: Real> Sprung<R> {
         let mean = moved.times(R::ONE / time);
         state.place.add(moved);
         let [_, by_stop] = pushed;
+        let rubbed = ride.rubbed(time, pushed);
         state.rests = ride.rests();
-        let stopping = if state.rests {
+        let mut stopping = R::ZERO;
+        if state.rests {
             state.velocity = Sums::default();
-            let [_, inward] = ride.friction(time, pushed);
-            inward.dot(mean)
         } else {
             state.velocity.add(ride.kick + pushes.times(rate));
             let damped = mean.dot_along(moved, self.each(|it| it.damping));
             state.damped.add(damped);
-            by_stop.dot_along(mean, ride.mobility.map(|it| rate / it))
-        };
-        if ride.rub != Rub::None {
-            state.damped.add(ride.taken(time, pushed));
+            if self.travel.is_some() {
+                stopping = by_stop.dot_along(mean, ride.mobility.map(|it| rate / it));
+            }
+        }
+        if let Some((taken, inward)) = rubbed {
+            state.damped.add(taken);
+            stopping += inward.dot(mean);
         }
         state.stopping.add(-stopping);
     }

@@ -155,8 +155,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Of all walls that give way; the most.
     fn linearize_all(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> R {
         let mut most = R::ZERO;
-        for i in 0..N {
-            let Some(place) = walls.contacts[i] else {
+        for (i, ring) in self.rings.iter().enumerate() {
+            let (Some(place), Some(_)) = (walls.contacts[i], &ring.compliant) else {
                 continue;
             };
             let moved = walls.links.motion(place);

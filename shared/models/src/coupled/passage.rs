@@ -11,6 +11,7 @@ use super::race::{Drag, Turning};
 use super::vector::{Mobility, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -43,7 +44,7 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) rides: [Ride<R>; N],
     pub(super) presses: [Option<Press<R>>; N],
     /// Force of the magnets beyond what displacement and velocity ask for: what their limits leave out.
-    pub(super) cut: [Vector<R>; MAGNETS],
+    pub(super) cut: Option<[Vector<R>; MAGNETS]>,
     /// Displacement of the rings by rotor and stop.
     pub(super) pushed: [[Vector<R>; 2]; N],
     pub(super) stopped: [bool; N],
@@ -56,10 +57,41 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) shaken: Option<Vector<R>>,
     /// Whether friction is in it.
     pub(super) rubs: bool,
+    /// Whether the walls could be solved for.
+    pub(super) solved: bool,
     inverse: [[Vector<R>; Q]; Q],
 }
 
 impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
+    fn new(time: R) -> Self {
+        Self {
+            time,
+            moved: [Vector::default(); Q],
+            kick: [Vector::default(); Q],
+            rides: [Ride::default(); N],
+            presses: [None; N],
+            cut: None,
+            pushed: [[Vector::default(); 2]; N],
+            stopped: [false; N],
+            drags: [Drag::Runs(R::ZERO); N],
+            spun: R::ZERO,
+            unbalance: [Vector::default(); Q],
+            shaken: None,
+            rubs: true,
+            solved: true,
+            inverse: [[Vector::default(); Q]; Q],
+        }
+    }
+
+    /// Takes all walls out.
+    fn clear(&mut self) {
+        self.presses = [None; N];
+        self.pushed = [[Vector::default(); 2]; N];
+        self.stopped = [false; N];
+        self.spun = R::ZERO;
+        self.rubs = true;
+    }
+
     pub(super) fn ring_moved(&self, ring: usize) -> Vector<R> {
         // Rotor and stop push a light ring by far more than it moves.
         self.rides[ring].moved + self.rides[ring].by(self.pushed[ring])
@@ -68,6 +100,11 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
     pub(super) fn ring_kick(&self, ring: usize) -> Vector<R> {
         let pushed = self.rides[ring].by(self.pushed[ring]);
         self.rides[ring].kick + pushed.times(R::TWO / self.time)
+    }
+
+    /// What their limits leave out of the force of one of the magnets that are on.
+    pub(super) fn cut(&self, magnet: usize) -> Option<Vector<R>> {
+        self.cut.as_ref()?.get(magnet).copied()
     }
 
     /// Friction on the rotor, as an impulse.
@@ -84,39 +121,61 @@ pub(super) struct Walls<R, const N: usize> {
     pub(super) stops: [Option<usize>; N],
 }
 
+impl<R: Real, const N: usize> Walls<R, N> {
+    fn new(time: R) -> Self {
+        Self {
+            time,
+            links: Links::new(),
+            contacts: [None; N],
+            stops: [None; N],
+        }
+    }
+}
+
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
-    /// The next `time`; none where the walls cannot be solved for in it.
-    pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Option<Passage<R, N, Q>> {
-        let mut free = self.free(state, time);
-        let mut passage = self.press(state, free)?;
+    /// The next `time`.
+    pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
+        let mut passage = Passage::new(time);
+        self.free(state, &mut passage);
+        if self.repeats {
+            self.press_by_repetition(state, &mut passage);
+        } else {
+            self.press(state, &mut passage);
+        }
+        passage
+    }
+
+    /// [`Coupled::press`], with the parts that depend on what comes of it.
+    fn press_by_repetition(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+        self.press(state, passage);
         for repetition in 1..REPETITIONS {
-            let turns = repetition < DRAGS && self.correct_drags(state, &passage, &mut free);
+            if !passage.solved {
+                break;
+            }
+            let turns = repetition < DRAGS && self.correct_drags(state, passage);
             let last = repetition + 1 == REPETITIONS;
-            let rubs = self.correct_mounts(state, &passage, &mut free, last);
-            let cuts = self.correct_magnets(state, &passage, &mut free);
+            let rubs = self.correct_mounts(state, passage, last);
+            let cuts = self.correct_magnets(state, passage);
             if !turns && !rubs && !cuts {
                 break;
             }
-            passage = self.press(state, free)?;
+            passage.clear();
+            self.go_free(state, passage);
+            self.press(state, passage);
         }
-        Some(passage)
     }
 
-    /// Drags that `passage` shows to be others; whether there are any.
-    fn correct_drags(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        passage: &Passage<R, N, Q>,
-        free: &mut Passage<R, N, Q>,
-    ) -> bool {
+    /// Drags that the passage shows to be others; whether there are any.
+    fn correct_drags(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) -> bool {
         let mut changed = false;
         for (i, ring) in self.rings.iter().enumerate() {
-            let (drag, rub) = (&mut free.drags[i], passage.rub(i));
+            let (drag, rub) = (passage.drags[i], passage.rub(i));
             let other = ring
                 .race
-                .and_then(|it| it.corrected(&state.seats[i].race, free.time, *drag, rub));
+                .as_ref()
+                .and_then(|it| it.corrected(&state.seats[i].race, passage.time, drag, rub));
             if let Some(other) = other {
-                (*drag, changed) = (other, true);
+                (passage.drags[i], changed) = (other, true);
             }
         }
         changed
@@ -126,20 +185,18 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     fn correct_mounts(
         &self,
         state: &CoupledState<R, N, Q>,
-        passage: &Passage<R, N, Q>,
-        free: &mut Passage<R, N, Q>,
+        passage: &mut Passage<R, N, Q>,
         last: bool,
     ) -> bool {
         let mut changed = false;
         for (i, ring) in self.rings.iter().enumerate() {
-            let (ride, mount) = (&mut free.rides[i], &state.seats[i].mount);
-            let rubs = ring.mount.as_ref().filter(|_| ride.rub != Rub::None);
-            let Some(it) = rubs else {
+            let (mount, time) = (&state.seats[i].mount, passage.time);
+            let Some(it) = ring.mount.as_ref().filter(|it| it.rubs()) else {
                 continue;
             };
-            if let Some(rub) = it.corrected(mount, ride, free.time, passage.pushed[i]) {
+            if let Some(rub) = it.corrected(mount, &passage.rides[i], time, passage.pushed[i]) {
                 let rub = if last { Rub::Turns } else { rub };
-                *ride = it.ride(mount, free.time, free.shaken, rub);
+                passage.rides[i] = it.ride(mount, time, passage.shaken, Some(rub));
                 changed = true;
             }
         }
@@ -147,36 +204,23 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Without any wall.
-    fn free(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
-        let shaken = self.shaken(state, time);
-        let mut rides = [Ride::default(); N];
-        let mut drags = [Drag::Runs(R::ZERO); N];
+    fn free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+        let time = passage.time;
+        passage.shaken = self.shaken(state, time);
         for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
             if let Some(mount) = &ring.mount {
-                rides[i] = mount.ride(&seat.mount, time, shaken, mount.guess(&seat.mount));
+                let rub = mount.guess(&seat.mount);
+                passage.rides[i] = mount.ride(&seat.mount, time, passage.shaken, rub);
             }
             if let Some(race) = &ring.race {
-                drags[i] = race.guess(&seat.race);
+                passage.drags[i] = race.guess(&seat.race);
             }
         }
-        let mut passage = Passage {
-            time,
-            moved: [Vector::default(); Q],
-            kick: [Vector::default(); Q],
-            rides,
-            presses: [None; N],
-            cut: self.cut_at_first(state),
-            pushed: [[Vector::default(); 2]; N],
-            stopped: [false; N],
-            drags,
-            spun: R::ZERO,
-            unbalance: self.unbalance(state, time),
-            shaken,
-            rubs: true,
-            inverse: [[Vector::default(); Q]; Q],
-        };
-        self.go_free(state, &mut passage);
-        passage
+        if self.repeats {
+            passage.cut = self.cut_at_first(state);
+        }
+        passage.unbalance = self.unbalance(state, time);
+        self.go_free(state, passage);
     }
 
     pub(super) fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
@@ -199,11 +243,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             force[1] = force[1] + velocities[1].turned().times(nutation);
             matrix[1][1].y = -(half * nutation);
         }
-        for (magnet, cut) in self.active(&state.on).zip(passage.cut) {
+        for (k, magnet) in self.active(&state.on).enumerate() {
             let rate = at(&magnet.shape, &velocities);
             let middle = at(&magnet.shape, &places) + rate.times(half);
             let mut pull = magnet.pull(middle, rate);
-            if magnet.limit.is_some() {
+            if let Some(cut) = passage.cut(k) {
                 pull = pull + cut;
             }
             let implicit = half * (magnet.damping - half * magnet.stiffness);
@@ -244,33 +288,31 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         Some(base.push.times(mean * direction.x))
     }
 
-    /// With the walls that hold.
-    fn press(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        free: Passage<R, N, Q>,
-    ) -> Option<Passage<R, N, Q>> {
+    /// Adds the walls that hold to a passage without any.
+    fn press(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         if !(0..N).any(|i| state.is_held(i) || state.is_stopped(i)) {
-            return Some(free);
+            return;
         }
-        let mut walls = self.walls(state, &free);
+        let mut walls = Walls::new(passage.time);
+        self.add_walls(state, passage, &mut walls);
         let smooth = match self.settle(state, &mut walls) {
-            true => self.gains(state, &walls, free.time),
+            true => self.gains(state, &walls, passage.time),
             false => true,
         };
         if smooth {
-            walls = self.walls(state, &free);
+            walls = Walls::new(passage.time);
+            self.add_walls(state, passage, &mut walls);
             walls.links.smooth();
             if !self.settle(state, &mut walls) {
-                return None;
+                passage.solved = false;
+                return;
             }
         }
-        let mut passage = free;
         passage.rubs = !smooth;
-        let rate = R::TWO / free.time;
+        let rate = R::TWO / passage.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
-            let ride = &free.rides[i];
+            let ride = &passage.rides[i];
             passage.stopped[i] = ride.rests_on_stop();
             if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
                 && link.grip != Grip::Open
@@ -297,12 +339,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         for k in 0..Q {
             let more = (0..Q).fold(Vector::default(), |sum, l| {
-                sum + free.inverse[k][l] * pushes[l]
+                sum + passage.inverse[k][l] * pushes[l]
             });
             passage.moved[k] = passage.moved[k] + more;
             passage.kick[k] = passage.kick[k] + more.times(rate);
         }
-        Some(passage)
     }
 
     /// The wall of a ring that the rotor is held by; `turning` is the speed of the inner ring.
@@ -313,7 +354,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         i: usize,
         turning: R,
     ) -> Option<Link<R>> {
-        let (ring, held) = (&self.rings[i], state.seats[i].held?);
+        let (ring, held) = (&self.rings[i], state.seats[i].held.as_ref()?);
         let place = self.within(state, i);
         let normal = place.times(R::ONE / place.length());
         let slip = normal.cross(self.relative(state, i)) + self.surface(state, i);
@@ -338,33 +379,34 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         link: &mut Link<R>,
         moved: Vector<R>,
     ) -> R {
-        let soft = state.seats[i].held.and_then(|it| it.soft);
-        let (Some(compliant), Some(soft)) = (&self.rings[i].compliant, soft) else {
+        let Some(compliant) = &self.rings[i].compliant else {
+            return R::ZERO;
+        };
+        let held = state.seats[i].held.as_ref();
+        let Some(soft) = held.and_then(|it| it.soft.as_ref()) else {
             return R::ZERO;
         };
         let from = self.within(state, i);
-        compliant.linearize(link, &soft, (from, time), moved)
+        compliant.linearize(link, soft, (from, time), moved)
     }
 
-    /// The walls that hold at the start, with what moves in them.
-    fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Walls<R, N> {
-        let mut walls = Walls {
-            time: free.time,
-            links: Links::new(),
-            contacts: [None; N],
-            stops: [None; N],
-        };
+    /// Adds the walls that hold at the start, with what moves in them.
+    fn add_walls(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        free: &Passage<R, N, Q>,
+        walls: &mut Walls<R, N>,
+    ) {
         let mut turnings = [Turning::default(); N];
         for (i, ring) in self.rings.iter().enumerate() {
             if let Some(race) = &ring.race {
                 turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
             }
-            let link = self.contact(state, free, i, turnings[i].free);
-            walls.contacts[i] = link.map(|mut link| {
+            if let Some(mut link) = self.contact(state, free, i, turnings[i].free) {
                 let moved = link.free;
                 self.linearize(state, i, free.time, &mut link, moved);
-                walls.links.add(link)
-            });
+                walls.contacts[i] = Some(walls.links.add(link));
+            }
             if state.is_stopped(i) && !free.rides[i].rests() {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());
@@ -399,7 +441,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 }
             }
         }
-        walls
     }
 
     /// Whether friction gives more than what its sticking is uncertain by.

@@ -15,6 +15,13 @@ use touchdown_rotor::precision::Precision;
 /// Part of the energy up to which it is given back; more is no error of a stretch, and stays.
 const MOST_RETURNED: f64 = 0.01;
 
+/// The axis in a ring that holds it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AtWall<R> {
+    pub(super) place: Vector<R>,
+    velocity: Vector<R>,
+}
+
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Links of the held rings; each is to change by `wanted` along its normal, and rings move by `yields`.
     fn held(
@@ -47,12 +54,19 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Velocity of a ring by an impulse; dry friction holds a ring that rests.
     fn ring_mobility(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
         let moves = !state.seats[ring].mount.rests();
-        let mount = self.rings[ring].mount.filter(|_| moves);
+        let mount = self.rings[ring].mount.as_ref().filter(|_| moves);
         mount.map_or(R::ZERO, |it| it.mobility())
     }
 
-    /// Takes the swing across the walls from the velocities, after a stretch.
-    pub(super) fn calm(&self, before: &CoupledState<R, N, Q>, state: &mut CoupledState<R, N, Q>) {
+    pub(super) fn at_wall(&self, state: &CoupledState<R, N, Q>, ring: usize) -> AtWall<R> {
+        AtWall {
+            place: self.within(state, ring),
+            velocity: self.relative(state, ring),
+        }
+    }
+
+    /// Takes the swing across the walls from the velocities, after a stretch; `before` it, the axis in the rings that held it.
+    pub(super) fn calm(&self, before: &[Option<AtWall<R>>; N], state: &mut CoupledState<R, N, Q>) {
         if !(0..N).any(|i| state.lies(i)) {
             return;
         }
@@ -62,9 +76,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             |i| self.ring_mobility(state, i),
         );
         for (i, place) in places.iter().enumerate() {
-            if let Some(link) = place.and_then(|place| links.get_mut(place)) {
-                let within = self.within(before, i);
-                let speed = within.dot(self.relative(before, i)) / within.length();
+            let link = place.and_then(|place| links.get_mut(place));
+            if let (Some(link), Some(before)) = (link, before[i]) {
+                let speed = before.place.dot(before.velocity) / before.place.length();
                 link.wanted = R::HALF * (speed + link.normal.dot(link.free));
             }
         }
@@ -120,7 +134,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// rounding.
     pub(super) fn seat(&self, state: &mut CoupledState<R, N, Q>) {
         for (ring, seat) in self.rings.iter().zip(&mut state.seats) {
-            if let Some(mount) = ring.mount.filter(|_| seat.mount.is_stopped()) {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| seat.mount.is_stopped()) {
                 mount.seat(&mut seat.mount);
             }
         }
@@ -195,7 +209,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         };
         let slip = normal.cross(velocity) + self.surface(state, i);
         let mut mobility = self.mobility(i, i) + ring.surface * ring.surface / self.inertia_ratio;
-        mobility += ring.race.map_or(R::ZERO, |race| race.mobility());
+        mobility += ring.race.as_ref().map_or(R::ZERO, |race| race.mobility());
         if !stands {
             mobility += self.ring_mobility(state, i);
         }

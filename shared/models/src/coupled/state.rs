@@ -84,7 +84,7 @@ pub(super) struct Held<R> {
 impl<R: Real> Held<R> {
     /// Whether it is an impact yet.
     pub(super) fn passes(&self) -> bool {
-        self.soft.is_some_and(|it| !it.stays)
+        self.soft.as_ref().is_some_and(|it| !it.stays)
     }
 }
 
@@ -212,7 +212,8 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
 
     /// Whether a wall holds the axis that does not give way.
     pub(super) fn lies(&self, ring: usize) -> bool {
-        self.seats[ring].held.is_some_and(|it| it.soft.is_none())
+        let held = self.seats[ring].held.as_ref();
+        held.is_some_and(|it| it.soft.is_none())
     }
 
     /// Whether a hard stop holds the ring.

@@ -303,9 +303,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return;
         }
         let time = self.step.least(self.reach(state));
-        let Some(passage) = self.pass(state, time) else {
+        let passage = self.pass(state, time);
+        if !passage.solved {
             return;
-        };
+        }
         for (i, ring) in self.rings.iter().enumerate() {
             if !meetings[i].new {
                 continue;
