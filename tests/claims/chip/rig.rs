@@ -7,7 +7,6 @@ use std::fs;
 use std::io::{Sink, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -26,8 +25,6 @@ use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Failing, SensorFault};
 use touchdown_sim::rig::{Options, Order, Rig};
 
-/// One rig at a time: each takes a whole core.
-static BENCH: Mutex<()> = Mutex::new(());
 /// Far more than anything here takes.
 const LONG: Duration = Duration::from_secs(120);
 
@@ -115,7 +112,6 @@ fn events_heard(talk: &mut Client) -> Vec<EventKind> {
 
 #[test]
 fn from_power_on_to_an_erased_log_over_the_link() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
@@ -197,7 +193,6 @@ fn from_power_on_to_an_erased_log_over_the_link() {
 
 #[test]
 fn with_a_key_the_image_obeys_its_holder_alone_and_tells_every_order() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
@@ -256,7 +251,6 @@ fn pages_of_the_newest(flash: &[u8]) -> (u32, usize) {
 
 #[test]
 fn brown_out_while_logging_leaves_earlier_episodes_whole_and_the_new_one_whole_or_marked() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     let rig = started("rig", folder.path(), 0.0);
     let flash = || fs::read(folder.path().join("log")).unwrap_or_default();
@@ -326,7 +320,6 @@ fn brown_out_while_logging_leaves_earlier_episodes_whole_and_the_new_one_whole_o
 
 #[test]
 fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
@@ -367,7 +360,6 @@ fn a_noisy_link_is_asked_again_and_never_touches_the_outputs() {
 
 #[test]
 fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     let rig = started("rig", folder.path(), 0.0);
     let mut talk = talk(&rig);
@@ -406,7 +398,6 @@ fn sensors_that_are_lost_at_the_rig_trip_and_are_told() {
 
 #[test]
 fn a_stored_configuration_that_is_damaged_never_gives_current_until_another_is_set() {
-    let _bench = BENCH.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("settings"), b"TDC\x01 is not all").expect("a file");
     let rig = started("rig", folder.path(), 0.0);

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
+use touchdown_lab::limits::machine_rows;
 use touchdown_tests::binary::touchdown;
 
 /// What a designer would try to break it with.
@@ -159,4 +160,12 @@ fn a_file_that_cannot_be_written_is_bad_usage() {
         .assert()
         .code(2)
         .stderr(contains("cannot be written"));
+}
+
+/// A wall that gives way is left where it ends, and not as soon as it presses no more: else contacts make energy in this one.
+#[test]
+fn machine_319_holds_all_limits() {
+    let rows = machine_rows(319).unwrap();
+    let broken: Vec<_> = rows.iter().filter(|row| !row.holds).collect();
+    assert!(broken.is_empty(), "{broken:?}");
 }

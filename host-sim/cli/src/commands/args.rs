@@ -309,7 +309,7 @@ pub(super) struct PaperArgs {
 #[derive(Args, Clone, Debug)]
 pub(super) struct LimitsArgs {
     /// Random machines of fidelity `coupled`, in equal numbers of each combination of parts
-    #[arg(long, value_name = "N", default_value_t = 48,
+    #[arg(long, value_name = "N", default_value_t = 64,
           value_parser = clap::value_parser!(u64).range(..=10_000_000))]
     pub machines: u64,
     /// Print the scene file of one of them, and run nothing

@@ -12,7 +12,7 @@ use super::row::Row;
 use super::{PRECISIONS, refused};
 use touchdown_base::failure::Failure;
 use touchdown_base::progress::Progress;
-use touchdown_scene::Scene;
+use touchdown_scene::{Precision, Scene};
 
 /// Parts, by the bits of a combination.
 const PARTS: [&str; 6] = [
@@ -39,19 +39,13 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
         }
         let name = format!("coupled: {} machines with {}", seeds.len(), named(parts));
         for precision in PRECISIONS {
-            let seen = seeds.par_iter().map(|seed| {
-                let mut scene = Scene::parse(&format!("machine {seed}"), &text(*seed))?;
-                scene.model.precision = precision;
-                let mut seen = Seen::default();
-                seen.watch(&scene).map_err(refused)?;
-                Ok((*seed, seen))
-            });
-            let seen: Vec<(u64, Seen)> = seen.collect::<Result<_, Failure>>()?;
-            for (seed, seen) in &seen {
-                let own = seen.rows(&format!("coupled: machine {seed}"), precision);
+            let seen = seeds.par_iter().map(|seed| watched(*seed, precision));
+            let seen: Vec<Seen> = seen.collect::<Result<_, Failure>>()?;
+            for (seed, seen) in seeds.iter().zip(&seen) {
+                let own = seen.rows(&own_name(*seed), precision);
                 rows.extend(own.into_iter().filter(|row| !row.holds));
             }
-            let all = seen.into_iter().map(|(_, seen)| seen);
+            let all = seen.into_iter();
             rows.extend(
                 all.fold(Seen::default(), Seen::worse)
                     .rows(&name, precision),
@@ -60,6 +54,28 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
         progress.advance();
     }
     Ok(rows)
+}
+
+/// All measures of one random machine.
+pub fn rows_of(seed: u64) -> Result<Vec<Row>, Failure> {
+    let of = |precision| Ok(watched(seed, precision)?.rows(&own_name(seed), precision));
+    let rows: Vec<_> = PRECISIONS
+        .into_iter()
+        .map(of)
+        .collect::<Result<_, Failure>>()?;
+    Ok(rows.concat())
+}
+
+fn watched(seed: u64, precision: Precision) -> Result<Seen, Failure> {
+    let mut scene = Scene::parse(&format!("machine {seed}"), &text(seed))?;
+    scene.model.precision = precision;
+    let mut seen = Seen::default();
+    seen.watch(&scene).map_err(refused)?;
+    Ok(seen)
+}
+
+fn own_name(seed: u64) -> String {
+    format!("coupled: machine {seed}")
 }
 
 fn named(parts: u64) -> String {

@@ -28,7 +28,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use touchdown_rotor::error::ConfigError;
 
-pub use machines::text as machine;
+pub use machines::{rows_of as machine_rows, text as machine};
 pub use pace::rows as drops;
 pub use row::{Row, all_hold};
 pub use table::table;
