@@ -5,8 +5,8 @@ use touchdown_scene::sensors::{Motion, PLANES};
 use super::Units;
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, Race, Retainer,
-    Ring, RingState, Unbalance,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, PressShape, Race,
+    Retainer, Ring, RingState, Unbalance,
 };
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
@@ -203,18 +203,17 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     }
 }
 
-/// None of a wall whose law the reference lacks, a line's logarithm or balls behind it: it is one with restitution then.
-fn press(wall: CompliantWall) -> Option<Press> {
-    let exponent = match wall.contact {
-        Contact::Point => 1.5,
-        Contact::LinePower { .. } => 1.0,
-        Contact::Line { .. } => return None,
-    };
-    wall.balls.is_none().then_some(Press {
+fn press(wall: CompliantWall, clearance: f64) -> Press {
+    Press {
+        shape: match wall.contact {
+            Contact::Point => PressShape::Power { exponent: 1.5 },
+            Contact::LinePower { .. } => PressShape::Power { exponent: 1.0 },
+            Contact::Line { .. } => PressShape::Line { clearance },
+        },
         stiffness: wall.stiffness,
-        exponent,
+        balls: wall.balls,
         slowest: wall.slowest,
-    })
+    }
 }
 
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
@@ -228,7 +227,7 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         },
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
-        press: it.wall.and_then(press),
+        press: it.wall.map(|wall| press(wall, it.retainer.clearance)),
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {
         rate: mode.speed,

@@ -13,7 +13,8 @@
 //! The force of a magnet is smooth in parts: an axis on which it reaches its greatest force, or leaves it, ends a step too.
 //!
 //! A wall may give way instead: then it has a force, and no impulse; of such a wall only impacts are told, without
-//! impulse.
+//! impulse. Its force is a series by the law that its compliance obeys. A run ends where a line is pressed deeper than its
+//! law goes: it counts as too long.
 //!
 //! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
 //! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those
@@ -37,6 +38,8 @@ mod linear;
 mod machine;
 mod motion;
 mod power;
+mod press;
+mod pressing;
 mod pull;
 mod seat;
 mod share;
@@ -51,6 +54,6 @@ mod unknown;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
-pub use soft::Press;
+pub use press::{Press, PressShape};
 pub use start::CoupledStart;
 pub use system::Mode;

@@ -1,11 +1,12 @@
-//! A wall that gives way: N = K d^n (1 + a d'/V) at the depth d, never pulling (Hunt and Crossley, 1975).
+//! A wall that gives way: N = F(d) (1 + a d'/V) at the depth d, never pulling (Hunt and Crossley, 1975).
 //!
 //! V is the speed at which the contact was entered, and a that damping which takes an impact without other forces to the
 //! coefficient of restitution. Friction is Coulomb's, on that force.
 //!
-//! Cut-off: d^n has no series at 0, so the force is 0 up to a depth of 1e-9 of the clearance, and again below half of it.
+//! Cut-off: F has no series at 0, so the force is 0 up to a depth of 1e-9 of the clearance, and again below half of it.
 
 use super::jet::Jet;
+use super::press::Press;
 use super::tape::Term;
 
 /// Depth from which the wall presses, in clearances.
@@ -16,17 +17,6 @@ const EXIT: f64 = 0.5e-9;
 const LEAST_RESTITUTION: f64 = 0.02;
 /// Halvings of the damping's bracket: down to rounding.
 const HALVINGS: u32 = 100;
-
-/// How a wall gives way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Press {
-    /// K, N/m^n.
-    pub stiffness: f64,
-    /// n: 1 for a spring, 1.5 for Hertz' point.
-    pub exponent: f64,
-    /// Least speed that an entry is damped as, m/s.
-    pub slowest: f64,
-}
 
 /// A wall that gives way, and whether something is in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +75,12 @@ impl Soft {
         if depth <= 0.0 {
             return 0.0;
         }
-        let power = self.press.exponent + 1.0;
-        self.press.stiffness * depth.powf(power) / power
+        self.press.energy(self.press.force(depth))
+    }
+
+    /// Whether a distance (m) from its centre is deeper than its law tells of.
+    pub fn is_beyond(&self, distance: f64) -> bool {
+        self.press.is_beyond(distance - self.clearance)
     }
 
     /// Damping of what is in it, s/m.
@@ -96,7 +90,7 @@ impl Soft {
 
     /// Force at a depth, N, without damping.
     pub fn spring<'t>(&self, depth: Term<'t>) -> Term<'t> {
-        depth.power(self.press.exponent) * self.press.stiffness
+        depth.pressed(&self.press)
     }
 }
 

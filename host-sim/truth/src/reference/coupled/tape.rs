@@ -3,6 +3,8 @@
 use super::jet::{Jet, ORDER};
 use super::linear::inverse;
 use super::power::Power;
+use super::press::Press;
+use super::pressing::Pressing;
 use super::share::Shared;
 use std::cell::RefCell;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -26,6 +28,8 @@ enum Rule {
     /// A sine; its cosine follows.
     Sine(usize),
     Power(usize),
+    /// The force at a depth.
+    Pressing(usize),
     /// The first unknown of a linear system; the others follow.
     Unknowns(usize),
     /// Made with the one before.
@@ -135,6 +139,7 @@ struct Record {
     products: Vec<Product>,
     sines: Vec<Sine>,
     powers: Vec<Power>,
+    pressings: Vec<Pressing>,
     systems: Vec<LinearSystem>,
 }
 
@@ -159,6 +164,10 @@ impl Record {
                 Rule::Power(number) => {
                     let power = &mut self.powers[number];
                     power.next(row[power.of], order)
+                }
+                Rule::Pressing(number) => {
+                    let pressing = &mut self.pressings[number];
+                    pressing.next(row[pressing.of], order)
                 }
                 Rule::Unknowns(number) => {
                     let next = self.systems[number].next(row, order);
@@ -212,6 +221,7 @@ impl Tape {
         let systems = record.systems.iter().map(|it| it.right.len().pow(2));
         let products = record.products.len()
             + 2 * (record.sines.len() + record.powers.len())
+            + 3 * record.pressings.len()
             + systems.sum::<usize>();
         OTHERWISE + products + record.rules.len() / 16
     }
@@ -297,6 +307,16 @@ impl<'t> Term<'t> {
         let number = self.tape.0.borrow().powers.len();
         self.tape.0.borrow_mut().powers.push(power);
         self.tape.record(Rule::Power(number), value, size)
+    }
+
+    /// The force of a wall that gives way, at this depth above 0.
+    pub fn pressed(self, press: &Press) -> Self {
+        let pressing = Pressing::new(self.index, self.value(), press);
+        let value = pressing.value();
+        let size = value + pressing.stiffness() * self.size();
+        let number = self.tape.0.borrow().pressings.len();
+        self.tape.0.borrow_mut().pressings.push(pressing);
+        self.tape.record(Rule::Pressing(number), value, size)
     }
 
     /// Sine and cosine.

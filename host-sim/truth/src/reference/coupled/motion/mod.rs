@@ -126,6 +126,15 @@ impl Motion {
         walls.filter(|link| link.clearance().is_some()).count()
     }
 
+    /// Whether a wall that gives way is pressed deeper than its law tells of.
+    fn is_beyond(&self) -> bool {
+        let beyond = |(index, link): (usize, &Link)| match link.hold {
+            Hold::Soft(soft) => soft.is_beyond(self.distance(index)),
+            _ => false,
+        };
+        self.system.links.iter().enumerate().any(beyond)
+    }
+
     /// Kinetic and potential, J.
     pub fn energy(&self, moment: &Moment) -> f64 {
         let place = &moment.place;
@@ -192,6 +201,9 @@ impl Motion {
         }
         self.started = true;
         self.settle();
+        if self.is_beyond() {
+            self.cost = MOST_COST;
+        }
         let time = self.since.value;
         for (link, (was, is)) in before.into_iter().zip(&self.modes).enumerate() {
             let wall = self.system.links[link].rigid().is_some();
