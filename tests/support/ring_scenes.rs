@@ -4,6 +4,7 @@ use crate::moment::{Moment, scaled};
 use touchdown_base::machine::Machine;
 use touchdown_models::{
     Coupled, CoupledConfig, CoupledState, Load, MountConfig, Placement, RaceConfig, RingEvent,
+    StopConfig,
 };
 use touchdown_rotor::{Change, Precision, RigidConfig};
 use touchdown_truth::reference;
@@ -62,7 +63,7 @@ impl Fall {
                 damping,
                 vertical: None,
                 friction: 0.0,
-                travel: None,
+                stop: None,
             }),
             ..self
         }
@@ -71,7 +72,7 @@ impl Fall {
     /// With a stop after this way of the ring, m.
     pub fn stopping(mut self, travel: f64) -> Self {
         self.mount = self.mount.map(|mount| MountConfig {
-            travel: Some(travel),
+            stop: Some(StopConfig::rigid(travel)),
             ..mount
         });
         self
@@ -254,7 +255,9 @@ impl Fall {
             damping: mount.damping,
             vertical: None,
             friction: 0.0,
-            travel: mount.travel,
+            stop: mount
+                .stop
+                .map(|stop| touchdown_scene::Stop::rigid(stop.travel)),
         });
         let race = self.race.map(|race| reference::coupled::Race {
             inertia: race.inertia,

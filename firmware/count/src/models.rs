@@ -2,7 +2,7 @@
 
 use touchdown_models::{
     Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
-    Point, RaceConfig, Scheme, Verlet, Whole,
+    Point, RaceConfig, Scheme, StopConfig, Verlet, Whole,
 };
 use touchdown_rotor::Precision;
 
@@ -79,7 +79,7 @@ fn support<R: Precision>(step: u32) -> Whole<R, 1, 1> {
         damping: 320.0,
         vertical: None,
         friction: 0.0,
-        travel: Some(0.5e-3),
+        stop: Some(StopConfig::rigid(0.5e-3)),
     });
     seat.race = Some(RaceConfig {
         inertia: 3e-5,

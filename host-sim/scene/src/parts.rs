@@ -57,7 +57,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     };
     use Removable::{BallBearing, Base, Bending, Magnets, Mount, Stop, Tilt, Unbalance};
     let (s, t, c) = (Fidelity::Support, Fidelity::TwoPlane, Fidelity::Coupled);
-    let stop = support.is_some_and(|it| it.travel.is_some());
+    let stop = support.is_some_and(|it| it.stop.is_some());
     let is = |of: fn(&TwoPlane) -> bool| two_plane.is_some_and(of);
     let turns = is(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0);
     part(Mount, support.is_some(), s, "[support]");

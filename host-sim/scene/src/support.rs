@@ -25,8 +25,35 @@ pub struct Support {
     pub vertical: Option<[f64; 2]>,
     /// Dry friction of the ring on its seat, against its motion, N.
     pub friction: f64,
-    /// Of the ring to the hard stop, radial, m.
-    pub travel: Option<f64>,
+    /// What ends the ring's way, if anything does.
+    pub stop: Option<Stop>,
+}
+
+/// A stop of a ring, without friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Of the ring to it, radial, m.
+    pub travel: f64,
+    /// Of a stop that gives way and gives all back, N/m; a rigid one gives nothing back.
+    pub stiffness: Option<f64>,
+}
+
+impl Stop {
+    /// One that does not give way.
+    pub const fn rigid(travel: f64) -> Self {
+        Self {
+            travel,
+            stiffness: None,
+        }
+    }
+
+    /// That of two rings that are one.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self {
+            travel: self.travel.min(other.travel),
+            stiffness: self.stiffness.zip(other.stiffness).map(|(a, b)| a + b),
+        }
+    }
 }
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
@@ -83,6 +110,7 @@ pub(super) struct SupportTable {
     #[serde(default)]
     dry_friction_n: f64,
     travel_mm: Option<f64>,
+    stop_stiffness_n_m: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -123,7 +151,6 @@ impl SupportTable {
             stiffness("vertical_stiffness_n_m", spring.unwrap_or(along_x[0]))?,
             damping("vertical_damping_n_s_m", damper.unwrap_or(along_x[1]))?,
         ];
-        let travel = |travel| KEYS.within("travel_mm", travel, limits::TRAVEL_MM);
         Ok(Support {
             mass: KEYS.within("mass_kg", self.mass_kg, limits::MASS_KG)?,
             stiffness: along_x[0],
@@ -134,8 +161,24 @@ impl SupportTable {
                 self.dry_friction_n,
                 limits::DRY_FRICTION_N,
             )?,
-            travel: self.travel_mm.map(travel).transpose()?.map(|it| MILLI * it),
+            stop: self.stop(KEYS)?,
         })
+    }
+
+    fn stop(&self, keys: Keys) -> Result<Option<Stop>, Diagnostic> {
+        const KEY: &str = "stop_stiffness_n_m";
+        let stiffness = |it| keys.within(KEY, it, limits::STIFFNESS_N_M);
+        let stiffness = self.stop_stiffness_n_m.map(stiffness).transpose()?;
+        let Some(travel) = self.travel_mm else {
+            return match stiffness {
+                Some(_) => Err(keys.broken(KEY, "stop_stiffness_n_m needs travel_mm")),
+                None => Ok(None),
+            };
+        };
+        Ok(Some(Stop {
+            travel: MILLI * keys.within("travel_mm", travel, limits::TRAVEL_MM)?,
+            stiffness,
+        }))
     }
 }
 

@@ -88,8 +88,8 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
         vertical: (a.vertical.is_some() || b.vertical.is_some())
             .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
         friction: a.friction + b.friction,
-        travel: match (a.travel, b.travel) {
-            (Some(a), Some(b)) => Some(a.min(b)),
+        stop: match (a.stop, b.stop) {
+            (Some(a), Some(b)) => Some(a.with(b)),
             (a, b) => a.or(b),
         },
     })
@@ -131,8 +131,10 @@ impl TwoPlane {
         let modes = self.modes.iter().map(|it| it.speed);
         let mounts = self.rings.iter().filter_map(|it| it.support);
         let mounts = mounts.flat_map(|it| {
-            it.axes()
-                .map(|[spring, damper]| (spring / it.mass).sqrt().max(damper / it.mass))
+            let stop = it.stop.and_then(|it| it.stiffness).unwrap_or(0.0);
+            it.axes().map(|[spring, damper]| {
+                f64::max(((spring + stop) / it.mass).sqrt(), damper / it.mass)
+            })
         });
         let base = self.base.map(|it| it.rate);
         modes.chain(mounts).chain(base).fold(spin.abs(), f64::max)

@@ -14,7 +14,7 @@ mod moreau;
 pub use coupled::{
     ActuatorConfig, BaseConfig, CompliantConfig, CompliantShape, Coupled, CoupledConfig,
     CoupledEnergy, CoupledState, Load, ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion,
-    RingConfig, RingEvent, RingMotion, SeatConfig, UnbalanceConfig, Whole,
+    RingConfig, RingEvent, RingMotion, SeatConfig, StopConfig, UnbalanceConfig, Whole,
 };
 pub use hertz::{
     Compliance, Euler, Hertz, HertzConfig, HertzState, Line, LinePower, Materials, Pairing, Point,

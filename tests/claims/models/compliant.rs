@@ -1,7 +1,7 @@
 //! Walls that give way, in the coupled model: Hertz' closed forms, what is kept, and restitution.
 
 use touchdown_models::{
-    CompliantConfig, CompliantShape, Coupled, CoupledConfig, CoupledState, MountConfig, Placement,
+    CompliantConfig, CompliantShape, Coupled, CoupledConfig, CoupledState, MountConfig, Placement, StopConfig,
 };
 use touchdown_rotor::{Change, Precision, Pulse};
 use touchdown_tests::rotors::{built, ring, rotor};
@@ -120,7 +120,7 @@ fn a_fall_ends_in_permanent_contact() {
                 damping: 3.0,
                 vertical: None,
                 friction: 0.2,
-                travel: Some(0.05),
+                stop: Some(StopConfig::rigid(0.05)),
             });
             seat
         });

@@ -2,7 +2,7 @@
 
 use touchdown_lab::limits::machine;
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, MountConfig, Placement,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, MountConfig, Placement, StopConfig,
     RaceConfig,
 };
 use touchdown_rotor::{Change, Precision, Touch};
@@ -26,7 +26,7 @@ fn mount(mass: f64, stiffness: f64, damping: f64, travel: Option<f64>) -> Option
         damping,
         vertical: None,
         friction: 0.0,
-        travel,
+        stop: travel.map(StopConfig::rigid),
     })
 }
 

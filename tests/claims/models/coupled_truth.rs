@@ -37,7 +37,7 @@ fn cut(scene: &mut Scene) -> usize {
 /// Rate at which the rotor that strikes a ring on its stop drives it round there, rad/s.
 fn round(scene: &Scene, history: &History) -> f64 {
     let rings = scene.two_plane.iter().flat_map(|it| &it.rings);
-    let travels = rings.filter_map(|it| it.support?.travel);
+    let travels = rings.filter_map(|it| Some(it.support?.stop?.travel));
     let speeds = history.impacts.iter().map(|it| it.normal_speed);
     speeds.fold(0.0, f64::max) / travels.fold(f64::INFINITY, f64::min)
 }

@@ -2,7 +2,7 @@
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use touchdown_models::{Coupled, CoupledConfig, CoupledState, MountConfig, Placement};
+use touchdown_models::{Coupled, CoupledConfig, CoupledState, MountConfig, Placement, StopConfig};
 use touchdown_tests::rotors::{built, ring, rotor};
 
 /// Of the ring, over the rotor's: it is left behind by a rotor that bounces off it.
@@ -16,7 +16,7 @@ const MOUNT: MountConfig<f64> = MountConfig {
     damping: 0.0,
     vertical: None,
     friction: 0.0,
-    travel: None,
+    stop: None,
 };
 
 /// One ring at the centre of mass on this mount, no gravity, no friction, no loss.
@@ -153,7 +153,7 @@ fn dry_friction_gives_no_energy() {
             stiffness: decades(-1.0, 4.0),
             vertical: Some([decades(-1.0, 4.0), 0.0]),
             friction: decades(-2.0, 1.0),
-            travel: Some(decades(-2.0, 0.0)),
+            stop: Some(StopConfig::rigid(decades(-2.0, 0.0))),
             ..MOUNT
         };
         let mut config = one(mount, decades(-4.0, -1.0));
@@ -187,7 +187,7 @@ fn dry_friction_holds_a_ring_that_is_pressed_onto_its_stop() {
         stiffness: 1.0,
         damping: 2.0,
         friction: 0.5,
-        travel: Some(0.05),
+        stop: Some(StopConfig::rigid(0.05)),
         ..MOUNT
     };
     let mut config = one(mount, 2e-3);

@@ -38,7 +38,7 @@ fn a_held_rotor_and_its_ring_follow_the_base() {
         config.gravity = [0.0; 2];
         config.magnets[0] = ActuatorConfig { stiffness: -HOLDS, ..ActuatorConfig::default() };
         config.rings[0].mount =
-            Some(MountConfig { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, vertical: None, friction: 0.0, travel: None });
+            Some(MountConfig { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, vertical: None, friction: 0.0, stop: None });
         config.base = Some(BaseConfig { amplitude: AMPLITUDE, rate: RATE, phase: PHASE });
         let model = built::<1, 2>(&config);
         let mut state = model.start(&Placement::default(), 0.0, |_| {}).expect("valid");
@@ -72,7 +72,7 @@ fn the_reference_follows_it_to_rounding() {
         restitution: 1.0,
         gravity: 0.0,
     };
-    let mount = Support { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, vertical: None, friction: 0.0, travel: None };
+    let mount = Support { mass: 0.2, stiffness: 0.2 * SPRUNG, damping: 0.0, vertical: None, friction: 0.0, stop: None };
     let mut machine = CoupledMachine::level(&rotor, Some(mount), None);
     let magnet = Magnet { place: 0.0, stiffness: -HOLDS, force: [0.0; 2], damping: 0.0, limit: None, on: None };
     machine.magnets = vec![magnet];

@@ -174,7 +174,7 @@ fn a_rigid_support_is_none() {
         damping: 0.0,
         vertical: None,
         friction: 0.0,
-        travel: None,
+        stop: None,
     });
     let ours = run(&scene).unwrap().histories.whole;
     for (a, b) in ours.impacts.iter().zip(&truth.impacts).take(20) {

@@ -198,7 +198,7 @@ fn the_energy_ledger_closes_to_rounding() {
 #[test]
 fn f32_follows_f64() {
     for (name, fall, time, _) in drops(1e-5) {
-        if fall.mount.is_some_and(|mount| mount.travel.is_some()) {
+        if fall.mount.is_some_and(|mount| mount.stop.is_some()) {
             continue;
         }
         let ((wide, a), (narrow, b)) = (fall.end::<f64>(time), fall.end::<f32>(time));

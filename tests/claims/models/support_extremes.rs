@@ -34,7 +34,7 @@ fn check<R: Precision>(fall: &Fall, time: f64, limits: &Limits) -> Result<u32, S
     fall.follow::<R>(time, |now| {
         let (energy, place) = (&now.energy, now.displacement);
         let first: f64 = *first.get_or_insert(energy.total());
-        let travel = fall.mount.and_then(|mount| mount.travel);
+        let travel = fall.mount.and_then(|mount| mount.stop).map(|stop| stop.travel);
         let distance = place[0].hypot(place[1]) / fall.rigid.clearance - 1.0;
         let stop = travel.map_or(0.0, |travel| now.ring[0].hypot(now.ring[1]) / travel - 1.0);
         let held = now.touch != Touch::None;

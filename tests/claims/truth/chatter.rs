@@ -60,7 +60,7 @@ fn a_rotor_leaves_a_damped_ring_where_the_force_ends() {
             for speed in [0.02, 0.05, 0.1] {
                 let both = rotor + ring;
                 let damping = 2.0 * part * f64::sqrt(stiffness * both);
-                let mount = Support { mass: ring, stiffness, damping, vertical: None, friction: 0.0, travel: None };
+                let mount = Support { mass: ring, stiffness, damping, vertical: None, friction: 0.0, stop: None };
                 let start = Start::Free { position: [0.0, -CLEARANCE], velocity: [0.0, -speed] };
                 let mut reference = falling(0.0, Some(mount), &start);
 
@@ -125,7 +125,7 @@ fn stiff_mounts_are_followed_for_a_second() {
     for stiffness in [1e7, 1e8, 1e9] {
         for damping in [200.0, 2e3, 2e4] {
             let mut scene = Scene::load("rig").expect("a built-in scene");
-            scene.support = Some(Support { mass: 0.2, stiffness, damping, vertical: None, friction: 0.0, travel: None });
+            scene.support = Some(Support { mass: 0.2, stiffness, damping, vertical: None, friction: 0.0, stop: None });
             scene.run.duration = 1.0;
             let mut truth = Truth::new(&scene);
             truth.advance(1.0);

@@ -7,7 +7,7 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::Reference;
-use touchdown_scene::{Magnet, Support};
+use touchdown_scene::{Magnet, Stop, Support};
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Ring, Unbalance};
 
 const SPIN: f64 = 1000.0 * PI;
@@ -15,7 +15,7 @@ const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
-    vertical: None, friction: 0.0, travel: None,
+    vertical: None, friction: 0.0, stop: None,
 };
 const TRANSVERSE_INERTIA: f64 = 0.03;
 
@@ -273,7 +273,7 @@ fn hard_stop_holds_the_ring() {
     let travel = 4e-5;
     let mount = Support {
         stiffness: 2e5,
-        vertical: None, friction: 0.0, travel: Some(travel),
+        vertical: None, friction: 0.0, stop: Some(Stop::rigid(travel)),
         ..MOUNT
     };
     let start = CoupledStart::default();
@@ -669,7 +669,7 @@ fn heavy_rings_are_fixed_ones() {
         mass: 1e15,
         stiffness: 1e12,
         damping: 0.0,
-        vertical: None, friction: 0.0, travel: Some(1e-4),
+        vertical: None, friction: 0.0, stop: Some(Stop::rigid(1e-4)),
     };
     let race = Race {
         inertia: 1e15,
@@ -760,7 +760,7 @@ proptest! {
         gravity in prop_oneof![4 => Just(9.81), 1 => Just(0.0)],
         spin in prop_oneof![Just(0.0), -20.0..20.0_f64, -3e3..3e3_f64],
         (mass, stiffness, damping) in (-2.0..1.0_f64, 3.0..8.0_f64, 0.0..1.0_f64),
-        travel in prop_oneof![Just(None), (1e-5..3e-4_f64).prop_map(Some)],
+        stop in prop_oneof![Just(None), (1e-5..3e-4_f64).prop_map(|it| Some(Stop::rigid(it)))],
         (inertia, dry_drag, viscous_drag) in (-6.0..-2.0_f64, prop_oneof![Just(0.0), 0.0..0.1_f64], 0.0..1e-4_f64),
         (has_mount, has_race) in (any::<bool>(), any::<bool>()),
         (angle, part, vx, vy) in (-PI..PI, 0.0..1.0_f64, -0.2..0.2_f64, -0.2..0.2_f64),
@@ -768,7 +768,7 @@ proptest! {
         let rotor = Machine { friction, restitution, gravity, ..RIG };
         let (mass, stiffness) = (10_f64.powf(mass), 10_f64.powf(stiffness));
         let damping = damping * (mass * stiffness).sqrt();
-        let mount = has_mount.then_some(Support { mass, stiffness, damping, vertical: None, friction: 0.0, travel });
+        let mount = has_mount.then_some(Support { mass, stiffness, damping, vertical: None, friction: 0.0, stop });
         let race = has_race.then_some(Race { inertia: 10_f64.powf(inertia), dry_drag, viscous_drag });
         let out = part * rotor.clearance;
         let start = free([out * angle.sin(), -out * angle.cos()], [vx, vy]);
@@ -782,7 +782,7 @@ proptest! {
             let (q, w) = (ring.displacement, ring.displacement_rate);
             let gap = f64::hypot(q[0], q[1]) / rotor.clearance;
             let [u, v] = ring.position;
-            let stop = travel.filter(|_| has_mount).map_or(0.0, |travel| f64::hypot(u, v) / travel);
+            let stop = stop.filter(|_| has_mount).map_or(0.0, |stop| f64::hypot(u, v) / stop.travel);
             let rubbing = rotor.radius * state.spin - (rotor.radius + rotor.clearance) * ring.race_spin;
             let size = 1.0 + rotor.radius * spin.abs();
             let slip = if friction > 0.0 { (cross(q, w) / rotor.clearance + rubbing) / size } else { 0.0 };

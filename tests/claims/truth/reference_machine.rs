@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_tests::close::{close, close_pair};
-use touchdown_scene::{Magnet, Support};
+use touchdown_scene::{Magnet, Stop, Support};
 use touchdown_truth::reference::coupled::{Bending, CoupledMachine, CoupledReference, CoupledStart, Race, Retainer, Ring, Unbalance};
 
 const CLEARANCE: f64 = 3e-4;
@@ -16,7 +16,7 @@ const MOUNT: Support = Support {
     mass: 0.4,
     stiffness: 2e6,
     damping: 300.0,
-    vertical: None, friction: 0.0, travel: None,
+    vertical: None, friction: 0.0, stop: None,
 };
 const RACE: Race = Race {
     inertia: 3e-5,
@@ -115,7 +115,7 @@ fn heavy_rings_are_rigid_ones() {
     let start = at([2e-5, 0.0], [1e-4, 2e-4]);
     let mut want = CoupledReference::new(&whole, &start, 0.1 * SPIN);
     for it in &mut whole.retainers {
-        it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, vertical: None, friction: 0.0, travel: Some(1e-4) });
+        it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, vertical: None, friction: 0.0, stop: Some(Stop::rigid(1e-4)) });
         it.race = Some(Race { inertia: 1e15, dry_drag: 1e-3, viscous_drag: 1e-3 });
     }
     let mut have = CoupledReference::new(&whole, &start, 0.1 * SPIN);
@@ -149,7 +149,7 @@ fn one_plane(mass: f64, polar_inertia: f64, mount: Support, race: Race) -> Coupl
 #[test]
 fn level_it_is_one_plane() {
     let mount = Support {
-        vertical: None, friction: 0.0, travel: Some(4e-5),
+        vertical: None, friction: 0.0, stop: Some(Stop::rigid(4e-5)),
         ..MOUNT
     };
     for places in [vec![0.0], vec![-0.1, 0.1]] {

@@ -18,7 +18,7 @@ fn mount() -> Support {
         damping: AXES[0][1],
         vertical: Some(AXES[1]),
         friction: 0.0,
-        travel: None,
+        stop: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use touchdown_base::history::{Impact, ModelEvent};
 use touchdown_base::machine::Machine;
-use touchdown_scene::Support;
+use touchdown_scene::{Stop, Support};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, PressShape};
@@ -87,7 +87,7 @@ fn a_damped_impact_leaves_with_its_restitution() {
 #[test]
 fn elastic_impacts_keep_energy() {
     let rotor = Machine { gravity: 9.81, ..ROTOR };
-    let mount = Support { mass: 0.4, stiffness: 2e6, damping: 0.0, vertical: None, friction: 0.0, travel: None };
+    let mount = Support { mass: 0.4, stiffness: 2e6, damping: 0.0, vertical: None, friction: 0.0, stop: None };
     for (press, mount) in ALL.into_iter().flat_map(|press| [(press, None), (press, Some(mount))]) {
         let start = CoupledStart { position: [1e-4, 2e-5], ..CoupledStart::default() };
         let mut reference = drop(&rotor, mount, press, &start, 0.0);
@@ -157,7 +157,7 @@ fn friction_turns_the_impact() {
 fn a_rotor_comes_to_rest_in_the_wall() {
     let rotor = Machine { friction: 0.2, restitution: 0.3, gravity: 9.81, ..ROTOR };
     let press = Press { stiffness: 1e9, slowest: 1e-3, ..HERTZ };
-    let mount = Support { mass: 0.4, stiffness: 1e6, damping: 500.0, vertical: None, friction: 5.0, travel: Some(2e-5) };
+    let mount = Support { mass: 0.4, stiffness: 1e6, damping: 500.0, vertical: None, friction: 5.0, stop: Some(Stop::rigid(2e-5)) };
     for mount in [None, Some(mount)] {
         let start = CoupledStart { position: [1e-4, 0.0], ..CoupledStart::default() };
         let mut reference = drop(&rotor, mount, press, &start, 5.0);
@@ -257,7 +257,7 @@ fn undamped_impacts_take_the_time_of_their_energy() {
 /// Against a ring that nothing holds: Newton's two bodies.
 #[test]
 fn an_impact_on_a_free_ring_keeps_momentum() {
-    let mount = Support { mass: 0.4, stiffness: 0.0, damping: 0.0, vertical: None, friction: 0.0, travel: None };
+    let mount = Support { mass: 0.4, stiffness: 0.0, damping: 0.0, vertical: None, friction: 0.0, stop: None };
     for (press, restitution) in ALL.into_iter().flat_map(|press| [(press, 0.3), (press, 1.0)]) {
         let rotor = Machine { restitution, ..ROTOR };
         let mut reference = drop(&rotor, Some(mount), press, &thrown([SPEED, 0.0]), 0.0);

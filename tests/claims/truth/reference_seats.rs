@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 use touchdown_base::machine::{Machine, Start};
-use touchdown_scene::Support;
+use touchdown_scene::{Stop, Support};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart};
@@ -17,7 +17,7 @@ const MOUNT: Support = Support {
     damping: 0.0,
     vertical: None,
     friction: 20.0,
-    travel: None,
+    stop: None,
 };
 
 fn drop(rotor: &Machine, mount: Support, start: &CoupledStart, spin: f64) -> CoupledReference {
@@ -100,7 +100,7 @@ fn a_rotors_weight_moves_the_ring_only_beyond_its_friction() {
     let start = Start::Wall { angle: 0.0, tangential: 0.0 };
     let start = CoupledStart::level(&start, ROTOR.clearance);
     for (friction, travel) in [(40.0, None), (40.0, Some(1e-5)), (20.0, None), (20.0, Some(1e-5))] {
-        let mount = Support { friction, travel, ..MOUNT };
+        let mount = Support { friction, stop: travel.map(Stop::rigid), ..MOUNT };
         let mut reference = drop(&ROTOR, mount, &start, 0.0);
         let weight = ROTOR.mass * ROTOR.gravity;
         let sag = (weight - friction).max(0.0) / MOUNT.stiffness;
@@ -125,7 +125,7 @@ fn a_rotors_weight_moves_the_ring_only_beyond_its_friction() {
 /// On the way down it meets its stop, and lies on it.
 #[test]
 fn a_ring_comes_to_rest_on_its_stop() {
-    let mount = Support { friction: 3.0, travel: Some(1e-5), stiffness: 1e5, ..MOUNT };
+    let mount = Support { friction: 3.0, stop: Some(Stop::rigid(1e-5)), stiffness: 1e5, ..MOUNT };
     let start = CoupledStart { position: [1e-4, 0.0], ..CoupledStart::default() };
     let rotor = Machine { friction: 0.01, ..ROTOR };
     let mut reference = drop(&rotor, mount, &start, 0.0);
@@ -140,7 +140,7 @@ fn a_ring_comes_to_rest_on_its_stop() {
 #[test]
 fn a_drop_on_a_seated_ring_loses_energy_only() {
     for (spin, friction) in [(0.0, 20.0), (-300.0, 20.0), (-300.0, 200.0), (1000.0, 50.0)] {
-        let mount = Support { friction, damping: 100.0, travel: Some(4e-5), vertical: Some([3e6, 50.0]), ..MOUNT };
+        let mount = Support { friction, damping: 100.0, stop: Some(Stop::rigid(4e-5)), vertical: Some([3e6, 50.0]), ..MOUNT };
         let start = CoupledStart { position: [5e-5, 2e-5], ..CoupledStart::default() };
         let mut reference = drop(&ROTOR, mount, &start, spin);
         let (mut before, mut count) = (f64::INFINITY, 0);

@@ -2,7 +2,7 @@
 
 use super::extreme::free;
 use touchdown_base::input_error::InputError;
-use touchdown_scene::{BallBearing, Model, Scene, Support};
+use touchdown_scene::{BallBearing, Model, Scene, Stop, Support};
 
 /// Longest part of a scene, s.
 const LONGEST: f64 = 0.03;
@@ -10,13 +10,13 @@ const LONGEST: f64 = 0.03;
 type Change = fn(&mut Scene);
 
 /// Name, and what differs from the rig on the support of the scene `soft-support`.
-const EXTREMES: [(&str, Change); 19] = [
+const EXTREMES: [(&str, Change); 20] = [
     ("as it is", |_| ()),
     ("support nearly rigid", |s| on(s, |it| it.stiffness = 1e12)),
     ("support of 1000 N/m", |s| {
         on(s, |it| {
             it.stiffness = 1e3;
-            it.travel = None;
+            it.stop = None;
         });
     }),
     ("undamped", |s| on(s, |it| it.damping = 0.0)),
@@ -24,7 +24,15 @@ const EXTREMES: [(&str, Change); 19] = [
     ("ring of 1 mg", |s| on(s, |it| it.mass = 1e-6)),
     ("ring of 1 t", |s| on(s, |it| it.mass = 1e3)),
     ("hard stop after 1 um", |s| {
-        on(s, |it| it.travel = Some(1e-6));
+        on(s, |it| it.stop = Some(Stop::rigid(1e-6)));
+    }),
+    ("soft stop after 1 um", |s| {
+        on(s, |it| {
+            it.stop = Some(Stop {
+                travel: 1e-6,
+                stiffness: Some(1e8),
+            });
+        });
     }),
     ("restitution 0", |s| s.retainer.restitution = 0.0),
     ("restitution 1 without friction", |s| {

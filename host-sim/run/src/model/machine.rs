@@ -326,7 +326,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
 fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> Ledger {
     let seats = seats(scene);
     let mounts = seats.iter().filter_map(|it| it.mount);
-    let stops = mounts.clone().any(|it| it.travel.is_some());
+    let stops = mounts.clone().any(|it| it.stop.is_some());
     let mounts = mounts.count() > 0;
     let races = seats.iter().any(|it| it.race.is_some());
     let gives_way = seats.iter().any(|it| it.compliant.is_some());

@@ -1,12 +1,12 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
 use touchdown_models::{
-    CompliantConfig, CompliantShape, MountConfig, RaceConfig, RingConfig, SeatConfig,
+    CompliantConfig, CompliantShape, MountConfig, RaceConfig, RingConfig, SeatConfig, StopConfig,
 };
 
 use touchdown_scene::{
     BallBearing, CompliantWall, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene,
-    TwoPlane,
+    Stop, TwoPlane,
 };
 
 /// The rotor's ends, where the rung has them.
@@ -62,12 +62,19 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
                 damping: it.damping,
                 vertical: it.vertical,
                 friction: it.friction,
-                travel: it.travel.filter(|_| has(Removable::Stop)),
+                stop: it.stop.filter(|_| has(Removable::Stop)).map(stop),
             }),
         race: ring.ball_bearing.filter(|_| has(turns)).map(race),
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
+}
+
+fn stop(stop: Stop) -> StopConfig<f64> {
+    StopConfig {
+        travel: stop.travel,
+        stiffness: stop.stiffness,
+    }
 }
 
 fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {

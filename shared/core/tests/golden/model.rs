@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use touchdown_models::{
     Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig, Moreau, MountConfig,
-    Placement, Point, RaceConfig, Verlet, Whole,
+    Placement, Point, RaceConfig, StopConfig, Verlet, Whole,
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
@@ -174,7 +174,7 @@ const MOUNT: MountConfig<f64> = MountConfig {
     damping: 320.0,
     vertical: None,
     friction: 0.0,
-    travel: Some(5e-4),
+    stop: Some(StopConfig::rigid(5e-4)),
 };
 const RACE: RaceConfig<f64> = RaceConfig {
     inertia: 3e-5,

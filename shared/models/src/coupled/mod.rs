@@ -37,7 +37,7 @@ pub use config::{
     ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
 };
 pub use energy::CoupledEnergy;
-pub use mount::MountConfig;
+pub use mount::{MountConfig, StopConfig};
 pub use race::{RaceConfig, RaceMotion};
 pub use state::{CoupledState, Load, Placement, RingEvent, RingMotion};
 pub use whole::Whole;

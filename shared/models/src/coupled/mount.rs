@@ -38,8 +38,30 @@ pub struct MountConfig<R> {
     pub vertical: Option<[R; 2]>,
     /// Dry friction of the ring on its seat, N, 0 or more.
     pub friction: R,
-    /// Way of the ring from its rest place to a hard stop, m.
-    pub travel: Option<R>,
+    /// What ends the ring's way, if anything does.
+    pub stop: Option<StopConfig<R>>,
+}
+
+/// A stop of a ring, without friction, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StopConfig<R> {
+    /// Way of the ring from its rest place to it, m.
+    pub travel: R,
+    /// Of a stop that gives way and gives all back, N/m; a rigid one gives nothing back.
+    pub stiffness: Option<R>,
+}
+
+impl<R> StopConfig<R> {
+    /// One that does not give way.
+    pub const fn rigid(travel: R) -> Self
+    where
+        R: Copy,
+    {
+        Self {
+            travel,
+            stiffness: None,
+        }
+    }
 }
 
 impl<R: Real> MountConfig<R> {
@@ -52,8 +74,12 @@ impl<R: Real> MountConfig<R> {
             positive("vertical_stiffness", stiffness)?;
             not_negative("vertical_damping", damping)?;
         }
-        self.travel
-            .map_or(Ok(()), |travel| positive("travel", travel))
+        let Some(stop) = &self.stop else {
+            return Ok(());
+        };
+        positive("travel", stop.travel)?;
+        stop.stiffness
+            .map_or(Ok(()), |it| positive("stop_stiffness", it))
     }
 }
 
@@ -253,7 +279,7 @@ impl<R: Real> Sprung<R> {
             across: axis([config.stiffness, config.damping])?,
             vertical: config.vertical.map(axis).transpose()?,
             friction: config.friction / units.mass * time / units.scales.speed,
-            travel: config.travel.map(|travel| travel / units.scales.length),
+            travel: config.stop.map(|it| it.travel / units.scales.length),
         })
     }
 

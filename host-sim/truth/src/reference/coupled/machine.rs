@@ -208,7 +208,7 @@ impl CoupledMachine {
                 near: 0.0,
                 told,
             });
-            let travel = mount.and_then(|mount| mount.travel);
+            let travel = mount.and_then(|mount| mount.stop).map(|stop| stop.travel);
             let limit = mount.map_or(0.0, |mount| mount.friction);
             let stop = travel.map(|_| self.retainers.len() + stops.len());
             seats.extend((limit > 0.0).then(|| Link {
