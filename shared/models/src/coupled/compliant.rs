@@ -26,6 +26,8 @@ pub enum CompliantShape {
     Line,
     /// [`LinePower`].
     LinePower,
+    /// In proportion to it.
+    Spring,
 }
 
 /// A wall that gives way, SI. The ring's restitution sets its damping.
@@ -58,7 +60,7 @@ pub(super) struct Compliant<R> {
 pub(super) struct SoftContact<R> {
     pub(super) since: Instant<R>,
     /// Of the damping, over depth per time.
-    rate: R,
+    pub(super) rate: R,
     /// Energy in the wall.
     pub(super) stored: R,
     pub(super) peak: R,
@@ -82,6 +84,18 @@ impl Compliant<f64> {
 }
 
 impl<R: Precision> Compliant<R> {
+    /// A spring that takes nothing: its stiffness per mass of the rotor, and the way to it.
+    pub(super) fn spring(stiffness: R, gap: R) -> Self {
+        Self {
+            shape: CompliantShape::Spring,
+            stiffness,
+            balls: None,
+            damping: R::ZERO,
+            slowest: R::ONE,
+            gap,
+        }
+    }
+
     /// `gap` is the ring's clearance over the first's.
     pub(super) fn try_new(
         config: &CompliantConfig<R>,
@@ -119,6 +133,7 @@ impl<R: Precision> Compliant<R> {
             CompliantShape::Point => law::<R, Point>(depth, self.gap),
             CompliantShape::Line => law::<R, Line<R>>(depth, self.gap),
             CompliantShape::LinePower => law::<R, LinePower<R>>(depth, self.gap),
+            CompliantShape::Spring => (depth, R::ONE),
         };
         let force = self.stiffness * power;
         [force, slope * force / depth]
@@ -158,6 +173,7 @@ impl<R: Precision> Compliant<R> {
             CompliantShape::Point => Point::parts(own, power),
             CompliantShape::Line => Line::parts(own, power),
             CompliantShape::LinePower => LinePower::parts(own, power),
+            CompliantShape::Spring => R::TWO,
         };
         let balls = self.balls.map_or(R::ZERO, |it| R::HALF * force / it);
         force * (own / parts + balls)
@@ -165,6 +181,12 @@ impl<R: Precision> Compliant<R> {
 
     /// Mean force on the way from one depth to another, and how that grows with the other.
     fn mean(&self, from: R, to: R) -> [R; 2] {
+        if from < R::ZERO && to > R::ZERO {
+            let [mean, slope] = self.mean(R::ZERO, to);
+            let share = to / (to - from);
+            let before = (R::ONE - share) / (to - from);
+            return [mean * share, slope * share + mean * before];
+        }
         let (from, inside) = (from.most(R::ZERO), to.most(R::ZERO));
         let mean = if self.balls.is_none() && self.shape == CompliantShape::Point {
             // Of d^1.5: by differences of d^2.5, of which the root of the depth is a factor.
@@ -189,6 +211,27 @@ impl<R: Precision> Compliant<R> {
         [mean, R::HALF * self.force(inside - third)[1]]
     }
 
+    /// Force towards the centre at a place, over its distance.
+    pub(super) fn pull(&self, place: Vector<R>) -> R {
+        let distance = place.length();
+        let depth = distance - self.gap;
+        if depth <= R::ZERO {
+            return R::ZERO;
+        }
+        self.force(depth)[0] / distance
+    }
+
+    /// What is stored at a place.
+    pub(super) fn stored(&self, place: Vector<R>) -> R {
+        self.energy(place.length() - self.gap)
+    }
+
+    /// Whether a place is beyond a part of the way to it.
+    pub(super) fn is_beyond(&self, place: Vector<R>, part: R) -> bool {
+        let way = part * self.gap;
+        place.square() > way * way
+    }
+
     /// A contact entered at this speed.
     pub(super) fn entered(&self, since: Instant<R>, speed: R) -> SoftContact<R> {
         SoftContact {
@@ -202,12 +245,12 @@ impl<R: Precision> Compliant<R> {
         }
     }
 
-    /// Makes the link that of the tangent of the force where the axis moves so from a place in a time; how far that is from
-    /// what it was, of the distance.
+    /// Makes the link that of the tangent of the force where what presses moves so from a place in a time, damped by the
+    /// depth's speed times `rate`; how far that is from what it was, of the distance.
     pub(super) fn linearize(
         &self,
         link: &mut Link<R>,
-        soft: &SoftContact<R>,
+        rate: R,
         (from, time): (Vector<R>, R),
         moved: Vector<R>,
     ) -> R {
@@ -218,10 +261,10 @@ impl<R: Precision> Compliant<R> {
         let deeper = after - before;
         let along = sum.dot(moved) / sum.length();
         let [mean, slope] = self.mean(before - self.gap, after - self.gap);
-        let damped = R::ONE + soft.rate * deeper / time;
+        let damped = R::ONE + rate * deeper / time;
         let factor = R::HALF * time * time * part;
         let pressed = factor * mean * damped.most(R::ZERO);
-        let stiffness = factor * part * (slope * damped + mean * soft.rate / time);
+        let stiffness = factor * part * (slope * damped + mean * rate / time);
         if pressed <= R::ZERO || stiffness <= R::ZERO {
             let off = if link.grip == Grip::Open {
                 R::ZERO

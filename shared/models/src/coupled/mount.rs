@@ -1,8 +1,9 @@
-//! What a ring stands on: a spring and a damper, along y others than along x or not, dry friction, a hard stop.
+//! What a ring stands on: a spring and a damper, along y others than along x or not, dry friction, a stop.
 //!
 //! The ring obeys M u'' = -K u - C u' by the midpoint rule: u+ - u = h (u' + u'+)/2 and forces at the
 //! middle, so an impulse P/(h/2) of the rotor moves it by P/m with m = M + h C/2 + h^2 K/4, whatever
-//! the stiffness. At its stop it is held as the axis is on its wall, without friction.
+//! the stiffness. At a rigid stop it is held as the axis is on its wall, without friction. One that gives way pushes
+//! back by its mean force on the ring's way through a stretch.
 //!
 //! An impact is shorter than a step, and meets the ring's own mass. Where the step does not resolve
 //! the ring on its spring and damper, x = h C/2 + h^2 K/4 of the same size as M or above, these take
@@ -14,9 +15,11 @@
 //! the mean motion. It stops a ring that it would turn round, and gives nothing where that turns round by itself; a ring
 //! that it holds gives way to nothing. It has no impulse in an impact.
 
+use super::compliant::Compliant;
 use super::units::Units;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::{not_negative, positive};
 use touchdown_rotor::sum::Sum;
@@ -186,6 +189,14 @@ struct AxisSpring<R> {
     braced: R,
 }
 
+/// What ends the ring's way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stop<R> {
+    /// After this way.
+    Rigid(R),
+    Gives(Compliant<R>),
+}
+
 /// A ring on a spring and a damper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sprung<R> {
@@ -196,7 +207,7 @@ pub(super) struct Sprung<R> {
     vertical: Option<AxisSpring<R>>,
     /// Over the rotor's mass.
     friction: R,
-    travel: Option<R>,
+    stop: Option<Stop<R>>,
 }
 
 /// The ring's motion, and what the support has taken.
@@ -242,7 +253,10 @@ impl Sprung<f64> {
             across: axis(self.across),
             vertical: self.vertical.map(axis),
             friction: R::lit(self.friction),
-            travel: self.travel.map(R::lit),
+            stop: self.stop.map(|it| match it {
+                Stop::Rigid(travel) => Stop::Rigid(R::lit(travel)),
+                Stop::Gives(it) => Stop::Gives(it.rounded()),
+            }),
         }
     }
 }
@@ -261,7 +275,7 @@ impl<R: Real> AxisSpring<R> {
     }
 }
 
-impl<R: Real> Sprung<R> {
+impl<R: Precision> Sprung<R> {
     pub(super) fn try_new(config: &MountConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
         config.check()?;
         let time = units.scales.time;
@@ -274,12 +288,19 @@ impl<R: Real> Sprung<R> {
             ];
             AxisSpring::try_new(scaled, mass, R::HALF * units.step)
         };
+        let stop = |it: &StopConfig<R>| {
+            let travel = it.travel / units.scales.length;
+            match it.stiffness {
+                None => Stop::Rigid(travel),
+                Some(it) => Stop::Gives(Compliant::spring(it / units.mass * time * time, travel)),
+            }
+        };
         Ok(Self {
             mass,
             across: axis([config.stiffness, config.damping])?,
             vertical: config.vertical.map(axis).transpose()?,
             friction: config.friction / units.mass * time / units.scales.speed,
-            travel: config.stop.map(|it| it.travel / units.scales.length),
+            stop: config.stop.as_ref().map(stop),
         })
     }
 
@@ -311,15 +332,21 @@ impl<R: Real> Sprung<R> {
         let none = Vector::default();
         if let Some(rub @ Rub::Rests(part)) = rub {
             let moved = velocity.times(half * part);
+            let end = place + moved;
             let work = force(place + moved.times(R::HALF), none).dot(moved);
+            let (mut against, mut taken) = (force(end, none), -work);
+            if let Some(stop) = self.soft_stop() {
+                against = against + end.times(stop.pull(end));
+                taken -= stop.stored(end) - stop.stored(place);
+            }
             return Ride {
                 moved,
                 kick: none - velocity,
                 mobility: [R::ZERO; 2],
                 dry: Some(Dry {
                     rub,
-                    grip: force(place + moved, none).times(time),
-                    taken: R::HALF * self.mass * velocity.square() - work,
+                    grip: against.times(time),
+                    taken: R::HALF * self.mass * velocity.square() + taken,
                     stop: direction(place)
                         .filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
                 }),
@@ -401,9 +428,20 @@ impl<R: Real> Sprung<R> {
         }
     }
 
-    /// From rest to the stop.
+    /// From rest to the stop, where that is rigid.
     pub(super) fn travel(&self) -> Option<R> {
-        self.travel
+        match self.stop {
+            Some(Stop::Rigid(travel)) => Some(travel),
+            _ => None,
+        }
+    }
+
+    /// The stop, where that gives way.
+    pub(super) fn soft_stop(&self) -> Option<&Compliant<R>> {
+        match &self.stop {
+            Some(Stop::Gives(stop)) => Some(stop),
+            _ => None,
+        }
     }
 
     /// Work of the base's motion.
@@ -468,6 +506,7 @@ impl<R: Real> Sprung<R> {
         let moved = ride.moved + pushes;
         let rate = R::TWO / time;
         let mean = moved.times(R::ONE / time);
+        let before = state.place.value();
         state.place.add(moved);
         let [_, by_stop] = pushed;
         let rubbed = ride.rubbed(time, pushed);
@@ -479,8 +518,11 @@ impl<R: Real> Sprung<R> {
             state.velocity.add(ride.kick + pushes.times(rate));
             let damped = mean.dot_along(moved, self.each(|it| it.damping));
             state.damped.add(damped);
-            if self.travel.is_some() {
+            if self.stop.is_some() {
                 stopping = by_stop.dot_along(mean, ride.mobility.map(|it| rate / it));
+            }
+            if let Some(stop) = self.soft_stop() {
+                stopping += stop.stored(state.place.value()) - stop.stored(before);
             }
         }
         if let Some((taken, inward)) = rubbed {
@@ -492,7 +534,7 @@ impl<R: Real> Sprung<R> {
 
     /// Puts the ring onto its stop, where it is not but for rounding.
     pub(super) fn seat(&self, state: &mut SprungState<R>) {
-        let Some(travel) = self.travel else {
+        let Some(travel) = self.travel() else {
             return;
         };
         let place = state.place.value();
@@ -512,12 +554,13 @@ impl<R: Real> Sprung<R> {
         state.stopped = false;
     }
 
-    /// Kinetic, in the spring; taken by support and stop.
+    /// Kinetic, in spring and stop; taken by support and stop.
     pub(super) fn energy(&self, state: &SprungState<R>) -> [R; 4] {
         let place = state.place.value();
+        let in_stop = self.soft_stop().map_or(R::ZERO, |it| it.stored(place));
         [
             R::HALF * self.mass * state.velocity.value().square(),
-            R::HALF * place.dot_along(place, self.each(|it| it.stiffness)),
+            R::HALF * place.dot_along(place, self.each(|it| it.stiffness)) + in_stop,
             state.damped.value(),
             state.stopping.value(),
         ]

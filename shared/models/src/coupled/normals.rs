@@ -152,10 +152,18 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         changed * changed <= R::EPSILON && farthest <= R::TWO * R::lit(REACH)
     }
 
-    /// Of all walls that give way; the most.
+    /// Of all walls and stops that give way; the most.
     fn linearize_all(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> R {
         let mut most = R::ZERO;
         for (i, ring) in self.rings.iter().enumerate() {
+            let stop = ring.mount.as_ref().and_then(|it| it.soft_stop());
+            if let (Some(place), Some(stop)) = (walls.stops[i], stop) {
+                let moved = walls.links.motion(place);
+                let from = (state.ring_place(i), walls.time);
+                if let Some(link) = walls.links.get_mut(place) {
+                    most = most.most(stop.linearize(link, R::ZERO, from, moved));
+                }
+            }
             let (Some(place), Some(_)) = (walls.contacts[i], &ring.compliant) else {
                 continue;
             };

@@ -4,6 +4,7 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
+use super::compliant::Compliant;
 use super::config::MAGNETS;
 use super::links::{Grip, Link, Links};
 use super::mount::{Ride, Rub};
@@ -290,7 +291,23 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Adds the walls that hold to a passage without any.
     fn press(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
-        if !(0..N).any(|i| state.is_held(i) || state.is_stopped(i)) {
+        self.press_walls(state, passage);
+        for i in 0..N {
+            // That stop pushes only from where a stretch begins near it.
+            if let Some(stop) = self.soft_stop(passage, i)
+                && !stop.is_beyond(state.ring_place(i), R::HALF)
+                && stop.is_beyond(state.ring_place(i) + passage.ring_moved(i), R::ONE)
+            {
+                passage.solved = false;
+            }
+        }
+    }
+
+    fn press_walls(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+        let presses = |i| {
+            state.is_held(i) || state.is_stopped(i) || self.near_stop(state, passage, i).is_some()
+        };
+        if !(0..N).any(presses) {
             return;
         }
         let mut walls = Walls::new(passage.time);
@@ -334,7 +351,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 && link.grip != Grip::Open
             {
                 passage.pushed[i][1] = ride.pushed(link.push());
-                passage.stopped[i] = true;
+                passage.stopped[i] = state.is_stopped(i);
             }
         }
         for k in 0..Q {
@@ -344,6 +361,25 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             passage.moved[k] = passage.moved[k] + more;
             passage.kick[k] = passage.kick[k] + more.times(rate);
         }
+    }
+
+    /// The stop that gives way of a ring that dry friction does not hold.
+    fn soft_stop(&self, free: &Passage<R, N, Q>, i: usize) -> Option<&Compliant<R>> {
+        let mount = self.rings[i].mount.as_ref()?;
+        mount.soft_stop().filter(|_| !free.rides[i].rests())
+    }
+
+    /// The same, where the ring may press on it.
+    pub(super) fn near_stop(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        free: &Passage<R, N, Q>,
+        i: usize,
+    ) -> Option<&Compliant<R>> {
+        let (stop, place) = (self.soft_stop(free, i)?, state.ring_place(i));
+        let goes_beyond = || stop.is_beyond(place + free.rides[i].moved, R::ONE);
+        let presses = || state.is_held(i) || stop.is_beyond(place, R::ONE) || goes_beyond();
+        (stop.is_beyond(place, R::HALF) && presses()).then_some(stop)
     }
 
     /// The wall of a ring that the rotor is held by; `turning` is the speed of the inner ring.
@@ -387,7 +423,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return R::ZERO;
         };
         let from = self.within(state, i);
-        compliant.linearize(link, soft, (from, time), moved)
+        compliant.linearize(link, soft.rate, (from, time), moved)
     }
 
     /// Adds the walls that hold at the start, with what moves in them.
@@ -407,10 +443,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 self.linearize(state, i, free.time, &mut link, moved);
                 walls.contacts[i] = Some(walls.links.add(link));
             }
-            if state.is_stopped(i) && !free.rides[i].rests() {
+            let soft = self.near_stop(state, free, i);
+            if soft.is_some() || (state.is_stopped(i) && !free.rides[i].rests()) {
                 let place = state.ring_place(i);
                 let normal = place.times(R::ONE / place.length());
-                let link = Link::new(normal, free.rides[i].moved);
+                let mut link = Link::new(normal, free.rides[i].moved);
+                if let Some(stop) = soft {
+                    let moved = link.free;
+                    stop.linearize(&mut link, R::ZERO, (place, free.time), moved);
+                }
                 walls.stops[i] = Some(walls.links.add(link));
             }
         }
