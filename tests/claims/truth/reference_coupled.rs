@@ -760,7 +760,8 @@ proptest! {
         gravity in prop_oneof![4 => Just(9.81), 1 => Just(0.0)],
         spin in prop_oneof![Just(0.0), -20.0..20.0_f64, -3e3..3e3_f64],
         (mass, stiffness, damping) in (-2.0..1.0_f64, 3.0..8.0_f64, 0.0..1.0_f64),
-        stop in prop_oneof![Just(None), (1e-5..3e-4_f64).prop_map(|it| Some(Stop::rigid(it)))],
+        stop in prop_oneof![Just(None), (1e-5..3e-4_f64).prop_map(|it| Some(Stop::rigid(it))),
+                            (1e-5..3e-4_f64, 3.0..12.0_f64).prop_map(|(travel, it)| Some(Stop { travel, stiffness: Some(10_f64.powf(it)) }))],
         (inertia, dry_drag, viscous_drag) in (-6.0..-2.0_f64, prop_oneof![Just(0.0), 0.0..0.1_f64], 0.0..1e-4_f64),
         (has_mount, has_race) in (any::<bool>(), any::<bool>()),
         (angle, part, vx, vy) in (-PI..PI, 0.0..1.0_f64, -0.2..0.2_f64, -0.2..0.2_f64),
@@ -782,7 +783,7 @@ proptest! {
             let (q, w) = (ring.displacement, ring.displacement_rate);
             let gap = f64::hypot(q[0], q[1]) / rotor.clearance;
             let [u, v] = ring.position;
-            let stop = stop.filter(|_| has_mount).map_or(0.0, |stop| f64::hypot(u, v) / stop.travel);
+            let stop = stop.filter(|stop| has_mount && stop.stiffness.is_none()).map_or(0.0, |stop| f64::hypot(u, v) / stop.travel);
             let rubbing = rotor.radius * state.spin - (rotor.radius + rotor.clearance) * ring.race_spin;
             let size = 1.0 + rotor.radius * spin.abs();
             let slip = if friction > 0.0 { (cross(q, w) / rotor.clearance + rubbing) / size } else { 0.0 };

@@ -15,7 +15,7 @@ use super::soft::Soft;
 use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, System};
 use touchdown_base::machine::Machine;
-use touchdown_scene::{Base, Magnet, Support};
+use touchdown_scene::{Base, Magnet, Stop, Support};
 
 /// Distance from its stop, in clearances or travels, at which a ring that the rotor strikes is on it.
 const AT_STOP: f64 = 1e-3;
@@ -46,8 +46,8 @@ pub struct Race {
     pub viscous_drag: f64,
 }
 
-/// A ring and what holds it; without mount it is fixed, without race it doesn't turn. The mount's hard stop has neither
-/// friction nor rebound.
+/// A ring and what holds it; without mount it is fixed, without race it doesn't turn. The mount's stop has no friction;
+/// a rigid one has no rebound, and one that gives way gives all back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retainer {
     /// Place, gap and contact.
@@ -77,6 +77,18 @@ impl Retainer {
                 restitution,
             },
         }
+    }
+}
+
+/// Of a ring's stop.
+fn at_stop(stop: Stop) -> Hold {
+    match stop.stiffness {
+        Some(stiffness) => Hold::Soft(Soft::stop(stop.travel, stiffness)),
+        None => Hold::Wall {
+            clearance: stop.travel,
+            friction: 0.0,
+            restitution: 0.0,
+        },
     }
 }
 
@@ -208,25 +220,25 @@ impl CoupledMachine {
                 near: 0.0,
                 told,
             });
-            let travel = mount.and_then(|mount| mount.stop).map(|stop| stop.travel);
+            let stop = mount.and_then(|mount| mount.stop);
             let limit = mount.map_or(0.0, |mount| mount.friction);
-            let stop = travel.map(|_| self.retainers.len() + stops.len());
+            let rigid = stop.filter(|stop| stop.stiffness.is_none());
+            let number = rigid.map(|_| self.retainers.len() + stops.len());
             seats.extend((limit > 0.0).then(|| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
-                hold: Hold::Seat { limit, stop },
+                hold: Hold::Seat {
+                    limit,
+                    stop: number,
+                },
                 near: 0.0,
                 told: with(none.clone(), body, 1.0),
             }));
-            stops.extend(travel.map(|travel| Link {
+            stops.extend(stop.map(|stop| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
-                hold: Hold::Wall {
-                    clearance: travel,
-                    friction: 0.0,
-                    restitution: 0.0,
-                },
-                near: AT_STOP * ring.clearance.min(travel),
+                hold: at_stop(stop),
+                near: rigid.map_or(0.0, |stop| AT_STOP * ring.clearance.min(stop.travel)),
                 told: with(none.clone(), body, 1.0),
             }));
             let dry = race.map_or(0.0, |race| race.dry_drag);

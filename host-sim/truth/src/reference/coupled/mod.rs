@@ -14,7 +14,7 @@
 //!
 //! A wall may give way instead: then it has a force, and no impulse; of such a wall only impacts are told, without
 //! impulse. Its force is a series by the law that its compliance obeys. A run ends where a line is pressed deeper than its
-//! law goes: it counts as too long.
+//! law goes: it counts as too long. A ring's stop may give way too: a spring, which gives all back.
 //!
 //! Impacts of links that touch at one moment are solved together: Gauss-Seidel passes find who presses
 //! and who sticks, and then all are one linear system. Three walls on one straight axis can share a load in many ways; then the forces of those

@@ -1,7 +1,8 @@
 //! Dry friction between a ring and the housing that it lies on, in any direction of the plane.
 //!
-//! At rest the ring is held by as much as it takes, up to the limit. A ring on its hard stop is held along the stop only:
-//! what presses it on the stop is the stop's. The sliding ring is braked by the limit, against its motion.
+//! At rest the ring is held by as much as it takes, up to the limit. A ring on its rigid stop is held along the stop only:
+//! what presses it on the stop is the stop's. One that gives way pushes the ring as its mount does. The sliding ring is
+//! braked by the limit, against its motion.
 //!
 //! Cut-off: it comes to rest where it is slower than 1e-7 of the unit of speed, and sets off with twice that, in the
 //! direction in which it pulled. Where it is not held at that speed it goes on so. The direction of a slow slide follows

@@ -4,9 +4,10 @@
 //! coefficient of restitution. Friction is Coulomb's, on that force.
 //!
 //! Cut-off: F has no series at 0, so the force is 0 up to a depth of 1e-9 of the clearance, and again below half of it.
+//! That of a ring's stop has one: it has no cut-off.
 
 use super::jet::Jet;
-use super::press::Press;
+use super::press::{Press, PressShape};
 use super::tape::Term;
 
 /// Depth from which the wall presses, in clearances.
@@ -30,6 +31,8 @@ pub struct Soft {
     damping: f64,
     /// Of what is in the wall: a over the speed at which it entered, s/m.
     within: Option<f64>,
+    /// Whether it is a ring's stop.
+    pub is_stop: bool,
 }
 
 impl Soft {
@@ -41,6 +44,21 @@ impl Soft {
             press,
             damping: damping(restitution),
             within: None,
+            is_stop: false,
+        }
+    }
+
+    /// A ring's stop: a spring that gives all back, without friction.
+    pub fn stop(travel: f64, stiffness: f64) -> Self {
+        let spring = Press {
+            shape: PressShape::Power { exponent: 1.0 },
+            stiffness,
+            balls: None,
+            slowest: 1.0,
+        };
+        Self {
+            is_stop: true,
+            ..Self::new(travel, 0.0, 1.0, spring)
         }
     }
 
@@ -61,12 +79,14 @@ impl Soft {
 
     /// Radius at which it is entered, m.
     pub fn entry(&self) -> f64 {
-        self.clearance * (1.0 + ENTRY)
+        let cut_off = if self.is_stop { 0.0 } else { ENTRY };
+        self.clearance * (1.0 + cut_off)
     }
 
-    /// Falls below zero where it is left.
+    /// Falls below zero where it is left; in clearances.
     pub fn exit(&self, depth: Jet) -> Jet {
-        depth + Jet::constant(-EXIT * self.clearance)
+        let cut_off = if self.is_stop { 0.0 } else { EXIT };
+        depth * (1.0 / self.clearance) - Jet::constant(cut_off)
     }
 
     /// Energy stored in it at a distance (m) from its centre, J.
@@ -90,7 +110,11 @@ impl Soft {
 
     /// Force at a depth, N, without damping.
     pub fn spring<'t>(&self, depth: Term<'t>) -> Term<'t> {
-        depth.pressed(&self.press)
+        if self.is_stop {
+            depth * self.press.stiffness
+        } else {
+            depth.pressed(&self.press)
+        }
     }
 }
 

@@ -20,6 +20,8 @@ pub struct SoftForce<'t> {
     pub spring: Term<'t>,
     /// N.
     pub normal: Term<'t>,
+    /// Whether it is a ring's stop.
+    pub is_stop: bool,
     rate: Term<'t>,
     inward: [Term<'t>; 2],
     along: [Term<'t>; 2],
@@ -60,6 +62,7 @@ impl<'t> SoftForce<'t> {
             slip: passing + of.turning(speed),
             spring,
             normal,
+            is_stop: soft.is_stop,
             rate,
             inward: [-x, -y],
             along,

@@ -158,7 +158,7 @@ impl Step {
             step.seat(system, &seat, modes[seat.link], held, bounds.slowest);
         }
         for it in &forces.pressed {
-            step.pressed(system, it, modes[it.link], &forces, ticks);
+            step.pressed(system, it, modes[it.link], &forces, (ticks, lateral));
         }
         for (number, pull) in surroundings.magnets.iter().enumerate() {
             step.cut_off(number, pull, [place, speed, &pushes]);
@@ -228,11 +228,16 @@ impl Step {
         let unit = 1.0 / distance;
         let q = link.lateral(&self.place).map(|q| q * unit);
         let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
-        let [place, speed, push] = sizes.lateral.map(|size| size * unit);
+        let rounding = self.gap_rounding(distance, sizes.lateral);
+        self.earlier(&gap, rounding, Ending::Touch(index));
+    }
+
+    /// Of a gap at this distance, and in parts of it.
+    fn gap_rounding(&self, distance: f64, lateral: [f64; 3]) -> [f64; 3] {
+        let [place, speed, push] = lateral.map(|size| size / distance);
         let way = speed * self.span;
         let pushed = push * self.span * self.span;
-        let tolerances = [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size);
-        self.earlier(&gap, tolerances, Ending::Touch(index));
+        [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size)
     }
 
     fn pressed(
@@ -241,12 +246,13 @@ impl Step {
         it: &SoftForce,
         mode: Mode,
         forces: &Forces,
-        ticks: f64,
+        (ticks, lateral): (f64, [f64; 3]),
     ) {
         let link = &system.links[it.link];
         let Hold::Soft(soft) = link.hold else { return };
         let jet = |of: Term| of.jet().scaled(ticks);
-        self.earlier(&soft.exit(jet(it.depth)), [0.0; 3], Ending::Left(it.link));
+        let rounding = self.gap_rounding(soft.clearance, lateral);
+        self.earlier(&soft.exit(jet(it.depth)), rounding, Ending::Left(it.link));
         let rounding = CUT_ROUNDING * it.push.size();
         let push = jet(it.push);
         if mode == Mode::Flight {
@@ -322,7 +328,8 @@ fn clock(system: &System, modes: &[Mode], speed: &[f64], forces: &Forces) -> f64
         let acceleration = forces.acceleration.iter().map(Term::value);
         seat.time(system, speed, &acceleration.collect::<Vec<f64>>())
     });
-    let presses = forces.pressed.iter().map(SoftForce::time);
+    let curved = forces.pressed.iter().filter(|it| !it.is_stop);
+    let presses = curved.map(SoftForce::time);
     let least = slides.chain(presses).fold(1.0, f64::min);
     least.log2().floor().exp2()
 }
@@ -354,7 +361,8 @@ fn ticks(
         .chain(pressed().map(|it| it.link))
         .flat_map(|link| system.links[link].lateral(speed))
         .map(|jet| reach(&jet, SLIDES * bounds.speed));
-    let presses = pressed().map(|it| reach(&it.spring.jet(), PRESSES * it.spring.value()));
+    let curved = pressed().filter(|it| !it.is_stop);
+    let presses = curved.map(|it| reach(&it.spring.jet(), PRESSES * it.spring.value()));
     places
         .chain(slides)
         .chain(presses)

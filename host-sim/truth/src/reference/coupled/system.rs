@@ -37,7 +37,7 @@ pub enum Hold {
     Seat {
         /// N.
         limit: f64,
-        /// Number of the ring's hard stop.
+        /// Number of the ring's rigid stop.
         stop: Option<usize>,
     },
 }
@@ -51,7 +51,7 @@ pub struct Link {
     pub arms: Vec<f64>,
     /// What holds it.
     pub hold: Hold,
-    /// Of a stop: distance from it within which a ring that is struck towards it is at rest on it, m; else 0.
+    /// Of a rigid stop: distance from it within which a ring that is struck towards it is at rest on it, m; else 0.
     pub near: f64,
     /// The position told in happenings: the part that each body has in it.
     pub told: Vec<f64>,
