@@ -19,8 +19,9 @@ use crate::model::{self, ModelRun};
 const NUDGE: f64 = 16.0 * f64::EPSILON;
 /// Errors beyond this, in T or V, are those of another course.
 const OTHER: f64 = 0.1;
-/// Longest part of a run by steps that is run again, s.
+/// Longest run by steps that is run again, s, and most work of it: the other runs take five times as much.
 const LONGEST: f64 = 1.0;
+const MOST_WORK: u64 = 1_000_000;
 
 /// Of a run: part of its step, and of its distance that counts as error. An error of the first order is 4/3 of the distance
 /// to a quarter of the step. The parts of the longer steps are chosen: they show what the shorter ones miss alike.
@@ -96,7 +97,7 @@ fn is_unproven(scene: &Scene) -> bool {
 pub fn estimate(scene: &Scene, run: &ModelRun) -> Option<RunAccuracy> {
     let (history, rings) = (&run.histories.whole, &run.histories.rings);
     let stepped = scene.model.rung != Fidelity::Rigid;
-    let long = stepped && scene.run.duration > LONGEST;
+    let long = stepped && (scene.run.duration > LONGEST || run.work > MOST_WORK);
     if run.given_up.is_some() || long || is_unproven(scene) || !scene.step_is_short() {
         return None;
     }

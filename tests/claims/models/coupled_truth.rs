@@ -4,7 +4,7 @@
 use touchdown_base::history::{History, Impact};
 use touchdown_lab::limits::machine;
 use touchdown_run::model;
-use touchdown_scene::Scene;
+use touchdown_scene::{Ring, Scene, Stop};
 use touchdown_tests::growth::{apart, growth, unit_speed};
 
 /// Of the model, s.
@@ -51,10 +51,15 @@ fn told(impact: &Impact, scene: &Scene) -> Impact {
     told
 }
 
-/// Rate of the fastest contact of walls that give way, rad/s.
+/// Rate of the fastest contact of walls that give way, rad/s: a light ring swings between rotor and stop.
 fn pressing(scene: &Scene) -> f64 {
-    let walls = scene.rings().iter().filter_map(|it| it.wall);
-    walls.fold(0.0, |most, it| f64::max(most, std::f64::consts::PI / it.contact_time))
+    let rate = |ring: &Ring| {
+        let own = std::f64::consts::PI / ring.wall?.contact_time;
+        let light = ring.support.filter(|it| it.stop.is_some_and(|stop| stop.stiffness.is_some()));
+        let times = light.map_or(1.0, |it| (scene.rotor.mass / it.mass).sqrt());
+        Some(own * times.max(1.0))
+    };
+    scene.rings().iter().filter_map(rate).fold(0.0, f64::max)
 }
 
 /// What dry friction takes from a ring's speed in a step, V: when it stops the ring is known to a part of a step.
@@ -162,6 +167,45 @@ fn pressed(numbers: std::ops::Range<u64>, more: &str, with: impl Fn(&Scene) -> b
     compared
 }
 
+/// All rings have a stop that is near and gives way; the drops without it are others.
+#[test]
+fn those_in_stops_that_give_way_are_too() {
+    let mut compared = Compared::default();
+    let (mut drops, mut others) = (0, 0);
+    for number in 0..130 {
+        let Some(mut scene) = scene(&machine(number)).filter(|it| it.rings().iter().any(|ring| ring.support.is_some())) else {
+            continue;
+        };
+        let stops = |scene: &mut Scene, has: bool| {
+            for ring in scene.two_plane.iter_mut().flat_map(|it| &mut it.rings) {
+                let travel = 0.03 * ring.retainer.clearance;
+                if let Some(mount) = &mut ring.support {
+                    let stiffness = Some(3.0 * mount.stiffness);
+                    mount.stop = has.then_some(Stop { travel, stiffness });
+                }
+            }
+        };
+        let (seen, halved) = (compared.seen, compared.halved.len());
+        stops(&mut scene, true);
+        let with = model::run(&scene).expect("a valid scene").histories.whole.impacts;
+        compared.compare(number, scene.clone());
+        stops(&mut scene, false);
+        let without = model::run(&scene).expect("a valid scene").histories.whole.impacts;
+        let pairs = with.iter().zip(&without).take(compared.seen - seen);
+        let off = pairs.map(|(a, b)| apart(a, b, &scene)).fold(0.0, f64::max);
+        drops += usize::from(compared.seen > seen);
+        others += usize::from(off > 1e-3);
+        // The order is that of the step in the stop.
+        if off <= 1e-3 {
+            compared.halved.truncate(halved);
+        }
+    }
+    let median = compared.order();
+    println!("{others} of {drops} drops are others without their stops");
+    assert!(compared.seen > 60 && others > 8, "{} {others}", compared.seen);
+    assert!((3.5..4.5).contains(&median), "{median}");
+}
+
 #[test]
 fn those_on_lines_are_too() {
     let mut compared = pressed(0..96, LINE, |_| true);
@@ -174,7 +218,7 @@ fn those_on_lines_are_too() {
 fn those_with_balls_are_too() {
     for (more, least) in [("", 25), (LINE, 15)] {
         let balls = |scene: &Scene| scene.rings().iter().any(|it| it.wall.is_some_and(|wall| wall.balls.is_some()));
-        let mut compared = pressed(0..240, more, balls);
+        let mut compared = pressed(0..288, more, balls);
         let median = compared.order();
         assert!(compared.seen > least, "{}", compared.seen);
         assert!((3.5..4.5).contains(&median), "{median}");

@@ -115,6 +115,7 @@ pub fn text(seed: u64) -> String {
     }
     if has(0) {
         text += &support(&mut random, mass, clearance);
+        text += &stop(seed, &text);
         text += &seat(seed, mass);
     }
     if has(1) {
@@ -157,6 +158,16 @@ fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
         let _ = writeln!(text, "travel_mm = {travel}");
     }
     text
+}
+
+/// A stop that there is gives way in one of two.
+fn stop(seed: u64, text: &str) -> String {
+    let mut random = own(seed, 8);
+    let stiffness = decades(&mut random, 4.0, 10.0);
+    match text.contains("travel_mm") && random.random() {
+        true => format!("stop_stiffness_n_m = {stiffness}\n"),
+        false => String::new(),
+    }
 }
 
 /// Another stiffness along y in one of two, dry friction of 0.01 to 10 times the weight in one of two. Numbers of their own.

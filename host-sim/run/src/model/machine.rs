@@ -14,9 +14,9 @@ use touchdown_scene::sensors::PLANES;
 use touchdown_scene::{Fidelity, RINGS, Scene};
 use touchdown_truth::{Moving, TrueState, held};
 
-/// Stretches tried beyond one a step, of all of a run, before it is given up: some seconds of processor time. What
-/// chatters on a stiff ring would take hundreds in each step.
-const MOST_TRIED: u64 = 200_000;
+/// Work ([`CoupledState::work`]) for each second of a run, and for a shorter one, before it is given up: some 5 s of
+/// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much.
+const MOST_WORK: f64 = 6e6;
 
 /// The machine after a step.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +41,8 @@ pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
     seen: Seen,
     state: CoupledState<R, N, Q>,
     done: u64,
+    /// Work in parts of steps, which are gone again.
+    aside: u64,
     told: Told<N>,
     peaks: [[f64; 2]; N],
     /// Turned by the inner rings up to the last step, rad.
@@ -107,6 +109,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             seen: Seen::new(scene, scales),
             state,
             done: 0,
+            aside: 0,
             told,
             peaks: [[0.0; 2]; N],
             turned: [0.0; N],
@@ -117,7 +120,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
     /// One step, unless the run is given up.
     fn step(&mut self) {
         let step = self.scene.model.step;
-        if self.state.tried().saturating_sub(self.done) > MOST_TRIED {
+        if self.work() as f64 > MOST_WORK * self.scene.run.duration.max(1.0) {
             self.given_up.get_or_insert(self.done as f64 * step);
             return;
         }
@@ -135,6 +138,10 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             on_step(self.view());
             self.on_step = Some(on_step);
         }
+    }
+
+    fn work(&self) -> u64 {
+        self.state.work() + self.aside
     }
 
     fn race_spins(&self, state: &CoupledState<R, N, Q>) -> [f64; N] {
@@ -262,6 +269,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
             self.of
                 .model
                 .part_step(&mut state, R::lit(fraction), ignore);
+            self.aside += state.work() - self.state.work();
         }
         Some(TrueState {
             rotor: self.seen.state(&self.of.kinematics(&state), time),
@@ -301,7 +309,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         let energy = [self.begun, model.energy(state).to_f64()];
         let mut run = ModelRun {
             given_up: self.given_up,
-            tried: state.tried(),
+            work: state.work() + self.aside,
             jammed: state.jammed().map(|it| it as f64 * scene.model.step),
             ring: None,
             seats: Vec::new(),

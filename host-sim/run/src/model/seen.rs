@@ -32,8 +32,9 @@ pub struct ModelRun {
     pub histories: Histories,
     /// When it was given up, s: it would take too long. Its end is there, and that of the stream where it moves the rotor.
     pub given_up: Option<f64>,
-    /// Stretches of motion tried, of the rungs `support`, `two-plane` and `coupled`: what it has cost.
-    pub tried: u64,
+    /// Stretches of motion tried and systems of walls solved, of the rungs `support`, `two-plane` and `coupled`: what it has
+    /// cost, each about a microsecond of a desktop's processor.
+    pub work: u64,
     /// From when on friction is left out of walls that jam, s.
     pub jammed: Option<f64>,
     /// Its energy, where the rung keeps account of it.
@@ -53,7 +54,7 @@ impl ModelRun {
                 rings: Vec::new(),
             },
             given_up: None,
-            tried: 0,
+            work: 0,
             jammed: None,
             ledger: None,
             ring: None,

@@ -123,10 +123,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 state.shortened = state.shortened.saturating_add(1);
                 break;
             }
-            state.tried = state.tried.saturating_add(1);
             let switch = self.switch(state, (whole - left) / self.step);
             let time = left.least(longest).least(self.reach(state)).least(switch);
             let passage = self.pass(state, time);
+            state.worked(1 + passage.systems);
             if !passage.solved {
                 longest = R::HALF * time;
                 continue;

@@ -101,6 +101,8 @@ pub(super) struct Links<R, const N: usize> {
     response: Pairs<Pairs<Mobility<R>, N>, N>,
     /// Of the slip, by a tangential impulse, what is not motion.
     spin: Pairs<Pairs<R, N>, N>,
+    /// Linear systems solved.
+    pub(super) systems: u32,
 }
 
 /// For each link; `N` rings have a contact and a stop each.
@@ -122,6 +124,7 @@ impl<R: Real, const N: usize> Links<R, N> {
             link: [[None; 2]; N],
             response: [[[[Mobility::default(); 2]; N]; 2]; N],
             spin: [[[[R::ZERO; 2]; N]; 2]; N],
+            systems: 0,
         }
     }
 
@@ -254,6 +257,7 @@ impl<R: Real, const N: usize> Links<R, N> {
 
     /// The impulses of links that do what they are taken to do.
     pub(super) fn solve_linear(&mut self) {
+        self.systems += 1;
         // Of each unknown: its link, and the impulse of a unit of it as (-normal, tangential).
         let mut all: Unknowns<(usize, Vector<R>), N> = [[(0, Vector::default()); 3]; N];
         let mut count = 0;

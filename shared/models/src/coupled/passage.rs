@@ -60,6 +60,8 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) rubs: bool,
     /// Whether the walls could be solved for.
     pub(super) solved: bool,
+    /// Linear systems of walls solved on the way.
+    pub(super) systems: u32,
     inverse: [[Vector<R>; Q]; Q],
 }
 
@@ -80,6 +82,7 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
             shaken: None,
             rubs: true,
             solved: true,
+            systems: 0,
             inverse: [[Vector::default(); Q]; Q],
         }
     }
@@ -316,11 +319,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             true => self.gains(state, &walls, passage.time),
             false => true,
         };
+        passage.systems += walls.links.systems;
         if smooth {
             walls = Walls::new(passage.time);
             self.add_walls(state, passage, &mut walls);
             walls.links.smooth();
-            if !self.settle(state, &mut walls) {
+            let settled = self.settle(state, &mut walls);
+            passage.systems += walls.links.systems;
+            if !settled {
                 passage.solved = false;
                 return;
             }

@@ -127,7 +127,7 @@ pub struct CoupledState<R, const N: usize, const Q: usize> {
     pub(super) base: Turns<R>,
     pub(super) books: Books<R>,
     pub(super) shortened: u32,
-    pub(super) tried: u64,
+    pub(super) work: u64,
     pub(super) taken: u64,
     pub(super) jammed: Option<u64>,
 }
@@ -138,9 +138,9 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
         self.shortened
     }
 
-    /// Stretches tried so far, one a step at least: what the run has cost.
-    pub fn tried(&self) -> u64 {
-        self.tried
+    /// Stretches tried and systems of walls solved so far: what the run has cost, each about as much.
+    pub fn work(&self) -> u64 {
+        self.work
     }
 
     /// Stretches and impacts taken so far: of each the rounding stays.
@@ -221,6 +221,10 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
         self.seats[ring].mount.is_stopped()
     }
 
+    pub(super) fn worked(&mut self, more: u32) {
+        self.work = self.work.saturating_add(u64::from(more));
+    }
+
     pub(super) fn in_step(&self, part: R) -> Instant<R> {
         Instant {
             tick: self.tick,
@@ -275,7 +279,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             base: Turns::default(),
             books: Books::default(),
             shortened: 0,
-            tried: 0,
+            work: 0,
             taken: 0,
             jammed: None,
         };

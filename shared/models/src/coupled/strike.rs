@@ -69,8 +69,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut after = *state;
         self.strike(&mut after, &mut meetings);
         let mut returns = meetings.map(|meeting| meeting.new && stays);
+        let mut systems = 0;
         if !stays {
-            self.find_returns(&after, &meetings, &mut returns);
+            systems = self.find_returns(&after, &meetings, &mut returns);
         }
         if returns.contains(&true) {
             for (meeting, returns) in meetings.iter_mut().zip(returns) {
@@ -82,6 +83,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             self.strike(&mut after, &mut meetings);
         }
         *state = after;
+        state.worked(systems);
         for (i, meeting) in meetings.iter().enumerate() {
             state.seats[i].impulse += meeting.impulse;
             if meeting.new && meeting.outward > R::CUTOFF_SPEED {
@@ -292,20 +294,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Rings whose next bounce would be no longer than a step: by a step without them.
+    /// Rings whose next bounce would be no longer than a step: by a step without them. Gives the systems that took.
     fn find_returns(
         &self,
         state: &CoupledState<R, N, Q>,
         meetings: &[Meeting<R>; N],
         returns: &mut [bool; N],
-    ) {
+    ) -> u32 {
         if !meetings.iter().any(|meeting| meeting.new) {
-            return;
+            return 0;
         }
         let time = self.step.least(self.reach(state));
         let passage = self.pass(state, time);
         if !passage.solved {
-            return;
+            return passage.systems;
         }
         for (i, ring) in self.rings.iter().enumerate() {
             if !meetings[i].new {
@@ -321,5 +323,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             let launch = -normal.dot(velocity);
             returns[i] = into > R::ZERO && R::TWO * launch * time * time <= into * self.step;
         }
+        passage.systems
     }
 }

@@ -26,7 +26,7 @@ use touchdown_scene::{Removable, Scene};
 use quantity::{COUNT, Values, values};
 
 /// Work of all drops together after which no more are done where no number of them is asked for: some 20 s of processor time.
-const WORK: f64 = 5e7;
+const WORK: f64 = 1.5e8;
 /// Drops that are done at once.
 const SOME: usize = 16;
 const MOST: usize = 200;
@@ -114,7 +114,7 @@ fn dropped(scene: &Scene) -> Option<Drop> {
     let begin = Instant::now();
     let run = model::run(scene).ok()?;
     Some(Drop {
-        work: run.tried as f64 * degrees_of_freedom(scene).0 as f64,
+        work: run.work as f64 * degrees_of_freedom(scene).0 as f64,
         values: values(&run, scene),
         seconds: begin.elapsed().as_secs_f64(),
     })
