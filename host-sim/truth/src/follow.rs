@@ -2,15 +2,16 @@
 
 use touchdown_scene::sensors::{Motion, PLANES};
 
-use super::Units;
+use super::{Units, press};
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, PressShape, Race,
-    Retainer, Ring, RingState, Unbalance,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer, Ring,
+    RingState, Unbalance,
 };
+use crate::reference::press::Press;
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
 use touchdown_base::rings::{Histories, Merge};
-use touchdown_scene::{CompliantWall, Contact, RINGS, Scene, Start, TwoPlane};
+use touchdown_scene::{RINGS, Scene, Start, TwoPlane};
 
 /// Part of the speed scale below which a rotor in contact is at rest.
 const STILL: f64 = 1e-9;
@@ -203,19 +204,6 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     }
 }
 
-fn press(wall: CompliantWall, clearance: f64) -> Press {
-    Press {
-        shape: match wall.contact {
-            Contact::Point => PressShape::Power { exponent: 1.5 },
-            Contact::LinePower { .. } => PressShape::Power { exponent: 1.0 },
-            Contact::Line { .. } => PressShape::Line { clearance },
-        },
-        stiffness: wall.stiffness,
-        balls: wall.balls,
-        slowest: wall.slowest,
-    }
-}
-
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
         ring: Ring {
@@ -227,7 +215,11 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         },
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
-        press: it.wall.map(|wall| press(wall, it.retainer.clearance)),
+        press: it.wall.map(|wall| Press {
+            balls: wall.balls,
+            slowest: wall.slowest,
+            ..press(scene, [it.radius, it.retainer.clearance], wall.stiffness)
+        }),
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {
         rate: mode.speed,

@@ -1,8 +1,10 @@
 //! The reference over a scene: what a model is judged by.
 
+mod elastic;
 mod follow;
 pub mod reference;
 
+pub use elastic::press;
 pub use follow::{Moving, TrueState, Truth, held};
 
 use touchdown_base::history::History;

@@ -12,7 +12,8 @@ use touchdown_rotor::{Change, Precision, Pulse, RigidConfig, Start, Stepper};
 use touchdown_run::model::simulate;
 use touchdown_scene::scales::compliance;
 use touchdown_scene::{Fidelity, Scene, Scheme};
-use touchdown_truth::reference::pulse::{Meeting, Press};
+use touchdown_truth::reference::press::{Press, PressShape};
+use touchdown_truth::reference::pulse::Meeting;
 
 /// Speed after a fall through the gap of the rig, m/s.
 const FALL: f64 = 0.076_720_271;
@@ -198,7 +199,7 @@ fn a_line_contact_stops_the_rotor_by_the_logarithm() {
             let f = 0.5 * (low + high);
             *(if energy(f) < 0.5 * MASS * speed * speed { &mut low } else { &mut high }) = f;
         }
-        let press = Press::Logarithm { stiffness: PLANE, clearance: GAP };
+        let press = Press { shape: PressShape::Line { clearance: GAP }, stiffness: PLANE, balls: None, slowest: 0.0 };
         let pulse = Meeting { mass: MASS, speed, restitution: 1.0, press, gravity: 0.0 }.pulse();
         near("the reference's force, N", pulse.peak_force, high, 1e-6);
         let shape = Line { length: 0.02 };

@@ -18,7 +18,8 @@ use touchdown_force::rehearsal::{Blow, half_sine};
 use touchdown_force::spectrum::Transform;
 use touchdown_force::{Measurement, measure, write};
 use touchdown_tests::binary::touchdown;
-use touchdown_truth::reference::pulse::{Meeting, Press};
+use touchdown_truth::reference::press::{Press, PressShape};
+use touchdown_truth::reference::pulse::Meeting;
 
 /// Of the issue: impulse and contact time at the paper's 50 kHz.
 const IMPULSE: f64 = 0.02;
@@ -36,9 +37,11 @@ fn meeting(mass: f64, speed: f64, restitution: f64) -> Meeting {
         mass,
         speed,
         restitution,
-        press: Press::Power {
+        press: Press {
+            shape: PressShape::Power { exponent: 1.5 },
             stiffness: 4.0 / (3.0 * std::f64::consts::PI) * 3.625e11 * curvature.sqrt(),
-            exponent: 1.5,
+            balls: None,
+            slowest: 0.0,
         },
         gravity: 0.0,
     }
@@ -240,7 +243,7 @@ fn contacts_with_much_loss_come_back() {
         for speed in [0.02, 0.0767, 0.2, 0.5] {
             let point = meeting(1.71, speed, restitution);
             let line = Meeting {
-                press: Press::Power { stiffness: line, exponent: 1.0 },
+                press: Press { shape: PressShape::Power { exponent: 1.0 }, stiffness: line, balls: None, slowest: 0.0 },
                 ..point
             };
             for meeting in [point, line] {

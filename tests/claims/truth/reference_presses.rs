@@ -6,7 +6,8 @@ use touchdown_base::machine::Machine;
 use touchdown_scene::{Stop, Support};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, PressShape};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState};
+use touchdown_truth::reference::press::{Press, PressShape};
 
 const ROTOR: Machine = Machine { friction: 0.0, restitution: 1.0, gravity: 0.0, ..RIG };
 const HERTZ: Press = Press { shape: PressShape::Power { exponent: 1.5 }, stiffness: 2e10, balls: None, slowest: 1e-6 };

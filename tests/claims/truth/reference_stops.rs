@@ -6,7 +6,8 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_scene::{Base, Stop, Support};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Press, PressShape, Retainer, Ring};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, Ring};
+use touchdown_truth::reference::press::{Press, PressShape};
 
 const ROTOR: Machine = Machine { friction: 0.0, restitution: 1.0, ..RIG };
 const TRAVEL: f64 = 2e-5;

@@ -9,7 +9,8 @@ use touchdown_chart::text::{ms, si};
 use touchdown_run::fidelity::force;
 use touchdown_run::outcome::Outcome;
 use touchdown_scene::{Fidelity, Scene};
-use touchdown_truth::reference::pulse::{Meeting, Press};
+use touchdown_truth::reference::press::Press;
+use touchdown_truth::reference::pulse::Meeting;
 
 const HEIGHT: f64 = 150.0;
 /// Where the reference finds no damping below, no force is drawn.

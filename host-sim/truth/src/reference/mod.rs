@@ -9,6 +9,7 @@ mod contact;
 pub mod coupled;
 mod flight;
 mod impact;
+pub mod press;
 pub mod pulse;
 mod roots;
 mod scale;

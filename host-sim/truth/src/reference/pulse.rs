@@ -1,78 +1,14 @@
 //! The force of one impact: a mass against a spring F(d) (1 + a d'/V), by small steps of fourth order, and the damping `a`
 //! found by trial. Independent of the compliant model under test.
 
+use super::press::{Press, PressShape};
+
 /// Steps of a contact, about.
 const STEPS: f64 = 4_000.0;
 /// Halvings of the damping's bracket.
 const HALVINGS: u32 = 50;
-/// Of Newton's method for the force of a logarithm: it starts at this part of where a logarithm of 2 would be.
-const NEWTON_FROM: f64 = 50.0;
-const NEWTON: u32 = 8;
 /// Damping of a restitution near 0 is beyond all bounds; it is sought up to here.
 const MOST_DAMPING: f64 = 1e4;
-
-/// How rotor and wall press on each other at the depth d, before damping.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Press {
-    /// F = K d^n.
-    Power {
-        /// K, N/m^n.
-        stiffness: f64,
-        /// n: 1 for a spring, 1.5 for a point.
-        exponent: f64,
-    },
-    /// d = F/K (ln(4 K c/F) - 1), as far as d rises with F: Johnson, Contact Mechanics, 1985, chapter 5.
-    Logarithm {
-        /// K = pi E* L, N/m.
-        stiffness: f64,
-        /// c, m.
-        clearance: f64,
-    },
-}
-
-impl Press {
-    /// At a depth above 0, N.
-    fn force(&self, depth: f64) -> f64 {
-        match *self {
-            Self::Power {
-                stiffness,
-                exponent,
-            } => stiffness * depth.powf(exponent),
-            Self::Logarithm {
-                stiffness,
-                clearance,
-            } => {
-                // Of x = F/(4 K c): -x (ln x + 1) = d/(4 c). From below Newton's method rises to the root.
-                let wanted = depth / (4.0 * clearance);
-                let mut x = wanted / NEWTON_FROM;
-                for _ in 0..NEWTON {
-                    x += (wanted + x * (x.ln() + 1.0)) / -(x.ln() + 2.0);
-                }
-                4.0 * stiffness * clearance * x
-            }
-        }
-    }
-
-    /// Where that force has stopped this energy, or deeper, m.
-    fn deepest(&self, energy: f64) -> f64 {
-        match *self {
-            Self::Power {
-                stiffness,
-                exponent,
-            } => {
-                let parts = exponent + 1.0;
-                (parts * energy / stiffness).powf(1.0 / parts)
-            }
-            Self::Logarithm {
-                stiffness,
-                clearance,
-            } => {
-                let spring = (2.0 * energy / stiffness).sqrt();
-                spring * (4.0 * clearance / spring).ln().max(1.0)
-            }
-        }
-    }
-}
 
 /// A rotor that meets the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +19,7 @@ pub struct Meeting {
     pub speed: f64,
     /// 0.01 to 1.
     pub restitution: f64,
-    /// How it presses.
+    /// How it presses, without balls.
     pub press: Press,
     /// Into the wall, m/s^2.
     pub gravity: f64,
@@ -114,6 +50,22 @@ impl Meeting {
         history
     }
 
+    /// Where the wall stops it without damping, or deeper, m.
+    fn deepest(&self) -> f64 {
+        let stiffness = self.press.stiffness;
+        let energy = 0.5 * self.mass * self.speed * self.speed;
+        match self.press.shape {
+            PressShape::Power { exponent } => {
+                let parts = exponent + 1.0;
+                (parts * energy / stiffness).powf(1.0 / parts)
+            }
+            PressShape::Line { clearance } => {
+                let spring = (2.0 * energy / stiffness).sqrt();
+                spring * (4.0 * clearance / spring).ln().max(1.0)
+            }
+        }
+    }
+
     fn damping(&self) -> f64 {
         let free = Self {
             gravity: 0.0,
@@ -135,9 +87,7 @@ impl Meeting {
     /// time and force after each step.
     fn bounce(&self, a: f64, mut at: impl FnMut(f64, f64)) -> (Pulse, f64) {
         // Of the spring without damping: its deepest place, and half its period or so.
-        let depth = self
-            .press
-            .deepest(0.5 * self.mass * self.speed * self.speed);
+        let depth = self.deepest();
         let step = 3.0 * depth / self.speed / STEPS;
         let force = |d: f64, v: f64| {
             if d > 0.0 {
@@ -194,9 +144,11 @@ mod tests {
             mass: 3.42,
             speed: 0.076_72,
             restitution,
-            press: Press::Power {
+            press: Press {
+                shape: PressShape::Power { exponent: 1.5 },
                 stiffness,
-                exponent: 1.5,
+                balls: None,
+                slowest: 0.0,
             },
             gravity: 0.0,
         }
@@ -206,9 +158,7 @@ mod tests {
     fn an_elastic_impact_is_that_of_hertz() {
         let meeting = rig(1.0);
         let pulse = meeting.pulse();
-        let Press::Power { stiffness, .. } = meeting.press else {
-            unreachable!()
-        };
+        let stiffness = meeting.press.stiffness;
         let energy = 1.25 * meeting.mass * meeting.speed * meeting.speed;
         let force = stiffness.powf(0.4) * energy.powf(0.6);
         let time = 2.943_28 * (energy / stiffness).powf(0.4) / meeting.speed;

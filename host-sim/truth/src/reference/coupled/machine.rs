@@ -9,7 +9,7 @@
 //! critical speed), a mode is not split by its gyroscopic effect, a couple unbalance bends nothing,
 //! small tilt, and unbalance does not act on the spin.
 
-use super::press::Press;
+use super::super::press::Press;
 use super::pull::Pull;
 use super::soft::Soft;
 use super::surroundings::{Body, Surroundings};

@@ -38,7 +38,6 @@ mod linear;
 mod machine;
 mod motion;
 mod power;
-mod press;
 mod pressing;
 mod pull;
 mod seat;
@@ -54,6 +53,5 @@ mod unknown;
 
 pub use drop::{CoupledReference, CoupledState, RingState};
 pub use machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
-pub use press::{Press, PressShape};
 pub use start::CoupledStart;
 pub use system::Mode;

@@ -1,7 +1,7 @@
 //! The force of a wall that gives way as a series of its depth.
 
+use super::super::press::Press;
 use super::jet::ORDER;
-use super::press::Press;
 
 /// Force F over the depth d, as far as it is known, by the compliance S: S F' = d' and F S' = (p S + q) F', term by term.
 #[derive(Clone, Copy, Debug)]

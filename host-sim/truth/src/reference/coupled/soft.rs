@@ -6,8 +6,8 @@
 //! Cut-off: F has no series at 0, so the force is 0 up to a depth of 1e-9 of the clearance, and again below half of it.
 //! That of a ring's stop has one: it has no cut-off.
 
+use super::super::press::{Press, PressShape};
 use super::jet::Jet;
-use super::press::{Press, PressShape};
 use super::tape::Term;
 
 /// Depth from which the wall presses, in clearances.

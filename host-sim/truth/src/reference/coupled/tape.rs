@@ -1,9 +1,9 @@
 //! Power series in time: their operations, recorded once and then carried from one order to the next.
 
+use super::super::press::Press;
 use super::jet::{Jet, ORDER};
 use super::linear::inverse;
 use super::power::Power;
-use super::press::Press;
 use super::pressing::Pressing;
 use super::share::Shared;
 use std::cell::RefCell;

@@ -39,6 +39,9 @@ pub struct Press {
 impl Press {
     /// Force at a depth above 0, N.
     pub fn force(&self, depth: f64) -> f64 {
+        if let (PressShape::Power { .. }, None) = (self.shape, self.balls) {
+            return self.at_least(depth);
+        }
         if self.is_beyond(depth) {
             return self.greatest();
         }
