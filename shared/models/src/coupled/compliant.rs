@@ -60,7 +60,7 @@ pub(super) struct Compliant<R> {
 pub(super) struct SoftContact<R> {
     pub(super) since: Instant<R>,
     /// Of the damping, over depth per time.
-    pub(super) rate: R,
+    rate: R,
     /// Energy in the wall.
     pub(super) stored: R,
     pub(super) peak: R,
@@ -245,12 +245,12 @@ impl<R: Precision> Compliant<R> {
         }
     }
 
-    /// Makes the link that of the tangent of the force where what presses moves so from a place in a time, damped by the
-    /// depth's speed times `rate`; how far that is from what it was, of the distance.
+    /// Makes the link that of the tangent of the force where what presses moves so from a place in a time; how far that is
+    /// from what it was, of the distance. A contact that has been entered is not before the wall but for rounding.
     pub(super) fn linearize(
         &self,
         link: &mut Link<R>,
-        rate: R,
+        soft: Option<&SoftContact<R>>,
         (from, time): (Vector<R>, R),
         moved: Vector<R>,
     ) -> R {
@@ -260,7 +260,9 @@ impl<R: Precision> Compliant<R> {
         let part = sum.length() / (before + after);
         let deeper = after - before;
         let along = sum.dot(moved) / sum.length();
-        let [mean, slope] = self.mean(before - self.gap, after - self.gap);
+        let (rate, least) = soft.map_or((R::ZERO, -self.gap), |it| (it.rate, R::ZERO));
+        let start = (before - self.gap).most(least);
+        let [mean, slope] = self.mean(start, after - self.gap);
         let damped = R::ONE + rate * deeper / time;
         let factor = R::HALF * time * time * part;
         let pressed = factor * mean * damped.most(R::ZERO);

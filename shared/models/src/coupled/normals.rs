@@ -161,7 +161,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 let moved = walls.links.motion(place);
                 let from = (state.ring_place(i), walls.time);
                 if let Some(link) = walls.links.get_mut(place) {
-                    most = most.most(stop.linearize(link, R::ZERO, from, moved));
+                    most = most.most(stop.linearize(link, None, from, moved));
                 }
             }
             let (Some(place), Some(_)) = (walls.contacts[i], &ring.compliant) else {

@@ -429,7 +429,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return R::ZERO;
         };
         let from = self.within(state, i);
-        compliant.linearize(link, soft.rate, (from, time), moved)
+        compliant.linearize(link, Some(soft), (from, time), moved)
     }
 
     /// Adds the walls that hold at the start, with what moves in them.
@@ -456,7 +456,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 let mut link = Link::new(normal, free.rides[i].moved);
                 if let Some(stop) = soft {
                     let moved = link.free;
-                    stop.linearize(&mut link, R::ZERO, (place, free.time), moved);
+                    stop.linearize(&mut link, None, (place, free.time), moved);
                 }
                 walls.stops[i] = Some(walls.links.add(link));
             }
