@@ -16,7 +16,7 @@ use touchdown_truth::{Moving, TrueState, held};
 
 /// Work ([`CoupledState::work`]) for each second of a run, and for a shorter one, before it is given up: some 5 s of
 /// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much.
-const MOST_WORK: f64 = 6e6;
+const MOST_WORK: f64 = 5e6;
 
 /// The machine after a step.
 #[derive(Clone, Copy, Debug)]

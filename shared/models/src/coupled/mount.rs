@@ -191,7 +191,7 @@ struct AxisSpring<R> {
 
 /// What ends the ring's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stop<R> {
+enum StopLaw<R> {
     /// After this way.
     Rigid(R),
     Gives(Compliant<R>),
@@ -207,7 +207,7 @@ pub(super) struct Sprung<R> {
     vertical: Option<AxisSpring<R>>,
     /// Over the rotor's mass.
     friction: R,
-    stop: Option<Stop<R>>,
+    stop: Option<StopLaw<R>>,
 }
 
 /// The ring's motion, and what the support has taken.
@@ -254,8 +254,8 @@ impl Sprung<f64> {
             vertical: self.vertical.map(axis),
             friction: R::lit(self.friction),
             stop: self.stop.map(|it| match it {
-                Stop::Rigid(travel) => Stop::Rigid(R::lit(travel)),
-                Stop::Gives(it) => Stop::Gives(it.rounded()),
+                StopLaw::Rigid(travel) => StopLaw::Rigid(R::lit(travel)),
+                StopLaw::Gives(it) => StopLaw::Gives(it.rounded()),
             }),
         }
     }
@@ -291,8 +291,10 @@ impl<R: Precision> Sprung<R> {
         let stop = |it: &StopConfig<R>| {
             let travel = it.travel / units.scales.length;
             match it.stiffness {
-                None => Stop::Rigid(travel),
-                Some(it) => Stop::Gives(Compliant::spring(it / units.mass * time * time, travel)),
+                None => StopLaw::Rigid(travel),
+                Some(it) => {
+                    StopLaw::Gives(Compliant::spring(it / units.mass * time * time, travel))
+                }
             }
         };
         Ok(Self {
@@ -320,40 +322,11 @@ impl<R: Precision> Sprung<R> {
     ) -> Ride<R> {
         let half = R::HALF * time;
         let (place, velocity) = (state.place.value(), state.velocity.value());
-        let (stiffness, damping) = (self.each(|it| it.stiffness), self.each(|it| it.damping));
-        // Against it, at the middle of a stretch in which it moves so.
-        let force = |middle: Vector<R>, mean: Vector<R>| {
-            let force = middle.along(stiffness) + mean.along(damping);
-            match shaken {
-                Some(push) => force - push.times(self.mass),
-                None => force,
-            }
-        };
-        let none = Vector::default();
-        if let Some(rub @ Rub::Rests(part)) = rub {
-            let moved = velocity.times(half * part);
-            let end = place + moved;
-            let work = force(place + moved.times(R::HALF), none).dot(moved);
-            let (mut against, mut taken) = (force(end, none), -work);
-            if let Some(stop) = self.soft_stop() {
-                against = against + end.times(stop.pull(end));
-                taken -= stop.stored(end) - stop.stored(place);
-            }
-            return Ride {
-                moved,
-                kick: none - velocity,
-                mobility: [R::ZERO; 2],
-                dry: Some(Dry {
-                    rub,
-                    grip: against.times(time),
-                    taken: R::HALF * self.mass * velocity.square() + taken,
-                    stop: direction(place)
-                        .filter(|it| state.stopped && it.dot(velocity) >= R::ZERO),
-                }),
-            };
+        if let Some(Rub::Rests(part)) = rub {
+            return self.come_to_rest(state, time, shaken, part);
         }
-        let mut against = force(place + velocity.times(half), velocity);
-        let mut grip = none;
+        let mut against = self.against(place + velocity.times(half), velocity, shaken);
+        let mut grip = Vector::default();
         if let Some(Rub::Slides(direction)) = rub {
             against = against + direction.times(self.friction);
             grip = direction.times(-(self.friction * time));
@@ -370,6 +343,49 @@ impl<R: Precision> Sprung<R> {
                 grip,
                 taken: R::ZERO,
                 stop: None,
+            }),
+        }
+    }
+
+    /// Force against it, at the middle of a stretch in which it moves so.
+    fn against(&self, middle: Vector<R>, mean: Vector<R>, shaken: Option<Vector<R>>) -> Vector<R> {
+        let (stiffness, damping) = (self.each(|it| it.stiffness), self.each(|it| it.damping));
+        let force = middle.along(stiffness) + mean.along(damping);
+        match shaken {
+            Some(push) => force - push.times(self.mass),
+            None => force,
+        }
+    }
+
+    /// Through a stretch in whose first `part` dry friction stops it.
+    fn come_to_rest(
+        &self,
+        state: &SprungState<R>,
+        time: R,
+        shaken: Option<Vector<R>>,
+        part: R,
+    ) -> Ride<R> {
+        let (place, velocity) = (state.place.value(), state.velocity.value());
+        let none = Vector::default();
+        let moved = velocity.times(R::HALF * time * part);
+        let end = place + moved;
+        let middle = place + moved.times(R::HALF);
+        let mut against = self.against(end, none, shaken);
+        let mut taken = -self.against(middle, none, shaken).dot(moved);
+        if let Some(stop) = self.soft_stop() {
+            against = against + end.times(stop.pull(end));
+            taken -= stop.stored(end) - stop.stored(place);
+        }
+        let outward = |it: &Vector<R>| it.dot(velocity) >= R::ZERO;
+        Ride {
+            moved,
+            kick: none - velocity,
+            mobility: [R::ZERO; 2],
+            dry: Some(Dry {
+                rub: Rub::Rests(part),
+                grip: against.times(time),
+                taken: R::HALF * self.mass * velocity.square() + taken,
+                stop: direction(place).filter(|it| state.stopped && outward(it)),
             }),
         }
     }
@@ -431,7 +447,7 @@ impl<R: Precision> Sprung<R> {
     /// From rest to the stop, where that is rigid.
     pub(super) fn travel(&self) -> Option<R> {
         match self.stop {
-            Some(Stop::Rigid(travel)) => Some(travel),
+            Some(StopLaw::Rigid(travel)) => Some(travel),
             _ => None,
         }
     }
@@ -439,7 +455,7 @@ impl<R: Precision> Sprung<R> {
     /// The stop, where that gives way.
     pub(super) fn soft_stop(&self) -> Option<&Compliant<R>> {
         match &self.stop {
-            Some(Stop::Gives(stop)) => Some(stop),
+            Some(StopLaw::Gives(stop)) => Some(stop),
             _ => None,
         }
     }

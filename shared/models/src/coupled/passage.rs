@@ -313,25 +313,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !(0..N).any(presses) {
             return;
         }
-        let mut walls = Walls::new(passage.time);
-        self.add_walls(state, passage, &mut walls);
-        let smooth = match self.settle(state, &mut walls) {
-            true => self.gains(state, &walls, passage.time),
-            false => true,
+        let Some(walls) = self.solve_walls(state, passage) else {
+            passage.solved = false;
+            return;
         };
-        passage.systems += walls.links.systems;
-        if smooth {
-            walls = Walls::new(passage.time);
-            self.add_walls(state, passage, &mut walls);
-            walls.links.smooth();
-            let settled = self.settle(state, &mut walls);
-            passage.systems += walls.links.systems;
-            if !settled {
-                passage.solved = false;
-                return;
-            }
-        }
-        passage.rubs = !smooth;
         let rate = R::TWO / passage.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
@@ -367,6 +352,28 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             passage.moved[k] = passage.moved[k] + more;
             passage.kick[k] = passage.kick[k] + more.times(rate);
         }
+    }
+
+    /// All walls of a passage, without friction where they jam with it; none where nothing was found.
+    fn solve_walls(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        passage: &mut Passage<R, N, Q>,
+    ) -> Option<Walls<R, N>> {
+        let mut walls = Walls::new(passage.time);
+        self.add_walls(state, passage, &mut walls);
+        let settles = self.settle(state, &mut walls);
+        passage.systems += walls.links.systems;
+        passage.rubs = settles && !self.gains(state, &walls, passage.time);
+        if passage.rubs {
+            return Some(walls);
+        }
+        let mut walls = Walls::new(passage.time);
+        self.add_walls(state, passage, &mut walls);
+        walls.links.smooth();
+        let settles = self.settle(state, &mut walls);
+        passage.systems += walls.links.systems;
+        settles.then_some(walls)
     }
 
     /// The stop that gives way of a ring that dry friction does not hold.

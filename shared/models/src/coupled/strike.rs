@@ -69,10 +69,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let mut after = *state;
         self.strike(&mut after, &mut meetings);
         let mut returns = meetings.map(|meeting| meeting.new && stays);
-        let mut systems = 0;
-        if !stays {
-            systems = self.find_returns(&after, &meetings, &mut returns);
-        }
+        let systems = match stays {
+            true => 0,
+            false => self.find_returns(&after, &meetings, &mut returns),
+        };
         if returns.contains(&true) {
             for (meeting, returns) in meetings.iter_mut().zip(returns) {
                 if returns {
