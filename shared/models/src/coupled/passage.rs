@@ -313,10 +313,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !(0..N).any(presses) {
             return;
         }
-        let Some(walls) = self.solve_walls(state, passage) else {
+        let mut walls = Walls::new(passage.time);
+        if !self.solve_walls(state, passage, &mut walls) {
             passage.solved = false;
             return;
-        };
+        }
         let rate = R::TWO / passage.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
@@ -354,26 +355,26 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// All walls of a passage, without friction where they jam with it; none where nothing was found.
+    /// Adds and solves all walls of a passage, without friction where they jam with it; false where nothing was found.
     fn solve_walls(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &mut Passage<R, N, Q>,
-    ) -> Option<Walls<R, N>> {
-        let mut walls = Walls::new(passage.time);
-        self.add_walls(state, passage, &mut walls);
-        let settles = self.settle(state, &mut walls);
+        walls: &mut Walls<R, N>,
+    ) -> bool {
+        self.add_walls(state, passage, walls);
+        let settles = self.settle(state, walls);
         passage.systems += walls.links.systems;
-        passage.rubs = settles && !self.gains(state, &walls, passage.time);
+        passage.rubs = settles && !self.gains(state, walls, passage.time);
         if passage.rubs {
-            return Some(walls);
+            return true;
         }
-        let mut walls = Walls::new(passage.time);
-        self.add_walls(state, passage, &mut walls);
+        *walls = Walls::new(passage.time);
+        self.add_walls(state, passage, walls);
         walls.links.smooth();
-        let settles = self.settle(state, &mut walls);
+        let settles = self.settle(state, walls);
         passage.systems += walls.links.systems;
-        settles.then_some(walls)
+        settles
     }
 
     /// The stop that gives way of a ring that dry friction does not hold.
