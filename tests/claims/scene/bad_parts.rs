@@ -13,6 +13,7 @@ mass_kg = 0.5
 stiffness_n_m = 1e6
 damping_n_s_m = 100
 travel_mm = 0.2
+stop_stiffness_n_m = 1e7
 vertical_stiffness_n_m = 2e6
 vertical_damping_n_s_m = 50
 dry_friction_n = 5
@@ -110,6 +111,8 @@ fn a_support_is_checked() {
         ("damping_n_s_m", "1e10", "damping_n_s_m must be 0 to"),
         ("travel_mm", "0", "travel_mm must be above 0"),
         ("travel_mm", "1e3", "travel_mm must be 0.001 to 100"),
+        ("stop_stiffness_n_m", "0", "stop_stiffness_n_m must be above 0"),
+        ("stop_stiffness_n_m", "1e13", "stop_stiffness_n_m must be 1 to"),
         ("vertical_stiffness_n_m", "0", "vertical_stiffness_n_m must be above 0"),
         ("vertical_damping_n_s_m", "1e10", "vertical_damping_n_s_m must be 0 to"),
         ("dry_friction_n", "-1", "dry_friction_n must be 0 to"),
@@ -121,6 +124,12 @@ fn a_support_is_checked() {
             refuse(&along_x, "support", key, value, rule);
         }
     }
+}
+
+#[test]
+fn a_stop_that_gives_way_needs_a_place() {
+    let text = GIVES_WAY.replace("travel_mm = 0.2\n", "");
+    refuse(&text, "support", "stop_stiffness_n_m", "1e7", "stop_stiffness_n_m needs travel_mm");
 }
 
 #[test]

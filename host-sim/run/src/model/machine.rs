@@ -15,7 +15,8 @@ use touchdown_scene::{Fidelity, RINGS, Scene};
 use touchdown_truth::{Moving, TrueState, held};
 
 /// Work ([`CoupledState::work`]) for each second of a run, and for a shorter one, before it is given up: some 5 s of
-/// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much.
+/// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much. Each sample asks for a part
+/// of a step, which costs about as much as that; those that are asked for change nothing else, and are not counted.
 const MOST_WORK: f64 = 5e6;
 
 /// The machine after a step.
@@ -41,8 +42,6 @@ pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
     seen: Seen,
     state: CoupledState<R, N, Q>,
     done: u64,
-    /// Work in parts of steps, which are gone again.
-    aside: u64,
     told: Told<N>,
     peaks: [[f64; 2]; N],
     /// Turned by the inner rings up to the last step, rad.
@@ -109,7 +108,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             seen: Seen::new(scene, scales),
             state,
             done: 0,
-            aside: 0,
             told,
             peaks: [[0.0; 2]; N],
             turned: [0.0; N],
@@ -120,7 +118,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
     /// One step, unless the run is given up.
     fn step(&mut self) {
         let step = self.scene.model.step;
-        if self.work() as f64 > MOST_WORK * self.scene.run.duration.max(1.0) {
+        if self.state.work() as f64 > most_work(self.scene) {
             self.given_up.get_or_insert(self.done as f64 * step);
             return;
         }
@@ -138,10 +136,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             on_step(self.view());
             self.on_step = Some(on_step);
         }
-    }
-
-    fn work(&self) -> u64 {
-        self.state.work() + self.aside
     }
 
     fn race_spins(&self, state: &CoupledState<R, N, Q>) -> [f64; N] {
@@ -269,7 +263,6 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
             self.of
                 .model
                 .part_step(&mut state, R::lit(fraction), ignore);
-            self.aside += state.work() - self.state.work();
         }
         Some(TrueState {
             rotor: self.seen.state(&self.of.kinematics(&state), time),
@@ -309,7 +302,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         let energy = [self.begun, model.energy(state).to_f64()];
         let mut run = ModelRun {
             given_up: self.given_up,
-            work: state.work() + self.aside,
+            work: state.work(),
             jammed: state.jammed().map(|it| it as f64 * scene.model.step),
             ring: None,
             seats: Vec::new(),
@@ -328,6 +321,12 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         run
     }
+}
+
+/// Of the run's own steps, before it is given up.
+fn most_work(scene: &Scene) -> f64 {
+    let samples = scene.model.step * scene.run.sample_rate;
+    MOST_WORK * scene.run.duration.max(1.0) / (1.0 + samples)
 }
 
 /// Of the parts that there are; `unit` in J.
