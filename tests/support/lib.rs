@@ -22,6 +22,7 @@ pub mod machine_runs;
 pub mod minimal_scene;
 pub mod moment;
 pub mod monitor_run;
+pub mod mounted;
 pub mod plant;
 pub mod record;
 pub mod rig;

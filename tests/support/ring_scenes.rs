@@ -255,9 +255,10 @@ impl Fall {
             damping: mount.damping,
             vertical: None,
             friction: 0.0,
-            stop: mount
-                .stop
-                .map(|stop| touchdown_scene::Stop::rigid(stop.travel)),
+            stop: mount.stop.map(|stop| touchdown_scene::Stop {
+                travel: stop.travel,
+                stiffness: stop.stiffness,
+            }),
         });
         let race = self.race.map(|race| reference::coupled::Race {
             inertia: race.inertia,

@@ -1,9 +1,8 @@
 //! Mounts that are stiffer along one axis, and mounts that rub: their closed forms.
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use touchdown_models::{Coupled, CoupledConfig, CoupledState, MountConfig, Placement, StopConfig};
-use touchdown_tests::rotors::{built, ring, rotor};
+use touchdown_tests::mounted::{one, random_drop};
+use touchdown_tests::rotors::built;
 
 /// Of the ring, over the rotor's: it is left behind by a rotor that bounces off it.
 const HEAVY: f64 = 2.0;
@@ -18,17 +17,6 @@ const MOUNT: MountConfig<f64> = MountConfig {
     friction: 0.0,
     stop: None,
 };
-
-/// One ring at the centre of mass on this mount, no gravity, no friction, no loss.
-fn one(mount: MountConfig<f64>, step: f64) -> CoupledConfig<f64, 1> {
-    let mut seat = ring(0.0);
-    seat.ring.friction = 0.0;
-    seat.ring.restitution = 1.0;
-    seat.mount = Some(mount);
-    let mut config = rotor([seat], 0.4, step);
-    config.gravity = [0.0; 2];
-    config
-}
 
 /// At the wall, moving into it.
 fn into_wall(direction: [f64; 2]) -> Placement<f64> {
@@ -146,24 +134,7 @@ fn dry_friction_turns_with_the_motion() {
 fn dry_friction_gives_no_energy() {
     let mut rubbed = 0;
     for seed in 0..300 {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut decades = |low: f64, high: f64| 10_f64.powf(random.random_range(low..high));
-        let mount = MountConfig {
-            mass: decades(-3.0, 0.5),
-            stiffness: decades(-1.0, 4.0),
-            vertical: Some([decades(-1.0, 4.0), 0.0]),
-            friction: decades(-2.0, 1.0),
-            stop: Some(StopConfig::rigid(decades(-2.0, 0.0))),
-            ..MOUNT
-        };
-        let mut config = one(mount, decades(-4.0, -1.0));
-        config.gravity = [0.0, -1.0];
-        config.rings[0].ring.restitution = decades(-2.0, 0.0);
-        config.rings[0].ring.friction = 0.3;
-        let velocity = [decades(-2.0, 0.5), -decades(-2.0, 0.5)];
-        let start = Placement { velocity, ..Placement::default() };
-        let model = built::<1, 2>(&config);
-        let mut state = model.start(&start, decades(-1.0, 1.0), |_| {}).expect("valid");
+        let (model, mut state) = random_drop(seed, |_, _| ());
         let (mut taken, first) = (0.0, model.energy(&state).total());
         for _ in 0..2_000 {
             model.step(&mut state, |_| ());

@@ -1,9 +1,8 @@
 //! Stops of a ring that give way: their closed forms, and that they give back what they take.
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use touchdown_models::{Coupled, CoupledConfig, CoupledState, MountConfig, Placement, StopConfig};
-use touchdown_tests::rotors::{built, ring, rotor};
+use touchdown_models::{Coupled, CoupledState, MountConfig, Placement, StopConfig};
+use touchdown_tests::mounted::{decades, one, random_drop};
+use touchdown_tests::rotors::built;
 
 /// Of the ring, over the rotor's: it is left behind by a rotor that bounces off it.
 const HEAVY: f64 = 2.0;
@@ -17,17 +16,6 @@ const MOUNT: MountConfig<f64> = MountConfig {
     friction: 0.0,
     stop: Some(STOP),
 };
-
-/// One ring at the centre of mass on this mount, no friction, no loss.
-fn one(mount: MountConfig<f64>, gravity: f64, step: f64) -> CoupledConfig<f64, 1> {
-    let mut seat = ring(0.0);
-    seat.ring.friction = 0.0;
-    seat.ring.restitution = 1.0;
-    seat.mount = Some(mount);
-    let mut config = rotor([seat], 0.4, step);
-    config.gravity = [0.0, -gravity];
-    config
-}
 
 fn steps(model: &Coupled<f64, 1, 2>, state: &mut CoupledState<f64, 1, 2>, count: u32) {
     (0..count).for_each(|_| model.step(state, |_| ()));
@@ -55,7 +43,7 @@ fn a_struck_ring_leaves_its_stop_as_it_came() {
         };
         let mut errors = Vec::new();
         for count in [100, 200, 400, 800] {
-            let model = built::<1, 2>(&one(MOUNT, 0.0, time / f64::from(count)));
+            let model = built::<1, 2>(&one(MOUNT, time / f64::from(count)));
             let start = Placement { position: [1.0, 0.0], velocity: [1.0, 0.0], ..Placement::default() };
             let mut state = model.start(&start, 0.0, |_| {}).expect("valid");
             let first = model.energy(&state).total();
@@ -76,7 +64,8 @@ fn a_struck_ring_leaves_its_stop_as_it_came() {
 fn spring_and_stop_carry_the_weight() {
     let stop = StopConfig { travel: 0.02, ..STOP };
     let mount = MountConfig { damping: 10.0, stop: Some(stop), ..MOUNT };
-    let mut config = one(mount, 1.0, 2e-3);
+    let mut config = one(mount, 2e-3);
+    config.gravity = [0.0, -1.0];
     config.rings[0].ring.restitution = 0.0;
     let model = built::<1, 2>(&config);
     let start = Placement { position: [0.0, -1.0], ..Placement::default() };
@@ -96,7 +85,7 @@ fn dry_friction_holds_a_ring_in_its_stop() {
     for tenths in 1..30 {
         let friction = 0.1 * f64::from(tenths);
         let mount = MountConfig { friction, stop: Some(stop), ..MOUNT };
-        let model = built::<1, 2>(&one(mount, 0.0, 1e-3));
+        let model = built::<1, 2>(&one(mount, 1e-3));
         let start = Placement { position: [1.0, 0.0], velocity: [1.0, 0.0], ..Placement::default() };
         let mut state = model.start(&start, 0.0, |_| {}).expect("valid");
         let first = model.energy(&state).total();
@@ -124,24 +113,15 @@ fn dry_friction_holds_a_ring_in_its_stop() {
 fn stops_that_give_way_keep_the_energy() {
     let mut deepest: f64 = 0.0;
     for seed in 0..300 {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut decades = |low: f64, high: f64| 10_f64.powf(random.random_range(low..high));
-        let stop = StopConfig { travel: decades(-2.0, 0.0), stiffness: Some(decades(-1.0, 6.0)) };
-        let mount = MountConfig {
-            mass: decades(-3.0, 0.5),
-            stiffness: decades(-1.0, 4.0),
-            vertical: Some([decades(-1.0, 4.0), 0.0]),
-            friction: if seed % 2 == 0 { 0.0 } else { decades(-2.0, 1.0) },
-            stop: Some(stop),
-            ..MOUNT
-        };
-        let mut config = one(mount, 1.0, decades(-4.0, -1.0));
-        config.rings[0].ring.restitution = decades(-2.0, 0.0);
-        config.rings[0].ring.friction = 0.3;
-        let velocity = [decades(-2.0, 0.5), -decades(-2.0, 0.5)];
-        let start = Placement { velocity, ..Placement::default() };
-        let model = built::<1, 2>(&config);
-        let mut state = model.start(&start, decades(-1.0, 1.0), |_| {}).expect("valid");
+        let mut travel = 0.0;
+        let (model, mut state) = random_drop(seed, |mount, random| {
+            let stop = mount.stop.as_mut().expect("a stop");
+            stop.stiffness = Some(decades(random, -1.0, 6.0));
+            travel = stop.travel;
+            if seed % 2 == 0 {
+                mount.friction = 0.0;
+            }
+        });
         let first = model.energy(&state).total();
         for _ in 0..2_000 {
             model.step(&mut state, |_| ());
@@ -150,7 +130,7 @@ fn stops_that_give_way_keep_the_energy() {
             assert!(account.abs() < 1e-9, "{seed}: account {account:e}");
             assert!(energy.stops.abs() < 1e-9, "{seed}: the stop took {:e}", energy.stops);
             let [x, y] = model.ring(&state, 0).position;
-            deepest = deepest.max(f64::hypot(x, y) / stop.travel - 1.0);
+            deepest = deepest.max(f64::hypot(x, y) / travel - 1.0);
         }
         assert_eq!(state.shortened(), 0, "{seed}");
     }

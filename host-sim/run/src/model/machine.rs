@@ -15,8 +15,8 @@ use touchdown_scene::{Fidelity, RINGS, Scene};
 use touchdown_truth::{Moving, TrueState, held};
 
 /// Work ([`CoupledState::work`]) for each second of a run, and for a shorter one, before it is given up: some 5 s of
-/// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much. Each sample asks for a part
-/// of a step, which costs about as much as that; those that are asked for change nothing else, and are not counted.
+/// processor time. What chatters on a stiff ring, or jams, would take thousands of times as much. A sample costs a part of a
+/// step besides, about as much as one: the budget is for both, whether samples are taken of the model or not.
 const MOST_WORK: f64 = 5e6;
 
 /// The machine after a step.
@@ -323,7 +323,7 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
     }
 }
 
-/// Of the run's own steps, before it is given up.
+/// Work of the run's own steps before it is given up: the samples' share is taken off.
 fn most_work(scene: &Scene) -> f64 {
     let samples = scene.model.step * scene.run.sample_rate;
     MOST_WORK * scene.run.duration.max(1.0) / (1.0 + samples)
