@@ -16,7 +16,7 @@ import table
 from peers import DURATION, FIVE, HERE, PEERS, RUST, UNTIL_FIVE, has_siconos
 
 BUILD = HERE.parent / "build"
-ROUNDS = 3
+ROUNDS = 7
 
 
 def run(command):
