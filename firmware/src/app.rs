@@ -118,9 +118,15 @@ impl App {
     /// What follows from the notices of a tick, outputs included, after `lost` samples and one that was taken.
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
         self.hear(board, notices);
-        let (places, phases) = (self.state.places(), self.state.detector.phases());
-        self.lies_still = self.permit.take(places, phases, self.safety.is_proven());
-        self.watch_itself(board.config(), places.is_some(), lost);
+        let phases = self.state.detector.phases();
+        // What was proven to float does not lie: how long it has lain counts from then on.
+        self.lies_still = if self.safety.is_proven() {
+            self.permit.forget();
+            false
+        } else {
+            self.permit.take(self.state.places(), phases)
+        };
+        self.watch_itself(board.config(), self.state.sees(), lost);
         let was_latched = self.safety.is_latched();
         self.safety.step(&Findings {
             guard: self.state.guard.verdict,
@@ -168,12 +174,16 @@ impl App {
             self.latch(Fault::SensorsLost);
         }
         self.sensors_tested |= self.blind.has_seen();
-        match self.patrol.step(block) {
-            Some(true) => self.config_tested = true,
-            Some(false) => self.latch(Fault::ConfigChanged),
-            None => {}
+        // They take turns, but the self-test waits for the configuration.
+        let is_even = self.state.samples & 1 == 0;
+        if is_even || !self.config_tested {
+            match self.patrol.step(block) {
+                Some(true) => self.config_tested = true,
+                Some(false) => self.latch(Fault::ConfigChanged),
+                None => {}
+            }
         }
-        if self.coefficients.step(&self.monitor) == Some(false) {
+        if !is_even && self.coefficients.step(&self.monitor) == Some(false) {
             self.latch(Fault::MemoryChanged);
         }
     }

@@ -36,6 +36,8 @@ pub struct LiftInterlock {
     /// As the detector told last, by end.
     rests: [bool; PLANES],
     ends: [End; PLANES],
+    /// Whether nothing is known of the ends.
+    forgot: bool,
 }
 
 /// Where an end is, m, and since how many samples.
@@ -65,6 +67,7 @@ impl LiftInterlock {
             seen: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             rests: [false; PLANES],
             ends: [End::default(); PLANES],
+            forgot: true,
         }
     }
 
@@ -86,18 +89,21 @@ impl LiftInterlock {
         }
     }
 
+    /// Counts anew how long the ends have lain.
+    pub fn forget(&mut self) {
+        if !self.forgot {
+            (self.ends, self.forgot) = ([End::default(); PLANES], true);
+        }
+    }
+
     /// Takes the place (m) of each end in this sample, and its phase; whether the rotor may be lifted. What the detector
-    /// takes for floating may lie, but not where floating `is_proven`: how long it has lain counts from then on.
-    pub fn take(
-        &mut self,
-        places: Option<[[f32; 2]; PLANES]>,
-        phases: [Phase; PLANES],
-        is_proven: bool,
-    ) -> bool {
-        let Some(places) = places.filter(|_| !is_proven) else {
-            self.ends = [End::default(); PLANES];
+    /// takes for floating may lie.
+    pub fn take(&mut self, places: Option<[[f32; 2]; PLANES]>, phases: [Phase; PLANES]) -> bool {
+        let Some(places) = places else {
+            self.forget();
             return false;
         };
+        self.forgot = false;
         let mut all_lie = phases.into_iter().any(|it| it >= Phase::FreeFall);
         for (at, (place, phase)) in places.into_iter().zip(phases).enumerate() {
             let (is_low, is_slow) = self.follow(at, place);
@@ -148,7 +154,7 @@ mod tests {
         (0..40_000).any(|it| {
             let lies = [0.1e-4, -3e-4];
             let places = [lies, place(it as f32 / 20_000.0)];
-            interlock.take(Some(places), [Phase::Sliding, phase], false)
+            interlock.take(Some(places), [Phase::Sliding, phase])
         })
     }
 
@@ -172,7 +178,7 @@ mod tests {
             interlock.has_weight = false;
             (0..40_000).any(|it| {
                 let place = place(it as f32 / 20_000.0);
-                interlock.take(Some([place; 2]), [Phase::FreeFall; 2], false)
+                interlock.take(Some([place; 2]), [Phase::FreeFall; 2])
             })
         };
         assert!(is_ever_lifted(&|_| [-0.8e-4, 0.0]));
@@ -204,7 +210,10 @@ mod tests {
                 } else {
                     Phase::Levitated
                 };
-                interlock.take(Some([[-0.8e-4, 0.0]; 2]), [phase; 2], is_proven)
+                if is_proven {
+                    interlock.forget();
+                }
+                interlock.take(Some([[-0.8e-4, 0.0]; 2]), [phase; 2])
             });
             assert_eq!(lifted, !is_proven);
         }
@@ -218,7 +227,7 @@ mod tests {
         for it in 0..40_000 {
             let (sin, cos) = (0.02 * it as f64).sin_cos();
             let [x, y] = [3e-4 * cos as f32, 3e-4 * sin as f32];
-            assert!(!interlock.take(Some([[x, y - 2e-5], [-x, -y - 2e-5]]), phases, false));
+            assert!(!interlock.take(Some([[x, y - 2e-5], [-x, -y - 2e-5]]), phases));
         }
     }
 
@@ -238,8 +247,7 @@ mod tests {
             })
         };
         let mut interlock = interlock();
-        let take =
-            |it: &mut LiftInterlock| it.take(Some([[3e-4, 0.0]; 2]), [Phase::Sliding; 2], false);
+        let take = |it: &mut LiftInterlock| it.take(Some([[3e-4, 0.0]; 2]), [Phase::Sliding; 2]);
         assert!((0..20_000).all(|_| !take(&mut interlock)));
         interlock.hear(&told(EventKind::Rest, Plane::A));
         assert!(!take(&mut interlock));

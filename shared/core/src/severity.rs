@@ -52,7 +52,7 @@ pub struct SeverityState {
     pub so_far: Severity,
     /// Sum of the speeds into the wall, m/s.
     speeds: f32,
-    was_released: bool,
+    pub(crate) was_released: bool,
     /// Samples since those that the dwell counts; 0 in contact.
     uncounted: u16,
 }
@@ -83,9 +83,10 @@ impl SeverityModel {
                 self.event(state, event, strain);
             }
         }
-        if strain.is_released {
-            self.contact(state, strain);
+        if !strain.is_released {
+            return;
         }
+        self.contact(state, strain);
         let so_far = &mut state.so_far;
         if strain.speed_error < WELL_KNOWN * self.unit {
             so_far.velocity_index = so_far.velocity_index.max(strain.speed / self.unit);

@@ -2,6 +2,8 @@
 
 use touchdown_core::event::{EventKind, Level, Notice};
 use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::severity::Severity;
+use touchdown_run::monitor_output::MonitorOutput;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
 use touchdown_tests::monitor_run;
@@ -15,6 +17,10 @@ fn watched(seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
 }
 
 fn watched_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> Vec<Notice> {
+    output_in(scene, seconds, position).notices
+}
+
+fn output_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -> MonitorOutput {
     let rate = scene.run.sample_rate;
     let config: MonitorConfig = scene.monitor_config();
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("default sensors");
@@ -28,7 +34,7 @@ fn watched_in(scene: &Scene, seconds: f64, position: impl Fn(f64) -> [f64; 2]) -
         };
         sensors.read(&mut state, &motion)
     });
-    monitor_run::run(&config, samples).expect("valid").notices
+    monitor_run::run(&config, samples).expect("valid")
 }
 
 fn kinds(notices: &[Notice]) -> Vec<EventKind> {
@@ -37,6 +43,14 @@ fn kinds(notices: &[Notice]) -> Vec<EventKind> {
         _ => None,
     };
     notices.iter().filter_map(declared).collect()
+}
+
+#[test]
+fn what_floats_goes_through_nothing() {
+    let scene = Scene::load("rig").expect("built-in scene");
+    let orbit = |t: f64| [30e-6 * (3_000.0 * t).cos(), 30e-6 * (3_000.0 * t).sin()];
+    let output = output_in(&scene, 0.3, orbit);
+    assert_eq!(output.severity, Severity::default());
 }
 
 /// From 0 to 1 with no jump of acceleration.

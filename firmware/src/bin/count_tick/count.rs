@@ -156,7 +156,11 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
 }
 
 fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut App {
-    memory::application(place, &scene.config(), Faults::NONE).expect("a valid configuration")
+    let app = memory::application(place, &scene.config(), Faults::NONE);
+    let app = app.expect("a valid configuration");
+    // A rotor that floats has been lifted.
+    app.assume_lift();
+    app
 }
 
 #[inline(never)]
