@@ -21,9 +21,7 @@ impl Tally {
     /// Takes the next line.
     pub fn take(&mut self, line: &str) {
         let line = line.trim();
-        if line.starts_with("Doc-tests ") {
-            self.current = None;
-        } else if let Some(target) = line.strip_prefix("Running ") {
+        if let Some(target) = line.strip_prefix("Running ") {
             let name = target.split(" (").next().unwrap_or(target);
             self.current = (!name.starts_with("unittests ")).then(|| name.to_owned());
             if let Some(layer) = &self.current {
@@ -100,12 +98,6 @@ running 5 tests
 test same_bits_for_a_drop ... FAILED
 
 test result: FAILED. 4 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.3s
-
-   Doc-tests touchdown_core
-
-running 0 tests
-
-test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s
 ";
 
     fn tally(output: &str) -> Tally {
