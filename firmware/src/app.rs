@@ -118,15 +118,11 @@ impl App {
     /// What follows from the notices of a tick, outputs included, after `lost` samples and one that was taken.
     pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
         self.hear(board, notices);
-        let phases = self.state.detector.phases();
+        let (places, phases) = (self.state.places(), self.state.detector.phases());
         // What was proven to float does not lie: how long it has lain counts from then on.
-        self.lies_still = if self.safety.is_proven() {
-            self.permit.forget();
-            false
-        } else {
-            self.permit.take(self.state.places(), phases)
-        };
-        self.watch_itself(board.config(), self.state.sees(), lost);
+        let may_lie = places.filter(|_| !self.safety.is_proven());
+        self.lies_still = self.permit.take(may_lie, phases);
+        self.watch_itself(board.config(), places.is_some(), lost);
         let was_latched = self.safety.is_latched();
         self.safety.step(&Findings {
             guard: self.state.guard.verdict,

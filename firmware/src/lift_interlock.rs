@@ -36,8 +36,7 @@ pub struct LiftInterlock {
     /// As the detector told last, by end.
     rests: [bool; PLANES],
     ends: [End; PLANES],
-    /// Whether nothing is known of the ends.
-    forgot: bool,
+    has_counted: bool,
 }
 
 /// Where an end is, m, and since how many samples.
@@ -67,7 +66,7 @@ impl LiftInterlock {
             seen: [fitted & 0b0011 != 0, fitted & 0b1100 != 0],
             rests: [false; PLANES],
             ends: [End::default(); PLANES],
-            forgot: true,
+            has_counted: false,
         }
     }
 
@@ -89,21 +88,17 @@ impl LiftInterlock {
         }
     }
 
-    /// Counts anew how long the ends have lain.
-    pub fn forget(&mut self) {
-        if !self.forgot {
-            (self.ends, self.forgot) = ([End::default(); PLANES], true);
-        }
-    }
-
     /// Takes the place (m) of each end in this sample, and its phase; whether the rotor may be lifted. What the detector
-    /// takes for floating may lie.
+    /// takes for floating may lie. Without a place it counts anew how long they have lain.
+    #[inline(never)] // else the image is larger
     pub fn take(&mut self, places: Option<[[f32; 2]; PLANES]>, phases: [Phase; PLANES]) -> bool {
+        let had = core::mem::replace(&mut self.has_counted, places.is_some());
         let Some(places) = places else {
-            self.forget();
+            if had {
+                self.ends = [End::default(); PLANES];
+            }
             return false;
         };
-        self.forgot = false;
         let mut all_lie = phases.into_iter().any(|it| it >= Phase::FreeFall);
         for (at, (place, phase)) in places.into_iter().zip(phases).enumerate() {
             let (is_low, is_slow) = self.follow(at, place);
@@ -210,10 +205,8 @@ mod tests {
                 } else {
                     Phase::Levitated
                 };
-                if is_proven {
-                    interlock.forget();
-                }
-                interlock.take(Some([[-0.8e-4, 0.0]; 2]), [phase; 2])
+                let places = (!is_proven).then_some([[-0.8e-4, 0.0]; 2]);
+                interlock.take(places, [phase; 2])
             });
             assert_eq!(lifted, !is_proven);
         }

@@ -30,29 +30,27 @@ pub fn build() -> anyhow::Result<()> {
 
 /// Runs all tests; fails if one fails or if a layer ran none.
 pub fn run() -> anyhow::Result<()> {
-    let mut tally = Tally::default();
+    let (mut tally, mut late) = (Tally::default(), Vec::new());
     let mut print = |line: &str| {
         println!("{line}");
         tally.take(line);
     };
     // Beside each other: the last test of a layer leaves a processor idle.
     let [others, own] = PACKAGES;
-    let (others, (own, lines)) = thread::scope(|scope| {
-        let own = scope.spawn(|| {
-            let mut lines = Vec::new();
-            (run_each(own, |line| lines.push(line.to_owned())), lines)
-        });
+    let statuses = thread::scope(|scope| {
+        let own = scope.spawn(|| run_each(own, |line| late.push(line.to_owned())));
         let others = run_each(others, &mut print);
-        (others, own.join().expect("it does not panic"))
+        [others, own.join().expect("it does not panic")]
     });
-    lines.iter().for_each(|line| print(line));
+    late.iter().for_each(|line| print(line));
     println!("{} passed, {} failed", tally.passed, tally.failed);
 
     let empty = tally.empty_layers();
     ensure!(empty.is_empty(), "ran no tests: {}", empty.join(", "));
     let silent = tally.silent(claims()?);
     ensure!(silent.is_empty(), "ran no tests: {}", silent.join(", "));
-    for status in [others?, own?] {
+    for status in statuses {
+        let status = status?;
         ensure!(status.success(), "cargo test failed ({status})");
     }
     Ok(())

@@ -35,7 +35,7 @@ impl Counter {
         counter
     }
 
-    /// What `work` gives, and the instructions it took.
+    /// What `work` gives, and the instructions it took. None of the count is left to run between two later readings.
     #[inline(always)]
     pub fn count<T>(&self, work: impl FnOnce() -> T) -> (T, u32) {
         let before = SYST::get_current();
@@ -43,7 +43,6 @@ impl Counter {
         let after = SYST::get_current();
         let ticks = before.wrapping_sub(after) & RELOAD;
         let instructions = (u64::from(ticks) * 1_000 + u64::from(TICKS) / 2) / u64::from(TICKS);
-        // Here: the compiler would divide where it is needed, which may be between two later readings.
         (result, black_box(instructions as u32) - self.overhead)
     }
 }

@@ -195,9 +195,7 @@ impl Monitor {
             [None; PLANES]
         };
         state.lacks = reading.unusable != 0;
-        if state.lacks {
-            state.faults += u64::from(reading.unusable.count_ones());
-        }
+        state.faults += u64::from(reading.unusable.count_ones());
         (reading, signals)
     }
 
@@ -242,8 +240,7 @@ impl Monitor {
     #[inline]
     pub fn update_severity(&self, state: &mut MonitorState, notices: &[Notice]) {
         // A rotor that floats goes through nothing.
-        let is_released = state.detector.phases().map(|it| it >= Phase::FreeFall);
-        if is_released == [false; PLANES] && !state.severity.was_released {
+        if !state.severity.was_released && state.detector.phase() < Phase::FreeFall {
             return;
         }
         let strain = self.detector.strain(&state.detector);
@@ -277,11 +274,6 @@ impl MonitorState {
     /// The rotor's place in the last sample, mean over the planes, m; `None` where no plane delivers values of its own.
     pub fn position(&self) -> Option<[f32; 2]> {
         mean(&self.planes).map(|(position, _)| position)
-    }
-
-    /// Whether it has one.
-    pub fn sees(&self) -> bool {
-        self.planes.iter().any(Option::is_some)
     }
 
     /// Likewise of each plane; a plane that is not seen is where the other one is.

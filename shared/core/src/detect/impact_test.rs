@@ -203,7 +203,8 @@ impl JumpTest {
         let [rx, ry] = innovation.residual;
         let weight = 1.0 / innovation.variance;
         let mut best = [0.0, 1.0];
-        for candidate in bank.candidates.iter_mut().take(bank.live) {
+        let live = bank.candidates.get_mut(..bank.live);
+        for candidate in live.unwrap_or_default() {
             candidate.predict(self.period);
             let seen = candidate.effect[0];
             candidate.information += seen * seen * weight;

@@ -180,7 +180,8 @@ impl Release {
         // Since the instant over the memory, and exp of its negative.
         let (mut time, mut left) = (self.age(bank, 0) * step, bank.left);
         let mut most = 0.0;
-        for (it, level) in (bank.candidates.iter_mut().zip(&bank.levels)).take(bank.live) {
+        let candidates = bank.candidates.get_mut(..bank.live).unwrap_or_default();
+        for (it, level) in candidates.iter_mut().zip(&bank.levels) {
             let w = square * (1.0 - (1.0 + time) * left);
             it.sum[0] += x * w;
             it.sum[1] += y * w;
