@@ -1,6 +1,7 @@
 //! The coupled model against the reference, which shares no code with it: random machines of every
 //! combination of parts, in their bounces.
 
+use rayon::prelude::*;
 use touchdown_base::history::{History, Impact};
 use touchdown_lab::limits::machine;
 use touchdown_run::model;
@@ -11,8 +12,13 @@ use touchdown_tests::growth::{apart, growth, unit_speed};
 const STEP: f64 = 1e-6;
 /// Impacts of each machine that are looked at.
 const FIRST: usize = 5;
-/// Growth of a change at the start, up to which an impact is well-conditioned.
+/// Growth of a change at the start, up to which an impact is well-conditioned; in fine steps.
 const TAME: f64 = 100.0;
+const TAMEST: f64 = 10.0;
+/// What goes round turns by so much in a fine step, rad.
+const FINE: f64 = 4e-4;
+/// Least fine step, s.
+const FINEST: f64 = 5e-9;
 
 fn scene(text: &str) -> Option<Scene> {
     let mut scene = Scene::parse("machine", text).ok()?;
@@ -142,6 +148,40 @@ fn well_conditioned_impacts_are_the_references() {
     let median = compared.order();
     assert!(compared.seen > 120 && compared.closest > 75, "{} {}", compared.seen, compared.closest);
     assert!((3.5..4.5).contains(&median), "{median}");
+}
+
+/// Of a machine in steps that resolve it: its well-conditioned impacts, and how far the farthest is off.
+fn in_fine_steps(number: u64) -> Option<(usize, f64)> {
+    let mut scene = scene(&machine(number)).expect("a valid scene");
+    let before = cut(&mut scene);
+    let fastest = scene.two_plane.as_ref().expect("two ends").fastest(scene.rotor.spin);
+    let truth = touchdown_truth::simulate(&scene);
+    let rate = fastest.max(round(&scene, &truth)).max(pressing(&scene));
+    scene.model.step = STEP.min(FINE / rate);
+    // Dry friction is of first order.
+    if before == 0 || rubbed(&scene) > 0.0 || scene.model.step < FINEST {
+        return None;
+    }
+    let fine = model::run(&scene).expect("a valid scene").histories.whole;
+    let grown = growth(&scene, &truth, before);
+    let tame = grown.into_iter().take_while(|it| *it <= TAMEST).count();
+    let off = |k: usize| {
+        let (fine, truth) = (told(&fine.impacts[k], &scene), told(&truth.impacts[k], &scene));
+        apart(&fine, &truth, &scene)
+    };
+    let worst = (0..tame).map(off).fold(0.0, f64::max);
+    println!("{number}: {tame} impacts, step {:.1e} s, {worst:.1e} off", scene.model.step);
+    Some((tame, worst))
+}
+
+#[test]
+#[ignore = "minutes"]
+fn in_fine_steps_they_are_to_1e_6() {
+    let compared: Vec<_> = (0..96).into_par_iter().filter_map(in_fine_steps).collect();
+    let impacts: usize = compared.iter().map(|it| it.0).sum();
+    let worst = compared.iter().map(|it| it.1).fold(0.0, f64::max);
+    println!("{} machines, {impacts} impacts, {worst:.1e} off at most", compared.len());
+    assert!(impacts > 100 && worst <= 1e-6, "{impacts} {worst}");
 }
 
 /// Of a material that a step of 1 us resolves.
