@@ -91,7 +91,7 @@ impl App {
 
     /// One sample, before which `lost` were lost: every notice goes to the board, in order, then the
     /// outputs, and last of all the watchdog is fed. The notices are left for the recorder. One that was `missed` was never
-    /// taken, and the next one that was does what follows.
+    /// taken, and the next one that was does what follows. Returns what the outputs show after it.
     #[inline]
     pub fn take(
         &mut self,
@@ -100,14 +100,15 @@ impl App {
         missed: bool,
         lost: u32,
         notices: &mut Notices,
-    ) {
+    ) -> Shown {
         self.monitor.take(&mut self.state, sample, missed, notices);
         if missed {
             self.hear(board, notices);
-        } else {
-            self.follow(board, notices, lost);
-            board.feed();
+            return self.shown();
         }
+        let shown = self.follow(board, notices, lost);
+        board.feed();
+        shown
     }
 
     /// What the forecast below the tick needs; an estimate only where it `asks` for one.
@@ -115,8 +116,8 @@ impl App {
         self.monitor.forecast_input(&self.state, wants_input)
     }
 
-    /// What follows from the notices of a tick, outputs included, after `lost` samples and one that was taken.
-    pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) {
+    /// What follows from the notices of a tick, after `lost` samples and one that was taken: returns what was driven.
+    pub fn follow(&mut self, board: &mut impl Board, notices: &[Notice], lost: u32) -> Shown {
         self.hear(board, notices);
         let (places, phases) = (self.state.places(), self.state.detector.phases());
         // What was proven to float does not lie: how long it has lain counts from then on.
@@ -136,7 +137,9 @@ impl App {
         if self.safety.is_latched() && !was_latched {
             self.state.guard.proof.forget();
         }
-        board.drive(self.shown());
+        let shown = self.shown();
+        board.drive(shown);
+        shown
     }
 
     fn hear(&mut self, board: &mut impl Board, notices: &[Notice]) {
@@ -170,16 +173,12 @@ impl App {
             self.latch(Fault::SensorsLost);
         }
         self.sensors_tested |= self.blind.has_seen();
-        // They take turns, but the self-test waits for the configuration.
-        let is_even = self.state.samples & 1 == 0;
-        if is_even || !self.config_tested {
-            match self.patrol.step(block) {
-                Some(true) => self.config_tested = true,
-                Some(false) => self.latch(Fault::ConfigChanged),
-                None => {}
-            }
+        match self.patrol.step(block) {
+            Some(true) => self.config_tested = true,
+            Some(false) => self.latch(Fault::ConfigChanged),
+            None => {}
         }
-        if !is_even && self.coefficients.step(&self.monitor) == Some(false) {
+        if self.coefficients.step(&self.monitor) == Some(false) {
             self.latch(Fault::MemoryChanged);
         }
     }

@@ -36,6 +36,7 @@ pub struct LiftInterlock {
     /// As the detector told last, by end.
     rests: [bool; PLANES],
     ends: [End; PLANES],
+    /// Whether there were places in the last sample: `ends` is not the default.
     has_counted: bool,
 }
 

@@ -36,9 +36,9 @@ pub fn tick(
     loop {
         let missed = left > 0;
         let sample = if missed { &before } else { sample };
-        app.take(board, sample, missed, lost, notices);
+        let shown = app.take(board, sample, missed, lost, notices);
         recorder.set_severity(&app.state().severity.so_far);
-        recorder.set_phase(app.state().detector.phase(), app.shown());
+        recorder.set_phase(app.state().detector.phase(), shown);
         recorder.take(sample, notices);
         recorder.keep(app.state());
         if !missed {

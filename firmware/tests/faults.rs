@@ -459,8 +459,7 @@ fn samples_lost_before_clear_do_not_count_after_it() {
 #[test]
 fn any_bit_of_the_configuration_that_flips_trips_within_two_passes() {
     let block = config_block::encode(&default_settings());
-    // Every other tick.
-    let limit = 2 * ConfigScrub::steps(block.len()) as u32;
+    let limit = ConfigScrub::steps(block.len()) as u32;
     let mut longest = 0;
     let bench = Bench::watching();
     let watching = |ahead: u32| {
@@ -586,8 +585,7 @@ fn flip_a_bit_of_the_coefficients(app: &mut App) {
 #[test]
 fn coefficients_that_change_in_memory_trip_within_two_passes() {
     let mut bench = Bench::watching();
-    // A step every other tick.
-    let pass = 2 * MemoryScrub::steps::<Monitor>() as u32;
+    let pass = MemoryScrub::steps::<Monitor>() as u32;
     (0..pass).for_each(|_| assert_eq!(bench.float(), WATCHING));
     flip_a_bit_of_the_coefficients(&mut bench.app);
     ticks_until(2 * pass, || bench.float() == 0);
@@ -602,8 +600,7 @@ fn coefficients_that_change_in_memory_trip_within_two_passes() {
 
 #[test]
 fn coefficients_that_change_before_the_first_tick_trip_within_two_passes() {
-    // A step every other tick.
-    let pass = 2 * MemoryScrub::steps::<Monitor>() as u32;
+    let pass = MemoryScrub::steps::<Monitor>() as u32;
     let mut place = core::mem::MaybeUninit::uninit();
     let app = memory::application(&mut place, &default_config(), Faults::NONE);
     let app = app.expect("a valid configuration");

@@ -132,10 +132,10 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         let seen = black_box(&seen);
         let ((), detector) = counter.count(|| monitor.detect(state, seen, &mut notices));
         let ((), severity) = counter.count(|| monitor.update_severity(state, &notices));
-        let ((), outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
+        let (shown, outputs) = counter.count(|| app.follow(&mut board, &notices, 0));
         let ((), recording) = counter.count(|| {
             recorder.set_severity(&app.state().severity.so_far);
-            recorder.set_phase(app.state().detector.phase(), app.shown());
+            recorder.set_phase(app.state().detector.phase(), shown);
             recorder.take(sample, &notices);
         });
         let (outlook, forecast) =
