@@ -17,7 +17,7 @@ use crate::detect::measurement::Measurement;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
 use crate::detect::pending::Pending;
-use crate::detect::phase_machine::{PhaseMachine, PhaseState};
+use crate::detect::phase_machine::{Disturbance, PhaseMachine, PhaseState};
 use crate::detect::possible::{Possible, PossibleTest};
 use crate::detect::release::{Release, ReleaseBank, Released};
 use crate::detect::signals::Signals;
@@ -36,8 +36,6 @@ const MOVED: f32 = 8.0;
 const HOLD: f32 = 30e-3;
 /// Angle beyond that of friction, rad, up to which a rotor at the wall may lie there still.
 const RESTING_ANGLE: f32 = 0.1;
-/// Times the mean square of their wavering that sensors may be off on the wall, where that is less than while it floated.
-const WAVERING: f32 = 2.0;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -469,23 +467,14 @@ impl Detector {
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        // On the wall, what else moves the sensors is there as it was while levitated, but for the rotor's own motion.
-        let learnt = state.levitation.learnt_variance();
-        let wavering = state.rotor.contact.lift.wavering();
-        let shown = wavering.map_or(learnt, |it| learnt.min(WAVERING * it));
-        let measurement = measurement.map(|measurement| Measurement {
-            variance: measurement.variance.max(shown),
-            ..*measurement
-        });
-        let threshold_scale = state.listener.threshold_scale();
+        let disturbance = state.disturbance();
         let ends = &mut state.ends;
         let whose = |contact: &Touching| ends.lifting(contact);
-        let (rotor, measurement) = (&mut state.rotor, measurement.as_ref());
         if !self.phase_machine.touching(
-            rotor,
+            &mut state.rotor,
             measurement,
             signals,
-            (threshold_scale, true),
+            (&disturbance, true),
             whose,
             writer,
         ) {
@@ -542,8 +531,9 @@ impl Detector {
         writer: &mut EventWriter,
     ) {
         let fixes = &self.fixes(state, planes);
+        let disturbance = state.disturbance();
         let (ends, pending) = (&mut state.ends, &mut state.pending);
-        let floating = (&state.levitation, state.listener.threshold_scale());
+        let floating = (&state.levitation, &disturbance);
         self.ends
             .step(ends, fixes, signals, floating, pending, writer);
         if let Some(measurement) = measurement
@@ -563,6 +553,13 @@ impl Detector {
 }
 
 impl DetectorState {
+    fn disturbance(&self) -> Disturbance {
+        Disturbance {
+            threshold_scale: self.listener.threshold_scale(),
+            variance: self.levitation.learnt_variance() - self.orbit.ending_variance(),
+        }
+    }
+
     /// The mean over the planes has moved by `way` (m), the rotor has not.
     fn shift(&mut self, way: [f32; 2]) {
         self.levitation.shift(way);

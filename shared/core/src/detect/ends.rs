@@ -9,7 +9,7 @@ use crate::detect::event_writer::EventWriter;
 use crate::detect::levitation::{Learning, Levitation};
 use crate::detect::measurement::Measurement;
 use crate::detect::pending::Pending;
-use crate::detect::phase_machine::{Lifting, PhaseMachine, PhaseState};
+use crate::detect::phase_machine::{Disturbance, Lifting, PhaseMachine, PhaseState};
 use crate::detect::signals::Signals;
 use crate::event::{Motion, Plane};
 use crate::phase::Phase;
@@ -152,11 +152,11 @@ impl EndsTest {
         ends: &mut Ends,
         fixes: &[Option<Measurement>; PLANES],
         signals: &Signals,
-        floating: (&Levitation, f32),
+        floating: (&Levitation, &Disturbance),
         pending: &mut Option<Pending>,
         writer: &mut EventWriter,
     ) {
-        let (levitation, threshold_scale) = floating;
+        let (levitation, disturbance) = floating;
         let (homes, _) = ends.homes(levitation);
         let whole = writer.plane;
         let alone = ends.alone.iter_mut();
@@ -166,15 +166,11 @@ impl EndsTest {
             writer.plane = plane;
             match (phase_state.phase, measurement) {
                 (Phase::Sliding | Phase::Rolling, measurement) => {
-                    let measurement = measurement.map(|measurement| Measurement {
-                        variance: measurement.variance.max(levitation.learnt_variance()),
-                        ..measurement
-                    });
                     self.phase_machine.touching(
                         phase_state,
                         measurement.as_ref(),
                         signals,
-                        (threshold_scale, false),
+                        (disturbance, false),
                         |_| Lifting::Both,
                         writer,
                     );
@@ -199,6 +195,7 @@ impl EndsTest {
                 (Phase::FreeFall | Phase::Impact, None) => self.phase_machine.skip(phase_state),
                 (Phase::Starting | Phase::Levitated, Some(measurement)) => {
                     if self.phase_machine.is_near(measurement.position) {
+                        let threshold_scale = disturbance.threshold_scale;
                         self.phase_machine
                             .fly(phase_state, measurement, None, threshold_scale);
                     }

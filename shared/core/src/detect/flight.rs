@@ -299,7 +299,7 @@ impl FlightTest {
     /// A contact begins.
     pub(crate) fn begin_contact(&self, flight: &mut Airborne) {
         flight.is_rigid |= !flight.gives && flight.series.last().is_some();
-        flight.wall.begin_contact(&self.told);
+        flight.wall.meet(&self.told);
     }
 
     /// A contact ended where it showed the wall, at that radius (m), or where a slow lift took the wall along.

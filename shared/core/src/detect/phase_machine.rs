@@ -19,6 +19,8 @@ use crate::vector::{direction, length, square};
 
 /// Part of gravity's way that is less than any fall goes, whatever forces are left.
 const FALLS: f32 = 0.5;
+/// Times the mean square of their wavering on the wall that sensors may be off there.
+const WAVERING: f32 = 2.0;
 /// Faster than a controller puts a rotor down, m/s.
 const LANDING_SPEED: f32 = 0.01;
 
@@ -44,6 +46,15 @@ pub(crate) struct PhaseState {
     pub(crate) flight: Airborne,
     pub(crate) contact: Touching,
     pub(crate) still: Still,
+}
+
+/// What besides the rotor moves the sensors, as learnt while it floated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Disturbance {
+    /// On the threshold of the impact test.
+    pub(crate) threshold_scale: f32,
+    /// On the wall, of one axis, m^2.
+    pub(crate) variance: f32,
 }
 
 /// What a lift-off is that of.
@@ -338,11 +349,18 @@ impl PhaseMachine {
         phase_state: &mut PhaseState,
         measurement: Option<&Measurement>,
         signals: &Signals,
-        (threshold_scale, is_whole): (f32, bool),
+        (disturbance, is_whole): (&Disturbance, bool),
         whose: impl FnOnce(&Touching) -> Lifting,
         writer: &mut EventWriter,
     ) -> bool {
         let pull = (self.flight.pull(&phase_state.flight), is_whole);
+        let wavering = phase_state.contact.lift.wavering();
+        let most = wavering.map_or(f32::INFINITY, |it| WAVERING * it);
+        let measurement = measurement.map(|it| Measurement {
+            variance: it.variance.max(disturbance.variance.min(most)),
+            ..*it
+        });
+        let measurement = measurement.as_ref();
         let findings = self.contact.take(
             &mut phase_state.contact,
             &mut phase_state.flight.wall,
@@ -363,6 +381,7 @@ impl PhaseMachine {
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
                     self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {
+                        let threshold_scale = disturbance.threshold_scale;
                         self.fly(phase_state, measurement, wall, threshold_scale);
                     }
                 }

@@ -81,21 +81,16 @@ pub(crate) struct Beside {
 }
 
 impl RetainerWall {
-    /// A contact begins. It shows anew a wall that is not known to be elsewhere.
-    pub(crate) fn begin_contact(&mut self, told: &ToldWall) {
-        if self.seen != Seen::Elsewhere {
-            self.forget(told);
+    /// The rotor meets it: before the first time it is as told.
+    pub(crate) fn meet(&mut self, told: &ToldWall) {
+        if self.seen != Seen::Nothing {
+            return;
         }
-    }
-
-    /// As told, before it was met.
-    fn forget(&mut self, told: &ToldWall) {
         let error = TOLD * told.radius;
         *self = Self {
-            seen: self.seen,
             shape: [told.radius, 0.0, 0.0],
             diagonal: [error * error; STATES],
-            columns: Default::default(),
+            ..Self::default()
         };
     }
 
@@ -197,9 +192,7 @@ impl RetainerWall {
 
     /// Takes a place where an impact was, known to `variance` (m^2).
     pub(crate) fn take(&mut self, position: [f32; 2], variance: f32, told: &ToldWall) {
-        if self.seen == Seen::Nothing {
-            self.forget(told);
-        }
+        self.meet(told);
         let beside = self.beside(position);
         self.learn(&beside, variance);
         self.see(beside.radius, told);
@@ -289,7 +282,7 @@ mod tests {
     #[test]
     fn a_turn_shows_centre_and_radius() {
         let (mut wall, mut seed) = (RetainerWall::default(), 1);
-        wall.begin_contact(&TOLD_WALL);
+        wall.meet(&TOLD_WALL);
         for k in 0..2_000 {
             let beside = wall.beside(noisy(TAU * k as f32 / 2_000.0, &mut seed));
             wall.learn(&beside, 1e-12);
@@ -312,7 +305,7 @@ mod tests {
     #[test]
     fn long_swings_leave_the_wall_where_it_is() {
         let (mut wall, mut seed) = (RetainerWall::default(), 1);
-        wall.begin_contact(&TOLD_WALL);
+        wall.meet(&TOLD_WALL);
         for k in 0..100_000 {
             let angle = 0.3 * libm::sinf(TAU * k as f32 / 700.0) - FRAC_PI_2;
             let beside = wall.beside(noisy(angle, &mut seed));

@@ -278,6 +278,12 @@ impl OrbitState {
         let orbit = orbit.filter(|it| it.square() > RUNOUT * RUNOUT);
         orbit.map_or([0.0; 2], |orbit| orbit.fundamental())
     }
+
+    /// Variance of one axis that ends with the levitation, m^2: that of an orbit beyond what runout may be.
+    pub(crate) fn ending_variance(&self) -> f32 {
+        let beyond = |orbit: &Orbit| orbit.square() - RUNOUT * RUNOUT;
+        0.5 * self.certain().map_or(0.0, beyond).max(0.0)
+    }
 }
 
 #[cfg(test)]
@@ -285,6 +291,7 @@ mod tests {
     use super::*;
     use crate::config::{MachineConfig, Tuning};
     use crate::detect::noise::white;
+    use core::f32::consts::TAU;
     use touchdown_rotor::real::sqrt;
 
     fn orbiting(sample_rate: f32) -> Orbiting {
@@ -343,6 +350,27 @@ mod tests {
                     assert!(left < most && firsts == 1, "{case:?}: {left} um, {firsts}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn of_an_orbit_ends_with_the_levitation_what_no_runout_reaches() {
+        for (radius, ends) in [(30e-6, 418e-12), (12e-6, 40e-12), (5e-6, 0.0)] {
+            let (orbiting, mut state, mut seed) = (orbiting(20_000.0), OrbitState::default(), 1);
+            for k in 0..10_000_u16 {
+                let (sin, cos) = libm::sincosf(TAU * 150.0 / 20_000.0 * f32::from(k));
+                let [x, y] = [white(&mut seed), white(&mut seed)].map(|it| 1e-6 * it);
+                orbiting.advance(&mut state, None);
+                let variance = 0.5 * radius * radius + 1e-12;
+                let position = [radius * cos + x, radius * sin + y];
+                orbiting.take(&mut state, position, (variance, 1e-12), true);
+            }
+            assert!(state.learnt.is_certain, "{radius}");
+            let found = state.ending_variance();
+            assert!(
+                (found - ends).abs() < 0.1 * ends + 1e-15,
+                "{radius}: {found}"
+            );
         }
     }
 
