@@ -390,20 +390,27 @@ mod tests {
     use crate::detect::series::tests::MACHINE;
     use crate::event::Moment;
 
-    /// 1.4 mm/s, where an orbit of 10 um wavers more than the wall's learnt place lags.
-    #[test]
-    fn a_slow_lift_that_takes_the_wall_along_is_found() {
+    const SAMPLE_RATE: f32 = 20_000.0;
+    const TOLD: ToldWall = ToldWall {
+        radius: MACHINE.clearance,
+        tolerance: 0.07 * MACHINE.clearance,
+    };
+
+    fn test() -> ContactTest {
         let config = DetectorConfig {
-            sample_rate: 20_000.0,
+            sample_rate: SAMPLE_RATE,
             machine: MACHINE,
             tuning: Tuning::default(),
         };
-        let test = ContactTest::new(&config, 25.0);
+        ContactTest::new(&config, 25.0)
+    }
+
+    /// 1.4 mm/s, where an orbit of 10 um wavers more than the wall's learnt place lags.
+    #[test]
+    fn a_slow_lift_that_takes_the_wall_along_is_found() {
+        let test = test();
         let (mut state, mut wall) = (Touching::default(), RetainerWall::default());
-        wall.meet(&ToldWall {
-            radius: MACHINE.clearance,
-            tolerance: 0.07 * MACHINE.clearance,
-        });
+        wall.meet(&TOLD);
         let lifted = |k: u16| 1.4e-3 * (f32::from(k) - 2_000.0).max(0.0) / 20_000.0;
         let found = (0..6_000).find(|&k| {
             let radius = 300e-6 + 10e-6 * libm::sinf(0.05 * f32::from(k)) - lifted(k);
@@ -423,16 +430,7 @@ mod tests {
     /// wall, by sensors that may waver by 8 um: they show no wall that the flight would be on.
     #[test]
     fn a_flight_after_a_short_contact_is_seen() {
-        let config = DetectorConfig {
-            sample_rate: 20_000.0,
-            machine: MACHINE,
-            tuning: Tuning::default(),
-        };
-        let test = ContactTest::new(&config, 25.0);
-        let told = ToldWall {
-            radius: MACHINE.clearance,
-            tolerance: 0.07 * MACHINE.clearance,
-        };
+        let test = test();
         let (radius, mut seed) = (MACHINE.clearance, 1);
         let mut wall = RetainerWall::default();
         for k in 0..20_u16 {
@@ -441,14 +439,14 @@ mod tests {
             wall.take(
                 [(radius + error) * sin, -(radius + error) * cos],
                 1e-12,
-                &told,
+                &TOLD,
             );
         }
-        wall.meet(&told);
+        wall.meet(&TOLD);
         let (up, across) = libm::sincosf(0.9);
         let speed = sqrt(MACHINE.gravity * radius * up);
         let place = |k: i16| {
-            let time = f32::from(k) / config.sample_rate;
+            let time = f32::from(k) / SAMPLE_RATE;
             if k < 0 {
                 let (sin, cos) = libm::sincosf(0.9 + speed * time / radius);
                 return [radius * cos, radius * sin];
@@ -476,16 +474,7 @@ mod tests {
 
     /// Turns done when a whirl of 100 turns a second against the spin is told.
     fn turns_when_told(is_whole: bool) -> f32 {
-        let config = DetectorConfig {
-            sample_rate: 20_000.0,
-            machine: MACHINE,
-            tuning: Tuning::default(),
-        };
-        let test = ContactTest::new(&config, 25.0);
-        let told = ToldWall {
-            radius: MACHINE.clearance,
-            tolerance: 0.07 * MACHINE.clearance,
-        };
+        let test = test();
         let turns = |k: u32| -MACHINE.spin.signum() * 5e-3 * k as f32;
         let measurement = |k: u32| {
             let (sin, cos) = libm::sincosf(TAU * turns(k));
@@ -497,7 +486,7 @@ mod tests {
             }
         };
         let mut wall = RetainerWall::default();
-        wall.meet(&told);
+        wall.meet(&TOLD);
         let speed = [TAU * 100.0 * turns(1).signum() * MACHINE.clearance, 0.0];
         let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
         let pull = Pull {

@@ -1,5 +1,4 @@
-//! The detector: learns while the rotor floats, finds the release, and follows from there on the rotor
-//! as a whole or, where they move apart, its ends.
+//! The detector: learns while the rotor floats, finds the release, then follows the rotor or, where they part, its ends.
 
 mod learnt;
 
@@ -646,5 +645,47 @@ pub(crate) fn bits(value: f32) -> u32 {
         0x7fc0_0000
     } else {
         value.to_bits()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Tuning;
+    use crate::detect::noise::white;
+    use crate::detect::series::tests::MACHINE;
+    use core::f32::consts::TAU;
+
+    /// Of an orbit of 30 um, 450 um^2 on each axis, no more than runout of 8 um counts as noise on the wall.
+    #[test]
+    fn an_orbit_is_no_noise_on_the_wall() {
+        let config = DetectorConfig {
+            sample_rate: 20_000.0,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        };
+        let detector = Detector::try_new(&config, 0.5e-6).expect("valid");
+        let (mut state, mut seed) = (DetectorState::default(), 1);
+        for k in 0..12_000_u16 {
+            let (sin, cos) = libm::sincosf(TAU * 150.0 / 20_000.0 * f32::from(k));
+            let place = [30e-6 * cos, 30e-6 * sin];
+            let planes = [0; PLANES].map(|_| Some(place.map(|it| it + 1e-6 * white(&mut seed))));
+            let reading = Reading {
+                planes,
+                unusable: 0,
+                moved: [0.0; 2],
+                found: Default::default(),
+            };
+            detector.update(
+                &mut state,
+                &reading,
+                &Signals::default(),
+                &mut Notices::new(),
+            );
+        }
+        assert_eq!(state.rotor.phase, Phase::Levitated);
+        assert!((state.levitation.learnt_variance() - 450e-12).abs() < 10e-12);
+        let variance = state.disturbance().variance;
+        assert!((20e-12..50e-12).contains(&variance), "{variance}");
     }
 }

@@ -51,7 +51,7 @@ pub(crate) struct PhaseState {
 /// What besides the rotor moves the sensors, as learnt while it floated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Disturbance {
-    /// On the threshold of the impact test.
+    /// Factor on the threshold of the impact test.
     pub(crate) threshold_scale: f32,
     /// On the wall, of one axis, m^2.
     pub(crate) variance: f32,
