@@ -29,13 +29,14 @@ fn main() {
 }
 
 fn table(machines: &[Machine]) -> String {
-    let mut table = "| machine | drops | fall confirmed | touches found | drops with invented impacts | rate below, 95 % | false of whirls | whirls of a turn told | drops with a sensor fault | drops ended early |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n".to_owned();
+    let mut table = "| machine | drops | fall confirmed | touches found | drops with invented impacts | rate below, 95 % | false of whirls | whirls of a turn told | false of lift-offs | drops with a sensor fault | drops ended early |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n".to_owned();
     for it in machines {
         let [clear, found] = it.touches;
         let [whirls, false_whirls] = it.whirls;
         let [turning, told] = it.turning;
+        let [lift_offs, false_lift_offs] = it.lift_offs;
         table += &format!(
-            "| {} | {} | {} | {found} of {clear} | {} | {:.2} | {false_whirls} of {whirls} | {told} of {turning} | {} | {} |\n",
+            "| {} | {} | {} | {found} of {clear} | {} | {:.2} | {false_whirls} of {whirls} | {told} of {turning} | {false_lift_offs} of {lift_offs} | {} | {} |\n",
             it.name, it.drops, it.confirmed, it.invented, it.rate_below, it.faults, it.cut
         );
     }

@@ -1,6 +1,8 @@
 //! Drops of every machine of the scene list, around what its file says; the monitor is told the file. What it tells is held
 //! against the reference.
 //!
+//! A lift-off is false while the rotor stays in all its rings for a millisecond before and after.
+//!
 //! A touch is all that a rotor does in a ring from meeting it to leaving it for a millisecond: a ring on a soft mount is met
 //! many times in one. Ends touch apart. A drop ends early where the reference is given up.
 
@@ -32,7 +34,7 @@ pub struct Machine {
     pub drops: usize,
     /// Of them, those whose fall was confirmed.
     pub confirmed: usize,
-    /// Touches that begin with an impact of 20 mm/s and more, and those of them in which an impact was told.
+    /// Touches that begin with an impact of 20 mm/s and more, and those of them in which an impact was told, or a contact began.
     pub touches: [usize; 2],
     /// Drops with an impact where there was none, and an upper bound of their rate at 95 %.
     pub invented: usize,
@@ -46,6 +48,8 @@ pub struct Machine {
     pub faults: usize,
     /// Drops that end early, as the reference was given up.
     pub cut: usize,
+    /// Lift-offs told, and the false ones of them.
+    pub lift_offs: [usize; 2],
     /// Numbers of the drops that failed in one of these.
     pub failures: Vec<u64>,
 }
@@ -80,6 +84,8 @@ fn machine(name: &'static str, drops: u64, first: u64) -> Machine {
         all.whirls[1] += it.whirls[1];
         all.turning[0] += it.turning[0];
         all.turning[1] += it.turning[1];
+        all.lift_offs[0] += it.lift_offs[0];
+        all.lift_offs[1] += it.lift_offs[1];
         all.faults += usize::from(it.faults > 0);
         all.cut += usize::from(it.cut);
         if it.invented + it.whirls[1] + it.faults > 0 {
@@ -98,6 +104,7 @@ struct Seen {
     invented: usize,
     whirls: [usize; 2],
     turning: [usize; 2],
+    lift_offs: [usize; 2],
     faults: usize,
     cut: bool,
 }
@@ -122,6 +129,7 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         ..Seen::default()
     };
     let (mut impacts, mut whirls) = (Vec::new(), Vec::new());
+    let (mut lying, mut lift_offs) = (Vec::new(), Vec::new());
     let mut contacts: Vec<Contact> = Vec::new();
     for k in 0..(levitated + scene.run.duration * rate) as u64 {
         let time = (k as f64 - levitated) / rate;
@@ -154,6 +162,8 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
                     let onset = (event.onset.samples() - levitated) / rate;
                     match event.kind {
                         EventKind::Impact => impacts.push(onset),
+                        EventKind::Sliding | EventKind::Rolling => lying.push(onset),
+                        EventKind::LiftOff => lift_offs.push(onset),
                         EventKind::ForwardWhirl => whirls.push((time, spin.signum())),
                         EventKind::BackwardWhirl => whirls.push((time, -spin.signum())),
                         EventKind::SensorFault => seen.faults += 1,
@@ -186,7 +196,9 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         histories.rings.iter().collect()
     };
     let end = given_up.unwrap_or(scene.run.duration);
-    judge(&rings, end, &impacts, &mut seen);
+    judge(&rings, end, [&impacts, &lying], &mut seen);
+    let is_false = |it: &&f64| rings.iter().all(|ring| is_touched(ring, end, **it));
+    seen.lift_offs = [lift_offs.len(), lift_offs.iter().filter(is_false).count()];
     seen
 }
 
@@ -213,8 +225,14 @@ fn touches(ring: &History, end: f64) -> Vec<(f64, f64, f64)> {
     touches
 }
 
+/// Whether a ring is touched for a millisecond before and after.
+fn is_touched(ring: &History, end: f64, time: f64) -> bool {
+    let mut touches = touches(ring, end).into_iter();
+    touches.any(|it| it.0 + SAME < time && time < it.1 - SAME)
+}
+
 /// Each impact told is the only one of its touch in a ring, or within a millisecond of a true one.
-fn judge(rings: &[&History], end: f64, told: &[f64], seen: &mut Seen) {
+fn judge(rings: &[&History], end: f64, [told, lying]: [&[f64]; 2], seen: &mut Seen) {
     let true_ones = || rings.iter().flat_map(|it| &it.impacts);
     let mut touches: Vec<_> = rings
         .iter()
@@ -235,7 +253,7 @@ fn judge(rings: &[&History], end: f64, told: &[f64], seen: &mut Seen) {
         .filter(|(it, _)| it.2 >= CLEAR && it.0 < end - 4.0 * SAME);
     let found = |it: &&((f64, f64, f64), bool)| {
         let near = |onset: &f64| (it.0.0 - SAME..=it.0.1 + SAME).contains(onset);
-        told.iter().any(near)
+        told.iter().chain(lying).any(near)
     };
     seen.touches = [clear.clone().count(), clear.filter(found).count()];
 }
