@@ -34,7 +34,7 @@ pub struct Machine {
     pub drops: usize,
     /// Of them, those whose fall was confirmed.
     pub confirmed: usize,
-    /// Touches that begin with an impact of 20 mm/s and more, and those of them in which an impact was told, or a contact began.
+    /// Touches that begin with an impact of 20 mm/s and more, and those of them in which an impact was told.
     pub touches: [usize; 2],
     /// Drops with an impact where there was none, and an upper bound of their rate at 95 %.
     pub invented: usize,
@@ -128,8 +128,7 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         number,
         ..Seen::default()
     };
-    let (mut impacts, mut whirls) = (Vec::new(), Vec::new());
-    let (mut lying, mut lift_offs) = (Vec::new(), Vec::new());
+    let (mut impacts, mut whirls, mut lift_offs) = (Vec::new(), Vec::new(), Vec::new());
     let mut contacts: Vec<Contact> = Vec::new();
     for k in 0..(levitated + scene.run.duration * rate) as u64 {
         let time = (k as f64 - levitated) / rate;
@@ -162,7 +161,6 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
                     let onset = (event.onset.samples() - levitated) / rate;
                     match event.kind {
                         EventKind::Impact => impacts.push(onset),
-                        EventKind::Sliding | EventKind::Rolling => lying.push(onset),
                         EventKind::LiftOff => lift_offs.push(onset),
                         EventKind::ForwardWhirl => whirls.push((time, spin.signum())),
                         EventKind::BackwardWhirl => whirls.push((time, -spin.signum())),
@@ -196,7 +194,7 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         histories.rings.iter().collect()
     };
     let end = given_up.unwrap_or(scene.run.duration);
-    judge(&rings, end, [&impacts, &lying], &mut seen);
+    judge(&rings, end, &impacts, &mut seen);
     let is_false = |it: &&f64| rings.iter().all(|ring| is_touched(ring, end, **it));
     seen.lift_offs = [lift_offs.len(), lift_offs.iter().filter(is_false).count()];
     seen
@@ -232,7 +230,7 @@ fn is_touched(ring: &History, end: f64, time: f64) -> bool {
 }
 
 /// Each impact told is the only one of its touch in a ring, or within a millisecond of a true one.
-fn judge(rings: &[&History], end: f64, [told, lying]: [&[f64]; 2], seen: &mut Seen) {
+fn judge(rings: &[&History], end: f64, told: &[f64], seen: &mut Seen) {
     let true_ones = || rings.iter().flat_map(|it| &it.impacts);
     let mut touches: Vec<_> = rings
         .iter()
@@ -253,7 +251,7 @@ fn judge(rings: &[&History], end: f64, [told, lying]: [&[f64]; 2], seen: &mut Se
         .filter(|(it, _)| it.2 >= CLEAR && it.0 < end - 4.0 * SAME);
     let found = |it: &&((f64, f64, f64), bool)| {
         let near = |onset: &f64| (it.0.0 - SAME..=it.0.1 + SAME).contains(onset);
-        told.iter().chain(lying).any(near)
+        told.iter().any(near)
     };
     seen.touches = [clear.clone().count(), clear.filter(found).count()];
 }
