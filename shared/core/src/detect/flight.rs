@@ -113,6 +113,19 @@ pub(crate) struct Airborne {
     lies: f32,
     /// Samples that it has.
     lying: u32,
+    /// Of a rotor that seems to have lifted off, until it meets the wall.
+    lifted: Option<Lifted>,
+    /// How far the wall has held it inside of where it lay, m.
+    held: f32,
+}
+
+/// Where the rotor lay on the wall before it seemed to lift off.
+#[derive(Clone, Copy, Debug)]
+struct Lifted {
+    /// Radius of the wall there, m.
+    wall: f32,
+    /// How far inside of that it has been since, m.
+    depth: f32,
 }
 
 impl Airborne {
@@ -125,11 +138,20 @@ impl Airborne {
         self.near_wall = 0;
         self.seen_near = 0;
         self.lying = 0;
+        self.lifted = None;
     }
 
-    /// How far the wall has given way where the rotor came to lie on it, m.
+    /// How far the wall gives way where the rotor has come to lie on it, m.
     pub(crate) fn give(&self) -> f32 {
-        self.touch.as_ref().map_or(0.0, |it| it.give)
+        (self.touch.as_ref()).map_or(self.held, |it| it.give.max(self.held))
+    }
+
+    /// Whether a rotor that comes to lie on the wall has not left it: no impact has shown that since it seemed to lift off.
+    /// The wall then held it wherever it has been.
+    pub(crate) fn was_held(&mut self) -> bool {
+        let lifted = self.lifted.take();
+        self.held = lifted.map_or(self.held, |it| it.depth.max(self.held));
+        lifted.is_some()
     }
 
     /// What is known of another one, but for impacts under way.
@@ -140,6 +162,7 @@ impl Airborne {
         self.gives = other.gives;
         self.is_rigid = other.is_rigid;
         self.lies = other.lies;
+        self.held = other.held;
         self.restart(other.bank.threshold_scale);
     }
 }
@@ -258,11 +281,14 @@ impl FlightTest {
             self.turning(measurement, threshold_scale),
         );
         flight.series = Series::default();
-        flight.is_rigid &= wall.is_some();
+        if wall.is_none() {
+            (flight.is_rigid, flight.held) = (false, 0.0);
+        }
         flight.lies = wall.map_or(self.near, |wall| wall - clear);
         // What it has been from the release on, it is after a lift-off.
         let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale);
         flight.restart(threshold_scale.max(heard));
+        flight.lifted = wall.map(|wall| Lifted { wall, depth: 0.0 });
     }
 
     /// Spin whose unbalance a flight shows, rad/s, and its angle in a sample, rad; 0 where a fall is less than a turn, in
@@ -517,6 +543,7 @@ impl FlightTest {
         // Of a wall that gives way the date has been stretched, of another one it would be.
         let part = (GROWS - 1.0) / if flight.gives { GROWS } else { 1.0 };
         let way = hit.bounce.normal_speed * part * hit.age * self.period;
+        flight.lifted = None;
         flight.met = Some(hit.bounce.at);
         flight.touch = (!flight.is_rigid).then(|| OpenTouch::new(direction(hit.place), way));
         flight.seen_near = 0;
@@ -687,6 +714,10 @@ impl FlightTest {
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
         let (outward, seen) = direction(measurement.position);
         let near = self.near(flight, outward);
+        let beyond = flight.wall.beyond((outward, seen));
+        if let Some(lifted) = &mut flight.lifted {
+            lifted.depth = lifted.depth.max((-beyond).min(lifted.wall - seen));
+        }
         flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
         if flight.seen_near > OVERDUE * self.dwell {
             let age = flight.seen_near as f32;

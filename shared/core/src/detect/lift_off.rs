@@ -30,7 +30,7 @@ pub(crate) struct LiftOff {
     count: u16,
     /// Mean square of that distance on the wall, m^2.
     square: f32,
-    /// The same on a wall that gives way; 0 on one that does not.
+    /// The same at least, on a wall that gives way; 0 on one that does not.
     give: f32,
     sum: f32,
     age: u16,
@@ -45,6 +45,16 @@ impl LiftOff {
         Self {
             give: 0.25 * give * give,
             ..Self::default()
+        }
+    }
+
+    /// The same on a wall that has been learnt: the rotor had not left it.
+    pub(crate) fn after(&self, before: &Self) -> Self {
+        Self {
+            give: self.give,
+            sum: 0.0,
+            age: 0,
+            ..*before
         }
     }
 
@@ -106,9 +116,6 @@ impl LiftOff {
             self.lately += gain * (radius - self.lately);
             if self.count > 1 {
                 self.square += gain * (gap * gap - self.square);
-            }
-            if self.give > 0.0 {
-                self.give += (gap * gap - self.give) / MEMORY;
             }
             return None;
         }

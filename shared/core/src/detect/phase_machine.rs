@@ -153,7 +153,7 @@ impl PhaseMachine {
             self.flight.end_contact(&mut phase_state.flight, None);
             self.flight.begin_contact(&mut phase_state.flight);
         }
-        phase_state.contact.lift = LiftOff::default();
+        phase_state.contact.lift = LiftOff::on(phase_state.flight.give());
     }
 
     /// The rotor at `at` for a forecast, once it has met the wall; `spin` (rad/s) as measured.
@@ -334,11 +334,17 @@ impl PhaseMachine {
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
         let velocity = (phase_state.flight.track.velocity, spread);
-        let give = phase_state.flight.give();
+        let was_held = phase_state.flight.was_held();
+        let lift = LiftOff::on(phase_state.flight.give());
+        let lift = if was_held {
+            lift.after(&phase_state.contact.lift)
+        } else {
+            lift
+        };
         self.flight.begin_contact(&mut phase_state.flight);
         phase_state.contact = self
             .contact
-            .start(measurement, velocity, give, age, slip_left);
+            .start(measurement, velocity, lift, age, slip_left);
         phase_state.phase = Phase::Sliding;
     }
 
