@@ -118,13 +118,13 @@ impl ContactTest {
         }
     }
 
-    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`, which `lift` looks for the end of;
+    /// A contact that began `age` samples ago, with velocity (m/s) known to `spread`, on a wall that gives way by `give` (m);
     /// `slip_left` is the slip (m/s) that is certainly left.
     pub(crate) fn start(
         &self,
         measurement: &Measurement,
         (velocity, spread): ([f32; 2], f32),
-        lift: LiftOff,
+        give: f32,
         age: f32,
         slip_left: f32,
     ) -> Touching {
@@ -132,7 +132,7 @@ impl ContactTest {
         let speed = velocity[1] * outward[0] - velocity[0] * outward[1];
         Touching {
             track: self.filter.start(outward, speed, spread),
-            lift,
+            lift: LiftOff::on(give),
             age: age as u32,
             slip_left,
             ..Touching::default()
@@ -242,7 +242,7 @@ impl ContactTest {
     }
 
     /// Acceleration with which the wall presses, m/s^2.
-    fn normal_acceleration(&self, swing: &WallAngle) -> f32 {
+    pub(crate) fn normal_acceleration(&self, swing: &WallAngle) -> f32 {
         self.machine.clearance * swing.rate * swing.rate + self.machine.gravity * swing.cos
     }
 
@@ -488,8 +488,7 @@ mod tests {
         let mut wall = RetainerWall::default();
         wall.meet(&TOLD);
         let speed = [TAU * 100.0 * turns(1).signum() * MACHINE.clearance, 0.0];
-        let lift = LiftOff::default();
-        let mut state = test.start(&measurement(0), (speed, 0.05), lift, 0.0, 1e9);
+        let mut state = test.start(&measurement(0), (speed, 0.05), 0.0, 0.0, 1e9);
         let pull = Pull {
             acceleration: [0.0, -MACHINE.gravity],
             ..Pull::default()

@@ -3,6 +3,7 @@
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::give::{OpenTouch, TouchStage};
 use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
+use crate::detect::lift_off::Lifted;
 use crate::detect::measurement::Measurement;
 use crate::detect::next_impact::NextImpact;
 use crate::detect::retainer_wall::{RetainerWall, ToldWall};
@@ -113,19 +114,10 @@ pub(crate) struct Airborne {
     lies: f32,
     /// Samples that it has.
     lying: u32,
-    /// Of a rotor that seems to have lifted off, until it meets the wall.
-    lifted: Option<Lifted>,
+    /// Since it seems to have lifted off, until it meets the wall.
+    pub(crate) lifted: Option<Lifted>,
     /// How far the wall has held it inside of where it lay, m.
-    held: f32,
-}
-
-/// Where the rotor lay on the wall before it seemed to lift off.
-#[derive(Clone, Copy, Debug)]
-struct Lifted {
-    /// Radius of the wall there, m.
-    wall: f32,
-    /// How far inside of that it has been since, m.
-    depth: f32,
+    pub(crate) held: f32,
 }
 
 impl Airborne {
@@ -144,14 +136,6 @@ impl Airborne {
     /// How far the wall gives way where the rotor has come to lie on it, m.
     pub(crate) fn give(&self) -> f32 {
         (self.touch.as_ref()).map_or(self.held, |it| it.give.max(self.held))
-    }
-
-    /// Whether a rotor that comes to lie on the wall has not left it: no impact has shown that since it seemed to lift off.
-    /// The wall then held it wherever it has been.
-    pub(crate) fn was_held(&mut self) -> bool {
-        let lifted = self.lifted.take();
-        self.held = lifted.map_or(self.held, |it| it.depth.max(self.held));
-        lifted.is_some()
     }
 
     /// What is known of another one, but for impacts under way.
@@ -288,7 +272,6 @@ impl FlightTest {
         // What it has been from the release on, it is after a lift-off.
         let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale);
         flight.restart(threshold_scale.max(heard));
-        flight.lifted = wall.map(|wall| Lifted { wall, depth: 0.0 });
     }
 
     /// Spin whose unbalance a flight shows, rad/s, and its angle in a sample, rad; 0 where a fall is less than a turn, in
@@ -714,9 +697,8 @@ impl FlightTest {
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
         let (outward, seen) = direction(measurement.position);
         let near = self.near(flight, outward);
-        let beyond = flight.wall.beyond((outward, seen));
         if let Some(lifted) = &mut flight.lifted {
-            lifted.depth = lifted.depth.max((-beyond).min(lifted.wall - seen));
+            lifted.take(-flight.wall.beyond((outward, seen)), measurement.now);
         }
         flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
         if flight.seen_near > OVERDUE * self.dwell {

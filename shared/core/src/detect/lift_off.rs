@@ -1,5 +1,6 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
+use crate::event::Moment;
 use crate::vector::square;
 use touchdown_rotor::real::{root, sqrt};
 
@@ -39,22 +40,48 @@ pub(crate) struct LiftOff {
     left_gap: f32,
 }
 
+/// A rotor that seems to have left the wall, until it meets it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lifted {
+    since: Moment,
+    /// Acceleration with which it pressed there, m/s^2.
+    pressing: f32,
+    /// How far inside of the wall it has been at most, m, and when.
+    pub(crate) depth: f32,
+    deepest: Moment,
+}
+
+impl Lifted {
+    /// From a wall that pressed with that acceleration, m/s^2.
+    pub(crate) fn new(since: Moment, pressing: f32) -> Self {
+        Self {
+            since,
+            pressing,
+            depth: 0.0,
+            deepest: since,
+        }
+    }
+
+    /// It is so far inside of the wall, m.
+    pub(crate) fn take(&mut self, depth: f32, now: Moment) {
+        if depth > self.depth {
+            (self.depth, self.deepest) = (depth, now);
+        }
+    }
+
+    /// Whether it has been less deep than that `part` of what a flight goes: a t^2/2 up to where it is deepest.
+    pub(crate) fn is_nearer_than(&self, part: f32, period: f32) -> bool {
+        let time = self.deepest.since(self.since) * period;
+        self.depth < part * 0.5 * self.pressing * time * time
+    }
+}
+
 impl LiftOff {
     /// On a wall that gives way by so much, m.
     pub(crate) fn on(give: f32) -> Self {
         Self {
             give: 0.25 * give * give,
             ..Self::default()
-        }
-    }
-
-    /// The same on a wall that has been learnt: the rotor had not left it.
-    pub(crate) fn after(&self, before: &Self) -> Self {
-        Self {
-            give: self.give,
-            sum: 0.0,
-            age: 0,
-            ..*before
         }
     }
 

@@ -8,7 +8,7 @@ use crate::detect::estimate::{Estimate, Place};
 use crate::detect::event_writer::EventWriter;
 use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
-use crate::detect::lift_off::LiftOff;
+use crate::detect::lift_off::{LiftOff, Lifted};
 use crate::detect::measurement::Measurement;
 use crate::detect::pending::Pending;
 use crate::detect::signals::Signals;
@@ -334,17 +334,16 @@ impl PhaseMachine {
         let nominal = machine.rotor_radius * machine.spin;
         let slip_left = phase_state.flight.series.slip_left(nominal, machine);
         let velocity = (phase_state.flight.track.velocity, spread);
-        let was_held = phase_state.flight.was_held();
-        let lift = LiftOff::on(phase_state.flight.give());
-        let lift = if was_held {
-            lift.after(&phase_state.contact.lift)
-        } else {
-            lift
-        };
-        self.flight.begin_contact(&mut phase_state.flight);
+        let flight = &mut phase_state.flight;
+        let lifted = flight.lifted.take();
+        if let Some(it) = lifted.filter(|it| it.is_nearer_than(FALLS, self.period)) {
+            flight.held = flight.held.max(it.depth);
+        }
+        let give = flight.give();
+        self.flight.begin_contact(flight);
         phase_state.contact = self
             .contact
-            .start(measurement, velocity, lift, age, slip_left);
+            .start(measurement, velocity, give, age, slip_left);
         phase_state.phase = Phase::Sliding;
     }
 
@@ -389,6 +388,11 @@ impl PhaseMachine {
                     if let Some(measurement) = measurement {
                         let threshold_scale = disturbance.threshold_scale;
                         self.fly(phase_state, measurement, wall, threshold_scale);
+                        let pressing = self
+                            .contact
+                            .normal_acceleration(phase_state.contact.swing());
+                        let since = measurement.now.later(-age);
+                        phase_state.flight.lifted = wall.map(|_| Lifted::new(since, pressing));
                     }
                 }
                 _ => {}
