@@ -846,12 +846,13 @@ mod tests {
         }
     }
 
-    /// One landing on a soft mount may show nothing of it.
+    /// One landing on a soft mount may show nothing of it, and another fall may meet the wall elsewhere.
     #[test]
-    fn a_rigid_wall_is_one_for_the_drop() {
+    fn how_the_wall_is_is_remembered_in_a_drop() {
         let test = test(20_000.0);
         let mut flight = Airborne {
             is_rigid: true,
+            held: 12e-6,
             ..Airborne::default()
         };
         let measurement = Measurement {
@@ -861,9 +862,12 @@ mod tests {
             spin: 0.0,
         };
         test.start(&mut flight, &measurement, Some(MACHINE.clearance), 1.0);
-        assert!(flight.is_rigid, "after a lift-off");
+        assert!(
+            flight.is_rigid && flight.give() == 12e-6,
+            "after a lift-off"
+        );
         test.start(&mut flight, &measurement, None, 1.0);
-        assert!(!flight.is_rigid, "in another fall");
+        assert!(!flight.is_rigid && flight.give() == 0.0, "in another fall");
     }
 
     /// A rotor that was off the wall after the foreseen end did not lie there since.

@@ -189,6 +189,34 @@ mod tests {
         assert!(now < 40.0 && (now - age).abs() < 8.0, "{now} {age}");
     }
 
+    /// A flight of 8 ms under 9.81 m/s^2 goes 78 um inside, a sag of the wall a few.
+    #[test]
+    fn a_sag_is_no_flight() {
+        for (height, is_held) in [(78.5e-6, false), (60e-6, false), (12e-6, true)] {
+            let mut lifted = Lifted::new(Moment::default(), 9.81);
+            for k in 0..=160_u16 {
+                let part = f32::from(k) / 160.0;
+                let at = Moment::of_sample(u64::from(k));
+                lifted.take(4.0 * height * part * (1.0 - part), at);
+            }
+            assert_eq!(lifted.is_nearer_than(0.5, 5e-5), is_held, "{height}");
+        }
+    }
+
+    /// What the wall gives way by is no lift-off, what goes beyond that is one.
+    #[test]
+    fn a_wall_that_gives_way_holds_the_rotor() {
+        let told = |give: f32, depth: f32| {
+            let mut test = LiftOff::on(give);
+            (0..1_000_u16).any(|k| {
+                let gap = depth * f32::from(k.max(500) - 500) / 500.0;
+                let found = test.take([0.0, -300e-6], 300e-6 - gap, gap, 1e-12, 25.0);
+                found.is_some()
+            })
+        };
+        assert!(told(0.0, 12e-6) && !told(12e-6, 11e-6) && told(12e-6, 30e-6));
+    }
+
     /// Sensors of finite bandwidth show a whirl farther inside than where the wall was learnt; no rotor flies along a circle.
     #[test]
     fn a_whirl_is_no_flight() {
