@@ -848,7 +848,7 @@ mod tests {
 
     /// One landing on a soft mount may show nothing of it, and another fall may meet the wall elsewhere.
     #[test]
-    fn how_the_wall_is_is_remembered_in_a_drop() {
+    fn what_the_wall_has_shown_is_remembered_in_a_drop() {
         let test = test(20_000.0);
         let mut flight = Airborne {
             is_rigid: true,
