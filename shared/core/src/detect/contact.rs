@@ -85,21 +85,18 @@ impl Turning {
     /// from a turning point.
     fn take(&mut self, angle: f32, cos: f32, clear: f32) -> bool {
         self.age = self.age.saturating_add(1);
+        let way = angle - self.angle;
+        let is_clear = way.abs() > clear;
         if self.direction == 0.0 {
-            if (angle - self.angle).abs() > clear {
-                self.direction = angle - self.angle;
-                self.angle = angle;
-                self.age = 0;
+            if !is_clear {
+                return false;
             }
-            return false;
+            self.direction = way;
+        } else if way * self.direction < 0.0 {
+            return is_clear;
         }
-        if (angle - self.angle) * self.direction >= 0.0 {
-            self.angle = angle;
-            self.cos = cos;
-            self.age = 0;
-            return false;
-        }
-        (angle - self.angle).abs() > clear
+        (self.angle, self.cos, self.age) = (angle, cos, 0);
+        false
     }
 }
 

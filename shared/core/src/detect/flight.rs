@@ -68,8 +68,6 @@ pub(crate) struct FlightTest {
     threshold: f32,
     /// Standard deviations that noise does not reach.
     certain: f32,
-    /// Radius from which on the wall is near, m.
-    near: f32,
     /// How far the wall may be from where an impact was, m.
     uneven: f32,
     /// Acceleration towards the wall that a bounce feels, m/s^2, and a fall at least.
@@ -176,31 +174,13 @@ impl NoiseFloor {
     }
 }
 
-/// What a sample showed.
+/// An impact or the begin of a permanent contact, as a sample showed it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Landing {
-    /// An impact, `age` samples ago.
-    Impact {
-        /// Samples.
-        age: f32,
-        /// Speed into the wall, m/s.
-        normal_speed: f32,
-    },
-    /// Permanent contact since `age` samples.
-    Contact {
-        /// Samples.
-        age: f32,
-    },
-}
-
-impl Landing {
-    /// Into the wall, m/s; 0 where it came to lie there.
-    pub(crate) fn speed(&self) -> f32 {
-        match *self {
-            Self::Impact { normal_speed, .. } => normal_speed,
-            Self::Contact { .. } => 0.0,
-        }
-    }
+pub(crate) struct Landing {
+    /// Samples since.
+    pub(crate) age: f32,
+    /// Speed into the wall of an impact, m/s.
+    pub(crate) impact: Option<f32>,
 }
 
 /// A jump that is an impact.
@@ -237,7 +217,6 @@ impl FlightTest {
             period: 1.0 / config.sample_rate,
             threshold,
             certain: sqrt(2.0 * threshold),
-            near: machine.clearance - tolerance,
             uneven: UNEVEN * tolerance,
             slowest,
             per_horizon: 1.0 / tuning.impact_horizon,
@@ -268,7 +247,7 @@ impl FlightTest {
         if wall.is_none() {
             (flight.is_rigid, flight.held) = (false, 0.0);
         }
-        flight.lies = wall.map_or(self.near, |wall| wall - clear);
+        flight.lies = wall.map_or(self.told.near(), |wall| wall - clear);
         // What it has been from the release on, it is after a lift-off.
         let heard = wall.map_or(0.0, |_| flight.bank.threshold_scale);
         flight.restart(threshold_scale.max(heard));
@@ -395,14 +374,15 @@ impl FlightTest {
             self.lie_at(flight, place);
         }
         self.ballistic.predict(&mut flight.track);
+        let lies = |age| Landing { age, impact: None };
         if flight.touch.as_ref().is_some_and(OpenTouch::gives) {
-            return self.pushed(flight, measurement);
+            return self.pushed(flight, measurement).map(lies);
         }
         if !self.is_possible(&flight.track, measurement) {
             if flight.left_out < LEFT_OUT {
                 flight.left_out += 1;
                 self.jumps.skip(&mut flight.bank);
-                return self.contact(flight, measurement);
+                return self.contact(flight, measurement).map(lies);
             }
         } else {
             flight.left_out = 0;
@@ -432,15 +412,10 @@ impl FlightTest {
         }
         self.relaunch(flight, measurement);
         self.follow_touch(flight, measurement);
-        let landing = self.contact(flight, measurement)?;
+        let age = self.contact(flight, measurement)?;
         // Where the wall gives way a series ends at once, with a touch that stays.
         let met = flight.met.filter(|_| flight.gives);
-        Some(match (landing, met) {
-            (Landing::Contact { .. }, Some(met)) => Landing::Contact {
-                age: measurement.now.since(met),
-            },
-            (landing, _) => landing,
-        })
+        Some(lies(met.map_or(age, |met| measurement.now.since(met))))
     }
 
     /// Whether the wall where the last impact was has been left, or gives way.
@@ -477,9 +452,9 @@ impl FlightTest {
         flight.series.last().map_or(0.0, |last| last.normal_speed)
     }
 
-    /// On a wall that gives way.
+    /// On a wall that gives way: samples since it has come to lie there.
     #[inline(never)]
-    fn pushed(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+    fn pushed(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<f32> {
         // A wall that takes the speed off in less than the horizon of the jumps would be seen as a jump.
         let push = self.touched_with(flight) * self.per_horizon;
         let (track, bounce) = (&mut flight.track, flight.series.last()?);
@@ -497,7 +472,7 @@ impl FlightTest {
         );
         let age = measurement.now.since(flight.met?);
         if stage == TouchStage::Lies || age > self.dwell as f32 {
-            return Some(Landing::Contact { age });
+            return Some(age);
         }
         if stage == TouchStage::Left {
             flight.touch = None;
@@ -531,9 +506,9 @@ impl FlightTest {
         flight.touch = (!flight.is_rigid).then(|| OpenTouch::new(direction(hit.place), way));
         flight.seen_near = 0;
         flight.lying = 0;
-        Landing::Impact {
+        Landing {
             age: hit.age,
-            normal_speed: hit.bounce.normal_speed,
+            impact: Some(hit.bounce.normal_speed),
         }
     }
 
@@ -559,17 +534,10 @@ impl FlightTest {
     /// Foresees the end of the series anew, once the flight shows how it began. Where runout moves the sensors as
     /// well, it does not.
     fn relaunch(&self, flight: &mut Airborne, measurement: &Measurement) {
-        if flight.bank.threshold_scale > 1.0 {
-            return;
-        }
-        let (Some(after), Some(last)) =
-            (flight.series.shown_after(self.period), flight.series.last())
-        else {
-            return;
-        };
-        let flown = measurement.now.since(last.at);
-        if flown >= after {
-            let velocity = flight.track.velocity_before(flown * self.period);
+        let is_shown = flight.series.shown.is_some_and(|it| it <= measurement.now);
+        if is_shown && flight.bank.threshold_scale <= 1.0 {
+            let since = flight.met.map_or(0.0, |met| measurement.now.since(met));
+            let velocity = flight.track.velocity_before(since * self.period);
             let pull = flight.track.acceleration;
             (flight.series).relaunch(velocity, pull, &self.machine, self.period);
         }
@@ -694,7 +662,8 @@ impl FlightTest {
         a * root::<5>(fifth)
     }
 
-    fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<Landing> {
+    /// Samples since it has come to lie on the wall.
+    fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<f32> {
         let (outward, seen) = direction(measurement.position);
         let near = self.near(flight, outward);
         if let Some(lifted) = &mut flight.lifted {
@@ -702,8 +671,7 @@ impl FlightTest {
         }
         flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
         if flight.seen_near > OVERDUE * self.dwell {
-            let age = flight.seen_near as f32;
-            return Some(Landing::Contact { age });
+            return Some(flight.seen_near as f32);
         }
         let (_, radius) = direction(flight.track.seen());
         if radius < near {
@@ -720,9 +688,7 @@ impl FlightTest {
             }
             // A rotor that left the wall after the foreseen end has refuted it, or will soon.
             if at_wall >= over && !self.is_about_to_hit(flight, measurement) {
-                return Some(Landing::Contact {
-                    age: over / self.period,
-                });
+                return Some(over / self.period);
             }
         }
         if radius < flight.lies {
@@ -730,8 +696,7 @@ impl FlightTest {
             return None;
         }
         flight.lying += 1;
-        let age = flight.lying as f32;
-        (flight.lying > self.dwell).then_some(Landing::Contact { age })
+        (flight.lying > self.dwell).then_some(flight.lying as f32)
     }
 }
 

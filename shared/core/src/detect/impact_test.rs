@@ -34,7 +34,7 @@ pub(crate) struct JumpTest {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Candidate {
-    /// Error of position (m per m/s), velocity and acceleration (1/s) that a unit jump has left.
+    /// Error of position, velocity and acceleration that a unit jump has left, in samples' ways.
     effect: [f32; 3],
     information: f32,
     sum: [f32; 2],
@@ -121,15 +121,6 @@ impl Guess {
     }
 }
 
-/// A peak of likelihood around an instant of the bank.
-#[derive(Clone, Copy, Debug)]
-struct Peak {
-    /// Samples since, to a fraction.
-    age: f32,
-    /// The neighbour that is likelier, if there is one.
-    higher: Option<usize>,
-}
-
 impl JumpTest {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, threshold: f32) -> Self {
         let horizon = tuning.impact_horizon * sample_rate;
@@ -155,6 +146,7 @@ impl JumpTest {
         let index = self.likeliest(bank, approach)?;
         let found = bank.candidates().get(index)?;
         let scale = 1.0 / found.information;
+        let [position, velocity, acceleration] = found.effect;
         let dated = self.date(bank, index, approach);
         let (middle, half) = (self.age(bank, index) - 0.5, 0.5 * f32::from(self.stride));
         Some(Jump {
@@ -162,7 +154,7 @@ impl JumpTest {
             dated,
             change: found.sum.map(|sum| sum * scale),
             variance: scale,
-            effect: found.effect,
+            effect: [position * self.period, velocity, acceleration / self.period],
             // Evenly anywhere between two instants of the bank.
             timing: f32::from(self.stride) * self.period * UNIFORM,
         })
@@ -172,7 +164,7 @@ impl JumpTest {
     pub(crate) fn skip(&self, bank: &mut JumpBank) {
         self.open(bank);
         for candidate in bank.candidates.iter_mut().take(bank.live) {
-            candidate.predict(self.period);
+            candidate.predict();
         }
     }
 
@@ -183,7 +175,7 @@ impl JumpTest {
             if let Some(slot) = bank.candidates.get_mut(bank.next) {
                 // On average half a sample before the sample, and half a stride with it.
                 *slot = Candidate {
-                    effect: [-0.5 * self.period, 1.0, 0.0],
+                    effect: [-0.5, 1.0, 0.0],
                     ..Candidate::default()
                 };
             }
@@ -200,17 +192,25 @@ impl JumpTest {
     /// Takes the innovation of a sample; the statistic is that of a jump along `inward`.
     pub(crate) fn update(&self, bank: &mut JumpBank, innovation: &Innovation, inward: [f32; 2]) {
         self.open(bank);
-        let [rx, ry] = innovation.residual;
-        let weight = 1.0 / innovation.variance;
+        let period = self.period;
+        let [of_position, of_velocity, of_acceleration] = innovation.gain;
+        let gain = [
+            of_position,
+            of_velocity * period,
+            of_acceleration * period * period,
+        ];
+        let weight = period / innovation.variance;
+        let [rx, ry] = innovation.residual.map(|it| it * weight);
+        let weight = weight * period;
         let mut best = [0.0, 1.0];
         let live = bank.candidates.get_mut(..bank.live);
         for candidate in live.unwrap_or_default() {
-            candidate.predict(self.period);
+            candidate.predict();
             let seen = candidate.effect[0];
             candidate.information += seen * seen * weight;
-            candidate.sum[0] += seen * rx * weight;
-            candidate.sum[1] += seen * ry * weight;
-            for (effect, gain) in candidate.effect.iter_mut().zip(innovation.gain) {
+            candidate.sum[0] += seen * rx;
+            candidate.sum[1] += seen * ry;
+            for (effect, gain) in candidate.effect.iter_mut().zip(gain) {
                 *effect -= gain * seen;
             }
             let along = candidate.sum[0] * inward[0] + candidate.sum[1] * inward[1];
@@ -255,67 +255,48 @@ impl JumpTest {
         best.1
     }
 
-    /// Samples since the likeliest instant around one of the bank, where restitution is nearly right.
-    fn date(&self, bank: &JumpBank, index: usize, approach: &Approach) -> f32 {
-        let mut peak = self.peak(bank, index, approach);
-        for _ in 0..AROUND {
-            let Some(next) = peak.higher else {
-                break;
+    /// Samples since the likeliest instant around one of the bank, where restitution is nearly right: the peak of a parabola
+    /// through it and its neighbours.
+    fn date(&self, bank: &JumpBank, mut index: usize, approach: &Approach) -> f32 {
+        let (stride, last) = (f32::from(self.stride), self.instants - 1);
+        let mut steps = 0;
+        loop {
+            let age = self.age(bank, index);
+            let likelihood = |at: usize| {
+                let near = bank.candidates().get(at)?;
+                let of_near = self.age(bank, at);
+                let guess = near.guess(of_near, approach, self.period);
+                ((of_near - age).abs() <= stride).then(|| guess.likelihood(DATE_SPREAD))
             };
-            peak = self.peak(bank, next, approach);
-        }
-        peak.age
-    }
-
-    /// Around an instant of the bank: the peak between its neighbours, by a parabola through the three.
-    fn peak(&self, bank: &JumpBank, index: usize, approach: &Approach) -> Peak {
-        let found = bank.candidates().get(index).copied().unwrap_or_default();
-        let age = self.age(bank, index);
-        let value = |candidate: &Candidate, age: f32| {
-            candidate
-                .guess(age, approach, self.period)
-                .likelihood(DATE_SPREAD)
-        };
-        let last = self.instants - 1;
-        let older = if index == 0 { last } else { index - 1 };
-        let younger = if index == last { 0 } else { index + 1 };
-        let neighbour = |at: usize| {
-            let near = bank.candidates().get(at)?;
-            let of_near = self.age(bank, at);
-            let apart = (of_near - age).abs();
-            (apart == f32::from(self.stride)).then(|| value(near, of_near))
-        };
-        let here = value(&found, age);
-        let (before, after) = (neighbour(older), neighbour(younger));
-        let shift = match (before, after) {
-            (Some(before), Some(after)) => {
-                let bend = before - 2.0 * here + after;
-                if bend < 0.0 {
-                    (0.5 * (after - before) / bend).clamp(-0.5, 0.5) * f32::from(self.stride)
-                } else {
-                    0.0
-                }
+            let older = if index == 0 { last } else { index - 1 };
+            let younger = if index == last { 0 } else { index + 1 };
+            let around = [older, index, younger].map(likelihood);
+            let [before, here, after] = around;
+            if steps < AROUND && (before > here || after > here) {
+                index = if before > here { older } else { younger };
+                steps += 1;
+                continue;
             }
-            _ => 0.0,
-        };
-        let higher = if before > Some(here) {
-            Some(older)
-        } else if after > Some(here) {
-            Some(younger)
-        } else {
-            None
-        };
-        Peak {
-            age: (age - 0.5 + shift).max(0.0),
-            higher,
+            let shift = match around {
+                [Some(before), Some(here), Some(after)] => {
+                    let bend = before - 2.0 * here + after;
+                    if bend < 0.0 {
+                        (0.5 * (after - before) / bend).clamp(-0.5, 0.5) * stride
+                    } else {
+                        0.0
+                    }
+                }
+                _ => 0.0,
+            };
+            return (age - 0.5 + shift).max(0.0);
         }
     }
 }
 
 impl Candidate {
-    fn predict(&mut self, period: f32) {
-        self.effect[0] += period * self.effect[1];
-        self.effect[1] += period * self.effect[2];
+    fn predict(&mut self) {
+        self.effect[0] += self.effect[1];
+        self.effect[1] += self.effect[2];
     }
 
     fn guess(&self, age: f32, approach: &Approach, period: f32) -> Guess {

@@ -30,7 +30,6 @@ mod detector;
 mod ends;
 mod estimate;
 mod event_writer;
-mod exposure;
 mod fall;
 mod flight;
 mod give;
@@ -59,8 +58,8 @@ pub use crate::phase::Phase;
 pub(crate) use detector::Afloat;
 pub(crate) use detector::bits;
 pub use detector::{Detector, DetectorState};
+pub(crate) use estimate::Exposure;
 pub use estimate::{Estimate, Place};
-pub(crate) use exposure::Exposure;
 #[cfg(test)]
 pub(crate) use noise::white;
 pub use signals::{Retainer, Signals};

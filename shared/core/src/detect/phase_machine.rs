@@ -4,9 +4,8 @@
 
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::contact::{ContactTest, Touching};
-use crate::detect::estimate::{Estimate, Place};
+use crate::detect::estimate::{Estimate, Exposure, Place};
 use crate::detect::event_writer::EventWriter;
-use crate::detect::exposure::Exposure;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
 use crate::detect::lift_off::{LiftOff, Lifted};
 use crate::detect::measurement::Measurement;
@@ -246,18 +245,19 @@ impl PhaseMachine {
             writer.resolve(pending, true);
         }
         if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
-            let fell = landing.speed() > self.landing_speed(open, measurement.now)
+            let fell = landing.impact > Some(self.landing_speed(open, measurement.now))
                 || self.fell(open, measurement.now, measurement.position, centre);
             writer.resolve(pending, fell);
         }
-        match landing {
-            Some(Landing::Impact { age, normal_speed }) => {
-                phase_state.phase = Phase::Impact;
-                phase_state.still = Still::default();
-                writer.declare(EventKind::Impact, age, normal_speed);
-            }
-            Some(Landing::Contact { age }) => self.touch(phase_state, measurement, 0.05, age),
-            None => {}
+        let Some(Landing { age, impact }) = landing else {
+            return;
+        };
+        if let Some(normal_speed) = impact {
+            phase_state.phase = Phase::Impact;
+            phase_state.still = Still::default();
+            writer.declare(EventKind::Impact, age, normal_speed);
+        } else {
+            self.touch(phase_state, measurement, 0.05, age);
         }
     }
 

@@ -100,8 +100,8 @@ pub(crate) struct Series {
     pub(crate) end: Option<Moment>,
     /// Speed with which the rotor left the wall at the last impact; it comes back with that.
     pub(crate) launch: f32,
-    /// Whether its velocity along the wall is still that which followed from the impact.
-    assumed: bool,
+    /// When the flight has shown how it began; `None` where its velocity along the wall has been taken from there.
+    pub(crate) shown: Option<Moment>,
 }
 
 impl Series {
@@ -136,15 +136,6 @@ impl Series {
         }
     }
 
-    /// Samples after the last impact from which on the flight shows how it began; `None` where it
-    /// has been taken from there.
-    pub(crate) fn shown_after(&self, period: f32) -> Option<f32> {
-        let last = self.last.as_ref().filter(|_| self.assumed)?;
-        let flight = 2.0 * self.launch / last.normal_acceleration;
-        let after = SHOWN * flight / period;
-        (last.normal_acceleration > 0.0 && after >= LONG_ENOUGH).then_some(after)
-    }
-
     /// Takes the velocity (m/s) with which the flight shows that the rotor left the wall. Just after an impact that along
     /// the wall is hardly known, and the wall's pressing grows with its square. How fast it left the wall is known better
     /// from the impacts.
@@ -155,7 +146,7 @@ impl Series {
         machine: &MachineConfig,
         period: f32,
     ) {
-        self.assumed = false;
+        self.shown = None;
         let restitution = self.restitution(machine);
         let Some(last) = self.last.as_mut() else {
             return;
@@ -209,13 +200,14 @@ impl Series {
             self.seen[1] += weight;
         }
         self.leave(bounce, machine, period);
-        self.assumed = true;
+        let after = SHOWN * 2.0 * self.launch / (bounce.normal_acceleration * period);
+        self.shown = (after >= LONG_ENOUGH).then(|| bounce.at.later(after));
     }
 
     /// Takes an impact that is as foreseen: it says nothing new of the restitution.
     pub(crate) fn go_on(&mut self, bounce: Bounce, machine: &MachineConfig, period: f32) {
         self.leave(bounce, machine, period);
-        self.assumed = false;
+        self.shown = None;
     }
 
     /// After an impact.
