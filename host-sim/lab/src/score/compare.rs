@@ -42,10 +42,6 @@ pub fn run(plan: &Plan, group: &Group, target: &Target) -> Result<Findings, Fail
                 "{drops} drops, {samples} samples, {notices} notices"
             ))
     };
-    Ok(Findings {
-        rows: (seeds.first().into_iter().flatten().enumerate())
-            .map(row)
-            .collect(),
-        figures: Vec::new(),
-    })
+    let cases = seeds.first().into_iter().flatten().enumerate();
+    Ok(cases.map(row).collect())
 }

@@ -10,7 +10,7 @@ use super::figure::Figure;
 use super::impact::{JUMP, dropped, thrown};
 use super::row::Row;
 use super::watch::{Drop, Watched};
-use super::{Findings, Plan, campaign};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile, share};
@@ -129,7 +129,7 @@ fn cases() -> Vec<Case> {
 }
 
 /// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let all = [
         Case::Contact([1.0, 1.0]),
         Case::Rolling(true),
@@ -156,8 +156,8 @@ const TOLD: [(Phase, &str); 6] = [
     (Phase::Sliding, "sliding"),
     (Phase::Rolling, "rolling"),
 ];
-/// Column that is right, by row.
-const RIGHT_COLUMN: [usize; 4] = [2, 3, 4, 5];
+/// Columns that are never right; the others are in the order of the rows.
+const NEVER_RIGHT: usize = TOLD.len() - TRUE.len();
 
 type Counts = [[u64; TOLD.len()]; TRUE.len()];
 
@@ -276,7 +276,6 @@ fn add(sums: &mut Counts, counts: &Counts) {
 
 fn judged(case: Case, errors: &[f64]) -> Row {
     let sizes: Vec<f64> = errors.iter().map(|it| it.abs()).collect();
-    let within = |most: f64| share(sizes.iter().filter(|it| **it <= most).count(), sizes.len());
     let missed = sizes.iter().filter(|it| !it.is_finite()).count();
     let middle = median(&sizes);
     let note = format!(
@@ -286,20 +285,17 @@ fn judged(case: Case, errors: &[f64]) -> Row {
         quantile(&sizes, 0.99) * 1e3,
         sizes.len()
     );
+    let within = |quantity, most, target| {
+        let part = share(sizes.iter().filter(|it| **it <= most).count(), sizes.len());
+        Row::at_least(case.name(), quantity, part, target).of(sizes.len())
+    };
     let row = match case {
-        Case::Contact([1.0, 1.0]) | Case::Thrown(_) => {
-            Row::at_least(case.name(), "share_within_1_ms", within(ONSET[0]), MOST).of(sizes.len())
-        }
-        Case::Contact(_) => {
-            Row::at_least(case.name(), "share_within_3_ms", within(ONSET[1]), MOST).of(sizes.len())
-        }
+        Case::Contact([1.0, 1.0]) | Case::Thrown(_) => within("share_within_1_ms", ONSET[0], MOST),
+        Case::Contact(_) => within("share_within_3_ms", ONSET[1], MOST),
         Case::Rolling(_) => {
             Row::quantile_at_most(case.name(), "onset_error_median_s", &sizes, 0.5, ROLLING)
         }
-        Case::LiftOff => {
-            let found = share(sizes.len() - missed, sizes.len());
-            Row::at_least(case.name(), "found_share", found, LIFT_OFFS).of(sizes.len())
-        }
+        Case::LiftOff => within("found_share", f64::MAX, LIFT_OFFS),
     };
     row.with("events", sizes.len())
         .with("missed", missed)
@@ -311,11 +307,7 @@ fn judged(case: Case, errors: &[f64]) -> Row {
 /// Of so many drops: the samples of one do not stand for themselves.
 fn right_phase(case: &str, (phases, drops): (Counts, usize), target: f64) -> Row {
     let all: u64 = phases.iter().flatten().sum();
-    let right = phases
-        .iter()
-        .zip(RIGHT_COLUMN)
-        .map(|(row, column)| row[column]);
-    let right: u64 = right.sum();
+    let right: u64 = (0..TRUE.len()).map(|row| phases[row][NEVER_RIGHT + row]).sum();
     let part = share(right as usize, all as usize);
     Row::at_least(case, "right_share", part, target)
         .of(drops)

@@ -47,16 +47,16 @@ pub struct Curve {
 
 impl Curve {
     /// Measured.
-    pub fn new(name: String, points: Vec<[f64; 2]>) -> Self {
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
         Self {
-            name,
+            name: name.into(),
             limit: false,
             points,
         }
     }
 
     /// What it is held against.
-    pub fn limit(name: String, points: Vec<[f64; 2]>) -> Self {
+    pub fn limit(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
         Self {
             limit: true,
             ..Self::new(name, points)

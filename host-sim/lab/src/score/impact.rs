@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use itertools::iproduct;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
@@ -11,7 +12,7 @@ use super::figure::{Curve, Figure, histogram};
 use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::Drop;
-use super::{Findings, Plan, bound, campaign};
+use super::{Findings, Named, Plan, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact};
@@ -104,31 +105,26 @@ pub fn thrown(plan: &Plan, mut scene: Scene, sign: f64, random: &mut ChaCha8Rng)
 const JUDGED: usize = FRICTIONS.len() * SPINS.len();
 
 fn cases() -> Vec<Case> {
-    let mut cases = Vec::new();
-    for orbits in [false, true] {
-        for rate in [20e3, 50e3] {
-            for restitution in [0.3, 0.5, 0.8] {
-                for friction in FRICTIONS {
-                    for spin in SPINS {
-                        cases.push(Case {
-                            rate,
-                            restitution,
-                            friction,
-                            spin,
-                            orbits,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    cases
+    let all = iproduct!(
+        [false, true],
+        [20e3, 50e3],
+        [0.3, 0.5, 0.8],
+        FRICTIONS,
+        SPINS
+    );
+    let case = |(orbits, rate, restitution, friction, spin)| Case {
+        rate,
+        restitution,
+        friction,
+        spin,
+        orbits,
+    };
+    all.map(case).collect()
 }
 
 /// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    let all = cases();
-    let few = all.iter().step_by(13);
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
+    let few = cases().into_iter().step_by(13);
     few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
@@ -136,6 +132,7 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
 /// What was seen of impacts that have to be found.
 #[derive(Clone, Debug, Default)]
 struct Seen {
+    drops: usize,
     /// All of them.
     impacts: usize,
     /// Others with such a jump, which cannot be told from lying on the wall, and how many of these were found.
@@ -152,6 +149,7 @@ struct Seen {
 
 impl Seen {
     fn take(&mut self, other: &Self) {
+        self.drops += other.drops;
         self.impacts += other.impacts;
         self.hidden[0] += other.hidden[0];
         self.hidden[1] += other.hidden[1];
@@ -170,6 +168,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let false_events = matches.false_events.iter();
     let variance = bound::variance(&drop.scene.sensors);
     let mut seen = Seen {
+        drops: 1,
         invented: false_events
             .filter(|it| events[**it].declared_s >= 0.0)
             .count(),
@@ -230,14 +229,10 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (cases, drops) in cases.chunks(JUDGED).zip(drops.chunks(JUDGED)) {
-        let (mut all, mut count) = (Seen::default(), 0);
-        for seen in drops.iter().flatten() {
-            all.take(seen);
-            count += 1;
-        }
-        let name = cases[0].name();
-        curves.push(Curve::new(name.clone(), histogram(&all.late, 0.1, 5.0)));
-        rows.extend(judged(&name, &all, count));
+        let (name, mut all) = (cases[0].name(), Seen::default());
+        drops.iter().flatten().for_each(|it| all.take(it));
+        rows.extend(judged(&name, &all));
+        curves.push(Curve::new(name, histogram(&all.late, 0.1, 5.0)));
     }
     let figures = vec![Figure::Curves {
         title: "Latency of an impact over the bound for its jump",
@@ -249,8 +244,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     Ok(Findings { rows, figures })
 }
 
-fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
-    let found = seen.dated.len();
+fn judged(name: &str, seen: &Seen) -> [Row; 6] {
+    let (found, drops) = (seen.dated.len(), seen.drops);
     let mut note = format!("{found} of {} in {drops} drops", seen.impacts);
     let [hidden, others] = seen.hidden;
     if hidden > 0 {

@@ -2,6 +2,8 @@
 
 /// Radius of an unbalance orbit, m.
 pub const ORBIT: f64 = 30e-6;
+/// Amplitude of the runout, m.
+pub const RUNOUT: f64 = 5e-6;
 
 /// A floating rotor; time 0 is the release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -45,6 +45,15 @@ use watch::Drop;
 /// Drops with the names of their cases.
 type Named = Vec<(String, Drop)>;
 
+/// How many planes sensors look at, for people.
+fn planes(count: u8) -> &'static str {
+    if count == 1 {
+        "one plane"
+    } else {
+        "two planes"
+    }
+}
+
 /// What is measured together.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
@@ -133,6 +142,15 @@ pub struct Findings {
     pub figures: Vec<Figure>,
 }
 
+impl FromIterator<Row> for Findings {
+    fn from_iter<I: IntoIterator<Item = Row>>(rows: I) -> Self {
+        Self {
+            rows: rows.into_iter().collect(),
+            figures: Vec::new(),
+        }
+    }
+}
+
 /// The answer; the same for the same plan, however many threads.
 #[derive(Clone, Debug)]
 pub struct Score {
@@ -190,16 +208,17 @@ struct Json<'a> {
 
 /// `score --json`.
 pub fn json(score: &Score) -> serde_json::Result<String> {
-    let json = Json {
+    let groups = || {
+        score
+            .groups
+            .iter()
+            .map(|(group, found)| (group.name, found))
+    };
+    text(&Json {
         seeds: score.plan.seeds,
         first_seed: score.plan.first_seed,
         seconds: score.plan.seconds,
-        groups: (score.groups.iter())
-            .map(|(group, found)| (group.name, &found.rows[..]))
-            .collect(),
-        figures: (score.groups.iter())
-            .map(|(group, found)| (group.name, &found.figures[..]))
-            .collect(),
-    };
-    text(&json)
+        groups: groups().map(|(name, it)| (name, &it.rows[..])).collect(),
+        figures: groups().map(|(name, it)| (name, &it.figures[..])).collect(),
+    })
 }

@@ -7,11 +7,11 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use strum::VariantArray;
 
-use super::levitated::{Levitated, ORBIT};
-use super::listening::{Case, Heard, RUNOUT, listen};
+use super::levitated::{Levitated, ORBIT, RUNOUT};
+use super::listening::{Case, Heard, listen};
 use super::row::Row;
 use super::watch::Drop;
-use super::{Findings, Plan, campaign};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_scene::Scene;
 
@@ -23,7 +23,7 @@ const HOUR: f64 = 3600.0;
 const NONE_SEEN: f64 = 2.995_732_273_553_991;
 
 /// Drops to compare two targets with: a start from an orbit that is only followed until the release.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let mut scene = Scene::load("rig")?;
     scene.run.duration = 1e-3;
     scene.run.seed = random.random();
@@ -51,12 +51,9 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         listen(*case, &scene, piece, random)
     })?;
     let judged = Case::VARIANTS.iter().zip(&heard);
-    Ok(Findings {
-        rows: judged
-            .map(|(case, heard)| row(*case, heard, plan))
-            .collect(),
-        figures: Vec::new(),
-    })
+    Ok(judged
+        .map(|(case, heard)| row(*case, heard, plan))
+        .collect())
 }
 
 fn row(case: Case, heard: &[Heard], plan: &Plan) -> Row {

@@ -11,7 +11,7 @@ use super::levitated::Levitated;
 use super::row::{Row, interval};
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
-use super::{Findings, Plan, campaign};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};
@@ -83,7 +83,7 @@ impl Case {
 }
 
 /// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let cases = Case::VARIANTS.iter();
     cases
         .map(|case| Ok((case.to_string(), case.drop(plan, random)?)))
