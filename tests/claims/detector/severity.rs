@@ -2,11 +2,11 @@
 
 use touchdown_base::statistics::quantile;
 use touchdown_lab::score::forecast_drop::scenes;
-use touchdown_lab::score::severity_drop::{self, Strained};
+use touchdown_lab::score::severity::{self, Strained};
 use touchdown_scene::Scene;
 
 fn watch(scene: &Scene, told: &Scene) -> Strained {
-    severity_drop::watch(scene, told).expect("a valid scene")
+    severity::watch(scene, told).expect("a valid scene")
 }
 
 fn of_scene(name: &str) -> Strained {

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 
-use super::figure::Figure;
+use super::figure::{Confusion, Figure};
 use super::impact::{JUMP, dropped, thrown};
 use super::row::Row;
 use super::watch::{Drop, Watched};
@@ -128,7 +128,6 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let all = [
         Case::Contact([1.0, 1.0]),
@@ -140,26 +139,19 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
         .collect()
 }
 
-/// Rows of the confusion.
-const TRUE: [(PhaseKind, &str); 4] = [
-    (PhaseKind::FreeFall, "free fall"),
-    (PhaseKind::Impact, "impacts"),
-    (PhaseKind::Sliding, "sliding"),
-    (PhaseKind::Rolling, "rolling"),
+/// Columns of the confusion. Its rows are the phases after the levitation.
+const TOLD: [Phase; 6] = [
+    Phase::Starting,
+    Phase::Levitated,
+    Phase::FreeFall,
+    Phase::Impact,
+    Phase::Sliding,
+    Phase::Rolling,
 ];
-/// Its columns.
-const TOLD: [(Phase, &str); 6] = [
-    (Phase::Starting, "starting"),
-    (Phase::Levitated, "levitated"),
-    (Phase::FreeFall, "free fall"),
-    (Phase::Impact, "impacts"),
-    (Phase::Sliding, "sliding"),
-    (Phase::Rolling, "rolling"),
-];
-/// Columns that are never right; the others are in the order of the rows.
-const NEVER_RIGHT: usize = TOLD.len() - TRUE.len();
+/// The first column that is right: that of the first row.
+const FALLEN: usize = Phase::FreeFall as usize;
 
-type Counts = [[u64; TOLD.len()]; TRUE.len()];
+type Counts = [[u64; TOLD.len()]; TOLD.len() - FALLEN];
 
 /// What was seen of a drop.
 #[derive(Clone, Debug, Default)]
@@ -179,10 +171,8 @@ fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     };
     let mut phases = Counts::default();
     for instant in &watched.instants {
-        let row = TRUE.iter().position(|it| it.0 == instant.phase);
-        let column = TOLD.iter().position(|it| it.0 == instant.told);
-        if let (Some(row), Some(column)) = (row, column) {
-            phases[row][column] += 1;
+        if let Some(row) = (instant.phase as usize).checked_sub(PhaseKind::FreeFall as usize) {
+            phases[row][instant.told as usize] += 1;
         }
     }
     Ok(Seen { errors, phases })
@@ -225,7 +215,6 @@ fn lift_offs(watched: &Watched) -> Vec<f64> {
         .collect()
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "contact", &cases, |case, mut random| {
@@ -258,13 +247,14 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     ));
     let mut all = dropping.0;
     add(&mut all, &rolling.0);
-    let figures = vec![Figure::Confusion {
+    let told = TOLD.map(<&str>::from);
+    let figures = vec![Figure::Confusion(Confusion {
         title: "Phases over time",
         unit: "samples",
-        truth: TRUE.map(|it| it.1).to_vec(),
-        told: TOLD.map(|it| it.1).to_vec(),
+        truth: told[FALLEN..].to_vec(),
+        told: told.to_vec(),
         counts: all.iter().map(|row| row.to_vec()).collect(),
-    }];
+    })];
     Ok(Findings { rows, figures })
 }
 
@@ -307,7 +297,8 @@ fn judged(case: Case, errors: &[f64]) -> Row {
 /// Of so many drops: the samples of one do not stand for themselves.
 fn right_phase(case: &str, (phases, drops): (Counts, usize), target: f64) -> Row {
     let all: u64 = phases.iter().flatten().sum();
-    let right: u64 = (0..TRUE.len()).map(|row| phases[row][NEVER_RIGHT + row]).sum();
+    let right = phases.iter().zip(FALLEN..);
+    let right: u64 = right.map(|(row, column)| row[column]).sum();
     let part = share(right as usize, all as usize);
     Row::at_least(case, "right_share", part, target)
         .of(drops)

@@ -8,7 +8,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::figure::{Curve, Figure, histogram};
+use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{Levitated, ORBIT, RUNOUT};
 use super::row::Row;
 use super::watch::Drop;
@@ -175,7 +175,6 @@ fn cases() -> Vec<Case> {
     white.chain(thrown).chain(orbits).collect()
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let few = cases().into_iter().step_by(13);
     few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
@@ -208,7 +207,6 @@ fn fall(drop: &Drop) -> Result<Fall, Failure> {
     })
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let falls = campaign::map(plan, "fall", &cases, |case, mut random| {
@@ -270,13 +268,13 @@ fn against_noise(cases: &[Case], rows: &[Row]) -> Figure {
         curves.push(Curve::new(format!("{khz} kHz"), points("latency_median_s")));
         curves.push(Curve::limit(format!("bound, {khz} kHz"), points("bound_s")));
     }
-    Figure::Curves {
+    Figure::Curves(Curves {
         title: "Latency of a fall against noise, two planes",
         x: "noise, um",
         y: "latency, median, ms",
         decades: true,
         curves,
-    }
+    })
 }
 
 /// How latencies over their bounds are spread.
@@ -290,11 +288,11 @@ fn spread(cases: &[Case], falls: &[Vec<Fall>]) -> Result<Figure, Failure> {
     }
     let curves = ["white noise", "orbit and runout"].into_iter().zip(&ratios);
     let curves = curves.map(|(name, ratios)| Curve::new(name, histogram(ratios, 0.05, 5.0)));
-    Ok(Figure::Curves {
+    Ok(Figure::Curves(Curves {
         title: "Latency of a fall over its bound",
         x: "latency / bound",
         y: "share of drops in a step of 0.05",
         decades: false,
         curves: curves.collect(),
-    })
+    }))
 }

@@ -8,7 +8,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::figure::{Curve, Figure, histogram};
+use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{Levitated, ORBIT};
 use super::row::Row;
 use super::watch::Drop;
@@ -122,7 +122,6 @@ fn cases() -> Vec<Case> {
     all.map(case).collect()
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let few = cases().into_iter().step_by(13);
     few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
@@ -220,7 +219,6 @@ fn flights(truth: &History, impact: &Impact, jump: f64) -> [[f64; 2]; 2] {
     [[impact.normal_speed, time - last], [leaves, next - time]]
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "impact", &cases, |case, mut random| {
@@ -234,13 +232,13 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         rows.extend(judged(&name, &all));
         curves.push(Curve::new(name, histogram(&all.late, 0.1, 5.0)));
     }
-    let figures = vec![Figure::Curves {
+    let figures = vec![Figure::Curves(Curves {
         title: "Latency of an impact over the bound for its jump",
         x: "latency / bound",
         y: "share of impacts in a step of 0.1",
         decades: false,
         curves,
-    }];
+    })];
     Ok(Findings { rows, figures })
 }
 

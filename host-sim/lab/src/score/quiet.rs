@@ -37,7 +37,6 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     Ok(vec![(Case::Orbit.to_string(), drop)])
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let mut scene = Scene::load("rig")?;
     scene.tuning = plan.tuning;

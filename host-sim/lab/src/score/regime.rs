@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use strum::VariantArray;
 use touchdown_core::event::EventKind;
 
-use super::figure::Figure;
+use super::figure::{Confusion, Figure};
 use super::impact::dropped;
 use super::levitated::Levitated;
 use super::row::{Row, interval};
@@ -82,7 +82,6 @@ impl Case {
     }
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let cases = Case::VARIANTS.iter();
     cases
@@ -185,7 +184,6 @@ fn is_blurred(watched: &Watched, end: f64) -> bool {
     }
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let drops = campaign::map(plan, "regime", Case::VARIANTS, |case, mut random| {
         seen(&case.drop(plan, &mut random)?.before_fast_whirl())
@@ -244,12 +242,12 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         "backward whirl",
         "in flight",
     ];
-    let figures = vec![Figure::Confusion {
+    let figures = vec![Figure::Confusion(Confusion {
         title: "Regime at the end",
         unit: "drops",
         told: [&names[..], &["contact"]].concat(),
         truth: names,
         counts: counts.iter().map(|row| row.to_vec()).collect(),
-    }];
+    })];
     Ok(Findings { rows, figures })
 }

@@ -171,7 +171,6 @@ fn fault(kind: &Kind, scene: &Scene, random: &mut ChaCha8Rng) -> SensorFault {
     }
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let few = cases().into_iter().step_by(3);
     few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
@@ -227,7 +226,6 @@ fn is_harmed(drop: &Drop, watched: &Watched) -> bool {
     falls.count() != 1 || invented || missed
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "sensors", &cases, |case, mut random| {
