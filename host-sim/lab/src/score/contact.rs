@@ -166,7 +166,7 @@ fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let errors = match case {
         Case::Contact(_) | Case::Thrown(_) => contact_error(&watched).into_iter().collect(),
-        Case::Rolling(_) => end_of_slip(&watched).into_iter().collect(),
+        Case::Rolling(_) => ends_of_slip(&watched),
         Case::LiftOff => lift_offs(&watched),
     };
     let mut phases = Counts::default();
@@ -188,31 +188,29 @@ fn contact_error(watched: &Watched) -> Option<f64> {
 }
 
 /// Of the first rolling that lasts; the rotor may slide and roll in turn.
-fn end_of_slip(watched: &Watched) -> Option<f64> {
-    let matches = match_events(&watched.truth, &watched.detection);
-    let mut phases = watched.truth.phases.iter();
-    let lasting =
-        phases.find(|it| it.phase == PhaseKind::Rolling && it.end_s - it.start_s >= LASTS)?;
-    let mut found = matches.of_kind(EventKind::Rolling);
-    let found = found.find(|it| it.onset_s == lasting.start_s)?;
-    Some(found.onset_error_s.unwrap_or(f64::INFINITY))
+fn ends_of_slip(watched: &Watched) -> Vec<f64> {
+    let mut rolling = (watched.truth.phases.iter()).filter(|it| it.phase == PhaseKind::Rolling);
+    let lasting = rolling.find(|it| it.end_s - it.start_s >= LASTS);
+    let start = lasting.map(|it| it.start_s);
+    errors(watched, EventKind::Rolling, |onset| Some(onset) == start)
 }
 
 /// Of those that lead to an impact to be found.
 fn lift_offs(watched: &Watched) -> Vec<f64> {
-    let truth = &watched.truth;
-    let matches = match_events(truth, &watched.detection);
-    let hard = |onset: f64| {
-        let next = truth.impacts.iter().find(|it| it.state.time > onset);
+    errors(watched, EventKind::LiftOff, |onset| {
+        let mut impacts = watched.truth.impacts.iter();
+        let next = impacts.find(|it| it.state.time > onset);
         // The scene's restitution is 0.8.
         next.is_some_and(|it| 1.8 * it.normal_speed >= JUMP)
-    };
-    let counted = matches
-        .of_kind(EventKind::LiftOff)
-        .filter(|it| hard(it.onset_s));
-    counted
-        .map(|it| it.onset_error_s.unwrap_or(f64::INFINITY))
-        .collect()
+    })
+}
+
+/// Of the true events of a kind, those whose onset (s) counts.
+fn errors(watched: &Watched, kind: EventKind, counts: impl Fn(f64) -> bool) -> Vec<f64> {
+    let matches = match_events(&watched.truth, &watched.detection);
+    let counted = matches.of_kind(kind).filter(|it| counts(it.onset_s));
+    let error = counted.map(|it| it.onset_error_s.unwrap_or(f64::INFINITY));
+    error.collect()
 }
 
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {

@@ -186,8 +186,8 @@ pub struct Heard {
     pub declared: u32,
     /// Falls.
     pub confirmed: u32,
-    /// Samples from the first until the monitor was armed.
-    pub armed: Option<u64>,
+    /// Whether the monitor ever was.
+    pub armed: bool,
 }
 
 /// Runs `seconds` of `case` on the machine of `scene`.
@@ -218,9 +218,7 @@ pub fn listen(
                 _ => {}
             }
         }
-        if heard.armed.is_none() && state.detector.is_armed() {
-            heard.armed = Some(number);
-        }
+        heard.armed |= state.detector.is_armed();
     }
     Ok(heard)
 }

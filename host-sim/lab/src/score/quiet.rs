@@ -65,7 +65,7 @@ fn row(case: Case, heard: &[Heard], plan: &Plan) -> Row {
         ("declared_per_hour", declared)
     };
     // A monitor that never listens declares nothing either.
-    let deaf = heard.iter().filter(|it| it.armed.is_none()).count();
+    let deaf = heard.iter().filter(|it| !it.armed).count();
     let at_most = upper(count) / hours;
     Row::at_most(case.to_string(), name, f64::from(count) / hours, 0.0)
         .and(deaf == 0)

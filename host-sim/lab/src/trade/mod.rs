@@ -5,7 +5,6 @@ mod accuracy;
 mod drawing;
 mod pace;
 mod page;
-mod pareto;
 pub mod parts;
 mod row;
 mod table;
@@ -64,7 +63,7 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
         Some(Row { pace, ..row })
     });
     let mut rows: Vec<Row> = timed.collect();
-    pareto::mark(&mut rows);
+    row::mark_front(&mut rows);
     Trade {
         scene: scene.heading().to_owned(),
         measured: scene.run.duration,
@@ -78,6 +77,15 @@ fn once(scene: &Scene, truth: &History) -> Option<Row> {
     let begin = Instant::now();
     let history = model::simulate(scene).ok()?;
     let pace = Pace::of(scene, begin.elapsed());
-    let accuracy = Accuracy::of(&history, truth, scene);
-    Some(Row::new(scene.model, accuracy, pace))
+    let model = scene.model;
+    Some(Row {
+        rung: model.rung,
+        scheme: model.scheme,
+        precision: model.precision,
+        math: model.math,
+        step_s: model.step,
+        accuracy: Accuracy::of(&history, truth, scene),
+        pace,
+        pareto: false,
+    })
 }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::Trade;
-use super::drawing::{Cost, drawing, legend};
+use super::drawing::{HERE, TARGET, drawing, legend};
 use super::parts::{Effect, drawing as parts_drawing};
 use super::row::Row;
 use touchdown_chart::shell::page as shell;
@@ -51,10 +51,10 @@ pub fn page(trade: &Trade) -> String {
             }
             (legend(&trade.rows))
             h3 { "Here" }
-            (drawing(trade, Cost::Here))
+            (drawing(trade, HERE))
             @if counted {
                 h3 { "On the target" }
-                (drawing(trade, Cost::Target))
+                (drawing(trade, TARGET))
             }
         }
         section { h2 { "Front" } (rows("Front", &front)) }
