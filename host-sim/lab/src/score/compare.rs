@@ -1,8 +1,6 @@
 //! The same drops on the host and on another target: what they say must be the same bits.
 
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Group, Plan, campaign};
+use super::{Drop, Findings, Group, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_run::target::Target;
 

@@ -8,9 +8,8 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Confusion, Figure};
 use super::impact::{JUMP, dropped, thrown};
-use super::row::Row;
 use super::watch::{Drop, Watched};
-use super::{Findings, Named, Plan, campaign};
+use super::{Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile, share};

@@ -10,9 +10,7 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{Levitated, ORBIT, RUNOUT};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Named, Plan, bound, campaign, planes};
+use super::{Drop, Findings, Named, Plan, Row, bound, campaign, planes};
 use touchdown_base::evenly::{direction, in_disc};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile};

@@ -176,21 +176,15 @@ impl Confusion {
 /// Share of `values` in steps of `width` from 0 on, as a staircase. What is beyond `most` counts but is
 /// not drawn.
 pub fn histogram(values: &[f64], width: f64, most: f64) -> Vec<[f64; 2]> {
-    let bins = (most / width).round() as usize;
-    let mut counts = vec![0_u32; bins];
-    for value in values {
-        let bin = (value / width).floor();
-        if let Some(count) = (bin >= 0.0).then(|| counts.get_mut(bin as usize)).flatten() {
-            *count += 1;
-        }
-    }
     let whole = values.len().max(1) as f64;
-    let steps = counts.iter().enumerate().flat_map(|(bin, count)| {
-        let share = f64::from(*count) / whole;
+    let step = |bin: usize| {
         let left = bin as f64 * width;
+        let inside = |it: &&f64| (*it / width).floor() == bin as f64;
+        let share = values.iter().filter(inside).count() as f64 / whole;
         [[left, share], [left + width, share]]
-    });
-    steps.collect()
+    };
+    let bins = (most / width).round() as usize;
+    (0..bins).flat_map(step).collect()
 }
 
 #[cfg(test)]

@@ -10,9 +10,7 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{Levitated, ORBIT};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Named, Plan, bound, campaign};
+use super::{Drop, Findings, Named, Plan, Row, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact};

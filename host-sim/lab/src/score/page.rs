@@ -2,9 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::row::Row;
 use super::table::short;
-use super::{Findings, Score};
+use super::{Findings, Row, Score};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 

@@ -9,9 +9,7 @@ use strum::VariantArray;
 
 use super::levitated::{Levitated, ORBIT, RUNOUT};
 use super::listening::{Case, Heard, listen};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Named, Plan, campaign};
+use super::{Drop, Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_scene::Scene;
 

@@ -10,9 +10,8 @@ use touchdown_core::event::EventKind;
 use touchdown_core::health::FaultKind;
 
 use super::impact::{self, dropped};
-use super::row::Row;
 use super::watch::{Drop, Watched};
-use super::{Findings, Named, Plan, campaign, planes};
+use super::{Findings, Named, Plan, Row, campaign, planes};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile, share};
 use touchdown_run::matching::match_events;

@@ -6,9 +6,8 @@ use touchdown_core::severity::Severity;
 use touchdown_rotor::error::ConfigError;
 
 use super::impact::JUMP;
-use super::row::Row;
 use super::watch::refused;
-use super::{Findings, Named, Plan, campaign, forecast};
+use super::{Findings, Named, Plan, Row, campaign, forecast};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile};

@@ -3,8 +3,7 @@
 use itertools::Itertools;
 use maud::{Markup, html};
 
-use super::Trade;
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_chart::text::si;
 use touchdown_scene::{Fidelity, Precision};

@@ -2,10 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::Trade;
 use super::drawing::{HERE, TARGET, drawing, legend};
 use super::parts::{Effect, drawing as parts_drawing};
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 use touchdown_chart::text::si;

@@ -1,8 +1,7 @@
 //! The table as text, in 80 columns.
 
-use super::Trade;
 use super::parts;
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_base::paint::Paint;
 
 /// Steps that have a column, us.
