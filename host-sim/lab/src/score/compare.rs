@@ -8,7 +8,13 @@ use touchdown_run::target::Target;
 type Agreement = [u64; 3];
 
 fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
-    let run = |it: &Target| it.control(&drop.monitor, &Default::default(), drop.samples()?);
+    let run = |it: &Target| {
+        it.control(
+            &drop.monitor,
+            &Default::default(),
+            drop.samples()?.into_iter(),
+        )
+    };
     let ((here, _), (there, _)) = (run(&Target::Host)?, run(target)?);
     let (ours, theirs) = (here.summary, there.summary);
     let differences = [

@@ -7,7 +7,7 @@ use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 
 use super::figure::{Confusion, Figure};
-use super::impact::{JUMP, dropped, thrown};
+use super::impact::{JUMP, WATCHED, dropped, thrown};
 use super::watch::{Drop, Watched};
 use super::{Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
@@ -35,9 +35,6 @@ const RIGHT_ROLLING: f64 = 0.8;
 
 /// Greatest true restitution.
 const MOST_RESTITUTION: f64 = 0.8;
-
-/// As of impacts.
-const WATCHED: f64 = 0.12;
 
 #[derive(Clone, Copy, Debug)]
 enum Case {

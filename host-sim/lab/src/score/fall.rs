@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
-use super::levitated::{Levitated, ORBIT, RUNOUT};
+use super::levitated::{LEAD, Levitated, ORBIT, RUNOUT};
 use super::{Drop, Findings, Named, Plan, Row, bound, campaign, planes};
 use touchdown_base::evenly::{direction, in_disc};
 use touchdown_base::failure::Failure;
@@ -23,9 +23,7 @@ const DISTURBED: f64 = 1.5;
 
 /// A fall from the middle of the gap of 0.3 mm reaches the wall after 7.8 ms; this is twice that.
 const WATCHED: f64 = 15e-3;
-/// Time to learn noise and place from; the monitor has to be armed within 0.15 s.
-const LEAD: f64 = 0.2;
-/// Likewise where there is an orbit: ten turns of the slowest.
+/// Levitation where there is an orbit: ten turns of the slowest.
 const ORBIT_LEAD: f64 = 1.0;
 /// Farthest that the rotor floats from the middle of the gap, m.
 const OFF_CENTRE: f64 = 60e-6;
@@ -35,6 +33,8 @@ const SWEEP: f64 = 0.2;
 /// Of a rotor that is thrown or drifts, m/s.
 const THROW: f64 = 10e-3;
 
+/// Directions of a throw, and places of its release between samples, over which the bound is a mean.
+const PLACES: u32 = 16;
 /// Sample rates, Hz.
 const RATES: [f64; 3] = [10e3, 20e3, 50e3];
 
@@ -130,19 +130,15 @@ impl Case {
         if self.thrown == 0.0 {
             return Ok(bound::fall(variance, self.gravity, self.rate));
         }
-        // Mean over the directions of the throw and over the place of the release between samples.
-        let (directions, places) = (16, 16);
-        let mut sum = 0.0;
-        for number in 0..directions * places {
-            let angle = TAU * f64::from(number / places) / f64::from(directions);
-            let first = (f64::from(number % places) + 0.5) / f64::from(places);
-            let (sin, cos) = angle.sin_cos();
-            sum += bound::cusum(variance, self.rate, first, |t| {
+        let delays = iproduct!(0..PLACES, 0..PLACES).map(|(direction, place)| {
+            let (sin, cos) = (TAU * f64::from(direction) / f64::from(PLACES)).sin_cos();
+            let first = (f64::from(place) + 0.5) / f64::from(PLACES);
+            bound::cusum(variance, self.rate, first, |t| {
                 let fallen = 0.5 * self.gravity * t * t;
                 f64::hypot(self.thrown * cos * t, self.thrown * sin * t - fallen)
-            });
-        }
-        Ok(sum / f64::from(directions * places))
+            })
+        });
+        Ok(delays.sum::<f64>() / f64::from(PLACES * PLACES))
     }
 }
 
@@ -190,7 +186,6 @@ struct Fall {
     early: usize,
 }
 
-/// Watches one drop.
 fn fall(drop: &Drop) -> Result<Fall, Failure> {
     let watched = drop.watch()?;
     let events = watched.detection.events.iter();

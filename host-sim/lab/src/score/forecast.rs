@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::figure::{Curve, Curves, Figure};
 use super::forecast_drop::{Case, Whirl, scenes, watch};
-use super::levitated::Levitated;
+use super::levitated::{LEAD, Levitated};
 use super::watch::{Drop, refused};
 use super::{Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
@@ -25,8 +25,6 @@ const FALSE: f64 = 0.02;
 const BRIER: f64 = 0.25;
 /// Part of the leads to the contact that whirls that are negative.
 const LATE: f64 = 0.1;
-/// s.
-const LEAD: f64 = 0.2;
 
 /// The scene of a seed, and the one that the monitor is told of.
 pub(super) fn drawn(

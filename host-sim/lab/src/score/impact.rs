@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
-use super::levitated::{Levitated, ORBIT};
+use super::levitated::{LEAD, Levitated, ORBIT};
 use super::{Drop, Findings, Named, Plan, Row, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
@@ -30,9 +30,8 @@ const MEASURED: f64 = 0.1;
 const LATE: f64 = 1.3;
 
 /// The bounce series of restitution 0.8 is over after 70 ms.
-const WATCHED: f64 = 0.12;
-const LEAD: f64 = 0.2;
-/// Likewise where it orbits: 15 turns of the slowest.
+pub const WATCHED: f64 = 0.12;
+/// Levitation where it orbits: 15 turns of the slowest.
 const ORBIT_LEAD: f64 = 0.5;
 /// Slowest and fastest orbit, Hz.
 const TURNS: [f64; 2] = [30.0, 500.0];
@@ -157,7 +156,6 @@ impl Seen {
     }
 }
 
-/// Watches one drop.
 fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let (truth, events) = (&watched.truth, &watched.detection.events);

@@ -73,14 +73,13 @@ impl Stretch {
     fn new(case: Case, mut scene: Scene, mut random: ChaCha8Rng) -> Self {
         let [low, high] = SPEEDS;
         let frequency = low * f64::powf(high / low, random.random_range(0.0..1.0));
+        let angle = random.random_range(0.0..TAU);
+        let sign = if random.random() { -1.0 } else { 1.0 };
         let mut floats = Levitated {
-            spin: TAU * frequency,
-            angle: random.random_range(0.0..TAU),
+            angle,
+            spin: sign * TAU * frequency,
             ..Levitated::default()
         };
-        if random.random() {
-            floats.spin = -floats.spin;
-        }
         match case {
             Case::Orbit => floats.radius = ORBIT,
             Case::Coloured => scene.sensors.noise = 0.3e-6,

@@ -46,10 +46,9 @@ type Named = Vec<(String, Drop)>;
 
 /// How many planes sensors look at, for people.
 fn planes(count: u8) -> &'static str {
-    if count == 1 {
-        "one plane"
-    } else {
-        "two planes"
+    match count {
+        1 => "one plane",
+        _ => "two planes",
     }
 }
 
@@ -65,57 +64,29 @@ pub struct Group {
     drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Named, Failure>,
 }
 
-/// All of them.
-pub const GROUPS: &[Group] = &[
-    Group {
-        name: "fall",
-        about: "free fall after levitation: latency against the bound",
-        run: fall::run,
-        drops: fall::drops,
-    },
-    Group {
-        name: "impact",
-        about: "impacts at 1 um, two planes: found, dated, measured, invented",
-        run: impact::run,
-        drops: impact::drops,
-    },
-    Group {
-        name: "contact",
-        about: "permanent contact, end of slip, lift-off, and phases over time",
-        run: contact::run,
-        drops: contact::drops,
-    },
-    Group {
-        name: "regime",
-        about: "how drops of random machines end",
-        run: regime::run,
-        drops: regime::drops,
-    },
-    Group {
-        name: "forecast",
-        about: "whirl foretold, in drops of random machines",
-        run: forecast::run,
-        drops: forecast::drops,
-    },
-    Group {
-        name: "severity",
-        about: "impulses, dwell, velocity and whirl load of the same drops",
-        run: severity::run,
-        drops: severity::drops,
-    },
-    Group {
-        name: "sensors",
-        about: "sensors that fail in a drop: named, and no harm done",
-        run: sensors::run,
-        drops: sensors::drops,
-    },
-    Group {
-        name: "quiet",
-        about: "hours of levitation: what is declared, what is confirmed",
-        run: quiet::run,
-        drops: quiet::drops,
-    },
-];
+/// A module of its own for each.
+macro_rules! groups {
+    ($($name:ident: $about:literal,)*) => {
+        /// All of them.
+        pub const GROUPS: &[Group] = &[$(Group {
+            name: stringify!($name),
+            about: $about,
+            run: $name::run,
+            drops: $name::drops,
+        }),*];
+    };
+}
+
+groups! {
+    fall: "free fall after levitation: latency against the bound",
+    impact: "impacts at 1 um, two planes: found, dated, measured, invented",
+    contact: "permanent contact, end of slip, lift-off, and phases over time",
+    regime: "how drops of random machines end",
+    forecast: "whirl foretold, in drops of random machines",
+    severity: "impulses, dwell, velocity and whirl load of the same drops",
+    sensors: "sensors that fail in a drop: named, and no harm done",
+    quiet: "hours of levitation: what is declared, what is confirmed",
+}
 
 /// How much is measured, and of which detector.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Confusion, Figure};
 use super::impact::dropped;
-use super::levitated::Levitated;
+use super::levitated::{LEAD, Levitated};
 use super::row::{Row, interval};
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
@@ -75,10 +75,9 @@ impl Case {
             }
             Self::Straight => {
                 scene.run.seed = random.random();
-                scene.rotor.spin = 0.0;
                 let floats = Levitated::default();
                 let first = random.random_range(0.0..1.0);
-                Ok(Drop::released(plan, scene, floats, [0.0; 2], 0.2, first))
+                Ok(Drop::released(plan, scene, floats, [0.0; 2], LEAD, first))
             }
         }
     }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 use touchdown_core::health::FaultKind;
 
-use super::impact::{self, dropped};
+use super::impact::{self, WATCHED, dropped};
 use super::watch::{Drop, Watched};
 use super::{Findings, Named, Plan, Row, campaign, planes};
 use touchdown_base::failure::Failure;
@@ -25,8 +25,7 @@ const NAMED: f64 = 0.99;
 const HARMED: f64 = 0.02;
 /// Velocity jump from which an impact has to be found, m/s: one plane has the noise of two, times the root of 2.
 const JUMP: f64 = std::f64::consts::SQRT_2 * impact::JUMP;
-/// Length of a run, s; what is seen only once the rotor lies needs `LONG`.
-const WATCHED: f64 = 0.12;
+/// Length of a run where the fault is seen only once the rotor lies, s.
 const LONG: f64 = 2.0;
 /// Moments of the fault, s: the last of levitation, the fall, bounces, contact.
 const MOMENTS: [f64; 2] = [-0.15, 0.1];

@@ -60,11 +60,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
         let at = truth.advance(time);
         let ([x, y], [u, v]) = (at.rotor.position, at.rotor.velocity);
         let radius = f64::hypot(x, y);
-        let turn_rate = if radius > 0.0 {
-            (x * v - y * u) / (radius * radius)
-        } else {
-            0.0
-        };
+        let turn_rate = (x * v - y * u) / (radius * radius);
         let turns = at.rotor.turns_in_contact.abs();
         if turns == 0.0 {
             load = 0.0;
@@ -88,6 +84,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
     let contact = [PhaseKind::Sliding, PhaseKind::Rolling];
     let phases = history.phases.iter();
     let contacts = phases.filter(|it| contact.contains(&it.phase));
+    let changes = history.contact_starts.iter().chain(&history.lift_offs);
     Ok(Strained {
         seen: state.severity.so_far,
         impulses: impacts().map(|it| it.normal_impulse).collect(),
@@ -95,12 +92,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
         dwell: contacts
             .map(|it| (it.end_s.min(end) - it.start_s).max(0.0))
             .sum(),
-        changes: history
-            .contact_starts
-            .iter()
-            .chain(&history.lift_offs)
-            .filter(|it| **it <= end)
-            .count(),
+        changes: changes.filter(|it| **it <= end).count(),
         speed,
         whirl_load,
     })

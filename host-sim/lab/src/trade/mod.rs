@@ -45,20 +45,13 @@ pub struct Trade {
 /// One combination: how wrong it is, and what it costs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Row {
-    /// Rung.
     rung: Fidelity,
-    /// Scheme.
     scheme: Scheme,
-    /// Number format.
     precision: Precision,
-    /// Functions.
     math: Math,
-    /// s.
     step_s: f64,
-    /// How wrong it is.
     #[serde(flatten)]
     accuracy: Accuracy,
-    /// What it costs.
     #[serde(flatten)]
     pace: Pace,
     /// Whether no other row is both quicker here and closer at impacts 1, 3 and 10.
