@@ -7,7 +7,7 @@ use serde_json::Value;
 use touchdown_core::event::EventKind;
 use touchdown_lab::score::Row;
 use touchdown_lab::score::forecast::judged;
-use touchdown_lab::score::forecast_drop::{Case, scenes, watch};
+use touchdown_lab::score::forecast_drop::{Case, drawn, watch};
 use touchdown_run::drop;
 use touchdown_run::outcome::{Detection, Forecast};
 use touchdown_run::target::Target;
@@ -25,8 +25,8 @@ struct Scored {
 impl Scored {
     fn new(drops: u64, seed: u64, misled: f64) -> Self {
         let drop = |index| {
-            let [scene, told] = scenes(seed + index, misled).expect("valid scenes");
-            watch(&scene, &told).expect("valid scenes")
+            let drop = drawn(seed + index, misled).expect("valid scenes");
+            watch(&drop).expect("valid scenes")
         };
         let cases: Vec<_> = (0..drops).into_par_iter().map(drop).collect();
         let rows = judged("told wrong", &cases);

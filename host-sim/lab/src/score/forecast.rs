@@ -4,13 +4,10 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::figure::{Curve, Curves, Figure};
-use super::forecast_drop::{Case, Whirl, scenes, watch};
-use super::levitated::{LEAD, Levitated};
-use super::watch::{Drop, refused};
-use super::{Findings, Named, Plan, Row, campaign};
+use super::forecast_drop::{Case, Whirl, drawn, watch};
+use super::{Drop, Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::quantile;
-use touchdown_scene::{Scene, Start};
 
 /// Part by which friction and restitution may be told wrong.
 const CASES: [(f64, &str); 2] = [
@@ -26,44 +23,21 @@ const BRIER: f64 = 0.25;
 /// Part of the leads to the contact that whirls that are negative.
 const LATE: f64 = 0.1;
 
-/// The scene of a seed, and the one that the monitor is told of.
-pub(super) fn drawn(
-    plan: &Plan,
-    misled: f64,
-    random: &mut ChaCha8Rng,
-) -> Result<[Scene; 2], Failure> {
-    let [scene, mut told] = scenes(random.random(), misled)?;
-    told.tuning = plan.tuning;
-    Ok([scene, told])
-}
-
-/// The same drop to compare two targets with.
+/// A random drop.
 pub(super) fn drop(plan: &Plan, misled: f64, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
-    let [scene, told] = drawn(plan, misled, random)?;
-    let Start::Free { position, velocity } = scene.start else {
-        return Err(Failure::Usage("score: a start on the wall".to_owned()));
-    };
-    let floats = Levitated {
-        place: position,
-        spin: scene.rotor.spin,
-        ..Levitated::default()
-    };
-    let mut drop = Drop::released(plan, scene, floats, velocity, LEAD, 0.0);
-    drop.monitor = told.monitor_config();
+    let mut drop = drawn(random.random(), misled)?;
+    drop.monitor.detector.tuning = plan.tuning;
     Ok(drop)
 }
 
 pub(super) fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
-    CASES
-        .into_iter()
-        .map(|(misled, name)| Ok((name.to_owned(), drop(plan, misled, random)?)))
-        .collect()
+    let drop = |(misled, name): (f64, &str)| Ok((name.to_owned(), drop(plan, misled, random)?));
+    CASES.into_iter().map(drop).collect()
 }
 
 pub(super) fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = campaign::map(plan, "forecast", &CASES, |case, mut random| {
-        let [scene, told] = drawn(plan, case.0, &mut random)?;
-        watch(&scene, &told).map_err(refused)
+        watch(&drop(plan, case.0, &mut random)?)
     })?;
     let mut rows = Vec::new();
     let mut curves = Vec::new();

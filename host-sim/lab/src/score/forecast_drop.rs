@@ -14,10 +14,9 @@ use rand_chacha::rand_core::SeedableRng;
 use touchdown_core::event::{EventKind, Notice};
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Monitor, MonitorState};
-use touchdown_rotor::error::ConfigError;
 
+use super::watch::{Drop, refused};
 use touchdown_base::failure::Failure;
-use touchdown_scene::sensors::Sensors;
 use touchdown_scene::{Scene, Start};
 use touchdown_truth::{Truth, Units};
 
@@ -57,8 +56,8 @@ pub struct Case {
     pub begins: Option<f64>,
 }
 
-/// The scene of a seed, and the one that the monitor is told of.
-pub fn scenes(seed: u64, misled: f64) -> Result<[Scene; 2], Failure> {
+/// The drop of a seed.
+pub fn drawn(seed: u64, misled: f64) -> Result<Drop, Failure> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut scene = Scene::load("rig")?;
     scene.run.seed = seed;
@@ -82,24 +81,20 @@ pub fn scenes(seed: u64, misled: f64) -> Result<[Scene; 2], Failure> {
     told.retainer.friction *= 1.0 + misled * random.random_range(-1.0..=1.0);
     let restitution = told.retainer.restitution * (1.0 + misled * random.random_range(-1.0..=1.0));
     told.retainer.restitution = restitution.min(0.98);
-    Ok([scene, told])
+    Ok(Drop::told(scene, &told))
 }
 
-/// Drops the rotor of `scene`; the monitor is told of `told`.
-pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
-    let rate = scene.run.sample_rate;
-    let sensors = Sensors::try_new(&scene.sensors, rate)?;
-    let mut seen = sensors.start(scene.run.seed);
-    let monitor = Monitor::try_new(&told.monitor_config())?;
+/// Runs it, up to the first whirl.
+pub fn watch(drop: &Drop) -> Result<Case, Failure> {
+    let monitor = Monitor::try_new(&drop.monitor).map_err(refused)?;
     let mut state = MonitorState::default();
-    let mut forecast_task = ForecastTask::try_new(&told.monitor_config().detector)?;
-    let mut truth = Truth::new(scene);
-    let levitated = scene.levitated_samples() as f64;
+    let mut forecast_task = ForecastTask::try_new(&drop.monitor.detector).map_err(refused)?;
+    let mut truth = Truth::new(&drop.scene);
     let (mut case, mut contact, mut asked) = (Case::default(), None, None);
     let mut told_whirls = Vec::new();
-    for k in 0..(levitated + scene.run.duration * rate) as u64 {
-        let time = (k as f64 - levitated) / rate;
-        let at = truth.advance(time);
+    let feed = drop.feed(&mut truth)?.enumerate().take(drop.periods());
+    for (k, (sample, time, at)) in feed {
+        let Some(at) = at else { continue };
         let turns = at.rotor.turns_in_contact;
         if turns == 0.0 {
             contact = None;
@@ -116,7 +111,6 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Case, ConfigError> {
         if case.whirl.is_some_and(|whirl| time > whirl.turned + 5e-3) {
             break;
         }
-        let sample = sensors.read(&mut seen, &at.motion(time < 0.0));
         for notice in monitor.update(&mut state, &sample) {
             let Notice::Declared(event) = notice else {
                 continue;

@@ -35,11 +35,11 @@ pub use figure::Figure;
 pub use page::page;
 pub use row::{Row, none_fails};
 pub use table::table;
+pub use watch::Drop;
 
 use touchdown_base::failure::Failure;
 use touchdown_page::json::text;
 use touchdown_run::target::Target;
-use watch::Drop;
 
 /// Drops with the names of their cases.
 type Named = Vec<(String, Drop)>;

@@ -3,16 +3,14 @@
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::severity::Severity;
-use touchdown_rotor::error::ConfigError;
 
 use super::impact::JUMP;
 use super::watch::refused;
-use super::{Findings, Named, Plan, Row, campaign, forecast};
+use super::{Drop, Findings, Named, Plan, Row, campaign, forecast};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile};
 use touchdown_scene::Scene;
-use touchdown_scene::sensors::Sensors;
 use touchdown_truth::Truth;
 
 /// Errors that 90 of 100 drops keep: a sum or a time ends in impacts that no sensor sees.
@@ -45,26 +43,22 @@ pub struct Strained {
     pub whirl_load: Option<f64>,
 }
 
-/// Drops the rotor of `scene`; the monitor is told of `told`.
-pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
-    let rate = scene.run.sample_rate;
-    let sensors = Sensors::try_new(&scene.sensors, rate)?;
-    let mut chain = sensors.start(scene.run.seed);
-    let monitor = Monitor::try_new(&told.monitor_config())?;
+/// Runs it.
+pub fn watch(drop: &Drop) -> Result<Strained, Failure> {
+    let scene = &drop.scene;
+    let monitor = Monitor::try_new(&drop.monitor).map_err(refused)?;
     let mut state = MonitorState::default();
     let mut truth = Truth::new(scene);
-    let levitated = scene.levitated_samples() as f64;
     let (mut speed, mut load, mut whirl_load, mut end) = (0.0_f64, 0.0_f64, None, 0.0);
-    for k in 0..(levitated + scene.run.duration * rate) as u64 {
-        let time = (k as f64 - levitated) / rate;
-        let at = truth.advance(time);
+    for (sample, time, at) in drop.feed(&mut truth)?.take(drop.periods()) {
+        let Some(at) = at else { continue };
         let ([x, y], [u, v]) = (at.rotor.position, at.rotor.velocity);
         let radius = f64::hypot(x, y);
         let turn_rate = (x * v - y * u) / (radius * radius);
         let turns = at.rotor.turns_in_contact.abs();
         if turns == 0.0 {
             load = 0.0;
-        } else if turn_rate.abs() > FOLLOWED * rate {
+        } else if turn_rate.abs() > FOLLOWED * scene.run.sample_rate {
             break;
         } else {
             let (mass, gravity) = (scene.rotor.mass, scene.run.gravity);
@@ -76,8 +70,7 @@ pub fn watch(scene: &Scene, told: &Scene) -> Result<Strained, ConfigError> {
         }
         speed = speed.max(f64::hypot(u, v));
         end = time;
-        let motion = at.motion(time < 0.0);
-        monitor.update(&mut state, &sensors.read(&mut chain, &motion));
+        monitor.update(&mut state, &sample);
     }
     let history = truth.finish().whole;
     let impacts = || history.impacts.iter().filter(|it| it.state.time <= end);
@@ -135,9 +128,8 @@ fn errors(scene: &Scene, drop: &Strained) -> [Option<f64>; MEASURES.len()] {
 
 pub(super) fn run(plan: &Plan) -> Result<Findings, Failure> {
     let drops = campaign::map(plan, "severity", &[()], |(), mut random| {
-        let [scene, told] = forecast::drawn(plan, 0.0, &mut random)?;
-        let drop = watch(&scene, &told).map_err(refused)?;
-        Ok(errors(&scene, &drop))
+        let drop = forecast::drop(plan, 0.0, &mut random)?;
+        Ok(errors(&drop.scene, &watch(&drop)?))
     })?;
     let row = |(k, (case, quantity, target))| {
         let errors: Vec<f64> = drops.iter().flatten().filter_map(|it| it[k]).collect();

@@ -62,12 +62,26 @@ impl Drop {
     pub fn of(plan: &Plan, mut scene: Scene) -> Self {
         scene.tuning = plan.tuning;
         Self {
-            monitor: scene.monitor_config(),
+            levitated: 0,
+            ..Self::told(scene.clone(), &scene)
+        }
+    }
+
+    /// As `scene` has it, levitation and all. The monitor is told of `told`.
+    pub fn told(scene: Scene, told: &Scene) -> Self {
+        Self {
+            monitor: told.monitor_config(),
+            levitated: scene.levitated_samples(),
             scene,
             floats: None,
-            levitated: 0,
             first: 0.0,
         }
+    }
+
+    /// Whole sample periods up to the end.
+    pub fn periods(&self) -> usize {
+        let run = &self.scene.run;
+        (self.levitated as f64 + run.duration * run.sample_rate) as usize
     }
 
     /// Of sample `number`, s since the release.
@@ -100,8 +114,8 @@ impl Drop {
         (1.0 + self.scene.retainer.restitution) * impact.normal_speed
     }
 
-    /// Each sample, its time since the release (s), and what is true then, once released.
-    fn feed(
+    /// Each sample, its time since the release (s), and what is true then; in an orbit, nothing before the release.
+    pub fn feed(
         &self,
         truth: &mut Truth<'_>,
     ) -> Result<impl Iterator<Item = (Sample, f64, Option<TrueState>)>, Failure> {
@@ -116,7 +130,7 @@ impl Drop {
                 Some(floats) if time < 0.0 => (held(&floats, time), None),
                 _ => {
                     let state = truth.advance(time);
-                    (state.motion(false), Some(state))
+                    (state.motion(time < 0.0), Some(state))
                 }
             };
             let mut sample = sensors.read(&mut seen, &motion);
