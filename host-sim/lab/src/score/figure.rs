@@ -99,28 +99,22 @@ impl Curves {
             y: &y,
             height: HEIGHT,
         };
-        let mut classes = CLASSES.into_iter().cycle();
-        let mut class = |it: &Curve| {
-            if it.limit {
-                Some("limit")
-            } else {
-                classes.next()
-            }
+        let mut measured = CLASSES.into_iter().cycle();
+        let class = |it: &Curve| match it.limit {
+            true => Some("limit"),
+            false => measured.next(),
         };
-        let curves: Vec<_> = self
-            .curves
-            .iter()
-            .map(|it| (it, class(it).unwrap_or_default()))
-            .collect();
+        let classes: Vec<_> = self.curves.iter().flat_map(class).collect();
+        let curves = || self.curves.iter().zip(&classes);
         let lines = html! {
-            @for (curve, class) in &curves {
+            @for (curve, class) in curves() {
                 (chart.curve(class, curve.points.iter().map(|it| (it[0], it[1]))))
             }
         };
         html! {
             h3 { (self.title) }
             ul.legend {
-                @for (curve, class) in &curves {
+                @for (curve, class) in curves() {
                     li {
                         svg width="24" height="12" aria-hidden="true" {
                             path class={ "curve " (class) } d="M1 6H23" {}
@@ -134,11 +128,8 @@ impl Curves {
     }
 
     fn axis(&self, part: usize, label: &str) -> Axis {
-        let values = self
-            .curves
-            .iter()
-            .flat_map(|it| &it.points)
-            .map(|it| it[part]);
+        let points = self.curves.iter().flat_map(|it| &it.points);
+        let values = points.map(|it| it[part]);
         let values = values.filter(|it| it.is_finite() && (!self.decades || *it > 0.0));
         let (lo, hi) = values.fold((f64::INFINITY, 0.0), |(lo, hi), it| {
             (f64::min(lo, it), f64::max(hi, it))
