@@ -125,11 +125,7 @@ fn cases() -> Vec<Case> {
 }
 
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
-    let all = [
-        Case::Contact([1.0, 1.0]),
-        Case::Rolling(true),
-        Case::LiftOff,
-    ];
+    let all = [Case::Contact([1.0; 2]), Case::Rolling(true), Case::LiftOff];
     all.into_iter()
         .map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
@@ -229,16 +225,8 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         sums.1 += drops.len();
     }
     let [dropping, rolling] = phases;
-    rows.push(right_phase(
-        "phases over time, drops and lift-offs",
-        dropping,
-        RIGHT,
-    ));
-    rows.push(right_phase(
-        "phases over time, sliding to rolling",
-        rolling,
-        RIGHT_ROLLING,
-    ));
+    rows.push(right_phase("drops and lift-offs", dropping, RIGHT));
+    rows.push(right_phase("sliding to rolling", rolling, RIGHT_ROLLING));
     let mut all = dropping.0;
     add(&mut all, &rolling.0);
     let told = TOLD.map(<&str>::from);
@@ -294,6 +282,7 @@ fn right_phase(case: &str, (phases, drops): (Counts, usize), target: f64) -> Row
     let right = phases.iter().zip(FALLEN..);
     let right: u64 = right.map(|(row, column)| row[column]).sum();
     let part = share(right as usize, all as usize);
+    let case = format!("phases over time, {case}");
     Row::at_least(case, "right_share", part, target)
         .of(drops)
         .with("samples", all)

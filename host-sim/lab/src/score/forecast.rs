@@ -63,9 +63,12 @@ pub fn judged(name: &str, cases: &[Case]) -> [Row; 5] {
         .collect();
     let others: Vec<&Case> = cases.iter().filter(|it| it.whirl.is_none()).collect();
     let hits = whirls.iter().filter(|it| it.0.foretold().is_some()).count();
-    let ever = others.iter().filter(|it| it.was_foretold()).count();
-    let lasting = others.iter().filter(|it| it.is_foretold()).count();
-    let false_rate = rate(ever, others.len());
+    let of_others = |is: fn(&Case) -> bool| {
+        let count = others.iter().filter(|it| is(it)).count();
+        rate(count, others.len())
+    };
+    let false_rate = of_others(Case::was_foretold);
+    let lasting = of_others(Case::is_foretold);
     let all = cases.len();
     let is_mixed = !whirls.is_empty() && !others.is_empty();
     [
@@ -74,16 +77,11 @@ pub fn judged(name: &str, cases: &[Case]) -> [Row; 5] {
             .with("drops", all)
             .with("whirls", whirls.len())
             .noted(format!("{} whirls in {all} drops", whirls.len())),
-        Row::at_most(
-            name,
-            "lasting_false_rate",
-            rate(lasting, others.len()),
-            FALSE,
-        )
-        .of(others.len())
-        .with("false_rate", false_rate)
-        .with("others", others.len())
-        .noted(format!("foretold at any time: {false_rate:.3}")),
+        Row::at_most(name, "lasting_false_rate", lasting, FALSE)
+            .of(others.len())
+            .with("false_rate", false_rate)
+            .with("others", others.len())
+            .noted(format!("foretold at any time: {false_rate:.3}")),
         // Where all end alike there is no base rate; the forecasts of a drop do not stand for themselves.
         brier(name, &pairs(cases), if is_mixed { all } else { 0 }),
         lead(name, &whirls),
