@@ -1,24 +1,25 @@
 //! How hard a drop was, from position and speed alone, against the reference.
 
 use touchdown_base::statistics::quantile;
-use touchdown_lab::score::forecast_drop::scenes;
-use touchdown_lab::score::severity_drop::{self, Strained};
+use touchdown_lab::score::Drop;
+use touchdown_lab::score::forecast_drop::drawn;
+use touchdown_lab::score::severity::{self, Strained};
 use touchdown_scene::Scene;
 
-fn watch(scene: &Scene, told: &Scene) -> Strained {
-    severity_drop::watch(scene, told).expect("a valid scene")
+fn watch(scene: &Scene) -> Strained {
+    severity::watch(&Drop::told(scene.clone(), scene)).expect("a valid scene")
 }
 
 fn of_scene(name: &str) -> Strained {
     let scene = Scene::load(name).expect("built-in scene");
-    watch(&scene, &scene)
+    watch(&scene)
 }
 
 fn random(drops: u64, misled: f64) -> impl Iterator<Item = (u64, Scene, Strained)> {
     (0..drops).map(move |seed| {
-        let [scene, told] = scenes(5000 + seed, misled).expect("a valid scene");
-        let drop = watch(&scene, &told);
-        (seed, scene, drop)
+        let drop = drawn(5000 + seed, misled).expect("a valid scene");
+        let strained = severity::watch(&drop).expect("a valid scene");
+        (seed, drop.scene, strained)
     })
 }
 
@@ -96,7 +97,7 @@ fn whirl_load_is_right_to_5_percent() {
 fn dwell_and_velocity_index() {
     for name in ["rig", "rig-wide-gap", "rolling"] {
         let scene = Scene::load(name).expect("built-in scene");
-        let drop = watch(&scene, &scene);
+        let drop = watch(&scene);
         // As permanent contact is dated: to 1 ms.
         let late = f64::from(drop.seen.dwell) - drop.dwell;
         assert!(late.abs() < 1e-3, "{name}: {late}");
@@ -111,7 +112,7 @@ fn nothing_before_the_first_drop() {
     let mut scene = Scene::load("rig").expect("built-in scene");
     scene.run.duration = 1e-3;
     scene.run.seed = 3;
-    let drop = watch(&scene, &scene);
+    let drop = watch(&scene);
     assert_eq!(
         (drop.seen.impacts, drop.seen.impulse, drop.seen.dwell),
         (0, 0.0, 0.0)
@@ -127,7 +128,7 @@ fn contact_of_two_ends_counts_once() {
     for (speed, friction) in [(-20_000.0, 0.2), (-12_000.0, 0.15), (30_000.0, 0.15)] {
         let toml = replaced(&replaced(&toml, "speed_rpm", speed), "friction", friction);
         let scene = Scene::parse("ends.toml", &toml).expect("a valid scene");
-        let drop = watch(&scene, &scene);
+        let drop = watch(&scene);
         let seen = f64::from(drop.seen.dwell);
         println!("{speed} 1/min: {seen} s of {} s", drop.dwell);
         assert!((seen - drop.dwell).abs() < 0.02, "{seen} {}", drop.dwell);

@@ -1,8 +1,6 @@
 //! The same drops on the host and on another target: what they say must be the same bits.
 
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Group, Plan, campaign};
+use super::{Drop, Findings, Group, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_run::target::Target;
 
@@ -10,7 +8,13 @@ use touchdown_run::target::Target;
 type Agreement = [u64; 3];
 
 fn agreement(target: &Target, drop: &Drop) -> Result<Agreement, Failure> {
-    let run = |it: &Target| it.control(&drop.monitor, &Default::default(), drop.samples()?);
+    let run = |it: &Target| {
+        it.control(
+            &drop.monitor,
+            &Default::default(),
+            drop.samples()?.into_iter(),
+        )
+    };
     let ((here, _), (there, _)) = (run(&Target::Host)?, run(target)?);
     let (ours, theirs) = (here.summary, there.summary);
     let differences = [
@@ -42,10 +46,6 @@ pub fn run(plan: &Plan, group: &Group, target: &Target) -> Result<Findings, Fail
                 "{drops} drops, {samples} samples, {notices} notices"
             ))
     };
-    Ok(Findings {
-        rows: (seeds.first().into_iter().flatten().enumerate())
-            .map(row)
-            .collect(),
-        figures: Vec::new(),
-    })
+    let cases = seeds.first().into_iter().flatten().enumerate();
+    Ok(cases.map(row).collect())
 }

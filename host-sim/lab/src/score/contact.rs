@@ -6,11 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use touchdown_core::detect::Phase;
 use touchdown_core::event::EventKind;
 
-use super::figure::Figure;
-use super::impact::{JUMP, dropped, thrown};
-use super::row::Row;
+use super::figure::{Confusion, Figure};
+use super::impact::{JUMP, WATCHED, dropped, thrown};
 use super::watch::{Drop, Watched};
-use super::{Findings, Plan, campaign};
+use super::{Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::PhaseKind;
 use touchdown_base::statistics::{median, quantile, share};
@@ -36,9 +35,6 @@ const RIGHT_ROLLING: f64 = 0.8;
 
 /// Greatest true restitution.
 const MOST_RESTITUTION: f64 = 0.8;
-
-/// As of impacts.
-const WATCHED: f64 = 0.12;
 
 #[derive(Clone, Copy, Debug)]
 enum Case {
@@ -128,38 +124,26 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    let all = [
-        Case::Contact([1.0, 1.0]),
-        Case::Rolling(true),
-        Case::LiftOff,
-    ];
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
+    let all = [Case::Contact([1.0; 2]), Case::Rolling(true), Case::LiftOff];
     all.into_iter()
         .map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
 
-/// Rows of the confusion.
-const TRUE: [(PhaseKind, &str); 4] = [
-    (PhaseKind::FreeFall, "free fall"),
-    (PhaseKind::Impact, "impacts"),
-    (PhaseKind::Sliding, "sliding"),
-    (PhaseKind::Rolling, "rolling"),
+/// Columns of the confusion. Its rows are the phases after the levitation.
+const TOLD: [Phase; 6] = [
+    Phase::Starting,
+    Phase::Levitated,
+    Phase::FreeFall,
+    Phase::Impact,
+    Phase::Sliding,
+    Phase::Rolling,
 ];
-/// Its columns.
-const TOLD: [(Phase, &str); 6] = [
-    (Phase::Starting, "starting"),
-    (Phase::Levitated, "levitated"),
-    (Phase::FreeFall, "free fall"),
-    (Phase::Impact, "impacts"),
-    (Phase::Sliding, "sliding"),
-    (Phase::Rolling, "rolling"),
-];
-/// Column that is right, by row.
-const RIGHT_COLUMN: [usize; 4] = [2, 3, 4, 5];
+/// The first column that is right: that of the first row.
+const FALLEN: usize = Phase::FreeFall as usize;
 
-type Counts = [[u64; TOLD.len()]; TRUE.len()];
+type Counts = [[u64; TOLD.len()]; TOLD.len() - FALLEN];
 
 /// What was seen of a drop.
 #[derive(Clone, Debug, Default)]
@@ -174,15 +158,13 @@ fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let errors = match case {
         Case::Contact(_) | Case::Thrown(_) => contact_error(&watched).into_iter().collect(),
-        Case::Rolling(_) => end_of_slip(&watched).into_iter().collect(),
+        Case::Rolling(_) => ends_of_slip(&watched),
         Case::LiftOff => lift_offs(&watched),
     };
     let mut phases = Counts::default();
     for instant in &watched.instants {
-        let row = TRUE.iter().position(|it| it.0 == instant.phase);
-        let column = TOLD.iter().position(|it| it.0 == instant.told);
-        if let (Some(row), Some(column)) = (row, column) {
-            phases[row][column] += 1;
+        if let Some(row) = (instant.phase as usize).checked_sub(PhaseKind::FreeFall as usize) {
+            phases[row][instant.told as usize] += 1;
         }
     }
     Ok(Seen { errors, phases })
@@ -198,34 +180,31 @@ fn contact_error(watched: &Watched) -> Option<f64> {
 }
 
 /// Of the first rolling that lasts; the rotor may slide and roll in turn.
-fn end_of_slip(watched: &Watched) -> Option<f64> {
-    let matches = match_events(&watched.truth, &watched.detection);
-    let mut phases = watched.truth.phases.iter();
-    let lasting =
-        phases.find(|it| it.phase == PhaseKind::Rolling && it.end_s - it.start_s >= LASTS)?;
-    let mut found = matches.of_kind(EventKind::Rolling);
-    let found = found.find(|it| it.onset_s == lasting.start_s)?;
-    Some(found.onset_error_s.unwrap_or(f64::INFINITY))
+fn ends_of_slip(watched: &Watched) -> Vec<f64> {
+    let mut rolling = (watched.truth.phases.iter()).filter(|it| it.phase == PhaseKind::Rolling);
+    let lasting = rolling.find(|it| it.end_s - it.start_s >= LASTS);
+    let start = lasting.map(|it| it.start_s);
+    errors(watched, EventKind::Rolling, |onset| Some(onset) == start)
 }
 
 /// Of those that lead to an impact to be found.
 fn lift_offs(watched: &Watched) -> Vec<f64> {
-    let truth = &watched.truth;
-    let matches = match_events(truth, &watched.detection);
-    let hard = |onset: f64| {
-        let next = truth.impacts.iter().find(|it| it.state.time > onset);
+    errors(watched, EventKind::LiftOff, |onset| {
+        let mut impacts = watched.truth.impacts.iter();
+        let next = impacts.find(|it| it.state.time > onset);
         // The scene's restitution is 0.8.
         next.is_some_and(|it| 1.8 * it.normal_speed >= JUMP)
-    };
-    let counted = matches
-        .of_kind(EventKind::LiftOff)
-        .filter(|it| hard(it.onset_s));
-    counted
-        .map(|it| it.onset_error_s.unwrap_or(f64::INFINITY))
-        .collect()
+    })
 }
 
-/// Runs the group.
+/// Of the true events of a kind, those whose onset (s) counts.
+fn errors(watched: &Watched, kind: EventKind, counts: impl Fn(f64) -> bool) -> Vec<f64> {
+    let matches = match_events(&watched.truth, &watched.detection);
+    let counted = matches.of_kind(kind).filter(|it| counts(it.onset_s));
+    let error = counted.map(|it| it.onset_error_s.unwrap_or(f64::INFINITY));
+    error.collect()
+}
+
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "contact", &cases, |case, mut random| {
@@ -246,25 +225,18 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         sums.1 += drops.len();
     }
     let [dropping, rolling] = phases;
-    rows.push(right_phase(
-        "phases over time, drops and lift-offs",
-        dropping,
-        RIGHT,
-    ));
-    rows.push(right_phase(
-        "phases over time, sliding to rolling",
-        rolling,
-        RIGHT_ROLLING,
-    ));
+    rows.push(right_phase("drops and lift-offs", dropping, RIGHT));
+    rows.push(right_phase("sliding to rolling", rolling, RIGHT_ROLLING));
     let mut all = dropping.0;
     add(&mut all, &rolling.0);
-    let figures = vec![Figure::Confusion {
+    let told = TOLD.map(<&str>::from);
+    let figures = vec![Figure::Confusion(Confusion {
         title: "Phases over time",
         unit: "samples",
-        truth: TRUE.map(|it| it.1).to_vec(),
-        told: TOLD.map(|it| it.1).to_vec(),
+        truth: told[FALLEN..].to_vec(),
+        told: told.to_vec(),
         counts: all.iter().map(|row| row.to_vec()).collect(),
-    }];
+    })];
     Ok(Findings { rows, figures })
 }
 
@@ -276,7 +248,6 @@ fn add(sums: &mut Counts, counts: &Counts) {
 
 fn judged(case: Case, errors: &[f64]) -> Row {
     let sizes: Vec<f64> = errors.iter().map(|it| it.abs()).collect();
-    let within = |most: f64| share(sizes.iter().filter(|it| **it <= most).count(), sizes.len());
     let missed = sizes.iter().filter(|it| !it.is_finite()).count();
     let middle = median(&sizes);
     let note = format!(
@@ -286,20 +257,17 @@ fn judged(case: Case, errors: &[f64]) -> Row {
         quantile(&sizes, 0.99) * 1e3,
         sizes.len()
     );
+    let within = |quantity, most, target| {
+        let part = share(sizes.iter().filter(|it| **it <= most).count(), sizes.len());
+        Row::at_least(case.name(), quantity, part, target).of(sizes.len())
+    };
     let row = match case {
-        Case::Contact([1.0, 1.0]) | Case::Thrown(_) => {
-            Row::at_least(case.name(), "share_within_1_ms", within(ONSET[0]), MOST).of(sizes.len())
-        }
-        Case::Contact(_) => {
-            Row::at_least(case.name(), "share_within_3_ms", within(ONSET[1]), MOST).of(sizes.len())
-        }
+        Case::Contact([1.0, 1.0]) | Case::Thrown(_) => within("share_within_1_ms", ONSET[0], MOST),
+        Case::Contact(_) => within("share_within_3_ms", ONSET[1], MOST),
         Case::Rolling(_) => {
             Row::quantile_at_most(case.name(), "onset_error_median_s", &sizes, 0.5, ROLLING)
         }
-        Case::LiftOff => {
-            let found = share(sizes.len() - missed, sizes.len());
-            Row::at_least(case.name(), "found_share", found, LIFT_OFFS).of(sizes.len())
-        }
+        Case::LiftOff => within("found_share", f64::MAX, LIFT_OFFS),
     };
     row.with("events", sizes.len())
         .with("missed", missed)
@@ -311,12 +279,10 @@ fn judged(case: Case, errors: &[f64]) -> Row {
 /// Of so many drops: the samples of one do not stand for themselves.
 fn right_phase(case: &str, (phases, drops): (Counts, usize), target: f64) -> Row {
     let all: u64 = phases.iter().flatten().sum();
-    let right = phases
-        .iter()
-        .zip(RIGHT_COLUMN)
-        .map(|(row, column)| row[column]);
-    let right: u64 = right.sum();
+    let right = phases.iter().zip(FALLEN..);
+    let right: u64 = right.map(|(row, column)| row[column]).sum();
     let part = share(right as usize, all as usize);
+    let case = format!("phases over time, {case}");
     Row::at_least(case, "right_share", part, target)
         .of(drops)
         .with("samples", all)

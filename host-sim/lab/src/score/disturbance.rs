@@ -24,8 +24,8 @@ pub fn smooth(t: f64) -> f64 {
 }
 
 /// Mains hum of both axes and planes, as magnetic stray fields give.
-pub fn hum(time: f64, amplitude: f64) -> Shift {
-    [[amplitude * (TAU * 50.0 * time).sin(); 2]; PLANES]
+pub fn hum(time: f64) -> Shift {
+    [[2e-6 * (TAU * 50.0 * time).sin(); 2]; PLANES]
 }
 
 /// Readings that jump by one count, each channel about once a second, after one sample more of `period` s. `count` is the
@@ -39,19 +39,16 @@ pub fn steps(shift: &mut Shift, random: &mut ChaCha8Rng, period: f64, count: f64
     *shift
 }
 
-/// Gaussian noise of a first-order spectrum, each channel its own, after one sample more of `period` s; rms in m, corner
-/// in Hz.
-pub fn coloured(
-    shift: &mut Shift,
-    random: &mut ChaCha8Rng,
-    period: f64,
-    rms: f64,
-    corner: f64,
-) -> Shift {
-    let keep = (-TAU * corner * period).exp();
+/// Rms of the coloured noise, m, and its corner, Hz.
+const COLOURED: f64 = 1e-6;
+const CORNER: f64 = 500.0;
+
+/// Gaussian noise of a first-order spectrum, each channel its own, after one sample more of `period` s.
+pub fn coloured(shift: &mut Shift, random: &mut ChaCha8Rng, period: f64) -> Shift {
+    let keep = (-TAU * CORNER * period).exp();
     for shift in shift.iter_mut().flatten() {
         let white: f64 = StandardNormal.sample(random);
-        *shift = keep * *shift + rms * (1.0 - keep * keep).sqrt() * white;
+        *shift = keep * *shift + COLOURED * (1.0 - keep * keep).sqrt() * white;
     }
     *shift
 }
@@ -70,10 +67,9 @@ const SHOCK: f64 = 5e-3;
 /// From one kick to the next, s.
 const EVERY: f64 = 0.5;
 
-/// A rotor held by a loop of second order; twice a second a kick in any direction, or a load's end.
-#[derive(Clone, Debug)]
+/// A rotor held by a loop of second order, at rest at first; twice a second a kick in any direction, or a load's end.
+#[derive(Clone, Debug, Default)]
 pub struct Held {
-    kick: Kick,
     since: f64,
     force: [f64; 2],
     position: [f64; 2],
@@ -81,32 +77,21 @@ pub struct Held {
 }
 
 impl Held {
-    /// At rest.
-    pub fn new(kick: Kick) -> Self {
-        Self {
-            kick,
-            since: 0.0,
-            force: [0.0; 2],
-            position: [0.0; 2],
-            velocity: [0.0; 2],
-        }
-    }
-
     /// One sample of `period` s, in which the force is steady: the loop's motion in closed form.
-    pub fn next(&mut self, random: &mut ChaCha8Rng, period: f64) -> Shift {
+    pub fn next(&mut self, kick: Kick, random: &mut ChaCha8Rng, period: f64) -> Shift {
         self.since += period;
         if self.since >= EVERY {
             self.since = 0.0;
-            let most = match self.kick {
+            let most = match kick {
                 Kick::Load => G,
                 Kick::Shock => 2.0 * G,
             };
             let size = most * random.random_range(0.0..1.0);
-            let goes = self.kick == Kick::Load && self.force != [0.0; 2];
+            let goes = kick == Kick::Load && self.force != [0.0; 2];
             let new = direction(random).map(|part| size * part);
             self.force = if goes { [0.0; 2] } else { new };
         }
-        let now = match self.kick {
+        let now = match kick {
             Kick::Load => 1.0,
             Kick::Shock if self.since < SHOCK => (PI * self.since / SHOCK).sin(),
             Kick::Shock => 0.0,
@@ -136,11 +121,11 @@ mod tests {
     #[test]
     fn the_loop_is_of_second_order() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut held = Held::new(Kick::Load);
+        let mut held = Held::default();
         let period = 1e-5;
         let mut x = Vec::new();
         for _ in 0..60_000 {
-            x.push(held.next(&mut random, period)[0][0]);
+            x.push(held.next(Kick::Load, &mut random, period)[0][0]);
         }
         let [before, at, after] = [55_000, 55_001, 55_002].map(|k: usize| x[k]);
         let acceleration = (after - 2.0 * at + before) / (period * period);

@@ -3,15 +3,14 @@
 
 use std::f64::consts::TAU;
 
+use itertools::iproduct;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::figure::{Curve, Figure, histogram};
-use super::levitated::{Levitated, ORBIT};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Plan, bound, campaign};
+use super::figure::{Curve, Curves, Figure, histogram};
+use super::levitated::{LEAD, Levitated, ORBIT, RUNOUT};
+use super::{Drop, Findings, Named, Plan, Row, bound, campaign, planes};
 use touchdown_base::evenly::{direction, in_disc};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile};
@@ -24,97 +23,72 @@ const DISTURBED: f64 = 1.5;
 
 /// A fall from the middle of the gap of 0.3 mm reaches the wall after 7.8 ms; this is twice that.
 const WATCHED: f64 = 15e-3;
-/// Time to learn noise and place from; the monitor has to be armed within 0.15 s.
-const LEAD: f64 = 0.2;
-/// Likewise where there is an orbit: ten turns of the slowest.
+/// Levitation where there is an orbit: ten turns of the slowest.
 const ORBIT_LEAD: f64 = 1.0;
 /// Farthest that the rotor floats from the middle of the gap, m.
 const OFF_CENTRE: f64 = 60e-6;
 
-/// Amplitude of the runout, m.
-const RUNOUT: f64 = 5e-6;
 /// Change of speed where it sweeps, a second, up or down.
 const SWEEP: f64 = 0.2;
 /// Of a rotor that is thrown or drifts, m/s.
 const THROW: f64 = 10e-3;
+
+/// Directions of a throw, and places of its release between samples, over which the bound is a mean.
+const PLACES: u32 = 16;
+/// Sample rates, Hz.
+const RATES: [f64; 3] = [10e3, 20e3, 50e3];
 
 #[derive(Clone, Copy, Debug)]
 struct Orbit {
     frequency: f64,
     harmonic: u32,
     sweeps: bool,
+    /// Whether the speed is known.
+    is_told: bool,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Case {
-    name: String,
     noise: f64,
     rate: f64,
     planes: u8,
     orbit: Option<Orbit>,
-    speed: bool,
     gravity: f64,
     thrown: f64,
-    target: f64,
 }
 
+const USUAL: Case = Case {
+    noise: 1e-6,
+    rate: 20e3,
+    planes: 2,
+    orbit: None,
+    gravity: 9.81,
+    thrown: 0.0,
+};
+
 impl Case {
-    fn white(noise: f64, rate: f64, planes: u8) -> Self {
-        let name = format!(
-            "white noise {} um, {} kHz, {}",
-            noise * 1e6,
-            rate / 1e3,
-            if planes == 1 {
-                "one plane"
-            } else {
-                "two planes"
-            }
-        );
-        Self {
-            name,
-            noise,
-            rate,
-            planes,
-            orbit: None,
-            speed: false,
-            gravity: 9.81,
-            thrown: 0.0,
-            target: WHITE,
+    fn name(&self) -> String {
+        if let Some(orbit) = self.orbit {
+            let sweeps = if orbit.sweeps { "sweeping" } else { "steady" };
+            let told = if orbit.is_told { "known" } else { "unknown" };
+            return format!(
+                "orbit 30 um {} Hz, runout 5 um x {}, {sweeps}, speed {told}",
+                orbit.frequency, orbit.harmonic
+            );
         }
+        if self.gravity == 0.0 {
+            return "no gravity, drifts at 10 mm/s".to_owned();
+        }
+        if self.thrown > 0.0 {
+            return "thrown at 10 mm/s, any direction".to_owned();
+        }
+        let (um, khz) = (self.noise * 1e6, self.rate / 1e3);
+        format!("white noise {um} um, {khz} kHz, {}", planes(self.planes))
     }
 
-    fn usual() -> Self {
-        Self::white(1e-6, 20e3, 2)
-    }
-
-    fn orbit(orbit: Orbit, speed: bool) -> Self {
-        Self {
-            name: format!(
-                "orbit 30 um {} Hz, runout 5 um x {}, {}, {}",
-                orbit.frequency,
-                orbit.harmonic,
-                if orbit.sweeps { "sweeping" } else { "steady" },
-                if speed {
-                    "speed known"
-                } else {
-                    "speed unknown"
-                }
-            ),
-            orbit: Some(orbit),
-            speed,
-            target: DISTURBED,
-            ..Self::usual()
-        }
-    }
-
-    fn thrown(name: &str, gravity: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            gravity,
-            thrown: THROW,
-            target: DISTURBED,
-            ..Self::usual()
-        }
+    /// Whether nothing but white noise disturbs a fall by gravity alone.
+    fn is_plain(&self) -> bool {
+        self.orbit.is_none() && self.thrown == 0.0
     }
 
     fn drop(&self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
@@ -125,7 +99,7 @@ impl Case {
         scene.run.gravity = self.gravity;
         scene.sensors.noise = self.noise;
         scene.sensors.planes = self.planes;
-        scene.sensors.speed = self.speed;
+        scene.sensors.speed = self.orbit.is_some_and(|it| it.is_told);
         let mut floats = Levitated {
             place: in_disc(random, OFF_CENTRE),
             spin: scene.rotor.spin,
@@ -156,55 +130,48 @@ impl Case {
         if self.thrown == 0.0 {
             return Ok(bound::fall(variance, self.gravity, self.rate));
         }
-        // Mean over the directions of the throw and over the place of the release between samples.
-        let (directions, places) = (16, 16);
-        let mut sum = 0.0;
-        for number in 0..directions * places {
-            let angle = TAU * f64::from(number / places) / f64::from(directions);
-            let first = (f64::from(number % places) + 0.5) / f64::from(places);
-            let (sin, cos) = angle.sin_cos();
-            sum += bound::cusum(variance, self.rate, first, |t| {
+        let delays = iproduct!(0..PLACES, 0..PLACES).map(|(direction, place)| {
+            let (sin, cos) = (TAU * f64::from(direction) / f64::from(PLACES)).sin_cos();
+            let first = (f64::from(place) + 0.5) / f64::from(PLACES);
+            bound::cusum(variance, self.rate, first, |t| {
                 let fallen = 0.5 * self.gravity * t * t;
                 f64::hypot(self.thrown * cos * t, self.thrown * sin * t - fallen)
-            });
-        }
-        Ok(sum / f64::from(directions * places))
+            })
+        });
+        Ok(delays.sum::<f64>() / f64::from(PLACES * PLACES))
     }
 }
 
 fn cases() -> Vec<Case> {
-    let mut cases = Vec::new();
-    for planes in [1, 2] {
-        for rate in [10e3, 20e3, 50e3] {
-            for noise in [0.3e-6, 1e-6, 3e-6] {
-                cases.push(Case::white(noise, rate, planes));
-            }
-        }
-    }
-    cases.push(Case::thrown("thrown at 10 mm/s, any direction", 9.81));
-    cases.push(Case::thrown("no gravity, drifts at 10 mm/s", 0.0));
-    for frequency in [10.0, 50.0, 100.0, 200.0, 500.0] {
-        for harmonic in [1, 2, 3] {
-            for sweeps in [false, true] {
-                for speed in [false, true] {
-                    let orbit = Orbit {
-                        frequency,
-                        harmonic,
-                        sweeps,
-                    };
-                    cases.push(Case::orbit(orbit, speed));
-                }
-            }
-        }
-    }
-    cases
+    let white = iproduct!([1, 2], RATES, [0.3e-6, 1e-6, 3e-6]);
+    let white = white.map(|(planes, rate, noise)| Case {
+        noise,
+        rate,
+        planes,
+        ..USUAL
+    });
+    let thrown = [9.81, 0.0].map(|gravity| Case {
+        gravity,
+        thrown: THROW,
+        ..USUAL
+    });
+    let frequencies = [10.0, 50.0, 100.0, 200.0, 500.0];
+    let orbits = iproduct!(frequencies, [1, 2, 3], [false, true], [false, true]);
+    let orbits = orbits.map(|(frequency, harmonic, sweeps, is_told)| Case {
+        orbit: Some(Orbit {
+            frequency,
+            harmonic,
+            sweeps,
+            is_told,
+        }),
+        ..USUAL
+    });
+    white.chain(thrown).chain(orbits).collect()
 }
 
-/// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    let all = cases();
-    let few = all.iter().step_by(13);
-    few.map(|case| Ok((case.name.clone(), case.drop(plan, random)?)))
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
+    let few = cases().into_iter().step_by(13);
+    few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
 
@@ -219,7 +186,6 @@ struct Fall {
     early: usize,
 }
 
-/// Watches one drop.
 fn fall(drop: &Drop) -> Result<Fall, Failure> {
     let watched = drop.watch()?;
     let events = watched.detection.events.iter();
@@ -234,7 +200,6 @@ fn fall(drop: &Drop) -> Result<Fall, Failure> {
     })
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let falls = campaign::map(plan, "fall", &cases, |case, mut random| {
@@ -244,7 +209,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     for (case, falls) in cases.iter().zip(&falls) {
         rows.push(judged(case, falls)?);
     }
-    let figures = vec![against_noise(&cases, &rows), spread(&cases, &falls, &rows)];
+    let figures = vec![against_noise(&cases, &rows), spread(&cases, &falls)?];
     Ok(Findings { rows, figures })
 }
 
@@ -257,7 +222,8 @@ fn judged(case: &Case, falls: &[Fall]) -> Result<Row, Failure> {
     let (middle, late) = (median(&latencies), quantile(&latencies, 0.99));
     let missed = falls.len() - found;
     let ratios: Vec<f64> = latencies.iter().map(|it| it / bound).collect();
-    let row = Row::quantile_at_most(&case.name, "ratio", &ratios, 0.5, case.target)
+    let target = if case.is_plain() { WHITE } else { DISTURBED };
+    let row = Row::quantile_at_most(case.name(), "ratio", &ratios, 0.5, target)
         .and(missed == 0 && early == 0)
         .with("drops", falls.len())
         .with("found", found)
@@ -281,13 +247,11 @@ fn judged(case: &Case, falls: &[Fall]) -> Result<Row, Failure> {
 /// Latency of two planes over noise, with the bound.
 fn against_noise(cases: &[Case], rows: &[Row]) -> Figure {
     let mut curves = Vec::new();
-    for rate in [10e3, 20e3, 50e3] {
-        let white = |case: &Case| {
-            case.rate == rate && case.planes == 2 && case.orbit.is_none() && case.thrown == 0.0
-        };
-        let chosen = || cases.iter().zip(rows).filter(|it| white(it.0));
-        let points = |name: &'static str| {
-            let values = chosen().filter_map(|(case, row)| {
+    for rate in RATES {
+        let is_chosen = |it: &Case| it.rate == rate && it.planes == 2 && it.is_plain();
+        let points = |name| {
+            let chosen = cases.iter().zip(rows).filter(|it| is_chosen(it.0));
+            let values = chosen.filter_map(|(case, row)| {
                 let value = row.values.get(name)?.as_f64()?;
                 Some([case.noise * 1e6, value * 1e3])
             });
@@ -297,42 +261,31 @@ fn against_noise(cases: &[Case], rows: &[Row]) -> Figure {
         curves.push(Curve::new(format!("{khz} kHz"), points("latency_median_s")));
         curves.push(Curve::limit(format!("bound, {khz} kHz"), points("bound_s")));
     }
-    Figure::Curves {
+    Figure::Curves(Curves {
         title: "Latency of a fall against noise, two planes",
         x: "noise, um",
         y: "latency, median, ms",
         decades: true,
         curves,
-    }
+    })
 }
 
 /// How latencies over their bounds are spread.
-fn spread(cases: &[Case], falls: &[Vec<Fall>], rows: &[Row]) -> Figure {
-    let of = |orbit: bool| {
-        let mut ratios = Vec::new();
-        for ((case, falls), row) in cases.iter().zip(falls).zip(rows) {
-            let bound = row.values.get("bound_s").and_then(|it| it.as_f64());
-            if case.orbit.is_some() == orbit && case.thrown == 0.0 {
-                ratios.extend(
-                    falls
-                        .iter()
-                        .map(|it| it.latency / bound.unwrap_or(f64::NAN)),
-                );
-            }
-        }
-        ratios
-    };
-    Figure::Curves {
+fn spread(cases: &[Case], falls: &[Vec<Fall>]) -> Result<Figure, Failure> {
+    let mut ratios = [Vec::new(), Vec::new()];
+    let by_gravity = |case: &Case| case.thrown == 0.0;
+    for (case, falls) in cases.iter().zip(falls).filter(|it| by_gravity(it.0)) {
+        let bound = case.bound()?;
+        let of = &mut ratios[usize::from(case.orbit.is_some())];
+        of.extend(falls.iter().map(|it| it.latency / bound));
+    }
+    let curves = ["white noise", "orbit and runout"].into_iter().zip(&ratios);
+    let curves = curves.map(|(name, ratios)| Curve::new(name, histogram(ratios, 0.05, 5.0)));
+    Ok(Figure::Curves(Curves {
         title: "Latency of a fall over its bound",
         x: "latency / bound",
         y: "share of drops in a step of 0.05",
         decades: false,
-        curves: vec![
-            Curve::new("white noise".to_owned(), histogram(&of(false), 0.05, 5.0)),
-            Curve::new(
-                "orbit and runout".to_owned(),
-                histogram(&of(true), 0.05, 5.0),
-            ),
-        ],
-    }
+        curves: curves.collect(),
+    }))
 }

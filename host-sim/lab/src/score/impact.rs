@@ -3,15 +3,14 @@
 
 use std::f64::consts::TAU;
 
+use itertools::iproduct;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 
-use super::figure::{Curve, Figure, histogram};
-use super::levitated::{Levitated, ORBIT};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Plan, bound, campaign};
+use super::figure::{Curve, Curves, Figure, histogram};
+use super::levitated::{LEAD, Levitated, ORBIT};
+use super::{Drop, Findings, Named, Plan, Row, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Impact};
@@ -31,9 +30,8 @@ const MEASURED: f64 = 0.1;
 const LATE: f64 = 1.3;
 
 /// The bounce series of restitution 0.8 is over after 70 ms.
-const WATCHED: f64 = 0.12;
-const LEAD: f64 = 0.2;
-/// Likewise where it orbits: 15 turns of the slowest.
+pub const WATCHED: f64 = 0.12;
+/// Levitation where it orbits: 15 turns of the slowest.
 const ORBIT_LEAD: f64 = 0.5;
 /// Slowest and fastest orbit, Hz.
 const TURNS: [f64; 2] = [30.0, 500.0];
@@ -104,31 +102,25 @@ pub fn thrown(plan: &Plan, mut scene: Scene, sign: f64, random: &mut ChaCha8Rng)
 const JUDGED: usize = FRICTIONS.len() * SPINS.len();
 
 fn cases() -> Vec<Case> {
-    let mut cases = Vec::new();
-    for orbits in [false, true] {
-        for rate in [20e3, 50e3] {
-            for restitution in [0.3, 0.5, 0.8] {
-                for friction in FRICTIONS {
-                    for spin in SPINS {
-                        cases.push(Case {
-                            rate,
-                            restitution,
-                            friction,
-                            spin,
-                            orbits,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    cases
+    let all = iproduct!(
+        [false, true],
+        [20e3, 50e3],
+        [0.3, 0.5, 0.8],
+        FRICTIONS,
+        SPINS
+    );
+    let case = |(orbits, rate, restitution, friction, spin)| Case {
+        rate,
+        restitution,
+        friction,
+        spin,
+        orbits,
+    };
+    all.map(case).collect()
 }
 
-/// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
-    let all = cases();
-    let few = all.iter().step_by(13);
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
+    let few = cases().into_iter().step_by(13);
     few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
@@ -136,6 +128,7 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
 /// What was seen of impacts that have to be found.
 #[derive(Clone, Debug, Default)]
 struct Seen {
+    drops: usize,
     /// All of them.
     impacts: usize,
     /// Others with such a jump, which cannot be told from lying on the wall, and how many of these were found.
@@ -152,6 +145,7 @@ struct Seen {
 
 impl Seen {
     fn take(&mut self, other: &Self) {
+        self.drops += other.drops;
         self.impacts += other.impacts;
         self.hidden[0] += other.hidden[0];
         self.hidden[1] += other.hidden[1];
@@ -162,7 +156,6 @@ impl Seen {
     }
 }
 
-/// Watches one drop.
 fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let (truth, events) = (&watched.truth, &watched.detection.events);
@@ -170,6 +163,7 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let false_events = matches.false_events.iter();
     let variance = bound::variance(&drop.scene.sensors);
     let mut seen = Seen {
+        drops: 1,
         invented: false_events
             .filter(|it| events[**it].declared_s >= 0.0)
             .count(),
@@ -221,7 +215,6 @@ fn flights(truth: &History, impact: &Impact, jump: f64) -> [[f64; 2]; 2] {
     [[impact.normal_speed, time - last], [leaves, next - time]]
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "impact", &cases, |case, mut random| {
@@ -230,27 +223,23 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (cases, drops) in cases.chunks(JUDGED).zip(drops.chunks(JUDGED)) {
-        let (mut all, mut count) = (Seen::default(), 0);
-        for seen in drops.iter().flatten() {
-            all.take(seen);
-            count += 1;
-        }
-        let name = cases[0].name();
-        curves.push(Curve::new(name.clone(), histogram(&all.late, 0.1, 5.0)));
-        rows.extend(judged(&name, &all, count));
+        let (name, mut all) = (cases[0].name(), Seen::default());
+        drops.iter().flatten().for_each(|it| all.take(it));
+        rows.extend(judged(&name, &all));
+        curves.push(Curve::new(name, histogram(&all.late, 0.1, 5.0)));
     }
-    let figures = vec![Figure::Curves {
+    let figures = vec![Figure::Curves(Curves {
         title: "Latency of an impact over the bound for its jump",
         x: "latency / bound",
         y: "share of impacts in a step of 0.1",
         decades: false,
         curves,
-    }];
+    })];
     Ok(Findings { rows, figures })
 }
 
-fn judged(name: &str, seen: &Seen, drops: usize) -> [Row; 6] {
-    let found = seen.dated.len();
+fn judged(name: &str, seen: &Seen) -> [Row; 6] {
+    let (found, drops) = (seen.dated.len(), seen.drops);
     let mut note = format!("{found} of {} in {drops} drops", seen.impacts);
     let [hidden, others] = seen.hidden;
     if hidden > 0 {

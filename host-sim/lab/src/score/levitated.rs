@@ -2,6 +2,10 @@
 
 /// Radius of an unbalance orbit, m.
 pub const ORBIT: f64 = 30e-6;
+/// Time to learn noise and place from, s; the monitor has to be armed within 0.15 s.
+pub const LEAD: f64 = 0.2;
+/// Amplitude of the runout, m.
+pub const RUNOUT: f64 = 5e-6;
 
 /// A floating rotor; time 0 is the release.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -13,11 +13,9 @@ use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
 
 use super::disturbance::{Held, Kick, Shift, coloured, hum, smooth, steps};
-use super::levitated::{Levitated, ORBIT};
+use super::levitated::{Levitated, ORBIT, RUNOUT};
 use super::watch::refused;
 
-/// Amplitude of the runout, m.
-pub const RUNOUT: f64 = 5e-6;
 /// Lowest and highest frequency of the orbit, Hz.
 const SPEEDS: [f64; 2] = [10.0, 500.0];
 
@@ -61,6 +59,7 @@ impl Case {
 /// The motion of one stretch.
 struct Stretch {
     case: Case,
+    scene: Scene,
     floats: Levitated,
     random: ChaCha8Rng,
     /// Of the channels, by steps or by noise.
@@ -68,22 +67,19 @@ struct Stretch {
     held: Held,
     /// Of the setpoint's next change.
     change: [f64; 2],
-    clearance: f64,
-    count: f64,
 }
 
 impl Stretch {
-    fn new(case: Case, scene: &mut Scene, mut random: ChaCha8Rng) -> Self {
+    fn new(case: Case, mut scene: Scene, mut random: ChaCha8Rng) -> Self {
         let [low, high] = SPEEDS;
         let frequency = low * f64::powf(high / low, random.random_range(0.0..1.0));
+        let angle = random.random_range(0.0..TAU);
+        let sign = if random.random() { -1.0 } else { 1.0 };
         let mut floats = Levitated {
-            spin: TAU * frequency,
-            angle: random.random_range(0.0..TAU),
+            angle,
+            spin: sign * TAU * frequency,
             ..Levitated::default()
         };
-        if random.random() {
-            floats.spin = -floats.spin;
-        }
         match case {
             Case::Orbit => floats.radius = ORBIT,
             Case::Coloured => scene.sensors.noise = 0.3e-6,
@@ -100,16 +96,11 @@ impl Stretch {
         scene.rotor.spin = floats.spin;
         Self {
             case,
+            scene,
             floats,
             shift: Shift::default(),
-            held: Held::new(if case == Case::Load {
-                Kick::Load
-            } else {
-                Kick::Shock
-            }),
+            held: Held::default(),
             change: direction(&mut random).map(|part| 50e-6 * part),
-            clearance: scene.retainer.clearance,
-            count: scene.sensors.resolution(),
             random,
         }
     }
@@ -130,19 +121,20 @@ impl Stretch {
     }
 
     fn shift(&mut self, time: f64, period: f64) -> Shift {
+        let count = self.scene.sensors.resolution();
         match self.case {
             Case::White | Case::Orbit | Case::Offset => Shift::default(),
             Case::Resonance => [resonance(time); PLANES],
-            Case::Steps => steps(&mut self.shift, &mut self.random, period, self.count),
-            Case::Hum => hum(time, 2e-6),
-            Case::Coloured => coloured(&mut self.shift, &mut self.random, period, 1e-6, 500.0),
+            Case::Steps => steps(&mut self.shift, &mut self.random, period, count),
+            Case::Hum => hum(time),
+            Case::Coloured => coloured(&mut self.shift, &mut self.random, period),
             Case::Together => {
-                let [x, y] = resonance(time);
-                let steps = steps(&mut self.shift, &mut self.random, period, self.count);
-                let hum = hum(time, 2e-6);
+                let steps = steps(&mut self.shift, &mut self.random, period, count);
+                let ([x, y], hum) = (resonance(time), hum(time));
                 [0, 1].map(|k| [x + steps[k][0] + hum[k][0], y + steps[k][1] + hum[k][1]])
             }
-            Case::Load | Case::Shock => self.held.next(&mut self.random, period),
+            Case::Load => self.held.next(Kick::Load, &mut self.random, period),
+            Case::Shock => self.held.next(Kick::Shock, &mut self.random, period),
             Case::Setpoint => {
                 // There for half a second, and back.
                 let within = time % 1.0;
@@ -153,7 +145,7 @@ impl Stretch {
                 // On the bottom, lifted, afloat, put down: 4 s each.
                 let within = time % 4.0;
                 let part = smooth((within - 0.5) / 0.2) - smooth((within - 3.2) / 0.3);
-                [[0.0, -self.clearance * (1.0 - part)]; PLANES]
+                [[0.0, -self.scene.retainer.clearance * (1.0 - part)]; PLANES]
             }
         }
     }
@@ -193,8 +185,8 @@ pub struct Heard {
     pub declared: u32,
     /// Falls.
     pub confirmed: u32,
-    /// Samples from the first until the monitor was armed.
-    pub armed: Option<u64>,
+    /// Whether the monitor ever was.
+    pub armed: bool,
 }
 
 /// Runs `seconds` of `case` on the machine of `scene`.
@@ -204,9 +196,9 @@ pub fn listen(
     seconds: f64,
     mut random: ChaCha8Rng,
 ) -> Result<Heard, Failure> {
-    let mut scene = scene.clone();
     let seed = random.random();
-    let mut stretch = Stretch::new(case, &mut scene, random);
+    let mut stretch = Stretch::new(case, scene.clone(), random);
+    let scene = &stretch.scene;
     let rate = scene.run.sample_rate;
     let sensors = Sensors::try_new(&scene.sensors, rate).map_err(refused)?;
     let monitor = Monitor::try_new(&scene.monitor_config()).map_err(refused)?;
@@ -225,9 +217,7 @@ pub fn listen(
                 _ => {}
             }
         }
-        if heard.armed.is_none() && state.detector.is_armed() {
-            heard.armed = Some(number);
-        }
+        heard.armed |= state.detector.is_armed();
     }
     Ok(heard)
 }

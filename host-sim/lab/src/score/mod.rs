@@ -10,7 +10,7 @@ mod contact;
 mod disturbance;
 mod fall;
 mod figure;
-mod forecast;
+pub mod forecast;
 pub mod forecast_drop;
 mod impact;
 mod levitated;
@@ -20,8 +20,7 @@ mod quiet;
 mod regime;
 mod row;
 mod sensors;
-mod severity;
-pub mod severity_drop;
+pub mod severity;
 mod table;
 mod watch;
 mod whirl;
@@ -36,14 +35,22 @@ pub use figure::Figure;
 pub use page::page;
 pub use row::{Row, none_fails};
 pub use table::table;
+pub use watch::Drop;
 
 use touchdown_base::failure::Failure;
 use touchdown_page::json::text;
 use touchdown_run::target::Target;
-use watch::Drop;
 
 /// Drops with the names of their cases.
 type Named = Vec<(String, Drop)>;
+
+/// How many planes sensors look at, for people.
+fn planes(count: u8) -> &'static str {
+    match count {
+        1 => "one plane",
+        _ => "two planes",
+    }
+}
 
 /// What is measured together.
 #[derive(Clone, Copy, Debug)]
@@ -57,57 +64,29 @@ pub struct Group {
     drops: fn(&Plan, &mut ChaCha8Rng) -> Result<Named, Failure>,
 }
 
-/// All of them.
-pub const GROUPS: &[Group] = &[
-    Group {
-        name: "fall",
-        about: "free fall after levitation: latency against the bound",
-        run: fall::run,
-        drops: fall::drops,
-    },
-    Group {
-        name: "impact",
-        about: "impacts at 1 um, two planes: found, dated, measured, invented",
-        run: impact::run,
-        drops: impact::drops,
-    },
-    Group {
-        name: "contact",
-        about: "permanent contact, end of slip, lift-off, and phases over time",
-        run: contact::run,
-        drops: contact::drops,
-    },
-    Group {
-        name: "regime",
-        about: "how drops of random machines end",
-        run: regime::run,
-        drops: regime::drops,
-    },
-    Group {
-        name: "forecast",
-        about: "whirl foretold, in drops of random machines",
-        run: forecast::run,
-        drops: forecast::drops,
-    },
-    Group {
-        name: "severity",
-        about: "impulses, dwell, velocity and whirl load of the same drops",
-        run: severity::run,
-        drops: severity::drops,
-    },
-    Group {
-        name: "sensors",
-        about: "sensors that fail in a drop: named, and no harm done",
-        run: sensors::run,
-        drops: sensors::drops,
-    },
-    Group {
-        name: "quiet",
-        about: "hours of levitation: what is declared, what is confirmed",
-        run: quiet::run,
-        drops: quiet::drops,
-    },
-];
+/// A module of its own for each.
+macro_rules! groups {
+    ($($name:ident: $about:literal,)*) => {
+        /// All of them.
+        pub const GROUPS: &[Group] = &[$(Group {
+            name: stringify!($name),
+            about: $about,
+            run: $name::run,
+            drops: $name::drops,
+        }),*];
+    };
+}
+
+groups! {
+    fall: "free fall after levitation: latency against the bound",
+    impact: "impacts at 1 um, two planes: found, dated, measured, invented",
+    contact: "permanent contact, end of slip, lift-off, and phases over time",
+    regime: "how drops of random machines end",
+    forecast: "whirl foretold, in drops of random machines",
+    severity: "impulses, dwell, velocity and whirl load of the same drops",
+    sensors: "sensors that fail in a drop: named, and no harm done",
+    quiet: "hours of levitation: what is declared, what is confirmed",
+}
 
 /// How much is measured, and of which detector.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,6 +110,15 @@ pub struct Findings {
     pub rows: Vec<Row>,
     /// What is drawn of it.
     pub figures: Vec<Figure>,
+}
+
+impl FromIterator<Row> for Findings {
+    fn from_iter<I: IntoIterator<Item = Row>>(rows: I) -> Self {
+        Self {
+            rows: rows.into_iter().collect(),
+            figures: Vec::new(),
+        }
+    }
 }
 
 /// The answer; the same for the same plan, however many threads.
@@ -190,16 +178,17 @@ struct Json<'a> {
 
 /// `score --json`.
 pub fn json(score: &Score) -> serde_json::Result<String> {
-    let json = Json {
+    let groups = || {
+        score
+            .groups
+            .iter()
+            .map(|(group, found)| (group.name, found))
+    };
+    text(&Json {
         seeds: score.plan.seeds,
         first_seed: score.plan.first_seed,
         seconds: score.plan.seconds,
-        groups: (score.groups.iter())
-            .map(|(group, found)| (group.name, &found.rows[..]))
-            .collect(),
-        figures: (score.groups.iter())
-            .map(|(group, found)| (group.name, &found.figures[..]))
-            .collect(),
-    };
-    text(&json)
+        groups: groups().map(|(name, it)| (name, &it.rows[..])).collect(),
+        figures: groups().map(|(name, it)| (name, &it.figures[..])).collect(),
+    })
 }

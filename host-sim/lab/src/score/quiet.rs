@@ -7,11 +7,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use strum::VariantArray;
 
-use super::levitated::{Levitated, ORBIT};
-use super::listening::{Case, Heard, RUNOUT, listen};
-use super::row::Row;
-use super::watch::Drop;
-use super::{Findings, Plan, campaign};
+use super::levitated::{Levitated, ORBIT, RUNOUT};
+use super::listening::{Case, Heard, listen};
+use super::{Drop, Findings, Named, Plan, Row, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_scene::Scene;
 
@@ -23,7 +21,7 @@ const HOUR: f64 = 3600.0;
 const NONE_SEEN: f64 = 2.995_732_273_553_991;
 
 /// Drops to compare two targets with: a start from an orbit that is only followed until the release.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let mut scene = Scene::load("rig")?;
     scene.run.duration = 1e-3;
     scene.run.seed = random.random();
@@ -37,7 +35,6 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>
     Ok(vec![(Case::Orbit.to_string(), drop)])
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let mut scene = Scene::load("rig")?;
     scene.tuning = plan.tuning;
@@ -51,12 +48,9 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
         listen(*case, &scene, piece, random)
     })?;
     let judged = Case::VARIANTS.iter().zip(&heard);
-    Ok(Findings {
-        rows: judged
-            .map(|(case, heard)| row(*case, heard, plan))
-            .collect(),
-        figures: Vec::new(),
-    })
+    Ok(judged
+        .map(|(case, heard)| row(*case, heard, plan))
+        .collect())
 }
 
 fn row(case: Case, heard: &[Heard], plan: &Plan) -> Row {
@@ -69,7 +63,7 @@ fn row(case: Case, heard: &[Heard], plan: &Plan) -> Row {
         ("declared_per_hour", declared)
     };
     // A monitor that never listens declares nothing either.
-    let deaf = heard.iter().filter(|it| it.armed.is_none()).count();
+    let deaf = heard.iter().filter(|it| !it.armed).count();
     let at_most = upper(count) / hours;
     Row::at_most(case.to_string(), name, f64::from(count) / hours, 0.0)
         .and(deaf == 0)

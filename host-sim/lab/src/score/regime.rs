@@ -5,16 +5,18 @@ use rand_chacha::ChaCha8Rng;
 use strum::VariantArray;
 use touchdown_core::event::EventKind;
 
-use super::figure::Figure;
+use super::figure::{Confusion, Figure};
 use super::impact::dropped;
-use super::levitated::Levitated;
+use super::levitated::{LEAD, Levitated};
 use super::row::{Row, interval};
 use super::watch::{Drop, Instant, Watched};
 use super::whirl::{has_wrong_sign, turns, whirls};
-use super::{Findings, Plan, campaign};
+use super::{Findings, Named, Plan, campaign};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::{median, share};
+use touchdown_run::matching::regime_event;
+use touchdown_scene::names::regime_name;
 use touchdown_scene::{Scene, Start};
 use touchdown_truth::simulate;
 
@@ -73,55 +75,36 @@ impl Case {
             }
             Self::Straight => {
                 scene.run.seed = random.random();
-                scene.rotor.spin = 0.0;
                 let floats = Levitated::default();
                 let first = random.random_range(0.0..1.0);
-                Ok(Drop::released(plan, scene, floats, [0.0; 2], 0.2, first))
+                Ok(Drop::released(plan, scene, floats, [0.0; 2], LEAD, first))
             }
         }
     }
 }
 
-/// Drops to compare two targets with.
-pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Vec<(String, Drop)>, Failure> {
+pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let cases = Case::VARIANTS.iter();
     cases
         .map(|case| Ok((case.to_string(), case.drop(plan, random)?)))
         .collect()
 }
 
-/// Rows of the confusion; its columns are the same and "contact", of which no more was said.
-const KINDS: usize = 5;
-
-fn row(regime: Regime) -> usize {
-    match regime {
-        Regime::Rest => 0,
-        Regime::Pendulum => 1,
-        Regime::ForwardWhirl => 2,
-        Regime::BackwardWhirl => 3,
-        Regime::Bouncing | Regime::Intermittent => 4,
-    }
-}
+/// Row and column of a rotor in flight; those before it are the regimes in contact.
+const IN_FLIGHT: usize = Regime::Intermittent as usize;
+/// Column of contact, of which no more was said.
+const CONTACT: usize = IN_FLIGHT + 1;
 
 /// Column of what the monitor last said.
 fn column(watched: &Watched) -> usize {
-    let mut column = 4;
-    let (mut lift_offs, mut touches) = (0, false);
+    let (mut column, mut touches) = (IN_FLIGHT, false);
     for event in &watched.detection.events {
+        let is_it = |it: &Regime| regime_event(*it) == Some(event.event);
         column = match event.event {
-            EventKind::Rest => 0,
-            EventKind::Pendulum => 1,
-            EventKind::ForwardWhirl => 2,
-            EventKind::BackwardWhirl => 3,
-            EventKind::LiftOff => {
-                lift_offs += 1;
-                4
-            }
+            EventKind::FreeFall | EventKind::LiftOff => IN_FLIGHT,
             // Slip ends, and begins again, within a regime.
-            EventKind::Sliding | EventKind::Rolling if touches => column,
-            EventKind::Sliding | EventKind::Rolling => KINDS,
-            EventKind::FreeFall => 4,
-            EventKind::Impact | EventKind::Levitated | EventKind::SensorFault => column,
+            EventKind::Sliding | EventKind::Rolling if !touches => CONTACT,
+            _ => Regime::VARIANTS.iter().position(is_it).unwrap_or(column),
         };
         touches = match event.event {
             EventKind::Sliding | EventKind::Rolling => true,
@@ -129,9 +112,12 @@ fn column(watched: &Watched) -> usize {
             _ => touches,
         };
     }
+    let events = watched.detection.events.iter();
+    let lift_offs = events.filter(|it| it.event == EventKind::LiftOff).count();
+    let whirls = [Regime::ForwardWhirl, Regime::BackwardWhirl].map(|it| it as usize);
     // Four lift-offs without whirl are intermittent contact, whatever came last.
-    if lift_offs >= 4 && !matches!(column, 2 | 3) {
-        column = 4;
+    if lift_offs >= 4 && !whirls.contains(&column) {
+        column = IN_FLIGHT;
     }
     column
 }
@@ -143,9 +129,8 @@ struct Seen {
     regime: Option<(usize, usize)>,
     /// Turns of each backward whirl when it was declared; infinite for one that was not.
     turns: Vec<f64>,
-    /// Whirls told, and those whose sign is not that of the motion.
-    told: usize,
-    wrong_signs: usize,
+    /// Of each whirl that was told: whether its sign is not that of the motion.
+    wrong_signs: Vec<bool>,
 }
 
 fn seen(drop: &Drop) -> Result<Seen, Failure> {
@@ -156,16 +141,13 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     shorter.run.duration = end - SETTLED;
     let lasts = regime == simulate(&shorter).regime || turns(&watched, end).abs() >= LONG;
     let settled = lasts && !is_blurred(&watched, end);
-    let events = &watched.detection.events;
-    let signs: Vec<_> = events
-        .iter()
-        .filter_map(|it| has_wrong_sign(&watched, it))
-        .collect();
+    let row = (regime as usize).min(IN_FLIGHT);
+    let told = watched.detection.events.iter();
+    let wrong_signs = told.filter_map(|it| has_wrong_sign(&watched, it));
     Ok(Seen {
-        regime: settled.then(|| (row(regime), column(&watched))),
+        regime: settled.then(|| (row, column(&watched))),
         turns: whirls(&watched, end),
-        told: signs.len(),
-        wrong_signs: signs.iter().filter(|it| **it).count(),
+        wrong_signs: wrong_signs.collect(),
     })
 }
 
@@ -185,13 +167,12 @@ fn is_blurred(watched: &Watched, end: f64) -> bool {
     }
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let drops = campaign::map(plan, "regime", Case::VARIANTS, |case, mut random| {
         seen(&case.drop(plan, &mut random)?.before_fast_whirl())
     })?;
     let mut rows = Vec::new();
-    let mut counts = [[0_u64; KINDS + 1]; KINDS];
+    let mut counts = [[0_u64; CONTACT + 1]; IN_FLIGHT + 1];
     for (case, drops) in Case::VARIANTS.iter().zip(&drops) {
         let judged: Vec<_> = drops.iter().filter_map(|it| it.regime).collect();
         for (row, column) in &judged {
@@ -224,8 +205,9 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
                 median(&turns)
             )),
     );
-    let wrong: usize = all().map(|it| it.wrong_signs).sum();
-    let told: usize = all().map(|it| it.told).sum();
+    let told = all().map(|it| it.wrong_signs.len()).sum();
+    let wrong = all().flat_map(|it| &it.wrong_signs).filter(|it| **it);
+    let wrong = wrong.count();
     let (_, upper) = interval(share(wrong, told), told);
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)
@@ -237,19 +219,15 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
                 100.0 * upper
             )),
     );
-    let names = vec![
-        "rest",
-        "pendulum",
-        "forward whirl",
-        "backward whirl",
-        "in flight",
-    ];
-    let figures = vec![Figure::Confusion {
+    let regimes = Regime::VARIANTS[..IN_FLIGHT].iter();
+    let mut names: Vec<_> = regimes.map(|it| regime_name(*it)).collect();
+    names.push("in flight");
+    let figures = vec![Figure::Confusion(Confusion {
         title: "Regime at the end",
         unit: "drops",
         told: [&names[..], &["contact"]].concat(),
         truth: names,
         counts: counts.iter().map(|row| row.to_vec()).collect(),
-    }];
+    })];
     Ok(Findings { rows, figures })
 }

@@ -39,7 +39,16 @@ impl Row {
         measured: f64,
         target: f64,
     ) -> Self {
-        Self::new(case.into(), quantity, measured, target, false)
+        Self {
+            case: case.into(),
+            quantity,
+            target,
+            at_least: false,
+            holds: measured.is_finite() && measured <= target,
+            undecided: false,
+            values: BTreeMap::from([(quantity, Value::from(measured))]),
+            note: String::new(),
+        }
     }
 
     /// Holds from `target` on.
@@ -49,7 +58,11 @@ impl Row {
         measured: f64,
         target: f64,
     ) -> Self {
-        Self::new(case.into(), quantity, measured, target, true)
+        Self {
+            at_least: true,
+            holds: measured.is_finite() && measured >= target,
+            ..Self::at_most(case, quantity, measured, target)
+        }
     }
 
     /// Holds where the value that a part `p` of `values` does not exceed is up to `target`.
@@ -63,30 +76,6 @@ impl Row {
         let within = values.iter().filter(|it| **it <= target).count();
         let (_, most) = interval(share(within, values.len()), values.len());
         Self::at_most(case, quantity, quantile(values, p), target).undecided_if(most >= p)
-    }
-
-    fn new(
-        case: String,
-        quantity: &'static str,
-        measured: f64,
-        target: f64,
-        at_least: bool,
-    ) -> Self {
-        let within = if at_least {
-            measured >= target
-        } else {
-            measured <= target
-        };
-        Self {
-            case,
-            quantity,
-            target,
-            at_least,
-            holds: measured.is_finite() && within,
-            undecided: false,
-            values: BTreeMap::from([(quantity, Value::from(measured))]),
-            note: String::new(),
-        }
     }
 
     /// A further value.

@@ -1,19 +1,22 @@
 //! A channel fails in a drop: it is named, and where another plane is left, or for a sample alone, the
 //! drop is told as without.
 
+use std::iter;
+
+use itertools::iproduct;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use touchdown_core::event::EventKind;
 use touchdown_core::health::FaultKind;
 
-use super::impact::{self, dropped};
-use super::row::Row;
+use super::impact::{self, WATCHED, dropped};
 use super::watch::{Drop, Watched};
-use super::{Findings, Named, Plan, campaign};
+use super::{Findings, Named, Plan, Row, campaign, planes};
 use touchdown_base::failure::Failure;
 use touchdown_base::statistics::{median, quantile, share};
 use touchdown_run::matching::match_events;
 use touchdown_scene::Scene;
+use touchdown_scene::names::channel_name;
 use touchdown_scene::sensors::{Failing, SensorFault};
 
 /// Part of the faults that has to be named, channel and kind.
@@ -22,12 +25,16 @@ const NAMED: f64 = 0.99;
 const HARMED: f64 = 0.02;
 /// Velocity jump from which an impact has to be found, m/s: one plane has the noise of two, times the root of 2.
 const JUMP: f64 = std::f64::consts::SQRT_2 * impact::JUMP;
-/// Length of a run, s; what is seen only once the rotor lies needs `LONG`.
-const WATCHED: f64 = 0.12;
+/// Length of a run where the fault is seen only once the rotor lies, s.
 const LONG: f64 = 2.0;
 /// Moments of the fault, s: the last of levitation, the fall, bounces, contact.
 const MOMENTS: [f64; 2] = [-0.15, 0.1];
-const NAMES: [&str; 4] = ["ax", "ay", "bx", "by"];
+/// Sizes of a shift and of a spike, and of a spike that is too small to be told from motion, m.
+const SHIFT: [f64; 2] = [50e-6, 300e-6];
+const SPIKE: [f64; 2] = [40e-6, 400e-6];
+const FAINT: [f64; 2] = [10e-6, 40e-6];
+
+use Lasts::{Always, ForGood, Once};
 
 /// How long a fault lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,82 +50,58 @@ enum Lasts {
 struct Kind {
     name: &'static str,
     lasts: Lasts,
-    told: FaultKind,
-    /// False where it is too small to be told from motion, so that it only must do no harm.
+    /// False where it only must do no harm.
     is_named: bool,
     failing: fn(&mut ChaCha8Rng) -> Failing,
 }
 
-const fn kind(
-    name: &'static str,
-    lasts: Lasts,
-    told: FaultKind,
-    failing: fn(&mut ChaCha8Rng) -> Failing,
-) -> Kind {
+const fn kind(name: &'static str, lasts: Lasts, failing: fn(&mut ChaCha8Rng) -> Failing) -> Kind {
     Kind {
         name,
         lasts,
-        told,
         is_named: true,
         failing,
     }
 }
 
 const KINDS: &[Kind] = &[
-    kind("open", Lasts::ForGood, FaultKind::Open, |_| Failing::Open),
-    kind("short", Lasts::ForGood, FaultKind::Short, |_| {
-        Failing::Short
-    }),
-    kind("no value", Lasts::ForGood, FaultKind::Missing, |_| {
-        Failing::Dropped
-    }),
-    kind("stuck", Lasts::ForGood, FaultKind::Stuck, |_| {
-        Failing::Stuck
-    }),
-    kind(
-        "shift of 50 to 300 um",
-        Lasts::ForGood,
-        FaultKind::Shift,
-        |random| Failing::Off(either_way(random, 50e-6, 300e-6)),
-    ),
-    kind(
-        "a sample without value",
-        Lasts::Once,
-        FaultKind::Dropped,
-        |_| Failing::Dropped,
-    ),
-    kind(
-        "spike of 40 to 400 um",
-        Lasts::Once,
-        FaultKind::Spike,
-        |random| Failing::Off(either_way(random, 40e-6, 400e-6)),
-    ),
+    kind("open", ForGood, |_| Failing::Open),
+    kind("short", ForGood, |_| Failing::Short),
+    kind("no value", ForGood, |_| Failing::Dropped),
+    kind("stuck", ForGood, |_| Failing::Stuck),
+    kind("shift of 50 to 300 um", ForGood, |it| off(it, SHIFT)),
+    kind("a sample without value", Once, |_| Failing::Dropped),
+    kind("spike of 40 to 400 um", Once, |it| off(it, SPIKE)),
     Kind {
         is_named: false,
-        ..kind(
-            "spike of 10 to 40 um",
-            Lasts::Once,
-            FaultKind::Spike,
-            |random| Failing::Off(either_way(random, 10e-6, 40e-6)),
-        )
+        ..kind("spike of 10 to 40 um", Once, |it| off(it, FAINT))
     },
-    kind(
-        "gain 30 % too large",
-        Lasts::Always,
-        FaultKind::Gain,
-        |_| Failing::Gain(0.3),
-    ),
-    kind("reversed", Lasts::Always, FaultKind::Reversed, |_| {
-        Failing::Reversed
-    }),
-    kind("axes swapped", Lasts::Always, FaultKind::Swapped, |_| {
-        Failing::Swapped
-    }),
+    kind("gain 30 % too large", Always, |_| Failing::Gain(0.3)),
+    kind("reversed", Always, |_| Failing::Reversed),
+    kind("axes swapped", Always, |_| Failing::Swapped),
 ];
 
-fn either_way(random: &mut ChaCha8Rng, least: f64, most: f64) -> f64 {
+/// Off by one of these sizes, either way.
+fn off(random: &mut ChaCha8Rng, [least, most]: [f64; 2]) -> Failing {
     let size = least * (most / least).powf(random.random_range(0.0..1.0));
-    if random.random() { size } else { -size }
+    Failing::Off(if random.random() { size } else { -size })
+}
+
+/// As what it has to be named.
+fn expected(failing: Failing, lasts: Lasts) -> FaultKind {
+    match failing {
+        Failing::Open => FaultKind::Open,
+        Failing::Short => FaultKind::Short,
+        Failing::Dropped if lasts == Once => FaultKind::Dropped,
+        Failing::Dropped => FaultKind::Missing,
+        Failing::Stuck => FaultKind::Stuck,
+        Failing::Off(_) if lasts == Once => FaultKind::Spike,
+        Failing::Off(_) => FaultKind::Shift,
+        Failing::Drift(_) => FaultKind::Drift,
+        Failing::Gain(_) => FaultKind::Gain,
+        Failing::Reversed => FaultKind::Reversed,
+        Failing::Swapped => FaultKind::Swapped,
+    }
 }
 
 /// A kind of fault on one plane or two; none at all without a kind.
@@ -130,19 +113,15 @@ struct Case {
 
 impl Case {
     fn name(self) -> String {
-        let planes = if self.planes == 1 {
-            "one plane"
-        } else {
-            "two planes"
-        };
-        format!("{}, {planes}", self.kind.map_or("no fault", |it| it.name))
+        let kind = self.kind.map_or("no fault", |it| it.name);
+        format!("{kind}, {}", planes(self.planes))
     }
 
-    fn drop(
-        self,
-        plan: &Plan,
-        random: &mut ChaCha8Rng,
-    ) -> Result<(Drop, Option<SensorFault>), Failure> {
+    fn lasts(self) -> Option<Lasts> {
+        self.kind.map(|it| it.lasts)
+    }
+
+    fn drop(self, plan: &Plan, random: &mut ChaCha8Rng) -> Result<Drop, Failure> {
         let mut scene = Scene::load("rig")?;
         scene.sensors.planes = self.planes;
         scene.retainer.restitution = random.random_range(0.3..0.8);
@@ -150,16 +129,19 @@ impl Case {
         let way = if random.random() { 1.0 } else { -1.0 };
         let spin = way * scene.rotor.spin;
         let fault = self.kind.map(|kind| fault(kind, &scene, random));
-        let is_slow = self.kind.is_some_and(|it| it.lasts == Lasts::Always);
+        let is_slow = self.lasts() == Some(Always);
         scene.run.duration = if is_slow { LONG } else { WATCHED };
         scene.faults.extend(fault);
-        Ok((dropped(plan, scene, spin, random), fault))
+        Ok(dropped(plan, scene, spin, random))
     }
 
     /// Whether nothing else may be taken for the fault.
     fn is_harmless(self) -> bool {
-        let for_good = self.kind.is_some_and(|it| it.lasts == Lasts::ForGood);
-        !self.kind.is_some_and(|it| it.lasts == Lasts::Always) && (self.planes == 2 || !for_good)
+        match self.lasts() {
+            Some(Always) => false,
+            Some(ForGood) => self.planes == 2,
+            Some(Once) | None => true,
+        }
     }
 }
 
@@ -175,9 +157,9 @@ fn fault(kind: &Kind, scene: &Scene, random: &mut ChaCha8Rng) -> SensorFault {
     };
     let at = random.random_range(MOMENTS[0]..MOMENTS[1]);
     let [start, end] = match kind.lasts {
-        Lasts::ForGood => [at, f64::INFINITY],
-        Lasts::Once => [at, at + 1.0 / scene.run.sample_rate],
-        Lasts::Always => [f64::NEG_INFINITY, f64::INFINITY],
+        ForGood => [at, f64::INFINITY],
+        Once => [at, at + 1.0 / scene.run.sample_rate],
+        Always => [f64::NEG_INFINITY, f64::INFINITY],
     };
     SensorFault {
         channel,
@@ -187,23 +169,16 @@ fn fault(kind: &Kind, scene: &Scene, random: &mut ChaCha8Rng) -> SensorFault {
     }
 }
 
-/// Drops to compare two targets with.
 pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
     let few = cases().into_iter().step_by(3);
-    few.map(|case| Ok((case.name(), case.drop(plan, random)?.0)))
+    few.map(|case| Ok((case.name(), case.drop(plan, random)?)))
         .collect()
 }
 
 fn cases() -> Vec<Case> {
-    let mut cases = Vec::new();
-    for planes in [2, 1] {
-        cases.push(Case { kind: None, planes });
-        cases.extend(KINDS.iter().map(|kind| Case {
-            kind: Some(kind),
-            planes,
-        }));
-    }
-    cases
+    let kinds = iter::once(None).chain(KINDS.iter().map(Some));
+    let all = iproduct!([2, 1], kinds);
+    all.map(|(planes, kind)| Case { kind, planes }).collect()
 }
 
 /// What was seen of a drop.
@@ -216,33 +191,23 @@ struct Seen {
     is_harmed: bool,
 }
 
-fn seen(plan: &Plan, case: Case, random: &mut ChaCha8Rng) -> Result<Seen, Failure> {
-    let (drop, fault) = case.drop(plan, random)?;
+fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
-    let told = watched
-        .detection
-        .events
-        .iter()
-        .filter_map(|event| Some((event.declared_s, event.fault?)));
-    let is_it = |channel: &str, kind: FaultKind| {
-        let expected = case.kind.map(|it| it.told);
-        fault.is_some_and(|it| NAMES[it.channel] == channel) && expected == Some(kind)
-    };
+    let fault = drop.scene.faults.first();
+    let right = fault.zip(case.lasts());
+    let right =
+        right.map(|(it, lasts)| (channel_name(it.channel as u8), expected(it.failing, lasts)));
     let since = fault.map_or(0.0, |it| it.start).max(MOMENTS[0]);
-    let mut seen = Seen {
-        age: None,
-        false_faults: 0,
-        is_harmed: is_harmed(&drop, &watched),
-    };
-    for (time, it) in told {
-        if is_it(it.channel, it.kind) {
-            seen.age
-                .get_or_insert(((time - since) * drop.scene.run.sample_rate).round());
-        } else {
-            seen.false_faults += 1;
-        }
-    }
-    Ok(seen)
+    let events = watched.detection.events.iter();
+    let told = events.filter_map(|event| Some((event.declared_s, event.fault?)));
+    let (named, others): (Vec<_>, Vec<_>) =
+        told.partition(|(_, it)| right == Some((it.channel, it.kind)));
+    let age = |&(time, _): &(f64, _)| ((time - since) * drop.scene.run.sample_rate).round();
+    Ok(Seen {
+        age: named.first().map(age),
+        false_faults: others.len(),
+        is_harmed: is_harmed(drop, &watched),
+    })
 }
 
 fn is_harmed(drop: &Drop, watched: &Watched) -> bool {
@@ -259,11 +224,10 @@ fn is_harmed(drop: &Drop, watched: &Watched) -> bool {
     falls.count() != 1 || invented || missed
 }
 
-/// Runs the group.
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "sensors", &cases, |case, mut random| {
-        seen(plan, *case, &mut random)
+        seen(*case, &case.drop(plan, &mut random)?)
     })?;
     let mut rows = Vec::new();
     for (case, drops) in cases.iter().zip(&drops) {
@@ -287,10 +251,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
             );
         }
     }
-    Ok(Findings {
-        rows,
-        figures: Vec::new(),
-    })
+    Ok(rows.into_iter().collect())
 }
 
 fn named(name: &str, drops: &[Seen], false_faults: usize) -> Row {

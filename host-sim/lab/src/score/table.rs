@@ -1,7 +1,6 @@
 //! The rows as text.
 
-use super::row::Row;
-use super::{Findings, Score};
+use super::{Findings, Row, Score};
 use touchdown_base::paint::Paint;
 
 /// Cases beyond this are cut by the terminal anyway.

@@ -14,7 +14,7 @@ use touchdown_run::detection::detection;
 use touchdown_run::monitor_output::MonitorOutput;
 use touchdown_run::outcome::Detection;
 use touchdown_run::timebase::Timebase;
-use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsState};
+use touchdown_scene::sensors::{Faults, Motion, Sensors};
 use touchdown_scene::{Scene, Start};
 use touchdown_truth::{TrueState, Truth};
 
@@ -62,12 +62,26 @@ impl Drop {
     pub fn of(plan: &Plan, mut scene: Scene) -> Self {
         scene.tuning = plan.tuning;
         Self {
-            monitor: scene.monitor_config(),
+            levitated: 0,
+            ..Self::told(scene.clone(), &scene)
+        }
+    }
+
+    /// As `scene` has it, levitation and all. The monitor is told of `told`.
+    pub fn told(scene: Scene, told: &Scene) -> Self {
+        Self {
+            monitor: told.monitor_config(),
+            levitated: scene.levitated_samples(),
             scene,
             floats: None,
-            levitated: 0,
             first: 0.0,
         }
+    }
+
+    /// Whole sample periods up to the end.
+    pub fn periods(&self) -> usize {
+        let run = &self.scene.run;
+        (self.levitated as f64 + run.duration * run.sample_rate) as usize
     }
 
     /// Of sample `number`, s since the release.
@@ -100,10 +114,35 @@ impl Drop {
         (1.0 + self.scene.retainer.restitution) * impact.normal_speed
     }
 
+    /// Each sample, its time since the release (s), and what is true then; in an orbit, nothing before the release.
+    pub fn feed(
+        &self,
+        truth: &mut Truth<'_>,
+    ) -> Result<impl Iterator<Item = (Sample, f64, Option<TrueState>)>, Failure> {
+        let scene = &self.scene;
+        let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate).map_err(refused)?;
+        let mut seen = sensors.start(scene.run.seed);
+        let mut faults = Faults::new(&scene.faults, &scene.sensors);
+        let times = (0..).map(|number| self.time(number));
+        let times = times.take_while(|time| *time <= scene.run.duration);
+        Ok(times.map(move |time| {
+            let (motion, fallen) = match self.floats {
+                Some(floats) if time < 0.0 => (held(&floats, time), None),
+                _ => {
+                    let state = truth.advance(time);
+                    (state.motion(time < 0.0), Some(state))
+                }
+            };
+            let mut sample = sensors.read(&mut seen, &motion);
+            faults.inject(&mut sample, time);
+            (sample, time, fallen)
+        }))
+    }
+
     /// What the sensors deliver.
-    pub fn samples(&self) -> Result<impl Iterator<Item = Sample>, Failure> {
-        let mut feed = Feed::new(self).map_err(refused)?;
-        Ok(std::iter::from_fn(move || feed.next().map(|it| it.0)))
+    pub fn samples(&self) -> Result<Vec<Sample>, Failure> {
+        let mut truth = Truth::new(&self.scene);
+        Ok(self.feed(&mut truth)?.map(|it| it.0).collect())
     }
 
     /// Runs it.
@@ -111,9 +150,9 @@ impl Drop {
         let monitor = Monitor::try_new(&self.monitor).map_err(refused)?;
         let mut state = MonitorState::default();
         let mut forecast_task = ForecastTask::try_new(&self.monitor.detector).map_err(refused)?;
-        let mut feed = Feed::new(self).map_err(refused)?;
+        let mut truth = Truth::new(&self.scene);
         let (mut notices, mut instants) = (Vec::new(), Vec::new());
-        while let Some((sample, time, fallen)) = feed.next() {
+        for (sample, time, fallen) in self.feed(&mut truth)? {
             notices.extend(monitor.update(&mut state, &sample));
             notices.extend(monitor.look(&state, &mut forecast_task));
             instants.extend(fallen.map(|TrueState { phase, rotor, .. }| Instant {
@@ -132,7 +171,7 @@ impl Drop {
         };
         let timebase = Timebase::new(self.time(0), self.scene.run.sample_rate);
         Ok(Watched {
-            truth: feed.truth.finish().whole,
+            truth: truth.finish().whole,
             detection: detection(&answer, timebase),
             instants,
         })
@@ -163,49 +202,6 @@ pub struct Instant {
     pub turns: f64,
     /// m.
     pub position: [f64; 2],
-}
-
-struct Feed<'a> {
-    drop: &'a Drop,
-    sensors: Sensors,
-    seen: SensorsState,
-    faults: Faults,
-    truth: Truth<'a>,
-    next: u64,
-}
-
-impl<'a> Feed<'a> {
-    fn new(drop: &'a Drop) -> Result<Self, ConfigError> {
-        let scene = &drop.scene;
-        let sensors = Sensors::try_new(&scene.sensors, scene.run.sample_rate)?;
-        Ok(Self {
-            drop,
-            seen: sensors.start(scene.run.seed),
-            sensors,
-            faults: Faults::new(&scene.faults, &scene.sensors),
-            truth: Truth::new(scene),
-            next: 0,
-        })
-    }
-
-    /// A sample, its time since the release (s), and what is true then, once released.
-    fn next(&mut self) -> Option<(Sample, f64, Option<TrueState>)> {
-        let time = self.drop.time(self.next);
-        if time > self.drop.scene.run.duration {
-            return None;
-        }
-        self.next += 1;
-        let (motion, fallen) = match self.drop.floats {
-            Some(floats) if time < 0.0 => (held(&floats, time), None),
-            _ => {
-                let state = self.truth.advance(time);
-                (state.motion(false), Some(state))
-            }
-        };
-        let mut sample = self.sensors.read(&mut self.seen, &motion);
-        self.faults.inject(&mut sample, time);
-        Some((sample, time, fallen))
-    }
 }
 
 fn held(floats: &Levitated, time: f64) -> Motion {

@@ -1,9 +1,9 @@
 //! Error against cost, both logarithmic.
 
+use itertools::Itertools;
 use maud::{Markup, html};
 
-use super::Trade;
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_chart::plot::{Axis, Chart};
 use touchdown_chart::text::si;
 use touchdown_scene::{Fidelity, Precision};
@@ -16,44 +16,39 @@ const HEIGHT: f64 = 440.0;
 const WIDTH: f64 = 960.0;
 
 /// Whose cost is drawn.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Cost {
-    /// Seconds per simulated second on this machine.
-    Here,
-    /// Instructions per simulated second on the target.
-    Target,
-}
-
-impl Cost {
+#[derive(Clone, Copy)]
+pub(super) struct Cost {
+    label: &'static str,
     /// None where it is not known.
-    fn of(self, row: &Row) -> Option<f64> {
-        match self {
-            Self::Here => Some(row.pace.seconds_per_simulated_second),
-            Self::Target => row
-                .pace
-                .mcu_instructions_per_step
-                .map(|count| count / row.step_s),
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Here => "cost here, seconds per simulated second",
-            Self::Target => "cost on the target, instructions per simulated second",
-        }
-    }
+    of: fn(&Row) -> Option<f64>,
+    /// Whether the front is about it.
+    has_front: bool,
 }
+
+/// On this machine.
+pub(super) const HERE: Cost = Cost {
+    label: "cost here, seconds per simulated second",
+    of: |row| Some(row.pace.seconds_per_simulated_second),
+    has_front: true,
+};
+
+/// On the target.
+pub(super) const TARGET: Cost = Cost {
+    label: "cost on the target, instructions per simulated second",
+    of: |row| Some(row.pace.mcu_instructions_per_step? / row.step_s),
+    has_front: false,
+};
 
 /// The drawing as a part of a page.
 pub(super) fn drawing(trade: &Trade, cost: Cost) -> Markup {
     let plot = Plot::of(&trade.rows, cost);
-    plot.chart().draw(&html! {}, &plot.front(), &plot.points())
+    plot.chart().draw(&html! {}, &plot.front(), &plot.circles())
 }
 
 /// The drawing for this machine as a file of its own.
 pub fn svg(trade: &Trade) -> String {
-    let plot = Plot::of(&trade.rows, Cost::Here);
-    let points = html! { (plot.points()) (key(&trade.rows)) };
+    let plot = Plot::of(&trade.rows, HERE);
+    let points = html! { (plot.circles()) (key(&trade.rows)) };
     let file = plot.chart().file(WIDTH, &plot.front(), &points);
     file.into_string()
 }
@@ -87,7 +82,7 @@ struct Plot<'a> {
 
 impl<'a> Plot<'a> {
     fn of(rows: &'a [Row], of: Cost) -> Self {
-        let costs = rows.iter().filter_map(|row| of.of(row));
+        let costs = rows.iter().filter_map(|row| (of.of)(row));
         let least = costs.clone().fold(f64::INFINITY, f64::min);
         let most = costs.fold(0.0, f64::max);
         let errors = rows.iter().map(|row| height(row.accuracy.worst));
@@ -97,7 +92,7 @@ impl<'a> Plot<'a> {
         Self {
             rows,
             of,
-            cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label(), 8.0),
+            cost: Axis::decades(least.min(1e12), most.max(1e-9), of.label, 8.0),
             error: Axis::decades(low, high, "greatest error at impacts 1, 3 and 10", 10.0),
         }
     }
@@ -113,37 +108,31 @@ impl<'a> Plot<'a> {
         }
     }
 
-    /// Joins the front, which is about the cost here.
+    /// Joins the front.
     fn front(&self) -> Markup {
-        let mut front: Vec<&Row> = self.rows.iter().filter(|row| row.pareto).collect();
-        front.sort_by(|a, b| {
-            a.pace
-                .seconds_per_simulated_second
-                .total_cmp(&b.pace.seconds_per_simulated_second)
-        });
-        let chart = self.chart();
-        let mut pen = chart.pen();
-        for row in front.into_iter().filter(|_| self.of == Cost::Here) {
-            pen.line_to(
-                row.pace.seconds_per_simulated_second,
-                height(row.accuracy.worst),
-            );
-        }
-        pen.finish("front")
+        let front = self.points().filter(|(row, _)| self.is_front(row));
+        let places = front.map(|(row, cost)| (cost, height(row.accuracy.worst)));
+        let places = places.sorted_by(|a, b| a.0.total_cmp(&b.0));
+        self.chart().curve("front", places)
     }
 
-    fn points(&self) -> Markup {
-        let known = self
-            .rows
-            .iter()
-            .filter_map(|row| Some((row, self.of.of(row)?)));
+    fn is_front(&self, row: &Row) -> bool {
+        row.pareto && self.of.has_front
+    }
+
+    /// Those whose cost is known.
+    fn points(&self) -> impl Iterator<Item = (&Row, f64)> {
+        let rows = self.rows.iter();
+        rows.filter_map(|row| Some((row, (self.of.of)(row)?)))
+    }
+
+    fn circles(&self) -> Markup {
         html! {
-            @for (row, cost) in known {
+            @for (row, cost) in self.points() {
                 @let y = (1.0 - self.error.fraction(height(row.accuracy.worst))) * HEIGHT;
                 @let class = format!("rung-{} {}", row.rung, row.precision);
-                @let large = row.pareto && self.of == Cost::Here;
                 circle class=(class) cx=(self.cost.percent(cost)) cy=(format!("{y:.1}"))
-                    r=(if large { "6" } else { "3.5" }) {
+                    r=(if self.is_front(row) { "6" } else { "3.5" }) {
                     title { (caption(row)) }
                 }
             }

@@ -5,9 +5,7 @@ mod accuracy;
 mod drawing;
 mod pace;
 mod page;
-mod pareto;
 pub mod parts;
-mod row;
 mod table;
 
 pub use drawing::svg;
@@ -22,13 +20,12 @@ use serde::Serialize;
 use accuracy::Accuracy;
 use pace::Pace;
 use parts::Worth;
-use row::Row;
 use touchdown_base::history::History;
 use touchdown_base::progress;
 use touchdown_run::fidelity::combination::{self, with};
 use touchdown_run::fidelity::cost::first_second;
 use touchdown_run::model;
-use touchdown_scene::{Model, Scene};
+use touchdown_scene::{Fidelity, Math, Model, Precision, Scene, Scheme};
 
 /// The table of a scene, and how much of the scene it was measured over.
 #[derive(Serialize)]
@@ -45,26 +42,51 @@ pub struct Trade {
     rows: Vec<Row>,
 }
 
+/// One combination: how wrong it is, and what it costs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Row {
+    rung: Fidelity,
+    scheme: Scheme,
+    precision: Precision,
+    math: Math,
+    step_s: f64,
+    #[serde(flatten)]
+    accuracy: Accuracy,
+    #[serde(flatten)]
+    pace: Pace,
+    /// Whether no other row is both quicker here and closer at impacts 1, 3 and 10.
+    pareto: bool,
+}
+
+impl Row {
+    /// Rung, scheme, precision and math, for people.
+    fn name(&self) -> String {
+        format!(
+            "{} {} {} {}",
+            self.rung, self.scheme, self.precision, self.math
+        )
+    }
+}
+
 /// Measures every part, by so many drops, and every combination over the first second of `scene`.
 pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
     let scene = first_second(scene);
     let truth = touchdown_truth::simulate(&scene);
     let models = combination::all();
     let progress = progress::bar("trade", models.len() as u64);
-    let measured = models.into_par_iter().map(|model| {
+    let measured = models.into_par_iter().filter_map(|model| {
         let row = once(&with(&scene, model), &truth);
         progress.inc(1);
-        row.map(|row| (model, row))
+        Some((model, row?))
     });
-    let measured: Vec<Option<(Model, Row)>> = measured.collect();
+    let measured: Vec<(Model, Row)> = measured.collect();
     progress.finish_and_clear();
-    let measured = measured.into_iter().flatten();
-    let timed = measured.filter_map(|(model, row)| {
+    let timed = measured.into_iter().filter_map(|(model, row)| {
         let pace = row.pace.of_short(&with(&scene, model)).ok()?;
         Some(Row { pace, ..row })
     });
     let mut rows: Vec<Row> = timed.collect();
-    pareto::mark(&mut rows);
+    mark_front(&mut rows);
     Trade {
         scene: scene.heading().to_owned(),
         measured: scene.run.duration,
@@ -78,6 +100,44 @@ fn once(scene: &Scene, truth: &History) -> Option<Row> {
     let begin = Instant::now();
     let history = model::simulate(scene).ok()?;
     let pace = Pace::of(scene, begin.elapsed());
-    let accuracy = Accuracy::of(&history, truth, scene);
-    Some(Row::new(scene.model, accuracy, pace))
+    let model = scene.model;
+    Some(Row {
+        rung: model.rung,
+        scheme: model.scheme,
+        precision: model.precision,
+        math: model.math,
+        step_s: model.step,
+        accuracy: Accuracy::of(&history, truth, scene),
+        pace,
+        pareto: false,
+    })
+}
+
+/// Marks the rows that no other row beats: none is at least as quick here and as close at the impacts,
+/// and better in one of them.
+fn mark_front(rows: &mut [Row]) {
+    let points: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|row| [row.pace.seconds_per_simulated_second, row.accuracy.worst])
+        .collect();
+    for (row, &point) in rows.iter_mut().zip(&points) {
+        row.pareto = point[1].is_finite() && !points.iter().any(|&other| beats(other, point));
+    }
+}
+
+fn beats(a: [f64; 2], b: [f64; 2]) -> bool {
+    a[0] <= b[0] && a[1] <= b[1] && a != b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::beats;
+
+    #[test]
+    fn a_point_is_beaten_by_what_is_no_worse_and_somewhere_better() {
+        assert!(beats([1.0, 1.0], [1.0, 2.0]));
+        assert!(beats([1.0, 1.0], [2.0, 2.0]));
+        assert!(!beats([1.0, 1.0], [1.0, 1.0]));
+        assert!(!beats([1.0, 3.0], [2.0, 2.0]));
+    }
 }

@@ -2,22 +2,17 @@
 
 use maud::{Markup, html};
 
-use super::Trade;
-use super::drawing::{Cost, drawing, legend};
+use super::drawing::{HERE, TARGET, drawing, legend};
 use super::parts::{Effect, drawing as parts_drawing};
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
 use touchdown_chart::text::si;
 
 /// Writes the page.
 pub fn page(trade: &Trade) -> String {
-    let front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
-    let all: Vec<&Row> = trade.rows.iter().collect();
-    let counted = trade
-        .rows
-        .iter()
-        .any(|row| row.pace.mcu_instructions_per_step.is_some());
+    let all = || trade.rows.iter();
+    let counted = all().any(|row| row.pace.mcu_instructions_per_step.is_some());
     let body = html! {
         header {
             p.kind { "Accuracy against cost" }
@@ -51,14 +46,14 @@ pub fn page(trade: &Trade) -> String {
             }
             (legend(&trade.rows))
             h3 { "Here" }
-            (drawing(trade, Cost::Here))
+            (drawing(trade, HERE))
             @if counted {
                 h3 { "On the target" }
-                (drawing(trade, Cost::Target))
+                (drawing(trade, TARGET))
             }
         }
-        section { h2 { "Front" } (rows("Front", &front)) }
-        section { h2 { "All combinations" } (rows("All combinations", &all)) }
+        section { h2 { "Front" } (rows("Front", all().filter(|row| row.pareto))) }
+        section { h2 { "All combinations" } (rows("All combinations", all())) }
     };
     shell("Accuracy against cost \u{2013} touchdown", &body).into_string()
 }
@@ -79,9 +74,10 @@ fn worth(trade: &Trade) -> Markup {
         .draw()
 }
 
-fn rows(name: &str, rows: &[&Row]) -> Markup {
+fn rows<'a>(name: &str, rows: impl Iterator<Item = &'a Row>) -> Markup {
+    let rows: Vec<&Row> = rows.collect();
     let error = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), |it| format!("{it:.1e}"));
-    table(name, rows)
+    table(name, &rows)
         .words("Combination", |it| it.name())
         .number("Step", |it| si(it.step_s, "s"))
         .number("Impact 1", |it| error(it.accuracy.error_impact_1))

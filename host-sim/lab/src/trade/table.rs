@@ -1,8 +1,7 @@
 //! The table as text, in 80 columns.
 
-use super::Trade;
 use super::parts;
-use super::row::Row;
+use super::{Row, Trade};
 use touchdown_base::paint::Paint;
 
 /// Steps that have a column, us.
@@ -31,10 +30,10 @@ pub fn table(trade: &Trade, paint: Paint) -> String {
     let mut front: Vec<&Row> = trade.rows.iter().filter(|row| row.pareto).collect();
     front.sort_by(|a, b| a.accuracy.worst.total_cmp(&b.accuracy.worst));
     for row in front {
+        let step_us = (row.step_s * 1e6 * 1e3).round() / 1e3;
         text += &format!(
-            "{:<32} step {:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
+            "{:<32} step {step_us:>5} us{:>9.1e}{:>10.1e} s a simulated s\n",
             row.name(),
-            short(row.step_s * 1e6),
             row.accuracy.worst,
             row.pace.seconds_per_simulated_second,
         );
@@ -62,8 +61,4 @@ fn line(group: &[Row]) -> String {
         .map_or("-".to_owned(), |count| format!("{count:.0}"));
     let name = group.first().map(Row::name).unwrap_or_default();
     format!("{name:<31}{errors}{pace:>8}{target:>7}\n")
-}
-
-fn short(value: f64) -> String {
-    format!("{}", (value * 1e3).round() / 1e3)
 }

@@ -70,23 +70,23 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Worth {
     };
     let progress = progress::bar("parts", most as u64);
     let mut all: Vec<Vec<Drop>> = Vec::new();
-    let (mut done, mut work) = (0, 0.0);
-    while done < most && (drops.is_some() || work < WORK) {
-        let end = most.min(done + SOME);
-        let some: Vec<Option<Vec<Drop>>> = (done..end)
-            .into_par_iter()
-            .map(|number| {
-                let scene = varied(scene, number as u64);
-                let less = parts.iter().map(|part| scene.model.without(*part));
-                let all = [scene.model].into_iter().chain(less);
-                let drops = all.map(|model| dropped(&with(&scene, model))).collect();
-                progress.inc(1);
-                drops
-            })
-            .collect();
-        let drops = some.into_iter().flatten();
-        all.extend(drops.inspect(|it| work += it.iter().map(|it| it.work).sum::<f64>()));
-        done = end;
+    let mut work = 0.0;
+    for done in (0..most).step_by(SOME) {
+        if drops.is_none() && work >= WORK {
+            break;
+        }
+        let some = (done..most.min(done + SOME)).into_par_iter();
+        let some = some.filter_map(|number| {
+            let scene = varied(scene, number as u64);
+            let less = parts.iter().map(|part| scene.model.without(*part));
+            let all = [scene.model].into_iter().chain(less);
+            let drops = all.map(|model| dropped(&with(&scene, model))).collect();
+            progress.inc(1);
+            drops
+        });
+        let some: Vec<Vec<Drop>> = some.collect();
+        work += some.iter().flatten().map(|it| it.work).sum::<f64>();
+        all.extend(some);
     }
     progress.finish_and_clear();
     let seconds = |machine: usize| all.iter().map(|it| it[machine].seconds).sum::<f64>();
