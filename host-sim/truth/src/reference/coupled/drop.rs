@@ -134,8 +134,7 @@ impl CoupledState {
 #[derive(Clone, Debug)]
 pub struct CoupledReference {
     motion: Motion,
-    /// Displacements in the rings.
-    rings: Vec<Link>,
+    rings: usize,
     bending: usize,
 }
 
@@ -151,8 +150,7 @@ impl CoupledReference {
         let tape = Tape::new();
         let pulled = surroundings.forces(&release.map(|value| tape.given(*value)));
         let pull = f64::hypot(pulled[0].value(), pulled[1].value()) / machine.mass;
-        let walls = system.links[..machine.retainers.len()].to_vec();
-        let moving = walls.iter().map(|link| {
+        let moving = system.links[..machine.retainers.len()].iter().map(|link| {
             let [x, y] = link.lateral(&release.speed);
             f64::hypot(x, y)
         });
@@ -165,7 +163,7 @@ impl CoupledReference {
         let unit = unit.into_iter().find(|speed| *speed > 0.0).unwrap_or(1.0);
         Self {
             motion: Motion::new(system, surroundings, (length / unit, unit), release),
-            rings: walls,
+            rings: machine.retainers.len(),
             bending: machine.bending.len(),
         }
     }
@@ -182,7 +180,7 @@ impl CoupledReference {
         let Coordinates { place, speed } = &at;
         let of = |of: &[f64], body: usize| [of[2 * body], of[2 * body + 1]];
         let first = 2 + self.bending;
-        let spins = 2 * (first + self.rings.len());
+        let spins = 2 * (first + self.rings);
         let ring = |(i, link): (usize, &Link)| RingState {
             position: of(place, first + i),
             velocity: of(speed, first + i),
@@ -191,8 +189,9 @@ impl CoupledReference {
             race_spin: speed[spins + 1 + i],
             race_angle: place[spins + 1 + i],
         };
-        let walls = self.motion.each(|_, link| link.clearance());
-        let walls = walls.into_iter().flatten().count();
+        let links = self.motion.system.links.iter();
+        let rings = links.clone().take(self.rings).enumerate();
+        let walls = links.filter(|link| link.clearance().is_some()).count();
         let held = |link: usize, _: &Link| self.motion.step.held(link, part)[0];
         CoupledState {
             time,
@@ -202,7 +201,7 @@ impl CoupledReference {
             tilt_rate: of(speed, 1),
             spin: speed[spins],
             bending: (2..first).map(|k| of(place, k)).collect(),
-            rings: self.rings.iter().enumerate().map(ring).collect(),
+            rings: rings.map(ring).collect(),
             modes: self.motion.each(|_, link| link.mode)[..walls].to_vec(),
             normal_forces: self.motion.each(held)[..walls].to_vec(),
             turns_in_contact: self.motion.turns_at(place)[..walls].to_vec(),

@@ -1,7 +1,6 @@
 //! The forces of walls that give way, as series.
 
 use super::super::jet::dot;
-use super::soft::Soft;
 use super::system::{Coordinates, Hold, Link, Mode, System};
 use super::tape::Term;
 use super::unknown::Unknown;
@@ -32,10 +31,12 @@ pub struct SoftForce<'t> {
 impl<'t> SoftForce<'t> {
     /// What presses at this wall, or did before it is left.
     fn at(
-        soft: &Soft,
         (link, of): (usize, &Link),
         Coordinates { place, speed }: &Coordinates<Term<'t>>,
     ) -> Option<Self> {
+        let Hold::Soft(soft) = of.hold else {
+            return None;
+        };
         let constant = |value| place[0].constant(value);
         let within = soft.within?;
         let (q, w) = (of.lateral(place), of.lateral(speed));
@@ -71,11 +72,7 @@ impl<'t> SoftForce<'t> {
     /// All of a system.
     pub fn all(system: &System, now: &Coordinates<Term<'t>>) -> Vec<Self> {
         let links = system.links.iter().enumerate();
-        let pressed = |(index, link): (usize, &Link)| match link.hold {
-            Hold::Soft(soft) => Self::at(&soft, (index, link), now),
-            _ => None,
-        };
-        links.filter_map(pressed).collect()
+        links.filter_map(|link| Self::at(link, now)).collect()
     }
 
     /// Adds its force to the accelerations.

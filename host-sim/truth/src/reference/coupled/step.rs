@@ -3,7 +3,7 @@
 use super::super::jet::{Jet, dot};
 use super::forces::Forces;
 use super::pull::Pull;
-use super::seat::SeatLink;
+use super::seat::{SLOWEST, SeatLink};
 use super::soft_force::SoftForce;
 use super::surroundings::Surroundings;
 use super::system::{Coordinates, Hold, Link, Mode, System};
@@ -33,8 +33,6 @@ pub struct Bounds {
     pub longest: f64,
     /// Unit of speed, m/s.
     pub speed: f64,
-    /// Speed at which a sliding ring is at rest, m/s.
-    pub slowest: f64,
 }
 
 /// How a step ends; a number is that of the link.
@@ -148,7 +146,7 @@ impl Step {
             step.locate(link, index, &sizes(index));
         }
         for seat in SeatLink::all(system) {
-            step.seat(system, &seat, sizes(seat.link).held, bounds.slowest);
+            step.seat(system, &seat, sizes(seat.link).held, bounds);
         }
         for it in &forces.pressed {
             step.pressed(&system.links[it.link], it, ticks, &sizes(it.link));
@@ -257,14 +255,14 @@ impl Step {
         }
     }
 
-    fn seat(&mut self, system: &System, seat: &SeatLink, sizes: [f64; 2], slowest: f64) {
+    fn seat(&mut self, system: &System, seat: &SeatLink, sizes: [f64; 2], bounds: Bounds) {
         if system.links[seat.link].mode == Mode::Stick {
             let size = (sizes[0] + sizes[1]) / seat.limit;
             let rounding = ROUNDING * (1.0 + size * size);
             let spare = seat.spare(&self.held[seat.link]);
             self.earlier(&spare, [rounding; 3], Ending::GripLost(seat.link, 0.0));
         } else {
-            let haste = seat.haste(system, &self.path.speed, slowest);
+            let haste = seat.haste(system, &self.path.speed, SLOWEST * bounds.speed);
             self.earlier(&haste, [0.0; 3], Ending::SlipEnds(seat.link));
         }
     }

@@ -119,12 +119,8 @@ impl Motion {
         }
     }
 
-    /// What is told of a wall that gives way, as it is entered: it has no impulse yet.
-    pub(super) fn entry(&self, link: usize) -> Impact {
-        self.impact(&self.touch(link))
-    }
-
-    fn impact(&self, touch: &Touching) -> Impact {
+    /// What is told of it; a wall that gives way has no impulse yet as it is entered.
+    pub(super) fn impact(&self, touch: &Touching) -> Impact {
         let told = &self.system.links[touch.link].told;
         Impact {
             state: RotorState {

@@ -21,7 +21,8 @@ const MOST_COST: usize = 12_000_000;
 /// A system that moves.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    system: System,
+    /// What moves.
+    pub system: System,
     surroundings: Surroundings,
     /// Size of the last terms of a series: what convergence is shown with.
     pub accuracy: f64,
@@ -157,7 +158,7 @@ impl Motion {
                 self.collide(Some(link), on_event);
             }
             Ending::Touch(link) => {
-                on_event(link, ModelEvent::Impact(self.entry(link)));
+                on_event(link, ModelEvent::Impact(self.impact(&self.touch(link))));
                 self.change(Ending::Touch(link));
             }
             change => self.change(change),

@@ -190,7 +190,6 @@ impl Motion {
             accuracy: self.accuracy,
             longest: until.min(LONGEST * self.units.0),
             speed: self.units.1,
-            slowest: self.slowest(),
         };
         self.step = Step::new(&self.system, &self.surroundings, &self.now, bounds);
         self.cost += self.step.cost;
